@@ -1,0 +1,110 @@
+# Rugo's one build file. `make run` and `make test` need nothing but make itself: `make deps` fetches the rest.
+#   BUILD=dir        where objects go (build)
+#   SAN=address,undefined | SAN=thread   sanitizers      COV=1 coverage      DEBUG=1 no optimisation
+BUILD  ?= build
+PREFIX ?= /usr/local
+CC     ?= cc
+
+PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl cmocka
+APT      = build-essential pkg-config libfftw3-dev libsuitesparse-dev libgsl-dev librandom123-dev \
+           libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev libcmocka-dev
+
+WARN   = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+OPT    = -O3
+ifdef DEBUG
+OPT    = -O0
+endif
+ifdef SAN
+OPT    = -O1 -fno-omit-frame-pointer -fsanitize=$(SAN) -fno-sanitize-recover=all
+endif
+ifdef COV
+OPT    = -O0 --coverage
+endif
+# No contraction and no fast-math: one realisation gives the same digits whatever the vector width.
+FORTIFY = $(if $(or $(SAN),$(DEBUG),$(COV)),,-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
+CFLAGS  = -std=c11 -D_GNU_SOURCE -g $(OPT) $(WARN) -ffp-contract=off -fno-math-errno -fno-trapping-math \
+          -fstack-protector-strong -fPIE -pthread $(FORTIFY) -I. -isystem /usr/include/suitesparse
+LDFLAGS = -pie -Wl,-z,relro,-z,now -pthread $(if $(SAN),-fsanitize=$(SAN)) $(if $(COV),--coverage)
+LIBS_core   = -lfftw3 -lgsl -lgslcblas -lm
+LIBS_jobs   = -lcjson $(LIBS_core)
+LIBS_schema = -lsqlite3 $(LIBS_jobs)
+LIBS_worker = -lcurl $(LIBS_schema)
+LIBS_server = -lmicrohttpd $(LIBS_worker)
+
+# Each layer is an archive; a layer's tests link it and the layers below, so that one can work on one layer alone.
+LAYERS   = core schema jobs worker server
+BELOW_core   = core
+BELOW_schema = schema core
+BELOW_jobs   = jobs core
+BELOW_worker = worker jobs schema core
+BELOW_server = server worker jobs schema core
+MAIN     = server/main.c
+sources  = $(filter-out $(MAIN),$(wildcard $(1)/*.c $(1)/*/*.c))
+objects  = $(patsubst %,$(BUILD)/%.o,$(1))
+archive  = $(patsubst %,$(BUILD)/lib%.a,$(1))
+
+.PHONY: all deps run test unit validation system bench lint format check-format install clean
+all: $(BUILD)/rugo
+
+$(BUILD)/%.c.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) -MMD -MP -c $< -o $@
+
+define LAYER
+$(BUILD)/lib$(1).a: $(call objects,$(call sources,$(1)))
+	@mkdir -p $$(@D); rm -f $$@
+	$(AR) rcs $$@ $$^
+endef
+$(foreach layer,$(LAYERS),$(eval $(call LAYER,$(layer))))
+
+$(BUILD)/rugo: $(call objects,$(MAIN)) $(call archive,$(BELOW_server))
+	$(CC) $(LDFLAGS) -o $@ $^ $(LIBS_server)
+
+# Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them.
+SUPPORT = $(call objects,$(wildcard tests/support/*.c))
+define TESTS
+TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c))
+$$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(call archive,$(BELOW_$(2)))
+	$(CC) $(LDFLAGS) -o $$@ $$^ -lcmocka $(LIBS_$(2))
+$(1)-$(2): $$(TESTS_$(1)_$(2))
+	tests/run-tests $$^
+.PHONY: $(1)-$(2)
+endef
+LADDERS = unit validation system bench
+$(foreach ladder,$(LADDERS),$(foreach layer,$(LAYERS),$(eval $(call TESTS,$(ladder),$(layer)))))
+all_tests = $(foreach layer,$(LAYERS),$(TESTS_$(1)_$(layer)))
+
+test: deps
+	@$(MAKE) --no-print-directory -j$$(nproc) run-tests-built
+.PHONY: run-tests-built
+run-tests-built: all $(foreach ladder,unit validation system,$(call all_tests,$(ladder)))
+	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(foreach ladder,unit validation system,$(call all_tests,$(ladder)))
+unit validation system: all
+	@$(MAKE) --no-print-directory $(call all_tests,$@)
+	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,$@)
+
+deps:
+	@tests/install-deps "$(PACKAGES)" "$(APT)"
+
+run: deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all
+	@$(BUILD)/rugo run --db $(BUILD)/demo.db jobs/studies/demo.json
+
+bench: deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(call all_tests,bench)
+	@RUGO=$(abspath $(BUILD))/rugo tests/bench/run $(call all_tests,bench)
+
+SOURCES = $(shell git ls-files --cached --others --exclude-standard '*.c' '*.h')
+format:
+	clang-format -i $(SOURCES)
+check-format:
+	clang-format --dry-run --Werror $(SOURCES)
+lint: check-format
+	clang-tidy --quiet $(filter %.c,$(SOURCES)) -- $(CFLAGS)
+
+install: all
+	install -D $(BUILD)/rugo $(DESTDIR)$(PREFIX)/bin/rugo
+clean:
+	rm -rf $(BUILD)
+
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -1,0 +1,53 @@
+/* Errors as values, and lists of faults found in what a user wrote.
+ *
+ * Every fallible function returns an int: 0, or one of the negative codes below, and then has
+ * filled the caller's struct error with a sentence that names the thing at fault, its value and
+ * what is allowed. Callers either handle it or return it, with a word of context put in front. */
+#ifndef RUGO_CORE_ERROR_H
+#define RUGO_CORE_ERROR_H
+
+#include <stddef.h>
+
+enum {
+    ERROR_INPUT = -1,   /* what the user gave is wrong; trying again will not help */
+    ERROR_MEMORY = -2,  /* an allocation failed */
+    ERROR_SYSTEM = -3,  /* a file, the network, the operating system */
+    ERROR_NUMERIC = -4, /* no answer to the accuracy asked: no convergence, out of domain */
+    ERROR_STATE = -5,   /* refused by the state of a study or job: a lost lease, already ended */
+    ERROR_ABSENT = -6,  /* no such study, job or case */
+    ERROR_STOPPED = -7, /* asked to stop; nothing is wrong */
+};
+
+struct error {
+    int code; /* 0 or a code above */
+    char text[480];
+};
+
+/* Fills err (which may be NULL) and returns code. */
+__attribute__((format(printf, 3, 4))) int error_set(struct error *err, int code, const char *format,
+                                                    ...);
+/* Puts "context: " in front of the text of err; returns err->code. */
+__attribute__((format(printf, 2, 3))) int error_context(struct error *err, const char *format, ...);
+/* "cannot allocate N bytes for WHAT"; returns ERROR_MEMORY. */
+int error_memory(struct error *err, size_t bytes, const char *what);
+
+/* malloc of count * size bytes, zeroed; NULL when out of memory or when the product overflows. */
+void *array_create(size_t count, size_t size);
+
+/* A growing list of faults in one input, each with the JSON pointer it belongs to. Initialise
+ * with {0}; owns its strings. At most FAULTS_KEPT are kept, all are counted. */
+enum { FAULTS_KEPT = 100 };
+struct fault {
+    char *pointer; /* RFC 6901; "" is the whole document */
+    char *detail;  /* what is wrong and what is allowed */
+};
+struct fault_list {
+    struct fault *faults; /* count entries, or FAULTS_KEPT if fewer */
+    size_t count;
+};
+/* Adds a fault; out of memory only counts it. */
+__attribute__((format(printf, 3, 4))) void fault_add(struct fault_list *list, const char *pointer,
+                                                     const char *format, ...);
+void fault_list_clear(struct fault_list *list);
+
+#endif

@@ -1,0 +1,30 @@
+/* One table describes the parameters of a kind of study: it drives reading, errors, the effective
+ * values that `rugo check` prints, the JSON Schema and the OpenAPI schema. Plain data. */
+#ifndef RUGO_CORE_PARAMETER_H
+#define RUGO_CORE_PARAMETER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum parameter_type {
+    PARAMETER_NUMBER,
+    PARAMETER_INTEGER,
+    PARAMETER_CHOICE, /* a string out of choices */
+    PARAMETER_NUMBERS /* an array of items_low..items_high numbers: one value, e.g. bins */
+};
+
+struct parameter {
+    const char *path; /* JSON pointer in the study: "/surface/hurst" */
+    enum parameter_type type;
+    double minimum, maximum;         /* of each number; ignored for choices */
+    bool above_minimum;              /* minimum itself excluded: "(0, 1]" */
+    bool below_maximum;              /* maximum itself excluded */
+    size_t items_low, items_high;    /* PARAMETER_NUMBERS */
+    const char *const *choices;      /* NULL-terminated */
+    bool required;                   /* in every study of this kind */
+    bool sweep;                      /* a list of values makes cases */
+    const char *default_json;        /* NULL: absent unless given */
+    const char *help;                /* one line; unit or normalisation in it */
+};
+
+#endif

@@ -1,0 +1,40 @@
+/* Summits of surfaces, peaks of profiles, on periodic grids.
+ *
+ * A grid summit is strictly higher than its 8 (nine-point) or 4 (five-point) neighbours, in profiles
+ * than its 2: a plateau holds none. A refined summit is a true maximum (zero gradient, negative
+ * definite Hessian) of the band-limited surface through the grid, found between the points. */
+#ifndef RUGO_CORE_STATISTICS_SUMMITS_H
+#define RUGO_CORE_STATISTICS_SUMMITS_H
+
+#include "core/surface/grid.h"
+
+enum summit_stencil { SUMMITS_NINE_POINT, SUMMITS_FIVE_POINT, SUMMITS_REFINED };
+enum summit_curvature { CURVATURE_FINITE_DIFFERENCE, CURVATURE_SPECTRAL };
+
+struct summit {
+    double x, y;      /* position, units of the cell; [0, lx) x [0, ly) */
+    double height;    /* same unit as z */
+    double curvature; /* mean curvature -(z_xx + z_yy)/2, profile -z_xx; positive at a summit */
+};
+/* A list that grows and is reused from realisation to realisation. Initialise with {0}. */
+struct summit_list {
+    struct summit *summits; /* owned */
+    size_t count, capacity;
+};
+void summit_list_clear(struct summit_list *list);
+
+struct summit_finder;
+/* Workspace, made once a case. mode_x, mode_y bound the band of the surfaces to come (spectral
+ * curvature and refined summits use it; pass nx/2, ny/2 when unknown). Refined summits always have
+ * exact curvatures. */
+int summit_finder_create(struct summit_finder **out, const struct grid *grid,
+                         enum summit_stencil stencil, enum summit_curvature curvature,
+                         size_t mode_x, size_t mode_y, struct error *err);
+void summit_finder_destroy(struct summit_finder **finder);
+double summit_finder_bytes(const struct grid *grid, enum summit_stencil stencil,
+                           enum summit_curvature curvature, size_t mode_x, size_t mode_y);
+/* Replaces the contents of list by the summits of z, in row order. */
+int summits_find(struct summit_finder *finder, const double *z, struct summit_list *list,
+                 struct error *err);
+
+#endif

@@ -1,0 +1,23 @@
+/* Rank ordering: the hot spot of non-Gaussian generation. */
+#ifndef RUGO_CORE_SURFACE_RANK_H
+#define RUGO_CORE_SURFACE_RANK_H
+
+#include "core/error.h"
+#include <stddef.h>
+
+struct ranker;
+
+/* Workspace for n values; memory is stated in rank.c. */
+int ranker_create(struct ranker **out, size_t n, struct error *err);
+void ranker_destroy(struct ranker **ranker);
+size_t ranker_bytes(size_t n);
+
+/* placed[i] = sorted[rank of key[i]], equal keys ranked in order of index (as a stable sort).
+ * sorted rises; placed may not overlap key or sorted. ERROR_NUMERIC when a key is NaN or infinite
+ * (placed is then undefined). */
+int rank_place(struct ranker *ranker, const double *key, const double *sorted, double *placed,
+               struct error *err);
+/* Sorts z rising. ERROR_NUMERIC as above. */
+int rank_sort(struct ranker *ranker, double *z, struct error *err);
+
+#endif

@@ -1,0 +1,63 @@
+/* Random rough surfaces with a prescribed spectrum and height distribution.
+ *
+ * A generator is made once a case and used for every realisation of it; one thread each. The same
+ * realisation on a finer grid is the same surface: phases belong to wave vectors, not to points. */
+#ifndef RUGO_CORE_SURFACE_SURFACE_H
+#define RUGO_CORE_SURFACE_SURFACE_H
+
+#include "core/random.h"
+#include "core/surface/heights.h"
+#include "core/surface/spectrum.h"
+
+enum surface_keep { KEEP_SPECTRUM, KEEP_HEIGHTS };
+enum surface_iteration { ITERATION_RELAXED, ITERATION_PLAIN };
+enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
+
+/* Perez-Rafols & Almqvist (2019) iteration; theory.md 3.31-3.34. Ignored for Gaussian heights. */
+struct surface_options {
+    struct heights heights;
+    enum surface_keep keep;           /* which of the two last iterates is returned */
+    enum surface_iteration iteration; /* relaxed reflections (RAAR, then plain), or plain as the reference */
+    enum surface_draw draw;           /* target heights drawn at random, or exact quantiles */
+    double tolerance;                 /* on eps_h, eps_s, eps_s0; default 1e-3; 0 runs to the stall */
+    double stall_gain;                /* default 0.05: stuck when the worst error has not gained this */
+    size_t stall_iterations;          /* default 10: ... in so many iterations */
+    size_t max_iterations;            /* default 1000, of both kinds together */
+    size_t relaxed_iterations;        /* default: surface.c says which and why */
+    double relaxation;                /* default 0.8 */
+};
+extern const struct surface_options SURFACE_DEFAULTS; /* Gaussian, and the defaults above */
+
+enum surface_end { END_DIRECT, END_CONVERGED, END_STALLED, END_LIMIT }; /* END_DIRECT: Gaussian */
+/* What one generation did. Errors are of the returned pair of iterates. */
+struct surface_report {
+    size_t iterations;
+    enum surface_end end;
+    double eps_h, eps_s, eps_s0;                     /* PSD form (the one that stops) */
+    double eps_s_amplitude, eps_s0_amplitude;        /* amplitude form, as the authors' code */
+};
+
+struct generator;
+
+/* Copies what it is given (table spectra are sampled here). ERROR_INPUT, ERROR_MEMORY. */
+int generator_create(struct generator **out, const struct spectrum *spectrum,
+                     const struct grid *grid, const struct surface_options *options,
+                     struct error *err);
+void generator_destroy(struct generator **generator);
+/* The discrete spectrum in use; lives as long as the generator. */
+const struct modes *generator_modes(const struct generator *generator);
+/* Peak bytes of a generator with these settings, the caller's z of grid_points doubles included. */
+double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
+                       const struct surface_options *options);
+
+/* Fills z[grid_points] (from any aligned allocation). report may be NULL. Non-Gaussian generation
+ * converges on the generator's grid; a finer grid of the same realisation is surface_resample. */
+int generator_run(struct generator *generator, struct random_key key, double *z,
+                  struct surface_report *report, struct error *err);
+
+/* Samples the band-limited surface z on grid `from` exactly on grid `to` (same cell, any grid that
+ * resolves the band mode_x, mode_y), by zero padding. */
+int surface_resample(const struct grid *from, const double *z, const struct grid *to, double *out,
+                     size_t mode_x, size_t mode_y, struct error *err);
+
+#endif

@@ -1,0 +1,31 @@
+/* Real transforms of band-limited periodic fields: only columns that hold modes are transformed.
+ *
+ * A plan belongs to one grid and one band and is made once a case; it is FFTW_ESTIMATE, so that a
+ * realisation has the same digits in every process. Planning takes a lock; execution is safe from
+ * many threads with many plans.
+ *
+ * Half-spectrum layout, complex, column after column: Z[mx*ny + row], mx = 0..mode_x, row = my for
+ * my >= 0 and ny + my for my < 0. Z is normalised so that z(x, y) = sum over the full plane of
+ * Z exp(i k.r): forward divides by the number of points. */
+#ifndef RUGO_CORE_SURFACE_TRANSFORM_H
+#define RUGO_CORE_SURFACE_TRANSFORM_H
+
+#include "core/surface/grid.h"
+#include <complex.h>
+
+struct transform;
+
+/* Band: |mx| <= mode_x <= nx/2, |my| <= mode_y <= ny/2. Memory: about one band of columns. */
+int transform_create(struct transform **out, const struct grid *grid, size_t mode_x, size_t mode_y,
+                     struct error *err);
+void transform_destroy(struct transform **transform);
+
+/* The plan's own half spectrum, (mode_x + 1) * ny values, aligned; valid as long as the plan. */
+double complex *transform_spectrum(struct transform *transform);
+/* z[ny*nx] from the plan's spectrum, which it destroys. Rows beyond mode_y are taken as zero.
+ * Self-conjugate modes must be real; the mx = 0 column must be conjugate-symmetric. */
+void transform_inverse(struct transform *transform, double *z);
+/* The plan's spectrum (all of rows, columns up to mode_x) from z, which it keeps. */
+void transform_forward(struct transform *transform, const double *z);
+
+#endif
