@@ -1,0 +1,29 @@
+/* A byte string that grows, and a reader that never passes its end: how partial results are encoded.
+ * Integers are LEB128 varints (signed ones zigzag), doubles 8 bytes little endian. */
+#ifndef RUGO_JOBS_BYTES_H
+#define RUGO_JOBS_BYTES_H
+
+#include "core/statistics/histogram.h"
+
+struct bytes {
+    unsigned char *data; /* owned; initialise with {0} */
+    size_t size, capacity;
+    int failed; /* set by the first allocation failure; later writes do nothing */
+};
+void bytes_clear(struct bytes *bytes);
+void bytes_put_unsigned(struct bytes *bytes, uint64_t value);
+void bytes_put_fixed(struct bytes *bytes, fixed_point value);
+void bytes_put_double(struct bytes *bytes, double value);
+/* Sparse array: runs of zeros cost two bytes. */
+void bytes_put_counts(struct bytes *bytes, size_t n, const uint64_t *counts);
+
+struct byte_reader {
+    const unsigned char *at, *end; /* borrowed */
+    int failed;                    /* set by a read past the end or a malformed number; reads give 0 */
+};
+uint64_t bytes_get_unsigned(struct byte_reader *reader);
+fixed_point bytes_get_fixed(struct byte_reader *reader);
+double bytes_get_double(struct byte_reader *reader);
+void bytes_get_counts(struct byte_reader *reader, size_t n, uint64_t *counts);
+
+#endif

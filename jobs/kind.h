@@ -1,0 +1,74 @@
+/* What one unit of work is. A kind reads its parameters, runs realisations, encodes a partial
+ * result, merges partial results and turns them into curves. A new kind is one file that fills a
+ * struct job_kind, and one line in the table of kind.c.
+ *
+ * Life of a job: check -> runner_create -> run (blocks, one thread a runner) -> runner_destroy;
+ * of a curve: merger_create -> add (in any order: the same bits) -> curves -> merger_destroy. */
+#ifndef RUGO_JOBS_KIND_H
+#define RUGO_JOBS_KIND_H
+
+#include "core/error.h"
+#include "core/parameter.h"
+#include <cjson/cJSON.h>
+#include <stdint.h>
+
+/* What a case costs; rough, before anything ran. */
+struct job_estimate {
+    size_t nx, ny;                /* grid of one realisation (the finest) */
+    double memory_bytes;          /* peak of one worker thread */
+    double seconds;               /* CPU seconds a realisation on a 3 GHz core */
+    double relative_error;        /* standard error of the main curve after one realisation; / sqrt(n) */
+};
+
+/* Outcome of one block of realisations. */
+struct job_result {
+    uint64_t first, count; /* realisations first .. first + count - 1 of the case */
+    size_t scalar_count;   /* as many as the kind's scalars */
+    double *scalars;       /* owned, count x scalar_count, realisation by realisation; NaN: none */
+    unsigned char *data;   /* owned: the kind's accumulators, portable, versioned */
+    size_t size;           /* bytes of data */
+    double seconds;        /* wall seconds that it took */
+};
+void job_result_clear(struct job_result *result);
+
+/* Asked between realisations: how many of the block are done; non-zero stops with ERROR_STOPPED. */
+struct job_control {
+    int (*poll)(void *context, uint64_t done);
+    void *context;
+};
+
+struct job_runner;
+struct job_merger;
+
+struct job_kind {
+    const char *name;
+    const struct parameter *parameters;
+    size_t parameter_count;
+    uint64_t default_realisations;
+    const char *const *scalars; /* names of the scalars of one realisation, NULL-terminated */
+
+    /* Parameters of one case: the study's object of effective values, lists already replaced. Adds
+     * faults that no single range shows (grid too large, alpha out of reach) and estimates the cost. */
+    int (*check)(const cJSON *parameters, struct fault_list *faults, struct job_estimate *estimate,
+                 struct error *err);
+    int (*runner_create)(struct job_runner **out, const cJSON *parameters, uint64_t seed,
+                         uint64_t case_number, struct error *err);
+    void (*runner_destroy)(struct job_runner **runner);
+    /* Runs realisations first .. first + count - 1 into out (untouched on failure). */
+    int (*run)(struct job_runner *runner, uint64_t first, uint64_t count,
+               const struct job_control *control, struct job_result *out, struct error *err);
+
+    int (*merger_create)(struct job_merger **out, const cJSON *parameters, struct error *err);
+    void (*merger_destroy)(struct job_merger **merger);
+    /* Decodes and adds one block; ERROR_INPUT for data that is not this case's (nothing added). */
+    int (*merge)(struct job_merger *merger, const struct job_result *result, struct error *err);
+    /* {"realisations": n, "scalars": {...}, "curves": [...]} of interface.md; caller deletes. */
+    int (*curves)(struct job_merger *merger, cJSON **out, struct error *err);
+};
+
+/* All kinds, in a fixed order; kind_find gives NULL for an unknown name. */
+extern const struct job_kind *const JOB_KINDS[];
+extern const size_t JOB_KIND_COUNT;
+const struct job_kind *kind_find(const char *name);
+
+#endif
