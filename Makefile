@@ -6,8 +6,10 @@ PREFIX ?= /usr/local
 CC     ?= cc
 
 PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl cmocka
-APT      = build-essential pkg-config libfftw3-dev libsuitesparse-dev libgsl-dev librandom123-dev \
+APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev \
            libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev libcmocka-dev
+# those without a pkg-config file
+HEADERS  = /usr/include/Random123/philox.h
 
 WARN   = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
 OPT    = -O3
@@ -23,7 +25,7 @@ endif
 # No contraction and no fast-math: one realisation gives the same digits whatever the vector width.
 FORTIFY = $(if $(or $(SAN),$(DEBUG),$(COV)),,-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
 CFLAGS  = -std=c11 -D_GNU_SOURCE -g $(OPT) $(WARN) -ffp-contract=off -fno-math-errno -fno-trapping-math \
-          -fstack-protector-strong -fPIE -pthread $(FORTIFY) -I. -isystem /usr/include/suitesparse
+          -fstack-protector-strong -fPIE -pthread $(FORTIFY) -I.
 LDFLAGS = -pie -Wl,-z,relro,-z,now -pthread $(if $(SAN),-fsanitize=$(SAN)) $(if $(COV),--coverage)
 LIBS_core   = -lfftw3 -lgsl -lgslcblas -lm
 LIBS_jobs   = -lcjson $(LIBS_core)
@@ -83,8 +85,17 @@ unit validation system: all
 	@$(MAKE) --no-print-directory $(call all_tests,$@)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,$@)
 
+# Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads.
+run-unit:
+	@$(MAKE) --no-print-directory -j$$(nproc) $(call all_tests,unit)
+	@tests/run-tests $(call all_tests,unit)
+run-threads:
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(TESTS_unit_worker) $(TESTS_system_server)
+	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(TESTS_unit_worker) $(TESTS_system_server)
+.PHONY: run-unit run-threads
+
 deps:
-	@tests/install-deps "$(PACKAGES)" "$(APT)"
+	@tests/install-deps "$(PACKAGES)" "$(APT)" cc pkg-config $(HEADERS)
 
 run: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all
@@ -99,8 +110,13 @@ format:
 	clang-format -i $(SOURCES)
 check-format:
 	clang-format --dry-run --Werror $(SOURCES)
-lint: check-format
-	clang-tidy --quiet $(filter %.c,$(SOURCES)) -- $(CFLAGS)
+lint: lint-deps check-format
+	@printf '%s\n' $(filter %.c,$(SOURCES)) | \
+	    xargs -P $$(nproc) -n 1 sh -c 'clang-tidy --quiet "$$0" -- -std=c11 -D_GNU_SOURCE -I. 2>/dev/null || exit 255'
+	@echo "lint: $(words $(filter %.c,$(SOURCES))) files clean"
+lint-deps: deps
+	@tests/install-deps "" "clang-format clang-tidy" clang-format clang-tidy
+.PHONY: lint-deps
 
 install: all
 	install -D $(BUILD)/rugo $(DESTDIR)$(PREFIX)/bin/rugo
