@@ -6,6 +6,11 @@
 #include <cjson/cJSON.h>
 #include <stdio.h>
 
+/* Once a process, from main, before and after all threads: libcurl's own set-up is not thread-safe.
+ */
+int client_global_init(struct error *err);
+void client_global_cleanup(void);
+
 struct client;
 
 /* url: http(s)://host:port without path; token may be NULL. */
@@ -13,25 +18,27 @@ int client_create(struct client **out, const char *url, const char *token, struc
 void client_destroy(struct client **client);
 
 struct reply {
-    long status;     /* HTTP status; 0: no answer at all (the connection failed) */
-    char *body;      /* owned, NUL-terminated */
+    long status; /* HTTP status; 0: no answer at all (the connection failed) */
+    char *body;  /* owned, NUL-terminated */
     size_t size;
 };
 void reply_clear(struct reply *reply);
 struct request {
-    const char *method, *path;        /* "POST", "/v1/studies" */
-    const char *body;                 /* JSON text or NULL */
-    const char *accept;               /* NULL: application/json */
-    const char *idempotency_key;      /* or NULL */
-    long timeout_ms;                  /* 0: 30 000 */
+    const char *method, *path;   /* "POST", "/v1/studies" */
+    const char *body;            /* JSON text or NULL */
+    const char *accept;          /* NULL: application/json */
+    const char *idempotency_key; /* or NULL */
+    long timeout_ms;             /* 0: 30 000 */
 };
 /* One exchange. 0 for every answer of the server, whatever its status; ERROR_SYSTEM when there is
  * none (try again later). */
 int client_send(struct client *client, const struct request *request, struct reply *reply,
                 struct error *err);
 /* The same, and turns a status >= 400 into an error with the problem's detail and pointers; parses
- * the body (NULL for an empty one). 404 ERROR_ABSENT, 409 ERROR_STATE, 4xx ERROR_INPUT, 5xx ERROR_SYSTEM. */
-int client_json(struct client *client, const struct request *request, cJSON **out, struct error *err);
+ * the body (NULL for an empty one). 404 ERROR_ABSENT, 409 ERROR_STATE, 4xx ERROR_INPUT, 5xx
+ * ERROR_SYSTEM. */
+int client_json(struct client *client, const struct request *request, cJSON **out,
+                struct error *err);
 /* Streams a body to a file (snapshot). */
 int client_download(struct client *client, const char *path, FILE *file, struct error *err);
 

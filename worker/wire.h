@@ -1,0 +1,66 @@
+/* Jobs and results as they cross the network between worker and server: one encoder and one decoder
+ * for both ends, so that they cannot disagree.
+ *
+ *     POST /v1/jobs/claim            {worker, host, kinds: […], count}
+ *       200 {"jobs": [{id, study, kind, case, seed: "decimal", first, count, attempt, token,
+ *                      lease_seconds, parameters: {…}}]}, or 204 when there is none
+ *     POST /v1/jobs/{id}/heartbeat   {token, done}                      200 {}
+ *     POST /v1/jobs/{id}/complete    {token, seconds, first, count,
+ *                                     scalars: {names: […], rows: [[…]]}, data: base64}
+ *                                                                       200 {"case_done": bool}
+ *     POST /v1/jobs/{id}/fail        {token, reason, permanent}         200 {}
+ *     POST /v1/jobs/{id}/release     {token}                            200 {}
+ *
+ * Numbers read back as the same doubles, NaN crosses as null. Unknown fields are passed over, so
+ * that a newer end can talk to an older one. Encoders give NULL when out of memory. Readers give
+ * ERROR_INPUT with the field at fault and leave *out untouched. */
+#ifndef RUGO_WORKER_WIRE_H
+#define RUGO_WORKER_WIRE_H
+
+#include "jobs/kind.h"
+#include "schema/store.h"
+
+enum { WIRE_JOBS_MOST = 100, WIRE_KINDS_MOST = 32, WIRE_REASON_MOST = 2000 };
+
+/* --- claim --- */
+cJSON *wire_claim(const struct claim *claim); /* study does not cross */
+struct wire_claim {
+    struct claim claim;                     /* borrows its strings from the document read */
+    const char *kinds[WIRE_KINDS_MOST + 1]; /* where claim.kinds points: do not copy the struct */
+};
+/* Without kinds any is meant; without count one, and never more than WIRE_JOBS_MOST. */
+int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *err);
+
+/* --- jobs --- */
+cJSON *wire_jobs(const struct claimed_job *jobs, size_t count);
+/* Fills at most `most` jobs, the rest is ERROR_INPUT; claimed_job_clear each of the *count. */
+int wire_jobs_read(const cJSON *value, struct claimed_job *jobs, size_t most, size_t *count,
+                   struct error *err);
+
+/* --- results --- */
+/* names: NULL-terminated, as many as the result's scalars. */
+cJSON *wire_result(const char *token, const char *const *names, const struct job_result *result);
+struct wire_result {
+    char token[TOKEN_SIZE];
+    const char *
+        *names; /* owned array of strings borrowed from the document read, NULL-terminated */
+    struct job_result result; /* owned */
+};
+int wire_result_read(const cJSON *value, struct wire_result *out, struct error *err);
+void wire_result_clear(struct wire_result *result);
+/* The same result as the store takes it; borrows from `result`. */
+struct block_result wire_block(const struct wire_result *result);
+
+/* --- heartbeat, fail, release --- */
+struct wire_report {
+    char token[TOKEN_SIZE];
+    uint64_t done;                     /* heartbeat */
+    char reason[WIRE_REASON_MOST + 1]; /* fail; a longer one is cut, "" if absent */
+    bool permanent;                    /* fail; false if absent */
+};
+cJSON *wire_heartbeat(const char *token, uint64_t done);
+cJSON *wire_fail(const char *token, const char *reason, bool permanent);
+cJSON *wire_release(const char *token);
+int wire_report_read(const cJSON *value, struct wire_report *out, struct error *err);
+
+#endif
