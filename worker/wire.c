@@ -1,0 +1,381 @@
+#include "worker/wire.h"
+#include "worker/wire_field.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static cJSON *texts(const char *const *strings) {
+    cJSON *array = cJSON_CreateArray();
+    bool complete = array != NULL;
+    for (size_t n = 0; complete && strings[n]; n++) {
+        cJSON *item = cJSON_CreateString(strings[n]);
+        complete = item && cJSON_AddItemToArray(array, item);
+        if (!complete) {
+            cJSON_Delete(item);
+        }
+    }
+    return fields_finish(array, complete);
+}
+
+static int read_seed(const cJSON *object, uint64_t *out, struct error *err) {
+    const char *text = cJSON_GetStringValue(field_at(object, "seed"));
+    bool digits = text && *text && strspn(text, "0123456789") == strlen(text);
+    errno = 0;
+    unsigned long long seed = digits ? strtoull(text, NULL, 10) : 0;
+    if (!digits || errno) {
+        return field_fault("seed", "a decimal string of at most 2^64 - 1", err);
+    }
+    *out = seed;
+    return 0;
+}
+
+/* --- claim --- */
+
+cJSON *wire_claim(const struct claim *claim) {
+    cJSON *value = cJSON_CreateObject();
+    return fields_finish(value,
+                         value && field_put_text(value, "worker", claim->worker) &&
+                             field_put_text(value, "host", claim->host ? claim->host : "") &&
+                             (!claim->kinds || field_put(value, "kinds", texts(claim->kinds))) &&
+                             field_put_count(value, "count", claim->count));
+}
+
+static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
+    if (!cJSON_IsArray(kinds) || cJSON_GetArraySize(kinds) > WIRE_KINDS_MOST) {
+        return field_fault("kinds", "an array of at most 32 names", err);
+    }
+    size_t count = 0;
+    const cJSON *kind;
+    cJSON_ArrayForEach(kind, kinds) {
+        if (!cJSON_IsString(kind)) {
+            return field_fault("kinds", "an array of at most 32 names", err);
+        }
+        out[count++] = kind->valuestring;
+    }
+    out[count] = NULL;
+    return 0;
+}
+
+int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *err) {
+    if (!cJSON_IsObject(value)) {
+        return error_set(err, ERROR_INPUT, "a claim must be an object");
+    }
+    struct claim claim = {0};
+    const char *kinds[WIRE_KINDS_MOST + 1] = {NULL};
+    uint64_t count = 1;
+    int status = field_text(value, "worker", 256, &claim.worker, err);
+    const cJSON *host = field_at(value, "host");
+    if (!status && host && !cJSON_IsString(host)) {
+        status = field_fault("host", "a string", err);
+    }
+    claim.host = host ? cJSON_GetStringValue(host) : "";
+    if (!status && field_at(value, "kinds")) {
+        status = read_kinds(field_at(value, "kinds"), kinds, err);
+    }
+    if (!status && field_at(value, "count")) {
+        status = field_count(value, "count", &count, err);
+    }
+    if (status) {
+        return status;
+    }
+    claim.count = count < WIRE_JOBS_MOST ? (size_t)count : WIRE_JOBS_MOST;
+    memcpy(out->kinds, kinds, sizeof kinds);
+    claim.kinds = field_at(value, "kinds") ? out->kinds : NULL;
+    out->claim = claim;
+    return 0;
+}
+
+/* --- jobs --- */
+
+static cJSON *wire_job(const struct claimed_job *job) {
+    cJSON *value = cJSON_CreateObject(), *parameters = NULL;
+    struct error ignored;
+    char seed[24];
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)job->seed);
+    bool complete =
+        value && field_put(value, "id", cJSON_CreateNumber((double)job->id)) &&
+        field_put_text(value, "study", job->study) && field_put_text(value, "kind", job->kind) &&
+        field_put_count(value, "case", job->case_number) && field_put_text(value, "seed", seed) &&
+        field_put_count(value, "first", job->first) &&
+        field_put_count(value, "count", job->count) &&
+        field_put_count(value, "attempt", job->attempt) &&
+        field_put_text(value, "token", job->token) &&
+        field_put(value, "lease_seconds", cJSON_CreateNumber((double)job->lease_ms / 1000.0)) &&
+        json_parse(job->parameters, strlen(job->parameters), NULL, &parameters, &ignored) == 0 &&
+        field_put(value, "parameters", parameters);
+    return fields_finish(value, complete);
+}
+
+cJSON *wire_jobs(const struct claimed_job *jobs, size_t count) {
+    cJSON *value = cJSON_CreateObject(), *array = cJSON_CreateArray();
+    bool complete = value && field_put(value, "jobs", array);
+    for (size_t n = 0; complete && n < count; n++) {
+        cJSON *job = wire_job(&jobs[n]);
+        complete = job && cJSON_AddItemToArray(array, job);
+        if (!complete) {
+            cJSON_Delete(job);
+        }
+    }
+    return fields_finish(value, complete);
+}
+
+static int read_numbers(const cJSON *value, struct claimed_job *job, struct error *err) {
+    uint64_t id = 0;
+    double lease = 0;
+    int status = field_count(value, "id", &id, err);
+    job->id = (int64_t)id;
+    status = status ? status : field_count(value, "case", &job->case_number, err);
+    status = status ? status : read_seed(value, &job->seed, err);
+    status = status ? status : field_count(value, "first", &job->first, err);
+    status = status ? status : field_count(value, "count", &job->count, err);
+    status = status ? status : field_count(value, "attempt", &job->attempt, err);
+    status = status ? status : field_seconds(value, "lease_seconds", &lease, err);
+    job->lease_ms = lease > 1e9 ? 1000000000000 : (int64_t)(lease * 1000.0);
+    if (!status && job->count == 0) {
+        status = field_fault("count", "at least 1", err);
+    }
+    return status;
+}
+
+static int wire_job_read(const cJSON *value, struct claimed_job *out, struct error *err) {
+    struct claimed_job job = {0};
+    const char *kind = "";
+    int status = read_numbers(value, &job, err);
+    status = status ? status : field_copy(value, "study", STUDY_ID_SIZE, job.study, err);
+    status = status ? status : field_copy(value, "token", TOKEN_SIZE, job.token, err);
+    status = status ? status : field_text(value, "kind", 64, &kind, err);
+    if (!status && !cJSON_IsObject(field_at(value, "parameters"))) {
+        status = field_fault("parameters", "an object", err);
+    }
+    if (status) {
+        return status;
+    }
+    job.kind = strdup(kind);
+    job.parameters = json_print(field_at(value, "parameters"));
+    if (!job.kind || !job.parameters) {
+        claimed_job_clear(&job);
+        return error_set(err, ERROR_MEMORY, "no memory left to read a job");
+    }
+    *out = job;
+    return 0;
+}
+
+int wire_jobs_read(const cJSON *value, struct claimed_job *jobs, size_t most, size_t *count,
+                   struct error *err) {
+    const cJSON *array = field_at(value, "jobs"), *item;
+    if (!cJSON_IsArray(array) || (size_t)cJSON_GetArraySize(array) > most) {
+        return error_set(err, ERROR_INPUT, "\"jobs\" must be an array of at most %zu", most);
+    }
+    size_t n = 0;
+    int status = 0;
+    cJSON_ArrayForEach(item, array) {
+        status = wire_job_read(item, &jobs[n], err);
+        if (status) {
+            break;
+        }
+        n++;
+    }
+    if (status) {
+        while (n > 0) {
+            claimed_job_clear(&jobs[--n]);
+        }
+        return status;
+    }
+    *count = n;
+    return 0;
+}
+
+/* --- results --- */
+
+static cJSON *scalar_rows(const struct job_result *result) {
+    cJSON *rows = cJSON_CreateArray();
+    bool complete = rows != NULL;
+    for (uint64_t r = 0; complete && r < result->count; r++) {
+        cJSON *row = json_numbers(result->scalars + r * result->scalar_count, result->scalar_count);
+        complete = row && cJSON_AddItemToArray(rows, row);
+        if (!complete) {
+            cJSON_Delete(row);
+        }
+    }
+    return fields_finish(rows, complete);
+}
+
+cJSON *wire_result(const char *token, const char *const *names, const struct job_result *result) {
+    char *data = NULL;
+    struct error ignored;
+    if (base64_encode(result->data, result->size, &data, &ignored) != 0) {
+        return NULL;
+    }
+    cJSON *value = cJSON_CreateObject(), *scalars = cJSON_CreateObject();
+    bool complete =
+        value && field_put(value, "scalars", scalars) &&
+        field_put(scalars, "names", texts(names)) &&
+        field_put(scalars, "rows", scalar_rows(result)) && field_put_text(value, "token", token) &&
+        field_put(value, "seconds", json_number(result->seconds)) &&
+        field_put_count(value, "first", result->first) &&
+        field_put_count(value, "count", result->count) && field_put_text(value, "data", data);
+    free(data);
+    return fields_finish(value, complete);
+}
+
+void wire_result_clear(struct wire_result *result) {
+    free(result->names);
+    result->names = NULL;
+    job_result_clear(&result->result);
+}
+
+static int read_names(const cJSON *scalars, struct wire_result *out, struct error *err) {
+    const cJSON *names = field_at(scalars, "names"), *name;
+    if (!cJSON_IsArray(names)) {
+        return field_fault("names", "an array of strings", err);
+    }
+    size_t count = (size_t)cJSON_GetArraySize(names), n = 0;
+    out->names = array_create(count + 1, sizeof *out->names);
+    if (!out->names) {
+        return error_memory(err, (count + 1) * sizeof *out->names, "names of scalars");
+    }
+    cJSON_ArrayForEach(name, names) {
+        if (!cJSON_IsString(name)) {
+            return field_fault("names", "an array of strings", err);
+        }
+        out->names[n++] = name->valuestring;
+    }
+    out->result.scalar_count = count;
+    return 0;
+}
+
+static int read_row(const cJSON *row, double *values, size_t count, struct error *err) {
+    size_t n = 0;
+    const cJSON *item;
+    if (!cJSON_IsArray(row)) {
+        return field_fault("rows", "an array of arrays", err);
+    }
+    cJSON_ArrayForEach(item, row) {
+        if (n == count || !(cJSON_IsNumber(item) || cJSON_IsNull(item))) {
+            return field_fault("rows", "numbers or null, one for each name", err);
+        }
+        values[n++] = cJSON_IsNull(item) ? (double)NAN : item->valuedouble;
+    }
+    return n == count ? 0 : field_fault("rows", "numbers or null, one for each name", err);
+}
+
+/* Memory follows the rows that are there, never a count that was only claimed. */
+static int read_rows(const cJSON *scalars, struct job_result *out, struct error *err) {
+    const cJSON *rows = field_at(scalars, "rows"), *row;
+    if (!cJSON_IsArray(rows) || (uint64_t)cJSON_GetArraySize(rows) != out->count) {
+        return field_fault("rows", "an array of as many rows as \"count\"", err);
+    }
+    size_t count = (size_t)out->count, width = out->scalar_count;
+    out->scalars = array_create(count * (width ? width : 1), sizeof *out->scalars);
+    if (!out->scalars) {
+        return error_memory(err, count * width * sizeof *out->scalars, "scalars of a result");
+    }
+    size_t r = 0;
+    cJSON_ArrayForEach(row, rows) {
+        int status = read_row(row, out->scalars + r * width, width, err);
+        if (status) {
+            return status;
+        }
+        r++;
+    }
+    return 0;
+}
+
+static int read_result(const cJSON *value, struct wire_result *out, struct error *err) {
+    struct job_result *result = &out->result;
+    int status = field_copy(value, "token", TOKEN_SIZE, out->token, err);
+    status = status ? status : field_seconds(value, "seconds", &result->seconds, err);
+    status = status ? status : field_count(value, "first", &result->first, err);
+    status = status ? status : field_count(value, "count", &result->count, err);
+    status = status ? status : read_names(field_at(value, "scalars"), out, err);
+    status = status ? status : read_rows(field_at(value, "scalars"), result, err);
+    if (status) {
+        return status;
+    }
+    const char *data = cJSON_GetStringValue(field_at(value, "data"));
+    if (!data) {
+        return field_fault("data", "a base64 string", err);
+    }
+    status = base64_decode(data, &result->data, &result->size, err);
+    return status ? error_context(err, "\"data\"") : 0;
+}
+
+int wire_result_read(const cJSON *value, struct wire_result *out, struct error *err) {
+    struct wire_result read = {0};
+    int status = read_result(value, &read, err);
+    if (status) {
+        wire_result_clear(&read);
+        return status;
+    }
+    *out = read;
+    return 0;
+}
+
+struct block_result wire_block(const struct wire_result *result) {
+    const struct job_result *from = &result->result;
+    return (struct block_result){
+        .first = from->first,
+        .count = from->count,
+        .scalar_count = from->scalar_count,
+        .names = result->names,
+        .scalars = from->scalars,
+        .data = from->data,
+        .size = from->size,
+        .seconds = from->seconds,
+    };
+}
+
+/* --- heartbeat, fail, release --- */
+
+cJSON *wire_heartbeat(const char *token, uint64_t done) {
+    cJSON *value = wire_release(token);
+    return fields_finish(value, value && field_put_count(value, "done", done));
+}
+
+cJSON *wire_fail(const char *token, const char *reason, bool permanent) {
+    cJSON *value = wire_release(token);
+    return fields_finish(value, value && field_put_text(value, "reason", reason) &&
+                                    field_put(value, "permanent", cJSON_CreateBool(permanent)));
+}
+
+cJSON *wire_release(const char *token) {
+    cJSON *value = cJSON_CreateObject();
+    return fields_finish(value, value && field_put_text(value, "token", token));
+}
+
+/* Copies what fits, without a broken UTF-8 character at the cut. */
+static void text_cut(char *out, size_t size, const char *text) {
+    size_t length = strlen(text);
+    if (length >= size) {
+        length = size - 1;
+        while (length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80) {
+            length--;
+        }
+    }
+    memcpy(out, text, length);
+    out[length] = '\0';
+}
+
+int wire_report_read(const cJSON *value, struct wire_report *out, struct error *err) {
+    struct wire_report report = {0};
+    int status = field_copy(value, "token", TOKEN_SIZE, report.token, err);
+    if (!status && field_at(value, "done")) {
+        status = field_count(value, "done", &report.done, err);
+    }
+    status = status ? status : field_bool(value, "permanent", &report.permanent, err);
+    const cJSON *reason = field_at(value, "reason");
+    if (!status && reason && !cJSON_IsString(reason)) {
+        status = field_fault("reason", "a string", err);
+    }
+    if (status) {
+        return status;
+    }
+    if (reason) {
+        text_cut(report.reason, sizeof report.reason, reason->valuestring);
+    }
+    *out = report;
+    return 0;
+}
