@@ -1,0 +1,389 @@
+#include "worker/client.h"
+#include "schema/json.h"
+
+#include <curl/curl.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    CONNECT_MS = 10000,
+    TOTAL_MS = 30000,
+    SILENCE_SECONDS = 300, /* a download may wait this long: the server first copies the database */
+    REPLY_BYTES_MOST = 64 << 20,
+};
+/* Curves of ten thousand cases are larger than any study that the server would take. */
+static const struct json_limits REPLY_LIMITS = {REPLY_BYTES_MOST, 32, 20000000};
+
+struct client {
+    CURL *curl;
+    char *url;           /* scheme://host:port, no slash behind it */
+    char *authorisation; /* the header line with the token, or NULL; never printed */
+    char detail[CURL_ERROR_SIZE];
+};
+
+/* Where the body of one reply goes. */
+struct sink {
+    CURL *curl;
+    struct reply *reply;
+    size_t capacity; /* bytes allocated for reply->body */
+    FILE *file;      /* takes the body of a 2xx reply instead; NULL: none */
+    const char *fault;
+};
+
+int client_global_init(struct error *err) {
+    CURLcode code = curl_global_init(CURL_GLOBAL_DEFAULT);
+    return code ? error_set(err, ERROR_SYSTEM, "libcurl: %s", curl_easy_strerror(code)) : 0;
+}
+
+void client_global_cleanup(void) {
+    curl_global_cleanup();
+}
+
+/* --- set-up --- */
+
+static bool is_loopback(const char *host) {
+    return strcmp(host, "localhost") == 0 || strcmp(host, "[::1]") == 0 ||
+           strncmp(host, "127.", 4) == 0;
+}
+
+/* The one thing of the URL that curl must be told beforehand; refuses what is not
+ * scheme://host:port. */
+static int url_check(const char *url, bool *loopback, struct error *err) {
+    char *scheme = NULL, *host = NULL, *path = NULL, *user = NULL, *query = NULL;
+    CURLU *parts = curl_url();
+    if (!parts) {
+        return error_memory(err, 1, "a URL");
+    }
+    bool good = curl_url_set(parts, CURLUPART_URL, url, 0) == CURLUE_OK &&
+                curl_url_get(parts, CURLUPART_SCHEME, &scheme, 0) == CURLUE_OK &&
+                curl_url_get(parts, CURLUPART_HOST, &host, 0) == CURLUE_OK &&
+                curl_url_get(parts, CURLUPART_PATH, &path, 0) == CURLUE_OK &&
+                curl_url_get(parts, CURLUPART_USER, &user, 0) == CURLUE_NO_USER &&
+                curl_url_get(parts, CURLUPART_QUERY, &query, 0) == CURLUE_NO_QUERY &&
+                (strcmp(scheme, "http") == 0 || strcmp(scheme, "https") == 0) &&
+                strcmp(path, "/") == 0;
+    *loopback = good && is_loopback(host);
+    curl_free(scheme);
+    curl_free(host);
+    curl_free(path);
+    curl_free(user);
+    curl_free(query);
+    curl_url_cleanup(parts);
+    return good ? 0
+                : error_set(err, ERROR_INPUT,
+                            "the server's URL must be http(s)://HOST:PORT, without user or path");
+}
+
+/* A line break in a token would start another header. */
+static bool token_is_valid(const char *token) {
+    for (; *token; token++) {
+        if (*token <= ' ' || *token > '~') {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int client_options(struct client *client, bool loopback, struct error *err) {
+    CURL *curl = client->curl;
+    /* CURLOPT_PROXY "" switches off what the environment names */
+    bool good = !curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L) &&
+                !curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https") &&
+                !curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L) &&
+                !curl_easy_setopt(curl, CURLOPT_PATH_AS_IS, 1L) &&
+                !curl_easy_setopt(curl, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1) &&
+                !curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT_MS, (long)CONNECT_MS) &&
+                !curl_easy_setopt(curl, CURLOPT_TCP_KEEPALIVE, 1L) &&
+                !curl_easy_setopt(curl, CURLOPT_USERAGENT, "rugo") &&
+                !curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, client->detail) &&
+                (!loopback || !curl_easy_setopt(curl, CURLOPT_PROXY, ""));
+    return good ? 0 : error_set(err, ERROR_SYSTEM, "libcurl refuses an option");
+}
+
+static int client_fill(struct client *client, const char *url, const char *token, bool loopback,
+                       struct error *err) {
+    size_t length = strlen(url);
+    client->url = strdup(url);
+    client->curl = curl_easy_init();
+    if (!client->url || !client->curl) {
+        return error_memory(err, length + sizeof *client, "a client");
+    }
+    if (length > 0 && url[length - 1] == '/') {
+        client->url[length - 1] = '\0';
+    }
+    if (token) {
+        size_t size = strlen(token) + sizeof "Authorization: Bearer ";
+        client->authorisation = malloc(size);
+        if (!client->authorisation) {
+            return error_memory(err, size, "a header");
+        }
+        snprintf(client->authorisation, size, "Authorization: Bearer %s", token);
+    }
+    return client_options(client, loopback, err);
+}
+
+int client_create(struct client **out, const char *url, const char *token, struct error *err) {
+    bool loopback = false;
+    int status = url_check(url, &loopback, err);
+    if (status) {
+        return status;
+    }
+    if (token && !token_is_valid(token)) {
+        return error_set(err, ERROR_INPUT, "the token holds a space or a control character");
+    }
+    struct client *client = calloc(1, sizeof *client);
+    if (!client) {
+        return error_memory(err, sizeof *client, "a client");
+    }
+    status = client_fill(client, url, token, loopback, err);
+    if (status) {
+        client_destroy(&client);
+        return status;
+    }
+    *out = client;
+    return 0;
+}
+
+void client_destroy(struct client **client) {
+    struct client *gone = *client;
+    if (!gone) {
+        return;
+    }
+    curl_easy_cleanup(gone->curl);
+    if (gone->authorisation) {
+        explicit_bzero(gone->authorisation, strlen(gone->authorisation));
+    }
+    free(gone->authorisation);
+    free(gone->url);
+    free(gone);
+    *client = NULL;
+}
+
+void reply_clear(struct reply *reply) {
+    free(reply->body);
+    *reply = (struct reply){0};
+}
+
+/* --- one exchange --- */
+
+static size_t sink_keep(struct sink *sink, const char *bytes, size_t size) {
+    struct reply *reply = sink->reply;
+    if (size > REPLY_BYTES_MOST - reply->size) {
+        sink->fault = "the reply is larger than 64 MiB";
+        return 0;
+    }
+    size_t needed = reply->size + size + 1;
+    if (needed > sink->capacity) {
+        size_t capacity = needed < 4096 ? 4096 : needed * 2;
+        char *body = realloc(reply->body, capacity);
+        if (!body) {
+            sink->fault = "no memory left for the reply";
+            return 0;
+        }
+        reply->body = body;
+        sink->capacity = capacity;
+    }
+    memcpy(reply->body + reply->size, bytes, size);
+    reply->size += size;
+    reply->body[reply->size] = '\0';
+    return size;
+}
+
+/* CURLOPT_WRITEFUNCTION: fewer bytes than given end the exchange. */
+static size_t sink_write(char *bytes, size_t unit, size_t count, void *context) {
+    struct sink *sink = context;
+    size_t size = unit * count; /* unit is always 1 */
+    long status = 0;
+    curl_easy_getinfo(sink->curl, CURLINFO_RESPONSE_CODE, &status);
+    if (!sink->file || status < 200 || status > 299) {
+        return sink_keep(sink, bytes, size);
+    }
+    if (fwrite(bytes, 1, size, sink->file) != size) {
+        sink->fault = "the file cannot be written";
+        return 0;
+    }
+    return size;
+}
+
+static bool header_add(struct curl_slist **headers, const char *name, const char *value) {
+    char line[256];
+    int length = snprintf(line, sizeof line, "%s: %s", name, value);
+    if (length < 0 || (size_t)length >= sizeof line || strpbrk(line, "\r\n")) {
+        return false;
+    }
+    struct curl_slist *longer = curl_slist_append(*headers, line);
+    *headers = longer ? longer : *headers;
+    return longer != NULL;
+}
+
+static bool headers_make(const struct client *client, const struct request *request,
+                         struct curl_slist **headers) {
+    if (client->authorisation) {
+        *headers = curl_slist_append(NULL, client->authorisation);
+        if (!*headers) {
+            return false;
+        }
+    }
+    return header_add(headers, "Accept", request->accept ? request->accept : "application/json") &&
+           header_add(headers, "Expect", "") &&
+           (!request->body || header_add(headers, "Content-Type", "application/json")) &&
+           (!request->idempotency_key ||
+            header_add(headers, "Idempotency-Key", request->idempotency_key));
+}
+
+static bool request_options(CURL *curl, const struct request *request, const char *url,
+                            struct curl_slist *headers, struct sink *sink) {
+    bool post = strcmp(request->method, "POST") == 0;
+    const char *body = request->body ? request->body : "";
+    long total = request->timeout_ms ? request->timeout_ms : TOTAL_MS;
+    bool good =
+        !curl_easy_setopt(curl, CURLOPT_URL, url) &&
+        !curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers) &&
+        !curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, sink_write) &&
+        !curl_easy_setopt(curl, CURLOPT_WRITEDATA, sink) &&
+        !curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, sink->file ? 0L : total) &&
+        !curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, sink->file ? 1L : 0L) &&
+        !curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, sink->file ? (long)SILENCE_SECONDS : 0L) &&
+        !curl_easy_setopt(curl, CURLOPT_HTTPGET, 1L);
+    if (good && post) {
+        good = !curl_easy_setopt(curl, CURLOPT_POST, 1L) &&
+               !curl_easy_setopt(curl, CURLOPT_POSTFIELDS, body) &&
+               !curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)strlen(body));
+    }
+    return good && !curl_easy_setopt(curl, CURLOPT_CUSTOMREQUEST, request->method);
+}
+
+static int perform(struct client *client, struct sink *sink, struct error *err) {
+    client->detail[0] = '\0';
+    CURLcode code = curl_easy_perform(client->curl);
+    if (code) {
+        const char *detail = client->detail[0] ? client->detail : curl_easy_strerror(code);
+        return error_set(err, ERROR_SYSTEM, "%s: %s", client->url,
+                         sink->fault ? sink->fault : detail);
+    }
+    curl_easy_getinfo(client->curl, CURLINFO_RESPONSE_CODE, &sink->reply->status);
+    return 0;
+}
+
+/* file: NULL, or takes the body of a 2xx reply. reply is empty after a failure. */
+static int exchange(struct client *client, const struct request *request, FILE *file,
+                    struct reply *reply, struct error *err) {
+    *reply = (struct reply){0};
+    struct sink sink = {.curl = client->curl, .reply = reply, .file = file};
+    struct curl_slist *headers = NULL;
+    size_t size = strlen(client->url) + strlen(request->path) + 1;
+    char *url = malloc(size);
+    int status = 0;
+    if (!url || !headers_make(client, request, &headers)) {
+        status = error_memory(err, size, "a request");
+    } else if (request->path[0] != '/' || strpbrk(request->path, " \t\r\n")) {
+        status = error_set(err, ERROR_INPUT, "'%s' is no path of a request", request->path);
+    } else {
+        snprintf(url, size, "%s%s", client->url, request->path);
+        status = request_options(client->curl, request, url, headers, &sink)
+                     ? perform(client, &sink, err)
+                     : error_set(err, ERROR_SYSTEM, "libcurl refuses a request");
+    }
+    curl_slist_free_all(headers);
+    free(url);
+    if (!status && !reply->body && !(reply->body = calloc(1, 1))) {
+        status = error_memory(err, 1, "a reply");
+    }
+    if (status) {
+        reply_clear(reply);
+    }
+    return status;
+}
+
+int client_send(struct client *client, const struct request *request, struct reply *reply,
+                struct error *err) {
+    return exchange(client, request, NULL, reply, err);
+}
+
+/* --- answers as errors --- */
+
+static int status_code(long status) {
+    switch (status) {
+    case 404:
+        return ERROR_ABSENT;
+    case 409:
+        return ERROR_STATE;
+    case 408: /* the server's own deadline, or its limit of requests: later it may do */
+    case 429:
+        return ERROR_SYSTEM;
+    default:
+        return status >= 400 && status < 500 ? ERROR_INPUT : ERROR_SYSTEM;
+    }
+}
+
+/* Appends " POINTER: DETAIL;" of each fault as far as it fits. */
+static void append_faults(const cJSON *problem, char *text, size_t size) {
+    const cJSON *fault;
+    cJSON_ArrayForEach(fault, cJSON_GetObjectItemCaseSensitive(problem, "errors")) {
+        const char *pointer =
+            cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(fault, "pointer"));
+        const char *detail =
+            cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(fault, "detail"));
+        size_t length = strlen(text);
+        if (pointer && detail) {
+            snprintf(text + length, size - length, "; %s: %s", pointer, detail);
+        }
+    }
+}
+
+/* Turns a reply that is no success into an error with the words of its problem document, if any. */
+static int reply_error(const struct reply *reply, struct error *err) {
+    cJSON *problem = NULL;
+    char text[sizeof err->text];
+    struct error ignored;
+    const char *detail = NULL;
+    if (json_parse(reply->body, reply->size, NULL, &problem, &ignored) == 0) {
+        detail = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(problem, "detail"));
+        detail = detail ? detail
+                        : cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(problem, "title"));
+    }
+    if (detail) {
+        snprintf(text, sizeof text, "%s", detail);
+        append_faults(problem, text, sizeof text);
+    } else {
+        snprintf(text, sizeof text, "the server answered with status %ld", reply->status);
+    }
+    cJSON_Delete(problem);
+    return error_set(err, status_code(reply->status), "%s", text);
+}
+
+int client_json(struct client *client, const struct request *request, cJSON **out,
+                struct error *err) {
+    struct reply reply;
+    int status = exchange(client, request, NULL, &reply, err);
+    if (status) {
+        return status;
+    }
+    cJSON *value = NULL;
+    if (reply.status < 200 || reply.status > 299) {
+        status = reply_error(&reply, err);
+    } else if (reply.size > 0) {
+        status = json_parse(reply.body, reply.size, &REPLY_LIMITS, &value, err);
+        if (status == ERROR_INPUT) { /* what came is wrong, not what was asked */
+            err->code = status = ERROR_SYSTEM;
+            error_context(err, "the server's answer");
+        }
+    }
+    reply_clear(&reply);
+    if (!status) {
+        *out = value;
+    }
+    return status;
+}
+
+int client_download(struct client *client, const char *path, FILE *file, struct error *err) {
+    struct request request = {.method = "GET", .path = path, .accept = "*/*"};
+    struct reply reply;
+    int status = exchange(client, &request, file, &reply, err);
+    if (!status && (reply.status < 200 || reply.status > 299)) {
+        status = reply_error(&reply, err);
+    }
+    reply_clear(&reply);
+    return status;
+}
