@@ -1,0 +1,80 @@
+#include "core/error.h"
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int error_set(struct error *err, int code, const char *format, ...) {
+    if (err) {
+        va_list arguments;
+        va_start(arguments, format);
+        err->code = code;
+        vsnprintf(err->text, sizeof err->text, format, arguments);
+        va_end(arguments);
+    }
+    return code;
+}
+
+int error_context(struct error *err, const char *format, ...) {
+    if (!err)
+        return ERROR_SYSTEM;
+    char context[sizeof err->text];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(context, sizeof context - 2, format, arguments);
+    va_end(arguments);
+    if (length < 0)
+        return err->code;
+    size_t head = strlen(context);
+    memcpy(context + head, ": ", 3);
+    head += 2;
+    /* What was said first is what went wrong: the context gives way where both do not fit. */
+    size_t tail = strlen(err->text);
+    size_t room = sizeof err->text - 1;
+    if (head + tail > room)
+        head = tail < room ? room - tail : 0;
+    memmove(err->text + head, err->text, tail + 1);
+    memcpy(err->text, context, head);
+    return err->code;
+}
+
+int error_memory(struct error *err, size_t bytes, const char *what) {
+    return error_set(err, ERROR_MEMORY, "cannot allocate %zu bytes for %s", bytes, what);
+}
+
+void *array_create(size_t count, size_t size) {
+    return calloc(count ? count : 1, size ? size : 1);
+}
+
+static char *text_copy(const char *text) {
+    size_t size = strlen(text) + 1;
+    char *copy = malloc(size);
+    return copy ? memcpy(copy, text, size) : NULL;
+}
+
+void fault_add(struct fault_list *list, const char *pointer, const char *format, ...) {
+    size_t at = list->count++;
+    if (at >= FAULTS_KEPT)
+        return;
+    if (!list->faults)
+        list->faults = array_create(FAULTS_KEPT, sizeof *list->faults);
+    char detail[400];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(detail, sizeof detail, format, arguments);
+    va_end(arguments);
+    if (!list->faults)
+        return;
+    list->faults[at] = (struct fault){text_copy(pointer), text_copy(detail)};
+}
+
+void fault_list_clear(struct fault_list *list) {
+    size_t kept = list->count < FAULTS_KEPT ? list->count : FAULTS_KEPT;
+    for (size_t i = 0; list->faults && i < kept; i++) {
+        free(list->faults[i].pointer);
+        free(list->faults[i].detail);
+    }
+    free(list->faults);
+    *list = (struct fault_list){0};
+}
