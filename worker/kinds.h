@@ -9,7 +9,7 @@
 const struct study_kind *kinds_table(void);
 size_t kinds_count(void);
 /* Reads a study with these kinds; memory limit: the machine's memory (cgroup and free RAM). */
-int kinds_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
-                     struct fault_list *faults, struct error *err);
+int kinds_read_study(struct study **out, const char *text, size_t size,
+                     const char *const *overrides, struct fault_list *faults, struct error *err);
 
 #endif

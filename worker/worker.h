@@ -1,8 +1,10 @@
-/* The worker: threads that claim a job, run it, report it, until told to stop or the queue is empty.
+/* The worker: threads that claim a job, run it, report it, until told to stop or the queue is
+ * empty.
  *
  * Each thread has its own source and runner; one more thread sends heartbeats, so that a long
  * realisation does not lose its lease. A server or store that is away is waited for with growing,
- * jittered pauses (at most 30 s); a finished result is kept and sent again until taken or refused. */
+ * jittered pauses (at most 30 s); a finished result is kept and sent again until taken or refused.
+ */
 #ifndef RUGO_WORKER_WORKER_H
 #define RUGO_WORKER_WORKER_H
 
@@ -10,16 +12,19 @@
 #include <signal.h>
 
 struct worker_options {
-    struct source_options source; /* worker name is completed with the thread's number */
-    unsigned threads;             /* at least 1 */
-    int drain;                    /* end when no job is waiting and none is running */
+    struct source_options
+        source;       /* worker and host may be NULL; "-N" of the thread is put behind */
+    unsigned threads; /* at least 1 */
+    int drain;        /* end when no job is waiting and none is running */
     const volatile sig_atomic_t *stop; /* non-zero: release the job at once and end; may be NULL */
-    /* Called from time to time on the caller's thread (twice a second); non-zero ends. May be NULL. */
+    /* Called from time to time on the caller's thread (twice a second); non-zero ends. May be NULL.
+     */
     int (*tick)(void *context);
     void *context;
-    int quiet; /* no log lines on standard error */
+    int quiet; /* log warnings and errors only */
 };
-/* Returns when drained or stopped: 0, or ERROR_STOPPED; or the first error that cannot be waited out. */
+/* Returns when drained or stopped: 0, or ERROR_STOPPED; or the first error that cannot be waited
+ * out. */
 int workers_run(const struct worker_options *options, struct error *err);
 
 #endif

@@ -1,0 +1,176 @@
+#include "worker/keeper.h"
+#include "worker/clock.h"
+#include "worker/log.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+
+enum { HEARTBEAT_MS_MOST = 5000, RETRY_PART = 4 };
+static const int64_t NEVER = INT64_MAX;
+
+/* All but the atomics under the keeper's lock. */
+struct slot {
+    struct claimed_job job; /* id, study, token, lease_ms; its owned strings are NULL */
+    uint64_t hold;          /* rises with each job, so that a late answer is told from a new one */
+    int64_t due_ms;         /* of the next heartbeat; NEVER while nothing is held */
+    atomic_bool lost;
+    atomic_uint_fast64_t done;
+};
+
+struct keeper {
+    struct source *source; /* of the thread alone */
+    pthread_mutex_t lock;
+    pthread_cond_t changed; /* a job is held, or closing */
+    bool closing;
+    bool away; /* the last heartbeat had no answer; of the thread alone */
+    const char *worker;
+    pthread_t thread;
+    unsigned slot_count;
+    struct slot slots[];
+};
+
+static struct slot *slot_due_first(struct keeper *keeper) {
+    struct slot *first = &keeper->slots[0];
+    for (unsigned n = 1; n < keeper->slot_count; n++) {
+        if (keeper->slots[n].due_ms < first->due_ms) {
+            first = &keeper->slots[n];
+        }
+    }
+    return first;
+}
+
+static int64_t interval_ms(const struct claimed_job *job) {
+    int64_t third = job->lease_ms / 3;
+    return third < 1 ? 1 : third > HEARTBEAT_MS_MOST ? HEARTBEAT_MS_MOST : third;
+}
+
+/* Says once that nobody answers, not at every heartbeat. */
+static void note_answer(struct keeper *keeper, const struct claimed_job *job, bool answered,
+                        const struct error *err) {
+    if (!answered && !keeper->away) {
+        struct log_about about = {.worker = keeper->worker, .study = job->study, .job = job->id};
+        log_line(LEVEL_WARNING, &about, "no answer to a heartbeat: %s", err->text);
+    }
+    keeper->away = !answered;
+}
+
+/* Sends one heartbeat; the lock is held on entry and on return, not while it is sent. */
+static void beat(struct keeper *keeper, struct slot *slot) {
+    struct claimed_job job = slot->job;
+    uint64_t hold = slot->hold, done = atomic_load(&slot->done);
+    pthread_mutex_unlock(&keeper->lock);
+    struct error err = {0};
+    int status = source_heartbeat(keeper->source, &job, done, &err);
+    note_answer(keeper, &job, status == 0 || status == ERROR_STATE, &err);
+    pthread_mutex_lock(&keeper->lock);
+    if (slot->hold != hold || slot->due_ms == NEVER) {
+        return; /* the job ended meanwhile: the answer is about the past */
+    }
+    if (status == ERROR_STATE) {
+        atomic_store(&slot->lost, true);
+        slot->due_ms = NEVER;
+    } else {
+        slot->due_ms =
+            clock_ms() + (status ? interval_ms(&job) / RETRY_PART + 1 : interval_ms(&job));
+    }
+}
+
+static void *keeper_main(void *context) {
+    struct keeper *keeper = context;
+    pthread_mutex_lock(&keeper->lock);
+    while (!keeper->closing) {
+        struct slot *slot = slot_due_first(keeper);
+        if (slot->due_ms == NEVER) {
+            pthread_cond_wait(&keeper->changed, &keeper->lock);
+        } else if (slot->due_ms > clock_ms()) {
+            clock_cond_wait(&keeper->changed, &keeper->lock, slot->due_ms);
+        } else {
+            beat(keeper, slot);
+        }
+    }
+    pthread_mutex_unlock(&keeper->lock);
+    return NULL;
+}
+
+/* The parts that keeper_destroy cannot tell to be missing: undone here when one of them fails. */
+static int keeper_start(struct keeper *keeper, struct error *err) {
+    if (pthread_mutex_init(&keeper->lock, NULL) != 0) {
+        return error_set(err, ERROR_SYSTEM, "cannot make a lock");
+    }
+    if (clock_cond_init(&keeper->changed) != 0) {
+        pthread_mutex_destroy(&keeper->lock);
+        return error_set(err, ERROR_SYSTEM, "cannot make a condition");
+    }
+    if (pthread_create(&keeper->thread, NULL, keeper_main, keeper) != 0) {
+        pthread_cond_destroy(&keeper->changed);
+        pthread_mutex_destroy(&keeper->lock);
+        return error_set(err, ERROR_SYSTEM, "cannot start the heartbeat thread");
+    }
+    return 0;
+}
+
+int keeper_create(struct keeper **out, const struct source_options *options, unsigned slots,
+                  struct error *err) {
+    size_t size = sizeof(struct keeper) + slots * sizeof(struct slot);
+    struct keeper *keeper = slots ? calloc(1, size) : NULL;
+    if (!keeper) {
+        return error_memory(err, size, "leases");
+    }
+    keeper->slot_count = slots;
+    keeper->worker = options->worker;
+    for (unsigned n = 0; n < slots; n++) {
+        keeper->slots[n].due_ms = NEVER;
+        atomic_init(&keeper->slots[n].lost, false);
+        atomic_init(&keeper->slots[n].done, 0);
+    }
+    int status = source_create(&keeper->source, options, err);
+    status = status ? status : keeper_start(keeper, err);
+    if (status) {
+        source_destroy(&keeper->source);
+        free(keeper);
+        return status;
+    }
+    *out = keeper;
+    return 0;
+}
+
+void keeper_destroy(struct keeper **keeper) {
+    struct keeper *gone = *keeper;
+    if (!gone) {
+        return;
+    }
+    pthread_mutex_lock(&gone->lock);
+    gone->closing = true;
+    pthread_cond_signal(&gone->changed);
+    pthread_mutex_unlock(&gone->lock);
+    pthread_join(gone->thread, NULL);
+    pthread_cond_destroy(&gone->changed);
+    pthread_mutex_destroy(&gone->lock);
+    source_destroy(&gone->source);
+    free(gone);
+    *keeper = NULL;
+}
+
+void keeper_hold(struct keeper *keeper, unsigned slot, const struct claimed_job *job) {
+    struct slot *held = &keeper->slots[slot];
+    pthread_mutex_lock(&keeper->lock);
+    held->job = *job;
+    held->job.kind = held->job.parameters = NULL;
+    held->hold++;
+    held->due_ms = clock_ms() + interval_ms(job);
+    atomic_store(&held->lost, false);
+    atomic_store(&held->done, 0);
+    pthread_cond_signal(&keeper->changed);
+    pthread_mutex_unlock(&keeper->lock);
+}
+
+void keeper_let_go(struct keeper *keeper, unsigned slot) {
+    pthread_mutex_lock(&keeper->lock);
+    keeper->slots[slot].due_ms = NEVER;
+    pthread_mutex_unlock(&keeper->lock);
+}
+
+bool keeper_progress(struct keeper *keeper, unsigned slot, uint64_t done) {
+    atomic_store(&keeper->slots[slot].done, done);
+    return atomic_load(&keeper->slots[slot].lost);
+}

@@ -1,0 +1,164 @@
+/* Jobs from a server, over HTTP; wire.h says what crosses. */
+#include "worker/client.h"
+#include "worker/source_way.h"
+#include "worker/wire.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    HEARTBEAT_MS = 10000, /* one that is not answered must not hold up those of other threads */
+    RESULT_MS = 60000,
+};
+
+struct remote {
+    struct client *client;
+};
+
+static void remote_destroy(void *way) {
+    struct remote *remote = way;
+    if (remote) {
+        client_destroy(&remote->client);
+        free(remote);
+    }
+}
+
+static int remote_create(void **way, const struct source_options *options, struct error *err) {
+    struct remote *remote = calloc(1, sizeof *remote);
+    if (!remote) {
+        return error_memory(err, sizeof *remote, "a source of jobs");
+    }
+    int status = client_create(&remote->client, options->url, options->token, err);
+    if (status) {
+        remote_destroy(remote);
+        return status;
+    }
+    *way = remote;
+    return 0;
+}
+
+/* Takes body (NULL: out of memory) and posts it; *answer may be NULL for an empty one. */
+static int remote_post(struct remote *remote, const char *path, cJSON *body, long timeout_ms,
+                       cJSON **answer, struct error *err) {
+    char *text = body ? json_print(body) : NULL;
+    cJSON_Delete(body);
+    if (!text) {
+        return error_set(err, ERROR_MEMORY, "no memory left for a request");
+    }
+    struct request request = {
+        .method = "POST", .path = path, .body = text, .timeout_ms = timeout_ms};
+    int status = client_json(remote->client, &request, answer, err);
+    free(text);
+    return status;
+}
+
+static int remote_claim(void *way, const struct claim *claim, struct claimed_job *job, int *found,
+                        struct error *err) {
+    cJSON *answer = NULL;
+    int status = remote_post(way, "/v1/jobs/claim", wire_claim(claim), 0, &answer, err);
+    if (status == ERROR_STATE) { /* of no job of ours: the server cannot do it just now */
+        return err->code = ERROR_SYSTEM;
+    }
+    if (status) {
+        return status;
+    }
+    size_t count = 0;
+    if (answer) {
+        status = wire_jobs_read(answer, job, 1, &count, err);
+    }
+    cJSON_Delete(answer);
+    if (status == ERROR_INPUT) { /* what came is wrong, not what was asked */
+        err->code = ERROR_SYSTEM;
+        status = error_context(err, "the server's answer to a claim");
+    }
+    if (!status) {
+        *found = count > 0;
+    }
+    return status;
+}
+
+/* One request about a job. A server that does not know the job has lost it for us: its database is
+ * another one by now. */
+static int remote_report(struct remote *remote, const struct claimed_job *job, const char *verb,
+                         cJSON *body, long timeout_ms, struct error *err) {
+    char path[64];
+    cJSON *answer = NULL;
+    snprintf(path, sizeof path, "/v1/jobs/%lld/%s", (long long)job->id, verb);
+    int status = remote_post(remote, path, body, timeout_ms, &answer, err);
+    cJSON_Delete(answer);
+    if (status == ERROR_ABSENT) {
+        status = err->code = ERROR_STATE;
+    }
+    return status;
+}
+
+static int remote_heartbeat(void *way, const struct claimed_job *job, uint64_t done,
+                            struct error *err) {
+    return remote_report(way, job, "heartbeat", wire_heartbeat(job->token, done), HEARTBEAT_MS,
+                         err);
+}
+
+static int remote_complete(void *way, const struct claimed_job *job, const struct job_kind *kind,
+                           const struct job_result *result, struct error *err) {
+    return remote_report(way, job, "complete", wire_result(job->token, kind->scalars, result),
+                         RESULT_MS, err);
+}
+
+static int remote_fail(void *way, const struct claimed_job *job, const char *reason, int permanent,
+                       struct error *err) {
+    return remote_report(way, job, "fail", wire_fail(job->token, reason, permanent != 0), 0, err);
+}
+
+static int remote_release(void *way, const struct claimed_job *job, struct error *err) {
+    return remote_report(way, job, "release", wire_release(job->token), HEARTBEAT_MS, err);
+}
+
+static bool study_goes_on(const cJSON *study) {
+    const char *state = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(study, "state"));
+    return state && (strcmp(state, "queued") == 0 || strcmp(state, "running") == 0);
+}
+
+/* Pages through the server's list of studies until one goes on. */
+static int remote_left(void *way, int *left, struct error *err) {
+    struct remote *remote = way;
+    char after[STUDY_ID_SIZE] = "";
+    bool more = true, found = false;
+    int status = 0;
+    while (more && !found && !status) {
+        char path[96];
+        cJSON *page = NULL;
+        const cJSON *study;
+        snprintf(path, sizeof path, "/v1/studies?limit=100&after=%s", after);
+        struct request request = {.method = "GET", .path = path};
+        status = client_json(remote->client, &request, &page, err);
+        more = false;
+        cJSON_ArrayForEach(study, cJSON_GetObjectItemCaseSensitive(page, "studies")) {
+            const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(study, "id"));
+            found = found || study_goes_on(study);
+            more = id && strlen(id) < sizeof after && strcmp(id, after) != 0;
+            if (more) {
+                memcpy(after, id, strlen(id) + 1);
+            }
+        }
+        cJSON_Delete(page);
+    }
+    if (status == ERROR_INPUT) { /* not for this token to see */
+        status = 0;
+    }
+    if (!status) {
+        *left = found;
+    }
+    return status;
+}
+
+const struct source_way SOURCE_SERVER = {
+    .create = remote_create,
+    .destroy = remote_destroy,
+    .claim = remote_claim,
+    .heartbeat = remote_heartbeat,
+    .complete = remote_complete,
+    .fail = remote_fail,
+    .release = remote_release,
+    .left = remote_left,
+};

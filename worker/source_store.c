@@ -1,0 +1,130 @@
+/* Jobs out of a local store, which other processes may have open as well. */
+#include "worker/aggregate.h"
+#include "worker/log.h"
+#include "worker/source_way.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct local {
+    struct store *store;
+    char study[STUDY_ID_SIZE]; /* "": any */
+};
+
+static void local_destroy(void *way) {
+    struct local *local = way;
+    if (local) {
+        store_close(&local->store);
+        free(local);
+    }
+}
+
+static int local_create(void **way, const struct source_options *options, struct error *err) {
+    struct local *local = calloc(1, sizeof *local);
+    if (!local) {
+        return error_memory(err, sizeof *local, "a source of jobs");
+    }
+    if (options->study) {
+        snprintf(local->study, sizeof local->study, "%s", options->study);
+    }
+    struct store_options store_options = {0};
+    int status = store_open(&local->store, options->database, &store_options, err);
+    if (status) {
+        local_destroy(local);
+        return status;
+    }
+    *way = local;
+    return 0;
+}
+
+static int local_claim(void *way, const struct claim *claim, struct claimed_job *job, int *found,
+                       struct error *err) {
+    struct local *local = way;
+    size_t count = 0;
+    int status = store_claim(local->store, claim, job, &count, err);
+    if (!status) {
+        *found = count > 0;
+    }
+    return status;
+}
+
+static int local_heartbeat(void *way, const struct claimed_job *job, uint64_t done,
+                           struct error *err) {
+    struct local *local = way;
+    return store_heartbeat(local->store, job->id, job->token, done, err);
+}
+
+/* The result is safe by now: a case that cannot be published is merged anew by whoever asks for it.
+ */
+static void local_publish(struct local *local, const struct claimed_job *job) {
+    struct error err = {0};
+    if (aggregate_publish(local->store, job->study, job->case_number, &err) != 0) {
+        struct log_about about = {.study = job->study};
+        log_line(LEVEL_WARNING, &about, "case %llu is not published: %s",
+                 (unsigned long long)job->case_number, err.text);
+    }
+}
+
+static int local_complete(void *way, const struct claimed_job *job, const struct job_kind *kind,
+                          const struct job_result *result, struct error *err) {
+    struct local *local = way;
+    bool first_time = false, case_done = false;
+    struct block_result block = {
+        .first = result->first,
+        .count = result->count,
+        .scalar_count = result->scalar_count,
+        .names = kind->scalars,
+        .scalars = result->scalars,
+        .data = result->data,
+        .size = result->size,
+        .seconds = result->seconds,
+    };
+    int status =
+        store_complete(local->store, job->id, job->token, &block, &first_time, &case_done, err);
+    if (!status && case_done) {
+        local_publish(local, job);
+    }
+    return status;
+}
+
+static int local_fail(void *way, const struct claimed_job *job, const char *reason, int permanent,
+                      struct error *err) {
+    struct local *local = way;
+    return store_fail(local->store, job->id, job->token, reason, permanent != 0, err);
+}
+
+static int local_release(void *way, const struct claimed_job *job, struct error *err) {
+    struct local *local = way;
+    return store_release(local->store, job->id, job->token, err);
+}
+
+static int local_left(void *way, int *left, struct error *err) {
+    struct local *local = way;
+    if (local->study[0]) {
+        struct study_status study = {0};
+        int status = store_status(local->store, local->study, &study, err);
+        if (!status) {
+            *left = study.jobs_waiting + study.jobs_running > 0;
+            study_status_clear(&study);
+        }
+        return status;
+    }
+    struct store_metrics metrics = {0};
+    int status = store_metrics(local->store, &metrics, err);
+    if (!status) {
+        *left = metrics.jobs_waiting + metrics.jobs_running > 0;
+    }
+    return status;
+}
+
+const struct source_way SOURCE_STORE = {
+    .create = local_create,
+    .destroy = local_destroy,
+    .claim = local_claim,
+    .heartbeat = local_heartbeat,
+    .complete = local_complete,
+    .fail = local_fail,
+    .release = local_release,
+    .left = local_left,
+};
