@@ -1,0 +1,27 @@
+/* Non-Gaussian surfaces: alternates between a spectrum and a height distribution (Perez-Rafols and
+ * Almqvist 2019; theory.md 3.31-3.34). The generator in surface.c draws the Gaussian start and owns
+ * one of these a case; it is a workspace, for one thread. */
+#ifndef RUGO_CORE_SURFACE_NONGAUSSIAN_H
+#define RUGO_CORE_SURFACE_NONGAUSSIAN_H
+
+#include "core/surface/surface.h"
+#include "core/surface/transform.h"
+
+struct nongaussian;
+
+/* Borrows modes; copies options. ERROR_INPUT (options or heights out of range), ERROR_MEMORY. */
+int nongaussian_create(struct nongaussian **out, const struct modes *modes,
+                       const struct surface_options *options, struct error *err);
+void nongaussian_destroy(struct nongaussian **nongaussian);
+
+/* On entry z[ny*nx] is the Gaussian start, on return the surface. transform belongs to the grid and
+ * band of modes; its spectrum is overwritten. report may be NULL. After an error z is undefined. */
+int nongaussian_run(struct nongaussian *nongaussian, struct transform *transform,
+                    struct random_key key, double *z, struct surface_report *report,
+                    struct error *err);
+
+/* Peak bytes held by one of these on a grid and band; z and the caller's transform not counted. */
+double nongaussian_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
+                         const struct surface_options *options);
+
+#endif
