@@ -1,4 +1,4 @@
-/* One field of a JSON object, written or read with its check. Private to wire.c. */
+/* One field of a JSON object, written or read with its check. Private to worker/. */
 #ifndef RUGO_WORKER_WIRE_FIELD_H
 #define RUGO_WORKER_WIRE_FIELD_H
 
