@@ -1,0 +1,273 @@
+#include "core/surface/spectrum.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Wavelengths and cells come from divisions: a mode this close to a band edge is on it. */
+static const double EDGE = 1e-9;
+
+/* A sum whose error does not grow with the number of terms (Neumaier 1974). */
+struct compensated {
+    double total, lost;
+};
+
+static inline void compensated_add(struct compensated *sum, double value) {
+    double total = sum->total + value;
+    sum->lost += fabs(sum->total) >= fabs(value) ? (sum->total - total) + value
+                                                 : (value - total) + sum->total;
+    sum->total = total;
+}
+
+static int refuse(struct error *err, const char *what, double value, const char *allowed) {
+    return error_set(err, ERROR_INPUT, "%s = %g; allowed: %s", what, value, allowed);
+}
+
+static bool is_length(double value) {
+    return value > 0 && isfinite(value);
+}
+
+static int self_affine_check(const struct spectrum *s, struct error *err) {
+    if (!(s->hurst >= 0 && s->hurst <= 1))
+        return refuse(err, "hurst", s->hurst, "0 to 1");
+    if (!is_length(s->wavelength_long))
+        return refuse(err, "longest wavelength", s->wavelength_long, "above 0, finite");
+    if (!is_length(s->wavelength_short) || s->wavelength_short > s->wavelength_long * (1 + EDGE))
+        return refuse(err, "shortest wavelength", s->wavelength_short,
+                      "above 0, up to the longest wavelength");
+    if (!(s->wavelength_rolloff >= s->wavelength_short * (1 - EDGE) &&
+          s->wavelength_rolloff <= s->wavelength_long * (1 + EDGE)))
+        return refuse(err, "roll-off wavelength", s->wavelength_rolloff,
+                      "from the shortest to the longest wavelength");
+    return 0;
+}
+
+static int table_check(const struct spectrum *s, struct error *err) {
+    if (s->table_count < 2)
+        return error_set(err, ERROR_INPUT, "a spectrum table of %zu rows; allowed: at least 2",
+                         s->table_count);
+    for (size_t row = 0; row < s->table_count; row++) {
+        double before = row ? s->table_wave_number[row - 1] : 0;
+        if (!(s->table_wave_number[row] > before && isfinite(s->table_wave_number[row])))
+            return error_set(err, ERROR_INPUT,
+                             "wave number %zu of the spectrum table = %g; allowed: rising, above 0",
+                             row, s->table_wave_number[row]);
+        if (!(s->table_density[row] >= 0 && isfinite(s->table_density[row])))
+            return error_set(err, ERROR_INPUT,
+                             "density %zu of the spectrum table = %g; allowed: 0 or more, finite",
+                             row, s->table_density[row]);
+    }
+    return 0;
+}
+
+static int spectrum_check(const struct spectrum *s, const struct grid *grid, struct error *err) {
+    if (s->scale != SCALE_NONE && !is_length(s->scale_value))
+        return refuse(err, s->scale == SCALE_RMS_SLOPE ? "RMS slope" : "RMS height", s->scale_value,
+                      "above 0, finite");
+    switch (s->type) {
+    case SPECTRUM_SELF_AFFINE:
+        return self_affine_check(s, err);
+    case SPECTRUM_EXPONENTIAL_ACF:
+        if (!is_length(s->correlation_x))
+            return refuse(err, "correlation length x", s->correlation_x, "above 0, finite");
+        if (!grid_is_profile(grid) && !is_length(s->correlation_y))
+            return refuse(err, "correlation length y", s->correlation_y, "above 0, finite");
+        return 0;
+    case SPECTRUM_TABLE:
+        return table_check(s, err);
+    }
+    return error_set(err, ERROR_INPUT, "spectrum type %d is unknown", (int)s->type);
+}
+
+/* Unscaled density at wave numbers (2.50, 2.51); frequencies q = |k|/(2 pi). */
+static double self_affine_density(const struct spectrum *s, bool profile, double q) {
+    if (q * s->wavelength_long < 1 - EDGE || q * s->wavelength_short > 1 + EDGE)
+        return 0;
+    double relative = q * s->wavelength_rolloff;
+    if (relative <= 1)
+        return 1;
+    return pow(relative, profile ? -1 - 2 * s->hurst : -2 * (s->hurst + 1));
+}
+
+/* Transform of the exponential autocorrelation (2.17, 2.18), up to a constant. */
+static double exponential_density(const struct spectrum *s, bool profile, double kx, double ky) {
+    double x = kx * s->correlation_x, y = profile ? 0 : ky * s->correlation_y;
+    double base = 1 + x * x + y * y;
+    return profile ? 1 / base : 1 / (base * sqrt(base));
+}
+
+/* Log-log interpolation; linear where an end of the interval is zero. */
+static double table_density(const struct spectrum *s, double k) {
+    const double *x = s->table_wave_number, *y = s->table_density;
+    size_t low = 0, high = s->table_count - 1;
+    if (k < x[0] * (1 - EDGE) || k > x[high] * (1 + EDGE))
+        return 0;
+    while (high - low > 1) {
+        size_t middle = (low + high) / 2;
+        if (x[middle] <= k)
+            low = middle;
+        else
+            high = middle;
+    }
+    double t = fmin(fmax(log(k / x[low]) / log(x[high] / x[low]), 0), 1);
+    if (y[low] == 0 || y[high] == 0)
+        return y[low] + t * (y[high] - y[low]);
+    return y[low] * pow(y[high] / y[low], t);
+}
+
+static double density(const struct spectrum *s, bool profile, double kx, double ky) {
+    double k = profile ? fabs(kx) : hypot(kx, ky);
+    switch (s->type) {
+    case SPECTRUM_SELF_AFFINE:
+        return self_affine_density(s, profile, k / (2 * M_PI));
+    case SPECTRUM_EXPONENTIAL_ACF:
+        return exponential_density(s, profile, kx, ky);
+    case SPECTRUM_TABLE:
+        return table_density(s, k);
+    }
+    return 0;
+}
+
+/* Highest wave number along a side of `length` with `points`: the band edge, or Nyquist for a
+ * spectrum without one. */
+static int band_edge(const struct spectrum *s, double length, size_t points, size_t *mode,
+                     struct error *err) {
+    size_t nyquist = points / 2;
+    double edge = (double)nyquist;
+    if (s->type == SPECTRUM_SELF_AFFINE)
+        edge = floor(length / s->wavelength_short * (1 + EDGE));
+    else if (s->type == SPECTRUM_TABLE)
+        edge = floor(s->table_wave_number[s->table_count - 1] * length / (2 * M_PI) * (1 + EDGE));
+    if (edge > (double)nyquist)
+        return error_set(
+            err, ERROR_INPUT,
+            "%zu points on a side of %g do not resolve the shortest of its %.0f waves; "
+            "allowed: at least 2 points a wave",
+            points, length, edge);
+    *mode = (size_t)edge;
+    return 0;
+}
+
+/* How many modes of the full plane a stored one stands for. Column 0 and, for even nx, the Nyquist
+ * column hold both signs of my themselves; every other column stands for its mirror image too. The
+ * Nyquist row of an even ny is stored once, at +ny/2. */
+static unsigned mode_weight(const struct grid *grid, size_t mx) {
+    return mx == 0 || 2 * mx == grid->nx ? 1 : 2;
+}
+
+static void modes_fill(struct modes *modes, const struct spectrum *s) {
+    const struct grid *grid = &modes->grid;
+    bool profile = grid_is_profile(grid);
+    long mode_y = (long)modes->mode_y;
+    double *power = modes->power;
+    for (size_t mx = 0; mx <= modes->mode_x; mx++)
+        for (long my = -mode_y; my <= mode_y; my++, power++) {
+            bool twin = my < 0 && 2 * (size_t)-my == grid->ny;
+            if ((mx == 0 && my == 0) || twin)
+                continue;
+            double kx = 2 * M_PI * (double)mx / grid->lx;
+            double ky = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
+            *power = density(s, profile, kx, ky);
+            if (*power > 0)
+                modes->count += mode_weight(grid, mx);
+        }
+}
+
+static int modes_scale(struct modes *modes, const struct spectrum *s, struct error *err) {
+    struct moments moments;
+    modes_moments(modes, &moments);
+    if (modes->count == 0 || !(moments.m00 > 0 && isfinite(moments.m00)))
+        return error_set(err, ERROR_INPUT, "the spectrum has no mode on a cell of %g by %g",
+                         modes->grid.lx, modes->grid.ly);
+    double factor = 1 / moments.m00;
+    if (s->scale == SCALE_RMS_HEIGHT)
+        factor = s->scale_value / moments.rms_height * (s->scale_value / moments.rms_height);
+    if (s->scale == SCALE_RMS_SLOPE)
+        factor = s->scale_value / moments.rms_slope * (s->scale_value / moments.rms_slope);
+    size_t count = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
+    for (size_t i = 0; i < count; i++)
+        modes->power[i] *= factor;
+    return 0;
+}
+
+int modes_create(struct modes **out, const struct spectrum *spectrum, const struct grid *grid,
+                 struct error *err) {
+    int status = grid_check(grid, err);
+    if (!status)
+        status = spectrum_check(spectrum, grid, err);
+    if (status)
+        return status;
+    struct modes *modes = array_create(1, sizeof *modes);
+    if (!modes)
+        return error_memory(err, sizeof *modes, "a discrete spectrum");
+    modes->grid = *grid;
+    status = band_edge(spectrum, grid->lx, grid->nx, &modes->mode_x, err);
+    if (!status && !grid_is_profile(grid))
+        status = band_edge(spectrum, grid->ly, grid->ny, &modes->mode_y, err);
+    if (!status) {
+        size_t count = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
+        modes->power = array_create(count, sizeof *modes->power);
+        if (!modes->power)
+            status = error_memory(err, count * sizeof *modes->power, "a discrete spectrum");
+    }
+    if (!status) {
+        modes_fill(modes, spectrum);
+        status = modes_scale(modes, spectrum, err);
+    }
+    if (status) {
+        modes_destroy(&modes);
+        return status;
+    }
+    *out = modes;
+    return 0;
+}
+
+void modes_destroy(struct modes **modes) {
+    if (!*modes)
+        return;
+    free((*modes)->power);
+    free(*modes);
+    *modes = NULL;
+}
+
+/* kx^p ky^q of the moments, in the order of their fields. */
+static const unsigned char POWERS[][2] = {{0, 0}, {2, 0}, {0, 2}, {1, 1}, {2, 2},
+                                          {4, 0}, {0, 4}, {3, 1}, {1, 3}};
+enum { MOMENTS = sizeof POWERS / sizeof *POWERS };
+
+void modes_moments(const struct modes *modes, struct moments *out) {
+    const struct grid *grid = &modes->grid;
+    struct compensated sums[MOMENTS] = {{0}};
+    long mode_y = (long)modes->mode_y;
+    bool profile = grid_is_profile(grid);
+    const double *power = modes->power;
+    for (size_t mx = 0; mx <= modes->mode_x; mx++)
+        for (long my = -mode_y; my <= mode_y; my++, power++) {
+            if (*power == 0)
+                continue;
+            double weighted = *power * mode_weight(grid, mx);
+            double kx = 2 * M_PI * (double)mx / grid->lx;
+            double ky = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
+            double x[5] = {1, kx, kx * kx, kx * kx * kx, kx * kx * kx * kx};
+            double y[5] = {1, ky, ky * ky, ky * ky * ky, ky * ky * ky * ky};
+            for (size_t s = 0; s < MOMENTS; s++)
+                compensated_add(&sums[s], weighted * x[POWERS[s][0]] * y[POWERS[s][1]]);
+        }
+    double m[MOMENTS];
+    for (size_t s = 0; s < MOMENTS; s++)
+        m[s] = sums[s].total + sums[s].lost;
+    *out = (struct moments){.m00 = m[0],
+                            .m20 = m[1],
+                            .m02 = m[2],
+                            .m11 = m[3],
+                            .m22 = m[4],
+                            .m40 = m[5],
+                            .m04 = m[6],
+                            .m31 = m[7],
+                            .m13 = m[8]};
+    out->m0 = m[0];
+    out->m2 = profile ? m[1] : (m[1] + m[2]) / 2;
+    out->m4 = profile ? m[5] : (m[5] + m[6]) / 2;
+    out->nayak_alpha = out->m0 / out->m2 * (out->m4 / out->m2);
+    out->rms_height = sqrt(m[0]);
+    out->rms_slope = sqrt(m[1] + m[2]);
+    out->rms_curvature = profile ? sqrt(m[5]) : sqrt((m[5] + 2 * m[4] + m[6]) / 4);
+}

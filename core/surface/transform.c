@@ -1,0 +1,124 @@
+#include "core/surface/transform.h"
+#include <fftw3.h>
+#include <limits.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* FFTW's planner is the one part of it that is not safe from many threads. */
+static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
+
+enum { ROWS = 8 }; /* rows gathered together: a cache line of each column serves four of them */
+
+struct transform {
+    size_t nx, ny, columns; /* columns = mode_x + 1 */
+    size_t half;            /* nx/2 + 1: values of one row's half spectrum */
+    double complex *spectrum;
+    double complex *rows; /* ROWS x half */
+    double *lines;        /* ROWS x nx */
+    fftw_plan column_inverse, column_forward, row_inverse, row_forward;
+};
+
+static int plans_create(struct transform *t) {
+    int nx = (int)t->nx, ny = (int)t->ny, half = (int)t->half;
+    pthread_mutex_lock(&planner);
+    if (t->ny > 1) {
+        int columns = (int)t->columns;
+        t->column_inverse =
+            fftw_plan_many_dft(1, &ny, columns, t->spectrum, NULL, 1, ny, t->spectrum, NULL, 1, ny,
+                               FFTW_BACKWARD, FFTW_ESTIMATE);
+        t->column_forward =
+            fftw_plan_many_dft(1, &ny, columns, t->spectrum, NULL, 1, ny, t->spectrum, NULL, 1, ny,
+                               FFTW_FORWARD, FFTW_ESTIMATE);
+    }
+    t->row_inverse = fftw_plan_many_dft_c2r(1, &nx, ROWS, t->rows, NULL, 1, half, t->lines, NULL, 1,
+                                            nx, FFTW_ESTIMATE);
+    t->row_forward = fftw_plan_many_dft_r2c(1, &nx, ROWS, t->lines, NULL, 1, nx, t->rows, NULL, 1,
+                                            half, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+    pthread_mutex_unlock(&planner);
+    return t->row_inverse && t->row_forward &&
+           (t->ny == 1 || (t->column_inverse && t->column_forward));
+}
+
+int transform_create(struct transform **out, const struct grid *grid, size_t mode_x, size_t mode_y,
+                     struct error *err) {
+    if (grid_check(grid, err))
+        return err ? err->code : ERROR_INPUT;
+    if (mode_x > grid->nx / 2 || mode_y > grid->ny / 2)
+        return error_set(
+            err, ERROR_INPUT,
+            "a band of %zu by %zu waves on a grid of %zu by %zu points; allowed: up to "
+            "half the points",
+            mode_x, mode_y, grid->nx, grid->ny);
+    if (grid->nx > INT_MAX / (2 * ROWS) || grid->ny > INT_MAX / 2)
+        return error_set(err, ERROR_INPUT, "a grid of %zu by %zu points has too long a side",
+                         grid->nx, grid->ny);
+    struct transform *t = array_create(1, sizeof *t);
+    if (!t)
+        return error_memory(err, sizeof *t, "a transform");
+    t->nx = grid->nx;
+    t->ny = grid->ny;
+    t->columns = mode_x + 1;
+    t->half = grid->nx / 2 + 1;
+    t->spectrum = fftw_alloc_complex(t->columns * t->ny);
+    t->rows = fftw_alloc_complex(ROWS * t->half);
+    t->lines = fftw_alloc_real(ROWS * t->nx);
+    if (!t->spectrum || !t->rows || !t->lines || !plans_create(t)) {
+        size_t bytes = (t->columns * t->ny + ROWS * t->half) * sizeof *t->spectrum;
+        transform_destroy(&t);
+        return error_memory(err, bytes, "a transform");
+    }
+    *out = t;
+    return 0;
+}
+
+void transform_destroy(struct transform **transform) {
+    struct transform *t = *transform;
+    if (!t)
+        return;
+    pthread_mutex_lock(&planner);
+    fftw_plan plans[] = {t->column_inverse, t->column_forward, t->row_inverse, t->row_forward};
+    for (size_t p = 0; p < sizeof plans / sizeof *plans; p++)
+        if (plans[p])
+            fftw_destroy_plan(plans[p]);
+    pthread_mutex_unlock(&planner);
+    fftw_free(t->spectrum);
+    fftw_free(t->rows);
+    fftw_free(t->lines);
+    free(t);
+    *transform = NULL;
+}
+
+double complex *transform_spectrum(struct transform *transform) {
+    return transform->spectrum;
+}
+
+void transform_inverse(struct transform *t, double *z) {
+    if (t->ny > 1)
+        fftw_execute(t->column_inverse);
+    for (size_t j = 0; j < t->ny; j += ROWS) {
+        size_t rows = t->ny - j < ROWS ? t->ny - j : ROWS;
+        for (size_t row = 0; row < ROWS; row++)
+            memset(t->rows + row * t->half + t->columns, 0,
+                   (t->half - t->columns) * sizeof *t->rows);
+        for (size_t i = 0; i < t->columns; i++)
+            for (size_t row = 0; row < rows; row++)
+                t->rows[row * t->half + i] = t->spectrum[i * t->ny + j + row];
+        fftw_execute(t->row_inverse);
+        memcpy(z + j * t->nx, t->lines, rows * t->nx * sizeof *z);
+    }
+}
+
+void transform_forward(struct transform *t, const double *z) {
+    double scale = 1 / ((double)t->nx * (double)t->ny);
+    for (size_t j = 0; j < t->ny; j += ROWS) {
+        size_t rows = t->ny - j < ROWS ? t->ny - j : ROWS;
+        memcpy(t->lines, z + j * t->nx, rows * t->nx * sizeof *z);
+        fftw_execute(t->row_forward);
+        for (size_t i = 0; i < t->columns; i++)
+            for (size_t row = 0; row < rows; row++)
+                t->spectrum[i * t->ny + j + row] = scale * t->rows[row * t->half + i];
+    }
+    if (t->ny > 1)
+        fftw_execute(t->column_forward);
+}
