@@ -1,0 +1,170 @@
+#include "core/surface/surface.h"
+#include "core/surface/nongaussian.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct surface_options SURFACE_DEFAULTS = {
+    .heights = {.type = HEIGHTS_GAUSSIAN},
+    .keep = KEEP_SPECTRUM,
+    .iteration = ITERATION_RELAXED,
+    .draw = DRAW_RANDOM,
+    .tolerance = 1e-3,
+    .stall_gain = 0.05,
+    .stall_iterations = 10,
+    .max_iterations = 1000,
+    .relaxed_iterations =
+        25, /* number of summits within 0.6 % of the limit; 100 gain nothing more */
+    .relaxation = 0.8,
+};
+
+struct generator {
+    struct modes *modes;
+    struct transform *transform;
+    struct nongaussian *nongaussian; /* NULL: Gaussian heights */
+    double *amplitude;  /* sqrt(power), rows of wave numbers: [(my + mode_y)*(mode_x + 1) + mx] */
+    size_t *row_length; /* 2 mode_y + 1: 1 + highest mx of the row that is not null; 0: none */
+    uint64_t *words;    /* mode_x + 1 */
+};
+
+static void amplitudes_fill(struct generator *g) {
+    const struct modes *modes = g->modes;
+    size_t columns = modes->mode_x + 1;
+    long mode_y = (long)modes->mode_y;
+    for (long my = -mode_y; my <= mode_y; my++) {
+        size_t row = (size_t)(my + mode_y);
+        for (size_t mx = 0; mx < columns; mx++) {
+            double power = modes_power(modes, mx, my);
+            g->amplitude[row * columns + mx] = sqrt(power);
+            if (power > 0)
+                g->row_length[row] = mx + 1;
+        }
+    }
+}
+
+static int arrays_create(struct generator *g, struct error *err) {
+    size_t columns = g->modes->mode_x + 1, rows = 2 * g->modes->mode_y + 1;
+    g->amplitude = array_create(columns * rows, sizeof *g->amplitude);
+    g->row_length = array_create(rows, sizeof *g->row_length);
+    g->words = array_create(columns, sizeof *g->words);
+    if (!g->amplitude || !g->row_length || !g->words)
+        return error_memory(err, columns * rows * sizeof *g->amplitude, "amplitudes");
+    amplitudes_fill(g);
+    return 0;
+}
+
+int generator_create(struct generator **out, const struct spectrum *spectrum,
+                     const struct grid *grid, const struct surface_options *options,
+                     struct error *err) {
+    struct generator *g = array_create(1, sizeof *g);
+    if (!g)
+        return error_memory(err, sizeof *g, "a generator");
+    int status = modes_create(&g->modes, spectrum, grid, err);
+    if (!status)
+        status = transform_create(&g->transform, grid, g->modes->mode_x, g->modes->mode_y, err);
+    if (!status)
+        status = arrays_create(g, err);
+    if (!status && options->heights.type != HEIGHTS_GAUSSIAN)
+        status = nongaussian_create(&g->nongaussian, g->modes, options, err);
+    if (status) {
+        generator_destroy(&g);
+        return status;
+    }
+    *out = g;
+    return 0;
+}
+
+void generator_destroy(struct generator **generator) {
+    struct generator *g = *generator;
+    if (!g)
+        return;
+    nongaussian_destroy(&g->nongaussian);
+    transform_destroy(&g->transform);
+    modes_destroy(&g->modes);
+    free(g->amplitude);
+    free(g->row_length);
+    free(g->words);
+    free(g);
+    *generator = NULL;
+}
+
+const struct modes *generator_modes(const struct generator *generator) {
+    return generator->modes;
+}
+
+double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
+                       const struct surface_options *options) {
+    double points = (double)grid->nx * (double)grid->ny;
+    double band = (double)(mode_x + 1) * (double)(2 * mode_y + 1);
+    double columns = (double)(mode_x + 1) * (double)grid->ny;
+    double bytes = sizeof(double) * (points + 2 * band) + sizeof(double complex) * columns;
+    if (options->heights.type != HEIGHTS_GAUSSIAN)
+        bytes += nongaussian_bytes(grid, mode_x, mode_y, options);
+    return bytes;
+}
+
+/* Words of a row are numbered by its wave vectors alone, so that a finer grid draws the same ones.
+ */
+static uint64_t row_first_word(long my) {
+    uint64_t zigzag = my >= 0 ? 2 * (uint64_t)my : 2 * (uint64_t)-my - 1;
+    return zigzag << 32;
+}
+
+/* Where a wave number my stands in a column of ny values. */
+static size_t column_row(long my, size_t ny) {
+    return my >= 0 ? (size_t)my : ny - (size_t)-my;
+}
+
+static double complex with_phase(double amplitude, uint64_t word) {
+    double phase = 2 * M_PI * ((double)(word >> 11) * 0x1p-53), sine, cosine;
+    sincos(phase, &sine, &cosine);
+    return CMPLX(amplitude * cosine, amplitude * sine);
+}
+
+/* A column that is its own mirror image (mx = 0, and Nyquist of an even nx): the modes of my < 0
+ * are conjugates of those drawn at my > 0, and a mode that is its own conjugate (my = 0, Nyquist)
+ * is real: full amplitude, one of two signs. */
+static void own_mirror_mode(double complex *column, long my, size_t ny, double amplitude,
+                            uint64_t word) {
+    if (my == 0 || 2 * (size_t)my == ny) {
+        column[column_row(my, ny)] = word >> 63 ? -amplitude : amplitude;
+        return;
+    }
+    double complex mode = with_phase(amplitude, word);
+    column[column_row(my, ny)] = mode;
+    column[column_row(-my, ny)] = conj(mode);
+}
+
+/* Deterministic amplitudes, random phases (Wu 2000; theory.md 3.14-3.19). */
+static void spectrum_draw(struct generator *g, struct random_key key) {
+    const struct modes *modes = g->modes;
+    size_t columns = modes->mode_x + 1, ny = modes->grid.ny, nx = modes->grid.nx;
+    long mode_y = (long)modes->mode_y;
+    double complex *spectrum = transform_spectrum(g->transform);
+    memset(spectrum, 0, columns * ny * sizeof *spectrum);
+    for (long my = -mode_y; my <= mode_y; my++) {
+        size_t row = (size_t)(my + mode_y), length = g->row_length[row];
+        const double *amplitude = g->amplitude + row * columns;
+        double complex *at = spectrum + column_row(my, ny);
+        random_words(key, STREAM_PHASES, row_first_word(my), length, g->words);
+        for (size_t mx = 0; mx < length; mx++) {
+            if (amplitude[mx] == 0)
+                continue;
+            if (mx > 0 && 2 * mx < nx)
+                at[mx * ny] = with_phase(amplitude[mx], g->words[mx]);
+            else if (my >= 0)
+                own_mirror_mode(spectrum + mx * ny, my, ny, amplitude[mx], g->words[mx]);
+        }
+    }
+}
+
+int generator_run(struct generator *g, struct random_key key, double *z,
+                  struct surface_report *report, struct error *err) {
+    spectrum_draw(g, key);
+    transform_inverse(g->transform, z);
+    if (g->nongaussian)
+        return nongaussian_run(g->nongaussian, g->transform, key, z, report, err);
+    if (report)
+        *report = (struct surface_report){.end = END_DIRECT};
+    return 0;
+}
