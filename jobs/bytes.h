@@ -1,5 +1,5 @@
-/* A byte string that grows, and a reader that never passes its end: how partial results are encoded.
- * Integers are LEB128 varints (signed ones zigzag), doubles 8 bytes little endian. */
+/* A byte string that grows, and a reader that never passes its end: how partial results are
+ * encoded. Integers are LEB128 varints (signed ones zigzag), doubles 8 bytes little endian. */
 #ifndef RUGO_JOBS_BYTES_H
 #define RUGO_JOBS_BYTES_H
 
@@ -17,13 +17,23 @@ void bytes_put_double(struct bytes *bytes, double value);
 /* Sparse array: runs of zeros cost two bytes. */
 void bytes_put_counts(struct bytes *bytes, size_t n, const uint64_t *counts);
 
+/* Ends the string with a hash of all before it. */
+void bytes_seal(struct bytes *bytes);
+
 struct byte_reader {
     const unsigned char *at, *end; /* borrowed */
-    int failed;                    /* set by a read past the end or a malformed number; reads give 0 */
+    int failed; /* set by a read past the end or a malformed number; reads give 0 */
 };
+/* A reader of what comes before the seal; failed where that does not match. */
+struct byte_reader bytes_open(const unsigned char *data, size_t size);
+/* Only the shortest form of a number is taken. */
 uint64_t bytes_get_unsigned(struct byte_reader *reader);
 fixed_point bytes_get_fixed(struct byte_reader *reader);
 double bytes_get_double(struct byte_reader *reader);
 void bytes_get_counts(struct byte_reader *reader, size_t n, uint64_t *counts);
+
+/* FNV-1a, 64 bits: a seal against damage, not against intent. Start from HASH_START. */
+#define HASH_START UINT64_C(0xcbf29ce484222325)
+uint64_t hash_bytes(uint64_t hash, size_t n, const void *data);
 
 #endif

@@ -14,10 +14,10 @@
 
 /* What a case costs; rough, before anything ran. */
 struct job_estimate {
-    size_t nx, ny;                /* grid of one realisation (the finest) */
-    double memory_bytes;          /* peak of one worker thread */
-    double seconds;               /* CPU seconds a realisation on a 3 GHz core */
-    double relative_error;        /* standard error of the main curve after one realisation; / sqrt(n) */
+    size_t nx, ny;         /* grid of one realisation (the finest) */
+    double memory_bytes;   /* peak of one worker thread */
+    double seconds;        /* CPU seconds a realisation on a 3 GHz core */
+    double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
 };
 
 /* Outcome of one block of realisations. */
@@ -48,7 +48,8 @@ struct job_kind {
     const char *const *scalars; /* names of the scalars of one realisation, NULL-terminated */
 
     /* Parameters of one case: the study's object of effective values, lists already replaced. Adds
-     * faults that no single range shows (grid too large, alpha out of reach) and estimates the cost. */
+     * faults that no single range shows (grid too large, alpha out of reach) and estimates the
+     * cost. */
     int (*check)(const cJSON *parameters, struct fault_list *faults, struct job_estimate *estimate,
                  struct error *err);
     int (*runner_create)(struct job_runner **out, const cJSON *parameters, uint64_t seed,

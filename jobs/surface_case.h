@@ -6,22 +6,33 @@
 #include "core/surface/surface.h"
 #include <cjson/cJSON.h>
 
-/* Table rows of /surface/..., to be put at the head of a kind's own table. */
-#define SURFACE_PARAMETER_COUNT 20 /* surface_case.c asserts it */
-extern const struct parameter SURFACE_PARAMETERS[SURFACE_PARAMETER_COUNT];
+/* Table rows of /surface/...: a kind puts the same rows at the head of its own table by including
+ * surface_parameters.inc there. */
+enum { SURFACE_PARAMETER_COUNT = 24 };
+extern const struct parameter SURFACE_PARAMETERS[];
 
 struct surface_case {
-    int dimension; /* 1 profile, 2 surface */
+    int dimension;    /* 1 profile, 2 surface */
     struct grid grid; /* cell in units of lambda_s = 1: lx = length_ratio * wavelength_ratio */
     struct spectrum spectrum;
     struct surface_options options;
     double wavelength_ratio; /* as given, or solved for nayak_alpha */
-    double *table;           /* owned: memory behind a table spectrum */
+    double length_ratio;
+    double *table; /* owned: memory behind a table spectrum */
 };
-/* Reads the surface of a case; adds faults (pointer "/surface/...") where values do not fit together.
- * faults may be NULL: then the first fault becomes the error. */
+/* Reads the surface of a case; adds faults (pointer "/surface/...") where values do not fit
+ * together and returns ERROR_INPUT. faults may be NULL: the first fault is the error in any case.
+ * *out is left cleared on failure. Absent values are their defaults. */
 int surface_case_read(struct surface_case *out, const cJSON *parameters, struct fault_list *faults,
                       struct error *err);
 void surface_case_clear(struct surface_case *surface);
+
+/* Whether the returned surfaces have the prescribed spectrum exactly. */
+static inline bool surface_case_exact(const struct surface_case *surface) {
+    return surface->options.heights.type == HEIGHTS_GAUSSIAN ||
+           surface->options.keep == KEEP_SPECTRUM;
+}
+/* Highest wave number that the spectrum can have on the grid, in x as in y: at most nx/2. */
+size_t surface_case_band(const struct surface_case *surface);
 
 #endif

@@ -1,0 +1,30 @@
+/* Reads the values of one case by its parameter table: an absent value is its default, and one that
+ * does not fit its row is a fault. */
+#ifndef RUGO_JOBS_CASE_READER_H
+#define RUGO_JOBS_CASE_READER_H
+
+#include "core/error.h"
+#include "core/parameter.h"
+#include <cjson/cJSON.h>
+#include <stdint.h>
+
+struct case_reader {
+    const cJSON *parameters;       /* borrowed, as all below */
+    const struct parameter *table; /* rows of every path that is read */
+    size_t count;
+    struct fault_list *faults;
+};
+
+/* NaN where the value is absent, or does not fit (a fault then). */
+double case_number(const struct case_reader *reader, const char *path);
+/* Position among the row's choices; 0 where it does not fit (a fault then). */
+size_t case_choice(const struct case_reader *reader, const char *path);
+/* The array's values into *out (owned by the caller, NULL where absent or at fault) and *n.
+ * Fails only with ERROR_MEMORY. */
+int case_numbers(const struct case_reader *reader, const char *path, double **out, size_t *n,
+                 struct error *err);
+
+/* A 64-bit mark of all values of the table, whatever the order of keys: tells cases apart. */
+uint64_t case_fingerprint(const struct case_reader *reader);
+
+#endif

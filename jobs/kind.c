@@ -1,0 +1,22 @@
+#include "jobs/kind.h"
+#include "jobs/statistics.h"
+#include <stdlib.h>
+#include <string.h>
+
+const struct job_kind *const JOB_KINDS[] = {
+    &STATISTICS_KIND,
+};
+const size_t JOB_KIND_COUNT = sizeof JOB_KINDS / sizeof *JOB_KINDS;
+
+const struct job_kind *kind_find(const char *name) {
+    for (size_t a = 0; a < JOB_KIND_COUNT; a++)
+        if (strcmp(JOB_KINDS[a]->name, name) == 0)
+            return JOB_KINDS[a];
+    return NULL;
+}
+
+void job_result_clear(struct job_result *result) {
+    free(result->scalars);
+    free(result->data);
+    *result = (struct job_result){0};
+}

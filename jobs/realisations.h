@@ -1,0 +1,26 @@
+/* The scalars of a case's realisations, kept in their order whatever the order of arrival. */
+#ifndef RUGO_JOBS_REALISATIONS_H
+#define RUGO_JOBS_REALISATIONS_H
+
+#include "jobs/kind.h"
+
+struct realisation_block {
+    uint64_t first, count;
+    double *scalars; /* owned, count x scalar_count */
+};
+struct realisations {
+    size_t scalar_count;              /* set by the owner before the first add */
+    uint64_t count;                   /* realisations in all blocks */
+    struct realisation_block *blocks; /* owned, rising, apart */
+    size_t block_count, capacity;
+};
+void realisations_clear(struct realisations *set);
+/* Whether the block is one of this kind that overlaps none so far; ERROR_INPUT with the reason. */
+int realisations_check(const struct realisations *set, const struct job_result *result,
+                       struct error *err);
+/* Copies the scalars of a block that realisations_check took. Nothing is added on failure. */
+int realisations_add(struct realisations *set, const struct job_result *result, struct error *err);
+/* Scalar number `scalar` of every realisation, in order, into out[count]. */
+void realisations_column(const struct realisations *set, size_t scalar, double *out);
+
+#endif

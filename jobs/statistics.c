@@ -1,0 +1,273 @@
+#include "jobs/statistics.h"
+#include "jobs/statistics_curves.h"
+#include "jobs/statistics_scalars.h"
+#include "jobs/statistics_spectra.h"
+#include "jobs/value.h"
+#include <stdlib.h>
+#include <time.h>
+
+static int check(const cJSON *parameters, struct fault_list *faults, struct job_estimate *estimate,
+                 struct error *err) {
+    struct statistics_case study;
+    size_t before = faults->count;
+    int status = statistics_case_read(&study, parameters, faults, err);
+    if (status != 0)
+        return status == ERROR_INPUT && faults->count > before ? 0 : status;
+    statistics_case_estimate(&study, estimate);
+    statistics_case_clear(&study);
+    return 0;
+}
+
+struct job_runner {
+    struct statistics_case study;
+    struct random_key key;
+    struct generator *generator;
+    struct summit_finder *finder;
+    struct spectra spectra;
+    struct moments moments; /* of the prescribed spectrum */
+    struct summit_list summits;
+    double *z; /* grid_points */
+};
+
+static void runner_destroy(struct job_runner **out) {
+    struct job_runner *runner = *out;
+    if (runner == NULL)
+        return;
+    generator_destroy(&runner->generator);
+    summit_finder_destroy(&runner->finder);
+    spectra_clear(&runner->spectra);
+    summit_list_clear(&runner->summits);
+    statistics_case_clear(&runner->study);
+    free(runner->z);
+    free(runner);
+    *out = NULL;
+}
+
+static int runner_fill(struct job_runner *runner, const cJSON *parameters, struct error *err) {
+    struct statistics_case *study = &runner->study;
+    const struct grid *grid = &study->surface.grid;
+    int status = statistics_case_read(study, parameters, NULL, err);
+    if (status != 0)
+        return status;
+    status = generator_create(&runner->generator, &study->surface.spectrum, grid,
+                              &study->surface.options, err);
+    if (status != 0)
+        return status;
+    const struct modes *modes = generator_modes(runner->generator);
+    modes_moments(modes, &runner->moments);
+    bool exact = surface_case_exact(&study->surface); /* else heights placed point by point */
+    status = summit_finder_create(&runner->finder, grid, study->stencil, study->curvature,
+                                  exact ? modes->mode_x : grid->nx / 2,
+                                  exact ? modes->mode_y : grid->ny / 2, err);
+    if (status == 0)
+        status = spectra_create(&runner->spectra, study, modes, err);
+    if (status != 0)
+        return status;
+    runner->z = array_create(grid_points(grid), sizeof *runner->z);
+    return runner->z != NULL
+               ? 0
+               : error_memory(err, grid_points(grid) * sizeof *runner->z, "a surface");
+}
+
+static int runner_create(struct job_runner **out, const cJSON *parameters, uint64_t seed,
+                         uint64_t case_number, struct error *err) {
+    struct job_runner *runner = array_create(1, sizeof *runner);
+    if (runner == NULL)
+        return error_memory(err, sizeof *runner, "a runner");
+    runner->key = (struct random_key){seed, case_number, 0};
+    int status = runner_fill(runner, parameters, err);
+    if (status != 0)
+        runner_destroy(&runner);
+    *out = runner;
+    return status;
+}
+
+static int run_one(struct job_runner *runner, uint64_t realisation, struct statistics_tally *tally,
+                   double *scalars, struct error *err) {
+    const struct grid *grid = &runner->study.surface.grid;
+    struct surface_report report = {0};
+    struct roughness roughness;
+    struct moments moments = runner->moments;
+    runner->key.realisation = realisation;
+    int status = generator_run(runner->generator, runner->key, runner->z, &report, err);
+    if (status == 0)
+        status = summits_find(runner->finder, runner->z, &runner->summits, err);
+    if (status == 0)
+        status = spectra_measure(&runner->spectra, grid, runner->z, tally, err);
+    if (status == 0 && !surface_case_exact(&runner->study.surface))
+        status = roughness_spectral(grid, runner->z, &moments, err);
+    if (status != 0) {
+        error_context(err, "realisation %llu", (unsigned long long)realisation);
+        return status;
+    }
+    roughness_measure(grid, runner->z, &roughness);
+    statistics_tally_heights(tally, grid_points(grid), runner->z);
+    statistics_tally_summits(tally, &runner->summits);
+    statistics_scalars_measure(&runner->study, &runner->moments,
+                               &(struct realisation_measures){.roughness = &roughness,
+                                                              .moments = &moments,
+                                                              .summits = &runner->summits,
+                                                              .report = &report},
+                               scalars);
+    return 0;
+}
+
+static int run_all(struct job_runner *runner, const struct job_control *control,
+                   struct statistics_tally *tally, struct job_result *result, struct error *err) {
+    for (uint64_t r = 0; r < result->count; r++) {
+        if (control != NULL && control->poll != NULL && control->poll(control->context, r) != 0)
+            return error_set(err, ERROR_STOPPED, "stopped after %llu of %llu realisations",
+                             (unsigned long long)r, (unsigned long long)result->count);
+        int status =
+            run_one(runner, result->first + r, tally, result->scalars + r * SCALAR_COUNT, err);
+        if (status != 0)
+            return status;
+    }
+    return statistics_tally_encode(tally, &result->data, &result->size, err);
+}
+
+static double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int run(struct job_runner *runner, uint64_t first, uint64_t count,
+               const struct job_control *control, struct job_result *out, struct error *err) {
+    double start = seconds_now();
+    struct job_result result = {.first = first, .count = count, .scalar_count = SCALAR_COUNT};
+    struct statistics_tally tally;
+    if (count == 0 || count > UINT64_MAX - first)
+        return error_set(err, ERROR_INPUT, "a block needs at least one realisation");
+    int status =
+        statistics_tally_create(&tally, &runner->study, &runner->moments, runner->spectra.densities,
+                                runner->spectra.correlations, err);
+    if (status != 0)
+        return status;
+    result.scalars = array_create((size_t)count, SCALAR_COUNT * sizeof(double));
+    status = result.scalars != NULL
+                 ? run_all(runner, control, &tally, &result, err)
+                 : error_memory(err, (size_t)count * SCALAR_COUNT * sizeof(double), "scalars");
+    statistics_tally_clear(&tally);
+    if (status != 0) {
+        job_result_clear(&result);
+        return status;
+    }
+    result.seconds = seconds_now() - start;
+    *out = result;
+    return 0;
+}
+
+struct job_merger {
+    struct statistics_case study;
+    struct modes *modes;
+    struct moments moments;
+    struct statistics_tally tally; /* of all blocks so far */
+    struct realisations realisations;
+};
+
+static void merger_destroy(struct job_merger **out) {
+    struct job_merger *merger = *out;
+    if (merger == NULL)
+        return;
+    statistics_tally_clear(&merger->tally);
+    realisations_clear(&merger->realisations);
+    modes_destroy(&merger->modes);
+    statistics_case_clear(&merger->study);
+    free(merger);
+    *out = NULL;
+}
+
+static int tally_like(const struct job_merger *merger, struct statistics_tally *out,
+                      struct error *err) {
+    return statistics_tally_create(out, &merger->study, &merger->moments,
+                                   spectra_densities(&merger->study),
+                                   spectra_correlations(&merger->study), err);
+}
+
+static int merger_create(struct job_merger **out, const cJSON *parameters, struct error *err) {
+    struct job_merger *merger = array_create(1, sizeof *merger);
+    if (merger == NULL)
+        return error_memory(err, sizeof *merger, "a merger");
+    merger->realisations.scalar_count = SCALAR_COUNT;
+    int status = statistics_case_read(&merger->study, parameters, NULL, err);
+    if (status == 0)
+        status = modes_create(&merger->modes, &merger->study.surface.spectrum,
+                              &merger->study.surface.grid, err);
+    if (status == 0) {
+        modes_moments(merger->modes, &merger->moments);
+        status = tally_like(merger, &merger->tally, err);
+    }
+    if (status != 0)
+        merger_destroy(&merger);
+    *out = merger;
+    return status;
+}
+
+/* Whether the scalars and the tally of a block tell of the same realisations. */
+static int check_block(const struct job_result *result, const struct statistics_tally *tally,
+                       struct error *err) {
+    double summits = 0;
+    for (uint64_t r = 0; r < result->count; r++)
+        summits += result->scalars[r * SCALAR_COUNT + SCALAR_SUMMITS];
+    if (tally->summits.realisations != result->count || !(summits == (double)tally->summits.sum))
+        return error_set(err, ERROR_INPUT,
+                         "the partial result does not belong to the scalars beside it");
+    return 0;
+}
+
+static int merge(struct job_merger *merger, const struct job_result *result, struct error *err) {
+    struct statistics_tally tally;
+    int status = realisations_check(&merger->realisations, result, err);
+    if (status != 0)
+        return status;
+    status = tally_like(merger, &tally, err);
+    if (status != 0)
+        return status;
+    status = statistics_tally_decode(&tally, result->data, result->size, err);
+    if (status == 0)
+        status = check_block(result, &tally, err);
+    if (status == 0)
+        status = realisations_add(&merger->realisations, result, err);
+    if (status == 0)
+        statistics_tally_merge(&merger->tally, &tally);
+    statistics_tally_clear(&tally);
+    return status;
+}
+
+static int curves(struct job_merger *merger, cJSON **out, struct error *err) {
+    cJSON *scalars = NULL, *list = NULL, *document = cJSON_CreateObject();
+    int status = statistics_scalars_json(&merger->study, &merger->moments, &merger->realisations,
+                                         &scalars, err);
+    if (status == 0)
+        status = statistics_curves(&merger->study, merger->modes, &merger->moments, &merger->tally,
+                                   &list, err);
+    bool put =
+        value_put(document, "realisations", value_number((double)merger->realisations.count));
+    put = value_put(document, "scalars", scalars) && put; /* each takes its item in any case */
+    put = value_put(document, "curves", list) && put;
+    if (status == 0 && !put)
+        status = error_memory(err, sizeof(cJSON), "curves");
+    if (status != 0) {
+        cJSON_Delete(document);
+        return status;
+    }
+    *out = document;
+    return 0;
+}
+
+const struct job_kind STATISTICS_KIND = {
+    .name = "statistics",
+    .parameters = STATISTICS_PARAMETERS,
+    .parameter_count = STATISTICS_PARAMETER_COUNT,
+    .default_realisations = 1000,
+    .scalars = STATISTICS_SCALARS,
+    .check = check,
+    .runner_create = runner_create,
+    .runner_destroy = runner_destroy,
+    .run = run,
+    .merger_create = merger_create,
+    .merger_destroy = merger_destroy,
+    .merge = merge,
+    .curves = curves,
+};

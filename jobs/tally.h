@@ -1,0 +1,71 @@
+/* Counts in cells over many realisations, with what their standard errors need, as exact integers:
+ * any split into blocks and any order of merging gives the same bits.
+ *
+ * Realisation r puts n_r(cell) of its N_r things into a cell. The share of a cell is
+ * R = sum n_r / sum N_r, and as things of one realisation are not independent its error is that of
+ * a ratio over realisations (Cochran 1977, section 2.11):
+ * variance = M/(M-1) sum (n_r - R N_r)^2 / (sum N_r)^2. */
+#ifndef RUGO_JOBS_TALLY_H
+#define RUGO_JOBS_TALLY_H
+
+#include "jobs/bytes.h"
+#include "jobs/estimate.h"
+
+/* What all cells of a tally share. */
+struct tally_total {
+    uint64_t realisations;   /* M */
+    fixed_point sum, square; /* sum of N_r, of N_r^2 */
+};
+void tally_total_add(struct tally_total *total, uint64_t things);
+void tally_total_merge(struct tally_total *into, const struct tally_total *from);
+void tally_total_put(struct bytes *bytes, const struct tally_total *total);
+void tally_total_get(struct byte_reader *reader, struct tally_total *total);
+
+struct tally {
+    size_t size;
+    uint64_t *count;     /* owned, as all: sum of n_r */
+    fixed_point *square; /* sum of n_r^2 */
+    fixed_point *cross;  /* sum of n_r N_r */
+};
+int tally_create(struct tally *out, size_t size, struct error *err);
+void tally_clear(struct tally *tally);
+static inline double tally_bytes(size_t size) {
+    return 40.0 * (double)size;
+}
+/* One realisation's n of its N things in a cell; once a cell and realisation, none for n = 0. */
+static inline void tally_add(struct tally *tally, size_t cell, uint64_t n, uint64_t things) {
+    tally->count[cell] += n;
+    tally->square[cell] += (fixed_point)n * n;
+    tally->cross[cell] += (fixed_point)n * things;
+}
+void tally_merge(struct tally *into, const struct tally *from);
+void tally_put(struct bytes *bytes, const struct tally *tally);
+/* Fails the reader for sums that no realisations could have, or that could overflow in merging. */
+void tally_get(struct byte_reader *reader, struct tally *tally);
+
+/* Share of a cell and its error. */
+struct estimate tally_share(const struct tally *tally, size_t cell,
+                            const struct tally_total *total);
+
+/* Exact sums of a quantity k over realisations where the cell counts are n_r: enough for the ratio
+ * sum k_r / sum n_r, such as the mean curvature of the summits of a bin. */
+struct tally_sums {
+    size_t size;
+    struct exact_sum *sum, *square, *cross; /* owned: k_r, k_r^2, k_r n_r */
+};
+int tally_sums_create(struct tally_sums *out, size_t size, struct error *err);
+void tally_sums_clear(struct tally_sums *sums);
+static inline double tally_sums_bytes(size_t size) {
+    return 96.0 * (double)size;
+}
+void tally_sums_add(struct tally_sums *sums, size_t cell, double k, uint64_t n);
+void tally_sums_merge(struct tally_sums *into, const struct tally_sums *from);
+void tally_sums_put(struct bytes *bytes, const struct tally_sums *sums);
+void tally_sums_get(struct byte_reader *reader, struct tally_sums *sums);
+/* The ratio in a cell: `counts` holds n_r, from `realisations` realisations. */
+struct estimate tally_sums_ratio(const struct tally_sums *sums, const struct tally *counts,
+                                 size_t cell, uint64_t realisations);
+/* Mean of k a realisation where every n_r was 1. */
+struct estimate tally_sums_mean(const struct tally_sums *sums, size_t cell, uint64_t realisations);
+
+#endif
