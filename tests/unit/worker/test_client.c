@@ -1,0 +1,388 @@
+/* The client against servers that are away, slow, cut off, endless or no servers at all: an error
+ * each time, within its time and memory, and the token never shown. */
+#include "worker/client.h"
+
+#include <arpa/inet.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+/* A server of few words: answers every request with the same bytes, in one of these ways. */
+enum manner { ANSWER, ANSWER_AND_CLOSE, SILENT, DRIP, ENDLESS };
+struct stub {
+    enum manner manner;
+    const char *answer;
+    int listener;
+    char url[64];
+    pthread_t thread;
+    /* of the thread, to be read after stub_stop */
+    unsigned connections, requests;
+    char request[4096]; /* the last one, headers and body */
+};
+
+/* Reads one request with its body; false when the client has gone. */
+static bool stub_read(struct stub *stub, int peer) {
+    size_t size = 0, wanted = SIZE_MAX;
+    while (size < wanted) {
+        ssize_t got = read(peer, stub->request + size, sizeof stub->request - 1 - size);
+        if (got <= 0) {
+            return false;
+        }
+        size += (size_t)got;
+        stub->request[size] = '\0';
+        const char *end = strstr(stub->request, "\r\n\r\n");
+        const char *length = strstr(stub->request, "Content-Length: ");
+        if (end) {
+            wanted = (size_t)(end + 4 - stub->request);
+            wanted += length ? strtoul(length + 16, NULL, 10) : 0;
+        }
+    }
+    stub->requests++;
+    return true;
+}
+
+static bool stub_write(int peer, const char *bytes, size_t size) {
+    while (size > 0) {
+        ssize_t sent = send(peer, bytes, size, MSG_NOSIGNAL);
+        if (sent <= 0) {
+            return false;
+        }
+        bytes += sent;
+        size -= (size_t)sent;
+    }
+    return true;
+}
+
+/* Answers; true to go on with the connection. */
+static bool stub_answer(const struct stub *stub, int peer) {
+    static const char chunk[65536];
+    char byte;
+    switch (stub->manner) {
+    case ANSWER:
+        return stub_write(peer, stub->answer, strlen(stub->answer));
+    case ANSWER_AND_CLOSE:
+        (void)stub_write(peer, stub->answer, strlen(stub->answer));
+        return false;
+    case SILENT:
+        return read(peer, &byte, 1) > 0; /* until the client has had enough */
+    case DRIP:
+        for (const char *next = stub->answer; *next && stub_write(peer, next, 1); next++) {
+            nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+        }
+        return false;
+    default:
+        (void)stub_write(peer, stub->answer, strlen(stub->answer));
+        while (stub_write(peer, chunk, sizeof chunk)) {
+        }
+        return false;
+    }
+}
+
+static void *stub_main(void *context) {
+    struct stub *stub = context;
+    for (int peer; (peer = accept(stub->listener, NULL, NULL)) >= 0;) {
+        stub->connections++;
+        while (stub_read(stub, peer) && stub_answer(stub, peer)) {
+        }
+        close(peer);
+    }
+    return NULL;
+}
+
+/* A free port of the loopback, listened to. */
+static int listen_any(char *url, size_t size) {
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    socklen_t length = sizeof address;
+    int listener = socket(AF_INET, SOCK_STREAM, 0);
+    assert_true(listener >= 0);
+    assert_int_equal(bind(listener, (struct sockaddr *)&address, length), 0);
+    assert_int_equal(getsockname(listener, (struct sockaddr *)&address, &length), 0);
+    assert_int_equal(listen(listener, 8), 0);
+    snprintf(url, size, "http://127.0.0.1:%d", ntohs(address.sin_port));
+    return listener;
+}
+
+static void stub_start(struct stub *stub) {
+    stub->listener = listen_any(stub->url, sizeof stub->url);
+    assert_int_equal(pthread_create(&stub->thread, NULL, stub_main, stub), 0);
+}
+
+static void stub_stop(struct stub *stub) {
+    shutdown(stub->listener, SHUT_RDWR);
+    pthread_join(stub->thread, NULL);
+    close(stub->listener);
+}
+
+static struct client *client_of(const char *url, const char *token) {
+    struct client *client = NULL;
+    struct error err = {0};
+    assert_int_equal(client_create(&client, url, token, &err), 0);
+    return client;
+}
+
+static const struct request CLAIM = {
+    .method = "POST", .path = "/v1/jobs/claim", .body = "{\"count\":1}", .timeout_ms = 400};
+
+/* One exchange with a stub; gives client_json's status and error. */
+static int ask(struct stub *stub, struct error *err) {
+    stub_start(stub);
+    struct client *client = client_of(stub->url, "secret-token");
+    cJSON *answer = NULL;
+    int status = client_json(client, &CLAIM, &answer, err);
+    client_destroy(&client);
+    stub_stop(stub);
+    cJSON_Delete(answer);
+    assert_null(strstr(err->text, "secret-token"));
+    return status;
+}
+
+static void refused_connection_is_no_answer(void **state) {
+    (void)state;
+    char url[64];
+    close(listen_any(url, sizeof url)); /* the port was free a moment ago */
+    struct client *client = client_of(url, "secret-token");
+    struct reply reply;
+    struct error err = {0};
+    assert_int_equal(client_send(client, &CLAIM, &reply, &err), ERROR_SYSTEM);
+    assert_non_null(strstr(err.text, url));
+    assert_null(strstr(err.text, "secret-token"));
+    assert_null(reply.body);
+    client_destroy(&client);
+}
+
+/* Protects the request's form, and one connection for many requests. */
+static void requests_share_a_connection(void **state) {
+    (void)state;
+    struct stub stub = {.manner = ANSWER,
+                        .answer = "HTTP/1.1 200 OK\r\nContent-Length: 11\r\n\r\n{\"jobs\":[]}"};
+    stub_start(&stub);
+    struct client *client = client_of(stub.url, "secret-token");
+    struct error err = {0};
+    for (int n = 0; n < 3; n++) {
+        cJSON *answer = NULL;
+        assert_int_equal(client_json(client, &CLAIM, &answer, &err), 0);
+        assert_true(cJSON_IsArray(cJSON_GetObjectItem(answer, "jobs")));
+        cJSON_Delete(answer);
+    }
+    client_destroy(&client);
+    stub_stop(&stub);
+    assert_int_equal(stub.connections, 1);
+    assert_int_equal(stub.requests, 3);
+    assert_non_null(strstr(stub.request, "POST /v1/jobs/claim HTTP/1.1\r\n"));
+    assert_non_null(strstr(stub.request, "Authorization: Bearer secret-token\r\n"));
+    assert_non_null(strstr(stub.request, "Content-Type: application/json\r\n"));
+    assert_non_null(strstr(stub.request, "\r\n\r\n{\"count\":1}"));
+    assert_null(strstr(stub.request, "Expect"));
+}
+
+static void no_content_is_no_answer_to_parse(void **state) {
+    (void)state;
+    struct stub stub = {.manner = ANSWER, .answer = "HTTP/1.1 204 No Content\r\n\r\n"};
+    struct error err = {0};
+    assert_int_equal(ask(&stub, &err), 0);
+}
+
+/* A server that says nothing, or one byte now and then, costs the time-out and no more. */
+static void slow_servers_are_left(void **state) {
+    (void)state;
+    const enum manner manners[] = {SILENT, DRIP};
+    for (size_t n = 0; n < 2; n++) {
+        struct stub stub = {.manner = manners[n],
+                            .answer =
+                                "HTTP/1.1 200 OK\r\nContent-Length: 2\r\n"
+                                "X-Padding: aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\r\n\r\n{}"};
+        struct error err = {0};
+        struct timespec begin, end;
+        clock_gettime(CLOCK_MONOTONIC, &begin);
+        assert_int_equal(ask(&stub, &err), ERROR_SYSTEM);
+        clock_gettime(CLOCK_MONOTONIC, &end);
+        assert_true(end.tv_sec - begin.tv_sec < 10); /* 0.4 s and the load of the machine */
+    }
+}
+
+static void broken_answers_are_errors(void **state) {
+    (void)state;
+    static const char *const answers[] = {
+        "HTTP/1.1 200 OK\r\nContent-Length: 100\r\n\r\n{\"jobs\":", /* cut off */
+        "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n8\r\n{\"jobs\":\r\n",
+        "HTTP/1.1 200 OK\r\nContent-Le",
+        "",
+        "SSH-2.0-OpenSSH_9.2\r\n", /* another service */
+        "HTTP/1.1 200 OK\r\nContent-Length: 7\r\n\r\n{\"a\":1",
+        "HTTP/1.1 200 OK\r\nContent-Length: 5\r\n\r\n<htm>",
+        "HTTP/1.1 200 OK\r\nContent-Length: 13\r\n\r\n{\"a\":1,\"a\":2}",
+        "HTTP/1.1 200 OK\r\nContent-Length: 99999999999\r\n\r\n{",
+    };
+    for (size_t n = 0; n < sizeof answers / sizeof answers[0]; n++) {
+        struct stub stub = {.manner = ANSWER_AND_CLOSE, .answer = answers[n]};
+        struct error err = {0};
+        assert_int_equal(ask(&stub, &err), ERROR_SYSTEM);
+        assert_true(err.text[0] != '\0');
+    }
+}
+
+/* Protects the memory of a worker: the reply is cut, not kept. */
+static void endless_answer_is_cut(void **state) {
+    (void)state;
+    struct stub stub = {.manner = ENDLESS, .answer = "HTTP/1.1 200 OK\r\n\r\n"};
+    stub_start(&stub);
+    struct client *client = client_of(stub.url, NULL);
+    struct request request = {.method = "GET", .path = "/"};
+    struct reply reply;
+    struct error err = {0};
+    assert_int_equal(client_send(client, &request, &reply, &err), ERROR_SYSTEM);
+    assert_non_null(strstr(err.text, "larger than"));
+    assert_null(reply.body);
+    client_destroy(&client);
+    stub_stop(&stub);
+}
+
+static void statuses_become_errors(void **state) {
+    (void)state;
+    static const struct {
+        const char *status;
+        int code;
+    } table[] = {
+        {"400 Bad Request", ERROR_INPUT},
+        {"401 Unauthorized", ERROR_INPUT},
+        {"404 Not Found", ERROR_ABSENT},
+        {"408 Request Timeout", ERROR_SYSTEM},
+        {"409 Conflict", ERROR_STATE},
+        {"422 Unprocessable Content", ERROR_INPUT},
+        {"429 Too Many Requests", ERROR_SYSTEM},
+        {"500 Internal Server Error", ERROR_SYSTEM},
+        {"503 Service Unavailable", ERROR_SYSTEM},
+    };
+    for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
+        char answer[512];
+        static const char problem[] =
+            "{\"title\":\"t\",\"detail\":\"the study is "
+            "invalid\",\"errors\":[{\"pointer\":\"/seed\","
+            "\"detail\":\"must be a number\"},{\"pointer\":\"/kind\",\"detail\":\"is required\"}]}";
+        snprintf(answer, sizeof answer,
+                 "HTTP/1.1 %s\r\nContent-Type: application/problem+json\r\nContent-Length: "
+                 "%zu\r\n\r\n%s",
+                 table[n].status, sizeof problem - 1, problem);
+        struct stub stub = {.manner = ANSWER, .answer = answer};
+        struct error err = {0};
+        assert_int_equal(ask(&stub, &err), table[n].code);
+        assert_string_equal(err.text, "the study is invalid; /seed: must be a number; "
+                                      "/kind: is required");
+    }
+}
+
+/* A server must not send a worker, with its token, elsewhere. */
+static void redirects_are_not_followed(void **state) {
+    (void)state;
+    struct stub stub = {.manner = ANSWER,
+                        .answer = "HTTP/1.1 307 Temporary Redirect\r\nLocation: /elsewhere\r\n"
+                                  "Content-Length: 0\r\n\r\n"};
+    struct error err = {0};
+    assert_int_equal(ask(&stub, &err), ERROR_SYSTEM);
+    assert_non_null(strstr(err.text, "307"));
+    assert_int_equal(stub.requests, 1);
+}
+
+static void download_goes_to_the_file(void **state) {
+    (void)state;
+    struct stub stub = {.manner = ANSWER,
+                        .answer = "HTTP/1.1 200 OK\r\nContent-Length: 6\r\n\r\nSQLite"};
+    stub_start(&stub);
+    struct client *client = client_of(stub.url, NULL);
+    struct error err = {0};
+    char text[16] = "";
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    assert_int_equal(client_download(client, "/v1/snapshot", file, &err), 0);
+    rewind(file);
+    assert_int_equal(fread(text, 1, sizeof text, file), 6);
+    assert_string_equal(text, "SQLite");
+    fclose(file);
+    client_destroy(&client);
+    stub_stop(&stub);
+}
+
+/* The words of a refusal belong to the user, not into the file. */
+static void refused_download_leaves_the_file_empty(void **state) {
+    (void)state;
+    struct stub stub = {.manner = ANSWER,
+                        .answer = "HTTP/1.1 403 Forbidden\r\nContent-Length: 23\r\n\r\n"
+                                  "{\"detail\":\"not allowed\"}"};
+    stub_start(&stub);
+    struct client *client = client_of(stub.url, NULL);
+    struct error err = {0};
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    assert_int_equal(client_download(client, "/v1/snapshot", file, &err), ERROR_INPUT);
+    assert_int_equal(ftell(file), 0);
+    fclose(file);
+    client_destroy(&client);
+    stub_stop(&stub);
+}
+
+static void wrong_addresses_and_tokens_are_refused(void **state) {
+    (void)state;
+    static const char *const urls[] = {
+        "",
+        "host",
+        "ftp://host:1",
+        "http://",
+        "http://h:99999",
+        "file:///etc",
+        "http://h/path",
+        "http://h:1?q=1",
+        "http://u:p@h:1",
+        "http://h h:1",
+    };
+    struct client *client = NULL;
+    struct error err = {0};
+    for (size_t n = 0; n < sizeof urls / sizeof urls[0]; n++) {
+        if (client_create(&client, urls[n], NULL, &err) != ERROR_INPUT) {
+            fail_msg("'%s' was taken", urls[n]);
+        }
+        assert_null(client);
+    }
+    assert_int_equal(client_create(&client, "http://h:1", "a\r\nX: y", &err), ERROR_INPUT);
+    assert_int_equal(client_create(&client, "https://[::1]:8080/", "a", &err), 0);
+    client_destroy(&client);
+    client_destroy(&client);
+}
+
+static int set_up(void **state) {
+    (void)state;
+    struct error err = {0};
+    return client_global_init(&err);
+}
+
+static int tear_down(void **state) {
+    (void)state;
+    client_global_cleanup();
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(refused_connection_is_no_answer),
+        cmocka_unit_test(requests_share_a_connection),
+        cmocka_unit_test(no_content_is_no_answer_to_parse),
+        cmocka_unit_test(slow_servers_are_left),
+        cmocka_unit_test(broken_answers_are_errors),
+        cmocka_unit_test(endless_answer_is_cut),
+        cmocka_unit_test(statuses_become_errors),
+        cmocka_unit_test(redirects_are_not_followed),
+        cmocka_unit_test(download_goes_to_the_file),
+        cmocka_unit_test(refused_download_leaves_the_file_empty),
+        cmocka_unit_test(wrong_addresses_and_tokens_are_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,325 @@
+/* Jobs and results cross the network unchanged, bit for bit, and nothing malformed gets in. */
+#include "worker/wire.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <setjmp.h>
+
+#include <cmocka.h>
+
+static const char TOKEN[] = "0123456789abcdef0123456789abcdef";
+static const char STUDY[] = "0123456789abcdef";
+
+/* The value as the other end sees it: printed, and read through the strict gate. */
+static cJSON *cross(cJSON *value) {
+    struct error err = {0};
+    cJSON *read = NULL;
+    assert_non_null(value);
+    char *text = json_print(value);
+    assert_non_null(text);
+    cJSON_Delete(value);
+    assert_int_equal(json_parse(text, strlen(text), NULL, &read, &err), 0);
+    free(text);
+    return read;
+}
+
+static struct claimed_job some_job(void) {
+    struct claimed_job job = {
+        .id = 9007199254740991, /* 2^53 - 1 */
+        .kind = (char *)"statistics",
+        .parameters = (char *)"{\"surface\":{\"hurst\":0.1,\"list\":[1,2.5e-300,null]}}",
+        .seed = UINT64_MAX,
+        .case_number = 9999,
+        .first = 4294967296,
+        .count = 7,
+        .attempt = 3,
+        .lease_ms = 61234,
+    };
+    memcpy(job.study, STUDY, sizeof STUDY);
+    memcpy(job.token, TOKEN, sizeof TOKEN);
+    return job;
+}
+
+/* Protects the seed (beyond 2^53), the fence and the block against loss on the way. */
+static void job_crosses_unchanged(void **state) {
+    (void)state;
+    struct claimed_job sent = some_job(), got = {0};
+    struct error err = {0};
+    size_t count = 0;
+    cJSON *value = cross(wire_jobs(&sent, 1));
+    assert_int_equal(wire_jobs_read(value, &got, 1, &count, &err), 0);
+    assert_int_equal(count, 1);
+    assert_true(got.id == sent.id && got.seed == sent.seed && got.lease_ms == sent.lease_ms);
+    assert_true(got.case_number == sent.case_number && got.attempt == sent.attempt);
+    assert_true(got.first == sent.first && got.count == sent.count);
+    assert_string_equal(got.study, STUDY);
+    assert_string_equal(got.token, TOKEN);
+    assert_string_equal(got.kind, "statistics");
+    assert_string_equal(got.parameters, sent.parameters);
+    claimed_job_clear(&got);
+    cJSON_Delete(value);
+}
+
+static void no_jobs_cross(void **state) {
+    (void)state;
+    struct claimed_job got = {0};
+    struct error err = {0};
+    size_t count = 9;
+    cJSON *value = cross(wire_jobs(NULL, 0));
+    assert_int_equal(wire_jobs_read(value, &got, 1, &count, &err), 0);
+    assert_int_equal(count, 0);
+    cJSON_Delete(value);
+}
+
+/* One change to a good job at a time: each is refused with the field's name, nothing leaks. */
+static void malformed_jobs_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *key, *json; /* NULL: left out */
+    } table[] = {
+        {"id", "\"1\""},      {"id", "1.5"},           {"id", "-1"},
+        {"id", "1e17"},       {"study", "\"\""},       {"study", "\"0123456789abcdef0\""},
+        {"kind", NULL},       {"case", "null"},        {"seed", "12"},
+        {"seed", "\"\""},     {"seed", "\"-1\""},      {"seed", "\"18446744073709551616\""},
+        {"seed", "\" 1\""},   {"first", "[]"},         {"count", "0"},
+        {"count", NULL},      {"attempt", "true"},     {"token", NULL},
+        {"token", "{}"},      {"lease_seconds", "-1"}, {"lease_seconds", "\"60\""},
+        {"parameters", "[]"}, {"parameters", NULL},
+    };
+    struct claimed_job job = some_job();
+    for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
+        cJSON *value = cross(wire_jobs(&job, 1));
+        cJSON *first = cJSON_GetObjectItem(value, "jobs")->child;
+        cJSON_DeleteItemFromObjectCaseSensitive(first, table[n].key);
+        if (table[n].json) {
+            cJSON_AddItemToObject(first, table[n].key, cJSON_Parse(table[n].json));
+        }
+        struct claimed_job got = {0};
+        struct error err = {0};
+        size_t count = 9;
+        assert_int_equal(wire_jobs_read(value, &got, 1, &count, &err), ERROR_INPUT);
+        assert_non_null(strstr(err.text, table[n].key));
+        assert_int_equal(count, 9);
+        assert_null(got.kind);
+        cJSON_Delete(value);
+    }
+}
+
+static void more_jobs_than_room_are_refused(void **state) {
+    (void)state;
+    struct claimed_job jobs[2] = {some_job(), some_job()}, got[1] = {{0}};
+    struct error err = {0};
+    size_t count = 0;
+    cJSON *value = cross(wire_jobs(jobs, 2));
+    assert_int_equal(wire_jobs_read(value, got, 1, &count, &err), ERROR_INPUT);
+    cJSON_Delete(value);
+}
+
+static void claim_crosses(void **state) {
+    (void)state;
+    const char *const kinds[] = {"statistics", "contact", NULL};
+    struct claim claim = {.worker = "host-1-0", .host = "host", .kinds = kinds, .count = 3};
+    struct wire_claim got;
+    struct error err = {0};
+    cJSON *value = cross(wire_claim(&claim));
+    assert_int_equal(wire_claim_read(value, &got, &err), 0);
+    assert_string_equal(got.claim.worker, "host-1-0");
+    assert_string_equal(got.claim.host, "host");
+    assert_int_equal(got.claim.count, 3);
+    assert_string_equal(got.claim.kinds[1], "contact");
+    assert_null(got.claim.kinds[2]);
+    cJSON_Delete(value);
+}
+
+static void claims_are_bounded(void **state) {
+    (void)state;
+    struct wire_claim got;
+    struct error err = {0};
+    static const struct {
+        const char *json;
+        int status;
+    } table[] = {
+        {"{\"worker\":\"w\"}", 0},
+        {"{\"worker\":\"w\",\"count\":1e9,\"new\":[{}]}", 0},
+        {"{\"worker\":\"\"}", ERROR_INPUT},
+        {"{\"worker\":\"w\",\"host\":1}", ERROR_INPUT},
+        {"{\"worker\":\"w\",\"kinds\":\"statistics\"}", ERROR_INPUT},
+        {"{\"worker\":\"w\",\"kinds\":[1]}", ERROR_INPUT},
+        {"{\"worker\":\"w\",\"count\":-1}", ERROR_INPUT},
+        {"[]", ERROR_INPUT},
+        {"null", ERROR_INPUT},
+    };
+    for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
+        cJSON *value = cJSON_Parse(table[n].json);
+        assert_int_equal(wire_claim_read(value, &got, &err), table[n].status);
+        if (table[n].status == 0) {
+            assert_true(got.claim.count <= WIRE_JOBS_MOST);
+            assert_null(got.claim.kinds);
+        }
+        cJSON_Delete(value);
+    }
+}
+
+/* Bit patterns that printing is apt to lose, and random ones (any bits that are a finite number).
+ */
+enum { EXTREMES = 12, RANDOM = 4000, WIDTH = 4 };
+static void fill(double *values, size_t n) {
+    static const double extremes[EXTREMES] = {0.0,      -0.0,         DBL_MIN,
+                                              -DBL_MAX, DBL_TRUE_MIN, DBL_EPSILON,
+                                              0.1,      1.0 / 3.0,    9007199254740993.0,
+                                              1e23,     4.9e-322,     123456789012345680.0};
+    uint64_t word = 88172645463325252u; /* xorshift64, fixed seed */
+    for (size_t i = 0; i < n; i++) {
+        if (i < EXTREMES) {
+            values[i] = extremes[i];
+            continue;
+        }
+        do {
+            word ^= word << 13;
+            word ^= word >> 7;
+            word ^= word << 17;
+            memcpy(&values[i], &word, sizeof word);
+        } while (!isfinite(values[i]));
+    }
+}
+
+static uint64_t bits(double number) {
+    uint64_t word;
+    memcpy(&word, &number, sizeof word);
+    return word;
+}
+
+/* Protects the promise that workers over HTTP give the same bits as local ones. */
+static void result_crosses_bit_for_bit(void **state) {
+    (void)state;
+    static double scalars[RANDOM * WIDTH];
+    static unsigned char data[1000];
+    const char *const names[] = {"m0", "eps_h", "a", "b", NULL};
+    fill(scalars, RANDOM * WIDTH);
+    scalars[17] = (double)NAN;
+    for (size_t n = 0; n < sizeof data; n++) {
+        data[n] = (unsigned char)(n * 37);
+    }
+    struct job_result sent = {.first = 12,
+                              .count = RANDOM,
+                              .scalar_count = WIDTH,
+                              .scalars = scalars,
+                              .data = data,
+                              .size = sizeof data,
+                              .seconds = 0.1};
+    struct wire_result got;
+    struct error err = {0};
+    cJSON *value = cross(wire_result(TOKEN, names, &sent));
+    assert_int_equal(wire_result_read(value, &got, &err), 0);
+    struct block_result block = wire_block(&got);
+    assert_string_equal(got.token, TOKEN);
+    assert_true(block.first == 12 && block.count == RANDOM && block.scalar_count == WIDTH);
+    assert_string_equal(block.names[3], "b");
+    assert_true(isnan(block.scalars[17]));
+    for (size_t n = 0; n < RANDOM * WIDTH; n++) {
+        if (n != 17 && bits(scalars[n]) != bits(block.scalars[n])) {
+            fail_msg("scalar %zu: %a became %a", n, scalars[n], block.scalars[n]);
+        }
+    }
+    assert_int_equal(block.size, sizeof data);
+    assert_memory_equal(block.data, data, sizeof data);
+    assert_true(block.seconds == 0.1);
+    wire_result_clear(&got);
+    cJSON_Delete(value);
+}
+
+static void malformed_results_are_refused(void **state) {
+    (void)state;
+    static const char *const table[] = {
+        "{}",
+        "[]",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":1,\"data\":\"\"}",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":2,\"data\":\"\","
+        "\"scalars\":{\"names\":[\"a\"],\"rows\":[[1]]}}",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":9e15,\"data\":\"\","
+        "\"scalars\":{\"names\":[\"a\"],\"rows\":[[1]]}}",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":1,\"data\":\"\","
+        "\"scalars\":{\"names\":[\"a\"],\"rows\":[[1,2]]}}",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":1,\"data\":\"\","
+        "\"scalars\":{\"names\":[\"a\",\"b\"],\"rows\":[[1]]}}",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":1,\"data\":\"\","
+        "\"scalars\":{\"names\":[\"a\"],\"rows\":[[\"1\"]]}}",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":1,\"data\":\"\","
+        "\"scalars\":{\"names\":[1],\"rows\":[[1]]}}",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":1,\"data\":\"*\","
+        "\"scalars\":{\"names\":[\"a\"],\"rows\":[[1]]}}",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":1,"
+        "\"scalars\":{\"names\":[\"a\"],\"rows\":[[1]]}}",
+        "{\"token\":\"t\",\"seconds\":-1,\"first\":0,\"count\":1,\"data\":\"\","
+        "\"scalars\":{\"names\":[\"a\"],\"rows\":[[1]]}}",
+        "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":1,\"data\":\"\","
+        "\"scalars\":{\"names\":[\"a\"],\"rows\":[3]}}",
+    };
+    for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
+        struct wire_result got;
+        struct error err = {0};
+        cJSON *value = cJSON_Parse(table[n]);
+        assert_non_null(value);
+        assert_int_equal(wire_result_read(value, &got, &err), ERROR_INPUT);
+        assert_true(err.text[0] != '\0');
+        cJSON_Delete(value);
+    }
+}
+
+static void reports_cross(void **state) {
+    (void)state;
+    struct wire_report got;
+    struct error err = {0};
+    cJSON *value = cross(wire_heartbeat(TOKEN, 41));
+    assert_int_equal(wire_report_read(value, &got, &err), 0);
+    assert_true(got.done == 41 && !got.permanent && got.reason[0] == '\0');
+    cJSON_Delete(value);
+    value = cross(wire_fail(TOKEN, "no \"convergence\"\n", true));
+    assert_int_equal(wire_report_read(value, &got, &err), 0);
+    assert_true(got.permanent);
+    assert_string_equal(got.reason, "no \"convergence\"\n");
+    assert_string_equal(got.token, TOKEN);
+    cJSON_Delete(value);
+    value = cross(wire_release(""));
+    assert_int_equal(wire_report_read(value, &got, &err), ERROR_INPUT);
+    cJSON_Delete(value);
+}
+
+/* A cut in the middle of a character would make the stored reason no UTF-8. */
+static void long_reason_is_cut_between_characters(void **state) {
+    (void)state;
+    char reason[2 * WIRE_REASON_MOST + 2];
+    for (size_t n = 0; n < WIRE_REASON_MOST; n++) {
+        memcpy(reason + 1 + 2 * n, "\xc3\xa9", 2);
+    }
+    reason[0] = 'x';
+    reason[sizeof reason - 1] = '\0';
+    struct wire_report got;
+    struct error err = {0};
+    cJSON *value = cross(wire_fail(TOKEN, reason, false));
+    assert_int_equal(wire_report_read(value, &got, &err), 0);
+    assert_int_equal(strlen(got.reason), WIRE_REASON_MOST - 1);
+    cJSON_Delete(value);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(job_crosses_unchanged),
+        cmocka_unit_test(no_jobs_cross),
+        cmocka_unit_test(malformed_jobs_are_refused),
+        cmocka_unit_test(more_jobs_than_room_are_refused),
+        cmocka_unit_test(claim_crosses),
+        cmocka_unit_test(claims_are_bounded),
+        cmocka_unit_test(result_crosses_bit_for_bit),
+        cmocka_unit_test(malformed_results_are_refused),
+        cmocka_unit_test(reports_cross),
+        cmocka_unit_test(long_reason_is_cut_between_characters),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
