@@ -13,6 +13,7 @@ struct source_options {
     const char *token;
     const char *study; /* only this study's jobs; NULL any (store only) */
     const char *worker, *host;
+    int64_t lease_ms; /* of jobs claimed here (store only); 0: the store's default */
 };
 int source_create(struct source **out, const struct source_options *options, struct error *err);
 void source_destroy(struct source **source);

@@ -28,7 +28,7 @@ static int local_create(void **way, const struct source_options *options, struct
     if (options->study) {
         snprintf(local->study, sizeof local->study, "%s", options->study);
     }
-    struct store_options store_options = {0};
+    struct store_options store_options = {.lease_ms = options->lease_ms};
     int status = store_open(&local->store, options->database, &store_options, err);
     if (status) {
         local_destroy(local);
