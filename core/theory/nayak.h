@@ -18,8 +18,8 @@ double nayak_summit_mean(double alpha);
 double nayak_summit_variance(double alpha);
 double nayak_overall_curvature(void);
 
-/* Profiles (alpha = m0 m4/m2^2 > 1): density of peak heights (Rice; Cartwright & Longuet-Higgins 1956),
- * its integral, expected curvature -z''/sqrt(m4) of peaks at height z, peaks per length. */
+/* Profiles (alpha = m0 m4/m2^2 > 1): density of peak heights (Rice; Cartwright & Longuet-Higgins
+ * 1956), its integral, expected curvature -z''/sqrt(m4) of peaks at height z, peaks per length. */
 double profile_peak_pdf(double z, double alpha);
 double profile_peak_cdf(double z, double alpha);
 double profile_peak_joint_pdf(double z, double t1, double alpha); /* t1 = z''/sqrt(m4) < 0 */

@@ -1,0 +1,40 @@
+#include "core/statistics/histogram.h"
+
+int bins_check(const struct bins *bins, struct error *err) {
+    if (!isfinite(bins->low) || !isfinite(bins->high) || !(bins->low < bins->high))
+        return error_set(err, ERROR_INPUT, "bins from %g to %g; allowed: rising, finite", bins->low,
+                         bins->high);
+    if (bins->count < 1)
+        return error_set(err, ERROR_INPUT, "%zu bins; allowed: at least 1", bins->count);
+    return 0;
+}
+
+void histogram_add(const struct bins *bins, size_t n, const double *values, double scale,
+                   uint64_t *counts) {
+    for (size_t i = 0; i < n; i++)
+        counts[bins_find(bins, scale * values[i])]++;
+}
+
+static const double UNIT = 0x1p-60;
+static const double LARGEST = 0x1p60;
+
+static void add_units(struct exact_sum *sum, fixed_point units) {
+    if (__builtin_add_overflow(sum->total, units, &sum->total))
+        sum->lost++;
+}
+
+void exact_sum_add(struct exact_sum *sum, double value) {
+    if (fabs(value) < LARGEST)
+        add_units(sum, (fixed_point)rint(value / UNIT));
+    else
+        sum->lost++;
+}
+
+void exact_sum_merge(struct exact_sum *sum, const struct exact_sum *other) {
+    add_units(sum, other->total);
+    sum->lost += other->lost;
+}
+
+double exact_sum_value(const struct exact_sum *sum) {
+    return (double)sum->total * UNIT;
+}

@@ -1,0 +1,83 @@
+/* Peaks of Gaussian profiles (Rice 1945; Cartwright & Longuet-Higgins 1956). With s =
+ * -z''/sqrt(m4), z* and s are unit normals of correlation r = 1/sqrt(alpha), and peaks have the
+ * density s exp(-(z^2 - 2 r z s + s^2)/(2 (1 - r^2))) / sqrt(2 pi (1 - r^2)). */
+#include "core/theory/nayak.h"
+#include "core/theory/quadrature.h"
+#include <math.h>
+#include <stdbool.h>
+
+static bool in_domain(double alpha) {
+    return alpha > 1 && isfinite(alpha);
+}
+
+struct conditional {
+    double mean, deviation,
+        peak; /* of s at the height; exponent less its largest value for s > 0 */
+    int order;
+};
+
+static double conditional_weight(double s, const void *context) {
+    const struct conditional *c = context;
+    double t = (s - c->mean) / c->deviation;
+    return (c->order == 1 ? s : s * s) * exp(c->peak - t * t / 2);
+}
+
+static const double DEPTH = 80;
+enum { PANELS = 24 };
+
+/* Integral over s > 0 of s^order exp(-(s - r z)^2/(2 (1 - r^2)) + peak). */
+static double conditional_moment(double z, double alpha, int order) {
+    double r = 1 / sqrt(alpha), deviation = sqrt((alpha - 1) / alpha);
+    struct conditional c = {r * z, deviation, 0, order};
+    double start = -c.mean / deviation; /* of s = 0 */
+    double reach = deviation * sqrt(2 * DEPTH);
+    double low = fmax(c.mean - reach, 0), high = c.mean + reach;
+    if (start > 0) {
+        c.peak = start * start / 2;
+        high = deviation * 2 * DEPTH / (sqrt(start * start + 2 * DEPTH) + start);
+    }
+    return quadrature(conditional_weight, &c, low, high, PANELS);
+}
+
+double profile_peak_pdf(double z, double alpha) {
+    if (!in_domain(alpha) || isnan(z))
+        return NAN;
+    double variance = (alpha - 1) / alpha;
+    double exponent = z > 0 ? -z * z / 2 : -z * z / (2 * variance);
+    if (exponent < -700)
+        return 0;
+    return exp(exponent) * conditional_moment(z, alpha, 1) / sqrt(2 * M_PI * variance);
+}
+
+static double normal_below(double x) {
+    return erfc(-x / sqrt(2)) / 2;
+}
+
+double profile_peak_cdf(double z, double alpha) {
+    if (!in_domain(alpha) || isnan(z))
+        return NAN;
+    double r = 1 / sqrt(alpha), deviation = sqrt((alpha - 1) / alpha);
+    double below =
+        normal_below(z / deviation) - r * exp(-z * z / 2) * normal_below(r * z / deviation);
+    return fmin(fmax(below, 0), 1);
+}
+
+double profile_peak_joint_pdf(double z, double t1, double alpha) {
+    if (!in_domain(alpha) || isnan(z) || isnan(t1))
+        return NAN;
+    if (t1 >= 0)
+        return 0;
+    double r = 1 / sqrt(alpha), variance = (alpha - 1) / alpha;
+    double exponent = -(z * z + 2 * r * z * t1 + t1 * t1) / (2 * variance);
+    return -t1 * exp(exponent) / sqrt(2 * M_PI * variance);
+}
+
+double profile_mean_curvature(double z, double alpha) {
+    if (!in_domain(alpha) || !isfinite(z))
+        return NAN;
+    return conditional_moment(z, alpha, 2) / conditional_moment(z, alpha, 1);
+}
+
+double profile_peak_density(double m2, double m4) {
+    return sqrt(m4 / m2) / (2 * M_PI);
+}
