@@ -10,8 +10,8 @@ enum heights_type { HEIGHTS_GAUSSIAN, HEIGHTS_WEIBULL_MIN, HEIGHTS_WEIBULL_MAX, 
 struct heights {
     enum heights_type type;
     double shape; /* Weibull C, [0.5, 20] */
-    /* HEIGHTS_QUANTILE: rising on (0, 1), any finite mean and deviation (standardised by quadrature);
-     * must be safe to call from many threads. context is borrowed. */
+    /* HEIGHTS_QUANTILE: rising on (0, 1), any finite mean and deviation (standardised by
+     * quadrature); must be safe to call from many threads. context is borrowed. */
     double (*quantile)(double probability, const void *context);
     const void *context;
 };
@@ -19,7 +19,8 @@ struct heights {
 struct height_moments {
     double mean, deviation;    /* of the raw distribution (Weibull scale 1), before standardising */
     double skewness, kurtosis; /* theory.md 3.26-3.30; kurtosis 3 for a Gaussian */
-    double lowest, highest;    /* bounds in standard deviations about the mean; +-INFINITY if none */
+    double lowest, highest;    /* bounds in standard deviations about the mean; +-INFINITY if none,
+                                  or unknown as for HEIGHTS_QUANTILE */
 };
 
 /* ERROR_INPUT: shape out of range, quantile function not rising or without finite moments. */

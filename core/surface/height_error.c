@@ -1,0 +1,200 @@
+#include "core/surface/height_error.h"
+#include "core/surface/transform.h"
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Scott (1979), with his rounding, as the reference. */
+static const double SCOTT = 3.49;
+
+struct height_error {
+    const struct modes *modes;
+    struct transform *whole; /* the whole half spectrum; NULL when the band fills it */
+    double power;            /* sum of the powers of modes: 1 is that in our unit */
+    double mean_amplitude;   /* mean over the non-null modes of sqrt(power/sum) */
+    size_t bins_most;
+    /* bin 0 and the last one hold all that lies outside */
+    size_t bins;
+    double first_edge, width; /* lower edge of bin 1 */
+    uint32_t *target;         /* counts of z_h */
+    uint32_t *count;          /* counts of z_s */
+};
+
+/* n values of standard deviation 1 lie within sqrt(n), and an edge may be one width away. */
+static size_t bins_for(size_t points) {
+    double n = (double)points;
+    return (size_t)(2 * sqrt(n) * cbrt(n) / SCOTT) + 8;
+}
+
+static double mode_weight(const struct grid *grid, size_t mx) {
+    return mx == 0 || 2 * mx == grid->nx ? 1 : 2;
+}
+
+/* Power of the stored mode (mx, row) of a half spectrum, 0 outside the band. */
+static double row_power(const struct modes *modes, size_t mx, size_t row) {
+    size_t ny = modes->grid.ny;
+    if (mx > modes->mode_x)
+        return 0;
+    if (row <= modes->mode_y)
+        return modes_power(modes, mx, (long)row);
+    return ny - row <= modes->mode_y ? modes_power(modes, mx, -(long)(ny - row)) : 0;
+}
+
+static void amplitudes_sum(struct height_error *e) {
+    const struct modes *modes = e->modes;
+    struct moments moments;
+    modes_moments(modes, &moments);
+    e->power = moments.m00;
+    double amplitudes = 0;
+    for (size_t mx = 0; mx <= modes->mode_x; mx++)
+        for (size_t row = 0; row < modes->grid.ny; row++)
+            amplitudes +=
+                mode_weight(&modes->grid, mx) * sqrt(row_power(modes, mx, row) / e->power);
+    e->mean_amplitude = amplitudes / (double)modes->count;
+}
+
+int height_error_create(struct height_error **out, const struct modes *modes, struct error *err) {
+    const struct grid *grid = &modes->grid;
+    struct height_error *e = array_create(1, sizeof *e);
+    if (!e)
+        return error_memory(err, sizeof *e, "errors of heights");
+    e->modes = modes;
+    e->bins_most = bins_for(grid_points(grid));
+    e->target = array_create(e->bins_most, sizeof *e->target);
+    e->count = array_create(e->bins_most, sizeof *e->count);
+    int status = 0;
+    if (!e->target || !e->count)
+        status = error_memory(err, 2 * e->bins_most * sizeof *e->count, "height histograms");
+    if (!status && (modes->mode_x < grid->nx / 2 || modes->mode_y < grid->ny / 2))
+        status = transform_create(&e->whole, grid, grid->nx / 2, grid->ny / 2, err);
+    if (status) {
+        height_error_destroy(&e);
+        return status;
+    }
+    amplitudes_sum(e);
+    *out = e;
+    return 0;
+}
+
+void height_error_destroy(struct height_error **height_error) {
+    struct height_error *e = *height_error;
+    if (!e)
+        return;
+    transform_destroy(&e->whole);
+    free(e->target);
+    free(e->count);
+    free(e);
+    *height_error = NULL;
+}
+
+double height_error_bytes(const struct grid *grid) {
+    double half = (double)(grid->nx / 2 + 1) * (double)grid->ny;
+    return sizeof(double complex) * half +
+           2.0 * sizeof(uint32_t) * (double)bins_for(grid_points(grid));
+}
+
+static void histogram_count(const struct height_error *e, const double *z, uint32_t *count) {
+    size_t n = grid_points(&e->modes->grid);
+    double last = (double)(e->bins - 1);
+    double origin = e->first_edge - e->width;
+    double scale = 1 / e->width;
+    memset(count, 0, e->bins * sizeof *count);
+    for (size_t i = 0; i < n; i++) {
+        double bin = (z[i] - origin) * scale;
+        bin = bin > 0 ? bin : 0;
+        count[(uint32_t)(int32_t)(bin < last ? bin : last)]++;
+    }
+}
+
+void height_error_start(struct height_error *e, const struct height_moments *moments,
+                        const double *sorted) {
+    size_t n = grid_points(&e->modes->grid);
+    e->width = SCOTT / cbrt((double)n);
+    double edge = isfinite(moments->highest)  ? moments->highest
+                  : isfinite(moments->lowest) ? moments->lowest
+                                              : 0;
+    double below = ceil((edge - sorted[0]) / e->width);
+    double above = ceil((sorted[n - 1] - edge) / e->width);
+    e->first_edge = edge - below * e->width;
+    double bins = fmin(fmax(below + above, 1) + 2, (double)e->bins_most);
+    e->bins = (size_t)bins;
+    histogram_count(e, sorted, e->target);
+}
+
+/* 3.33: integral of the difference between the histogram densities. */
+static double heights_distance(const struct height_error *e, const double *z_s) {
+    histogram_count(e, z_s, e->count);
+    uint64_t difference = 0;
+    for (size_t b = 0; b < e->bins; b++)
+        difference +=
+            e->count[b] > e->target[b] ? e->count[b] - e->target[b] : e->target[b] - e->count[b];
+    return (double)difference / (double)grid_points(&e->modes->grid);
+}
+
+static double squared_modulus(double complex z) {
+    return creal(z) * creal(z) + cimag(z) * cimag(z);
+}
+
+/* 3.34 over the non-null modes. Returns the power of z_h in them. */
+static double band_errors(const struct height_error *e, const double complex *spectrum,
+                          struct surface_report *report) {
+    const struct modes *modes = e->modes;
+    size_t ny = modes->grid.ny;
+    double power = 0, by_power = 0, by_amplitude = 0;
+    for (size_t mx = 0; mx <= modes->mode_x; mx++) {
+        double weight = mode_weight(&modes->grid, mx);
+        for (size_t row = 0; row < ny; row++) {
+            double wanted = row_power(modes, mx, row) / e->power;
+            if (!(wanted > 0))
+                continue;
+            double had = squared_modulus(spectrum[mx * ny + row]);
+            double ratio = had / wanted;
+            power += weight * had;
+            by_power += weight * (ratio - 1) * (ratio - 1);
+            by_amplitude += weight * (sqrt(ratio) - 1) * (sqrt(ratio) - 1);
+        }
+    }
+    report->eps_s = sqrt(by_power / (double)modes->count);
+    report->eps_s_amplitude = sqrt(by_amplitude / (double)modes->count);
+    return power;
+}
+
+/* Sum over the null modes of the squared powers of z_h. */
+static double null_squares(const struct height_error *e, const double *z_h,
+                           const double complex *spectrum) {
+    const struct modes *modes = e->modes;
+    const struct grid *grid = &modes->grid;
+    if (e->whole) {
+        transform_forward(e->whole, z_h);
+        spectrum = transform_spectrum(e->whole);
+    }
+    double sum = 0;
+    for (size_t mx = 0; mx <= grid->nx / 2; mx++) {
+        double column = 0;
+        for (size_t row = 0; row < grid->ny; row++) {
+            double had = squared_modulus(spectrum[mx * grid->ny + row]);
+            column += row_power(modes, mx, row) > 0 ? 0 : had * had;
+        }
+        sum += mode_weight(grid, mx) * column;
+    }
+    return sum;
+}
+
+double height_error_measure(struct height_error *e, const double *z_s, const double *z_h,
+                            const double complex *spectrum, bool complete,
+                            struct surface_report *report) {
+    double count = (double)e->modes->count;
+    double null_count = (double)(grid_points(&e->modes->grid) - e->modes->count);
+    report->eps_h = heights_distance(e, z_s);
+    double null_power = fmax(1 - band_errors(e, spectrum, report), 0);
+    double worst = fmax(report->eps_h, report->eps_s);
+    report->eps_s0 = report->eps_s0_amplitude = 0;
+    if (null_count > 0) {
+        report->eps_s0_amplitude = sqrt(null_power / null_count) / e->mean_amplitude;
+        report->eps_s0 = null_power / sqrt(null_count) * count;
+        if (complete || report->eps_s0 > worst)
+            report->eps_s0 = sqrt(null_squares(e, z_h, spectrum) / null_count) * count;
+    }
+    return fmax(worst, report->eps_s0);
+}

@@ -1,0 +1,33 @@
+/* How far a pair of iterates is from having both the spectrum and the heights (Perez-Rafols and
+ * Almqvist 2019, theory.md 3.33, 3.34): z_s has the exact spectrum, z_h the exact heights in the
+ * same rank order. Heights are in standard deviations throughout, so that the powers add up to 1.
+ */
+#ifndef RUGO_CORE_SURFACE_HEIGHT_ERROR_H
+#define RUGO_CORE_SURFACE_HEIGHT_ERROR_H
+
+#include "core/surface/heights.h"
+#include "core/surface/spectrum.h"
+#include "core/surface/surface.h"
+#include <complex.h>
+
+struct height_error;
+
+/* Borrows modes. Memory: a transform of the whole grid, unless the band fills it. */
+int height_error_create(struct height_error **out, const struct modes *modes, struct error *err);
+void height_error_destroy(struct height_error **height_error);
+double height_error_bytes(const struct grid *grid);
+
+/* Fixes the bins of a run: Scott's width, an edge on the bound of the distribution (or on its
+ * mean). sorted[points]: all heights of z_h, rising. */
+void height_error_start(struct height_error *height_error, const struct height_moments *moments,
+                        const double *sorted);
+
+/* Fills the errors of report. spectrum: the half spectrum of z_h on the band, as transform_forward
+ * leaves it. eps_s0 needs a transform of the whole grid; without `complete` it is done only where
+ * its bound by Parseval's sum exceeds both other errors, and eps_s0 is that bound otherwise: the
+ * largest of the three errors is exact either way. Returns that largest error. */
+double height_error_measure(struct height_error *height_error, const double *z_s, const double *z_h,
+                            const double complex *spectrum, bool complete,
+                            struct surface_report *report);
+
+#endif
