@@ -10,9 +10,9 @@ enum {
     CONNECT_MS = 10000,
     TOTAL_MS = 30000,
     SILENCE_SECONDS = 300, /* a download may wait this long: the server first copies the database */
-    REPLY_BYTES_MOST = 64 << 20,
+    REPLY_BYTES_MOST = 256 << 20,
 };
-/* Curves of ten thousand cases are larger than any study that the server would take. */
+/* Curves of many cases with their matrices are larger than any study that the server would take. */
 static const struct json_limits REPLY_LIMITS = {REPLY_BYTES_MOST, 32, 20000000};
 
 struct client {
@@ -170,7 +170,7 @@ void reply_clear(struct reply *reply) {
 static size_t sink_keep(struct sink *sink, const char *bytes, size_t size) {
     struct reply *reply = sink->reply;
     if (size > REPLY_BYTES_MOST - reply->size) {
-        sink->fault = "the reply is larger than 64 MiB";
+        sink->fault = "the reply is larger than 256 MiB";
         return 0;
     }
     size_t needed = reply->size + size + 1;

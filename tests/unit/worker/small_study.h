@@ -30,7 +30,7 @@ struct fixture {
 };
 
 /* A fresh store; fails the test where it cannot be had. */
-static void fixture_open(struct fixture *fixture) {
+static inline void fixture_open(struct fixture *fixture) {
     struct error err = {0};
     *fixture = (struct fixture){.database = "store-XXXXXX"};
     int file = mkstemp(fixture->database);
@@ -45,8 +45,8 @@ static void fixture_open(struct fixture *fixture) {
 
 /* Queues a study in jobs of `block` realisations. parameters (may be NULL) replaces the value at a
  * key of every case's "surface", behind the back of the study reader. */
-static void fixture_submit(struct fixture *fixture, const char *text, uint64_t block,
-                           const char *key, double value) {
+static inline void fixture_submit(struct fixture *fixture, const char *text, uint64_t block,
+                                  const char *key, double value) {
     struct error err = {0};
     struct fault_list faults = {0};
     struct study *study = NULL;
@@ -68,7 +68,7 @@ static void fixture_submit(struct fixture *fixture, const char *text, uint64_t b
     fault_list_clear(&faults);
 }
 
-static struct study_status fixture_status(struct fixture *fixture) {
+static inline struct study_status fixture_status(struct fixture *fixture) {
     struct study_status status = {0};
     struct error err = {0};
     if (store_status(fixture->store, fixture->study, &status, &err) != 0) {
@@ -77,7 +77,7 @@ static struct study_status fixture_status(struct fixture *fixture) {
     return status;
 }
 
-static void fixture_close(struct fixture *fixture) {
+static inline void fixture_close(struct fixture *fixture) {
     store_close(&fixture->store);
 }
 

@@ -1,0 +1,273 @@
+/* Curves, CSV and report of a study: complete, partial, filtered, empty. */
+#include "tests/unit/worker/small_study.h"
+#include "worker/aggregate.h"
+#include "worker/worker.h"
+
+#include <math.h>
+
+static cJSON *curves(struct fixture *fixture, int64_t case_number, const char *quantity) {
+    struct curve_filter filter = {.case_number = case_number, .quantity = quantity};
+    struct error err = {0};
+    cJSON *document = NULL;
+    if (aggregate_curves(fixture->store, fixture->study, &filter, &document, &err) != 0) {
+        fail_msg("%s", err.text);
+    }
+    return document;
+}
+
+static double number_at(const cJSON *document, const char *pointer) {
+    const cJSON *value = json_at(document, pointer);
+    if (!cJSON_IsNumber(value)) {
+        fail_msg("no number at %s", pointer);
+    }
+    return value->valuedouble;
+}
+
+static void run_all(struct fixture *fixture) {
+    struct worker_options options = {
+        .source = {.database = fixture->database, .worker = "test"},
+        .threads = 1,
+        .drain = 1,
+        .quiet = 1,
+    };
+    struct error err = {0};
+    if (workers_run(&options, &err) != 0) {
+        fail_msg("%s", err.text);
+    }
+}
+
+/* Runs one job of the queue by hand. */
+static void run_one(struct fixture *fixture) {
+    struct error err = {0};
+    struct source *source = NULL;
+    struct source_options options = {.database = fixture->database, .worker = "one"};
+    struct claimed_job job = {0};
+    struct job_runner *runner = NULL;
+    struct job_result result = {0};
+    int found = 0;
+    assert_int_equal(source_create(&source, &options, &err), 0);
+    assert_int_equal(source_claim(source, &job, &found, &err), 0);
+    assert_int_equal(found, 1);
+    const struct job_kind *kind = kind_find(job.kind);
+    cJSON *parameters = cJSON_Parse(job.parameters);
+    assert_int_equal(kind->runner_create(&runner, parameters, job.seed, job.case_number, &err), 0);
+    assert_int_equal(kind->run(runner, job.first, job.count, NULL, &result, &err), 0);
+    assert_int_equal(source_complete(source, &job, kind, &result, &err), 0);
+    kind->runner_destroy(&runner);
+    job_result_clear(&result);
+    claimed_job_clear(&job);
+    cJSON_Delete(parameters);
+    source_destroy(&source);
+}
+
+static void document_has_the_form_of_the_contract(void **state) {
+    (void)state;
+    struct fixture fixture;
+    fixture_open(&fixture);
+    fixture_submit(&fixture, SMALL_STUDY, 6, NULL, 0);
+    run_all(&fixture);
+    cJSON *document = curves(&fixture, -1, NULL);
+    assert_string_equal(cJSON_GetStringValue(json_at(document, "/study")), fixture.study);
+    assert_string_equal(cJSON_GetStringValue(json_at(document, "/name")), "small");
+    assert_string_equal(cJSON_GetStringValue(json_at(document, "/kind")), "statistics");
+    assert_string_equal(cJSON_GetStringValue(json_at(document, "/state")), "done");
+    assert_int_equal(cJSON_GetArraySize(json_at(document, "/cases")), 2);
+    assert_true(number_at(document, "/cases/1/case") == 1);
+    assert_true(number_at(document, "/cases/1/realisations") == 24);
+    /* pointers as keys, their slashes escaped in a pointer to them */
+    assert_true(number_at(document, "/cases/1/parameters/~1surface~1hurst") == 0.8);
+    assert_true(number_at(document, "/cases/0/parameters/~1surface~1length_ratio") == 4);
+    assert_true(number_at(document, "/cases/0/scalars/nayak_alpha/value") > 1);
+    assert_true(cJSON_GetArraySize(json_at(document, "/cases/0/curves")) > 3);
+    cJSON_Delete(document);
+    fixture_close(&fixture);
+}
+
+/* Published curves are what merging gives: a cache must not change a digit. */
+static void published_equals_merged(void **state) {
+    (void)state;
+    struct fixture fixture;
+    fixture_open(&fixture);
+    fixture_submit(&fixture, SMALL_STUDY, 6, NULL, 0);
+    run_all(&fixture);
+    struct case_info info = {0};
+    struct error err = {0};
+    cJSON *published = NULL;
+    assert_int_equal(store_case(fixture.store, fixture.study, 0, &info, &err), 0);
+    assert_int_equal(
+        store_published(fixture.store, fixture.study, 0, info.revision, &published, &err), 0);
+    assert_non_null(published);
+    cJSON *merged = NULL;
+    struct fixture fresh;
+    fixture_open(&fresh);
+    fixture_submit(&fresh, SMALL_STUDY, 24, NULL, 0);
+    run_one(&fresh); /* all of case 0 */
+    assert_int_equal(aggregate_case(fresh.store, fresh.study, 0, &merged, &err), 0);
+    char *text = json_print(merged), *cached = json_print(published);
+    assert_string_equal(text, cached);
+    free(text);
+    free(cached);
+    cJSON_Delete(merged);
+    cJSON_Delete(published);
+    case_info_clear(&info);
+    fixture_close(&fresh);
+    fixture_close(&fixture);
+}
+
+/* A study under way shows what is there, and says how far it is. */
+static void partial_curves_say_how_far(void **state) {
+    (void)state;
+    struct fixture fixture;
+    fixture_open(&fixture);
+    fixture_submit(&fixture, SMALL_STUDY, 6, NULL, 0);
+    run_one(&fixture);
+    cJSON *document = curves(&fixture, -1, NULL);
+    assert_true(number_at(document, "/cases/0/realisations") == 6);
+    assert_true(number_at(document, "/cases/1/realisations") == 0);
+    cJSON_Delete(document);
+    run_one(&fixture);
+    document = curves(&fixture, 0, NULL);
+    assert_true(number_at(document, "/cases/0/realisations") == 12);
+    cJSON_Delete(document);
+    fixture_close(&fixture);
+}
+
+static void filters_choose(void **state) {
+    (void)state;
+    struct fixture fixture;
+    struct error err = {0};
+    fixture_open(&fixture);
+    fixture_submit(&fixture, SMALL_STUDY, 24, NULL, 0);
+    cJSON *document = curves(&fixture, -1, "summit_height_pdf"); /* nothing ran: no error */
+    cJSON_Delete(document);
+    run_all(&fixture);
+    document = curves(&fixture, 1, "summit_height_pdf");
+    assert_int_equal(cJSON_GetArraySize(json_at(document, "/cases")), 1);
+    assert_true(number_at(document, "/cases/0/case") == 1);
+    const cJSON *curve;
+    cJSON_ArrayForEach(curve, json_at(document, "/cases/0/curves")) {
+        assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItem(curve, "quantity")),
+                            "summit_height_pdf");
+    }
+    cJSON_Delete(document);
+    document = NULL;
+    struct curve_filter filter = {.case_number = -1, .quantity = "contact_area"};
+    assert_int_equal(aggregate_curves(fixture.store, fixture.study, &filter, &document, &err),
+                     ERROR_INPUT);
+    assert_non_null(strstr(err.text, "contact_area"));
+    assert_non_null(strstr(err.text, "summit_height_pdf")); /* says what there is */
+    filter = (struct curve_filter){.case_number = 2};
+    assert_int_equal(aggregate_curves(fixture.store, fixture.study, &filter, &document, &err),
+                     ERROR_ABSENT);
+    filter.case_number = -1;
+    assert_int_equal(aggregate_curves(fixture.store, "0000000000000000", &filter, &document, &err),
+                     ERROR_ABSENT);
+    assert_null(document);
+    fixture_close(&fixture);
+}
+
+/* Quoting, nulls, matrices and theories, on a document made for it. */
+static void csv_is_one_table(void **state) {
+    (void)state;
+    static const char text[] =
+        "{\"cases\":[{\"case\":3,\"curves\":["
+        "{\"quantity\":\"a\",\"series\":\"x, \\\"y\\\"\",\"x\":[0.1,2],\"y\":[1,null],"
+        "\"standard_error\":[0.5,null],\"discretisation_error\":null,"
+        "\"theory\":{\"nayak\":[1.5,2.5]}},"
+        "{\"quantity\":\"m\",\"series\":\"\",\"x\":[1,2],\"x2\":[7,8,9],"
+        "\"y\":[[1,2,3],[4,5,6]],\"standard_error\":[[0,0,0],[0,0,1]],\"theory\":{}},"
+        "{\"quantity\":\"c\",\"series\":\"edges\",\"model\":\"layered\",\"level\":8,\"x\":[1],"
+        "\"y\":[1e-300],\"standard_error\":null,\"discretisation_error\":[0.25],"
+        "\"theory\":{\"persson\":[3]}}]}]}";
+    static const char expected[] =
+        "case,quantity,series,model,level,x,x2,y,standard_error,discretisation_error,"
+        "theory_nayak,theory_persson\r\n"
+        "3,a,\"x, \"\"y\"\"\",,,0.1,,1,0.5,,1.5,\r\n"
+        "3,a,\"x, \"\"y\"\"\",,,2,,,,,2.5,\r\n"
+        "3,m,,,,1,7,1,0,,,\r\n3,m,,,,1,8,2,0,,,\r\n3,m,,,,1,9,3,0,,,\r\n"
+        "3,m,,,,2,7,4,0,,,\r\n3,m,,,,2,8,5,0,,,\r\n3,m,,,,2,9,6,1,,,\r\n"
+        "3,c,edges,layered,8,1,,1e-300,,0.25,,3\r\n";
+    struct error err = {0};
+    char *table = NULL;
+    cJSON *document = cJSON_Parse(text);
+    assert_non_null(document);
+    assert_int_equal(aggregate_csv(document, &table, &err), 0);
+    assert_string_equal(table, expected);
+    free(table);
+    cJSON_Delete(document);
+}
+
+/* Every error the report states is the one that the curves beside it give. */
+static void report_agrees_with_the_curves(void **state) {
+    (void)state;
+    struct fixture fixture;
+    struct error err = {0};
+    fixture_open(&fixture);
+    fixture_submit(&fixture, SMALL_STUDY, 6, NULL, 0);
+    run_all(&fixture);
+    cJSON *report = NULL;
+    assert_int_equal(aggregate_report(fixture.store, fixture.study, &report, &err), 0);
+    cJSON *document = curves(&fixture, 0, NULL);
+    const char *name = cJSON_GetStringValue(json_at(report, "/cases/0/main_curve"));
+    assert_non_null(name);
+    double error = 0, size = 0;
+    const cJSON *curve;
+    cJSON_ArrayForEach(curve, json_at(document, "/cases/0/curves")) {
+        if (strcmp(cJSON_GetStringValue(cJSON_GetObjectItem(curve, "quantity")), name) != 0) {
+            continue;
+        }
+        const cJSON *y = cJSON_GetObjectItem(curve, "y")->child;
+        const cJSON *e = cJSON_GetObjectItem(curve, "standard_error")->child;
+        for (; y && e; y = y->next, e = e->next) {
+            if (cJSON_IsNumber(y) && cJSON_IsNumber(e)) {
+                error += e->valuedouble * e->valuedouble;
+                size += y->valuedouble * y->valuedouble;
+            }
+        }
+        break;
+    }
+    /* the same sums in the same order: equal up to the rounding of one square root */
+    double stated = number_at(report, "/cases/0/statistical_error");
+    assert_true(fabs(stated - sqrt(error / size)) <= 1e-14);
+    assert_true(stated > 0 && stated < 1);
+    assert_true(cJSON_IsNull(json_at(report, "/cases/0/model_error")));
+    assert_true(cJSON_IsNull(json_at(report, "/cases/0/discretisation_error")));
+    assert_true(number_at(report, "/cases/1/realisations") == 24);
+    double seconds = number_at(report, "/cases/0/seconds");
+    assert_true(seconds > 0);
+    assert_true(fabs(number_at(report, "/cases/0/seconds_to_halve_error") - 3 * seconds) <= 0);
+    assert_true(number_at(report, "/cases/0/scalars/summit_density/statistical_error") > 0);
+    cJSON_Delete(document);
+    cJSON_Delete(report);
+    fixture_close(&fixture);
+}
+
+/* Nothing ran yet: no errors to state, nothing divided by zero. */
+static void report_of_an_empty_study_is_null(void **state) {
+    (void)state;
+    struct fixture fixture;
+    struct error err = {0};
+    fixture_open(&fixture);
+    fixture_submit(&fixture, SMALL_STUDY, 6, NULL, 0);
+    cJSON *report = NULL;
+    assert_int_equal(aggregate_report(fixture.store, fixture.study, &report, &err), 0);
+    assert_true(number_at(report, "/cases/0/realisations") == 0);
+    assert_true(cJSON_IsNull(json_at(report, "/cases/0/statistical_error")));
+    assert_true(cJSON_IsNull(json_at(report, "/cases/0/seconds_per_realisation")));
+    assert_true(cJSON_IsNull(json_at(report, "/cases/0/seconds_to_halve_error")));
+    cJSON_Delete(report);
+    fixture_close(&fixture);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(document_has_the_form_of_the_contract),
+        cmocka_unit_test(published_equals_merged),
+        cmocka_unit_test(partial_curves_say_how_far),
+        cmocka_unit_test(filters_choose),
+        cmocka_unit_test(csv_is_one_table),
+        cmocka_unit_test(report_agrees_with_the_curves),
+        cmocka_unit_test(report_of_an_empty_study_is_null),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
