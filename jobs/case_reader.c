@@ -110,6 +110,16 @@ int case_numbers(const struct case_reader *reader, const char *path, double **ou
     return status;
 }
 
+int case_status(const struct fault_list *faults, size_t before, struct error *err) {
+    if (faults->count == before)
+        return 0;
+    const struct fault *fault =
+        faults->faults != NULL && before < FAULTS_KEPT ? &faults->faults[before] : NULL;
+    if (fault == NULL || fault->pointer == NULL || fault->detail == NULL)
+        return error_set(err, ERROR_INPUT, "the parameters are at fault");
+    return error_set(err, ERROR_INPUT, "%s: %s", fault->pointer, fault->detail);
+}
+
 static uint64_t hash_number(uint64_t hash, double number) {
     return hash_bytes(hash, sizeof number, &number);
 }

@@ -24,6 +24,9 @@ size_t case_choice(const struct case_reader *reader, const char *path);
 int case_numbers(const struct case_reader *reader, const char *path, double **out, size_t *n,
                  struct error *err);
 
+/* 0, or ERROR_INPUT with the first fault behind the first `before` ones as its text. */
+int case_status(const struct fault_list *faults, size_t before, struct error *err);
+
 /* A 64-bit mark of all values of the table, whatever the order of keys: tells cases apart. */
 uint64_t case_fingerprint(const struct case_reader *reader);
 

@@ -85,16 +85,12 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
     const struct case_reader reader = {parameters, STATISTICS_PARAMETERS,
                                        STATISTICS_PARAMETER_COUNT, list};
     *out = (struct statistics_case){0};
-    int surface = surface_case_read(&out->surface, parameters, list, err);
     size_t before = list->count;
-    int status = surface == 0 || surface == ERROR_INPUT ? read_statistics(out, &reader, err) : 0;
-    if (status == 0 && list->count > before)
-        status =
-            error_set(err, ERROR_INPUT, "%s",
-                      list->faults != NULL && before < FAULTS_KEPT ? list->faults[before].detail
-                                                                   : "the statistics are at fault");
-    if (surface != 0)
-        status = surface;
+    int status = surface_case_read(&out->surface, parameters, list, err);
+    if (status == 0 || status == ERROR_INPUT) /* all faults at once */
+        status = read_statistics(out, &reader, err);
+    if (status == 0)
+        status = case_status(list, before, err);
     if (status != 0)
         statistics_case_clear(out);
     fault_list_clear(&own);

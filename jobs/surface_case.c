@@ -258,11 +258,8 @@ int surface_case_read(struct surface_case *out, const cJSON *parameters, struct 
     size_t before = list->count;
     *out = (struct surface_case){0};
     int status = read_all(out, &reader, err);
-    if (status == 0 && list->count > before)
-        status = before < FAULTS_KEPT
-                     ? error_set(err, ERROR_INPUT, "%s: %s", list->faults[before].pointer,
-                                 list->faults[before].detail)
-                     : error_set(err, ERROR_INPUT, "the surface is at fault");
+    if (status == 0)
+        status = case_status(list, before, err);
     if (status != 0)
         surface_case_clear(out);
     fault_list_clear(&own);
