@@ -79,8 +79,8 @@ static int runner_prepare(struct hand *hand, const struct claimed_job *job,
 
 static int hand_poll(void *context, uint64_t done) {
     struct hand *hand = context;
-    bool lost = keeper_progress(hand->crew->keeper, hand->slot, done);
-    return lost || atomic_load(&hand->crew->ending);
+    keeper_progress(hand->crew->keeper, hand->slot, done);
+    return keeper_is_lost(hand->crew->keeper, hand->slot) || atomic_load(&hand->crew->ending);
 }
 
 static int job_run(struct hand *hand, const struct claimed_job *job, struct report *report) {
@@ -165,9 +165,9 @@ static void job_work(struct hand *hand, const struct claimed_job *job) {
     struct report report = {.outcome = OUTCOME_COMPLETE};
     keeper_hold(keeper, hand->slot, job);
     int status = job_run(hand, job, &report);
-    bool lost = status && keeper_progress(keeper, hand->slot, 0);
-    if (lost) {
-        hand_log(hand, LEVEL_WARNING, job, "dropped: the lease is lost or the study cancelled");
+    if (status && keeper_is_lost(keeper, hand->slot)) {
+        hand_log(hand, LEVEL_WARNING, job,
+                 "dropped: the lease is lost or given back, or the study cancelled");
     } else {
         if (status) {
             report.outcome = status == ERROR_STOPPED ? OUTCOME_RELEASE : OUTCOME_FAIL;

@@ -13,6 +13,7 @@ struct slot {
     struct claimed_job job; /* id, study, token, lease_ms; its owned strings are NULL */
     uint64_t hold;          /* rises with each job, so that a late answer is told from a new one */
     int64_t due_ms;         /* of the next heartbeat; NEVER while nothing is held */
+    bool give_back;         /* the next heartbeat is to be a release */
     atomic_bool lost;
     atomic_uint_fast64_t done;
 };
@@ -54,19 +55,22 @@ static void note_answer(struct keeper *keeper, const struct claimed_job *job, bo
     keeper->away = !answered;
 }
 
-/* Sends one heartbeat; the lock is held on entry and on return, not while it is sent. */
+/* Sends one heartbeat, or gives the job back; the lock is held on entry and on return, not while it
+ * is sent. */
 static void beat(struct keeper *keeper, struct slot *slot) {
     struct claimed_job job = slot->job;
     uint64_t hold = slot->hold, done = atomic_load(&slot->done);
+    bool give_back = slot->give_back;
     pthread_mutex_unlock(&keeper->lock);
     struct error err = {0};
-    int status = source_heartbeat(keeper->source, &job, done, &err);
+    int status = give_back ? source_release(keeper->source, &job, &err)
+                           : source_heartbeat(keeper->source, &job, done, &err);
     note_answer(keeper, &job, status == 0 || status == ERROR_STATE, &err);
     pthread_mutex_lock(&keeper->lock);
     if (slot->hold != hold || slot->due_ms == NEVER) {
         return; /* the job ended meanwhile: the answer is about the past */
     }
-    if (status == ERROR_STATE) {
+    if (status == ERROR_STATE || (status == 0 && give_back)) {
         atomic_store(&slot->lost, true);
         slot->due_ms = NEVER;
     } else {
@@ -158,6 +162,7 @@ void keeper_hold(struct keeper *keeper, unsigned slot, const struct claimed_job 
     held->job.kind = held->job.parameters = NULL;
     held->hold++;
     held->due_ms = clock_ms() + interval_ms(job);
+    held->give_back = false;
     atomic_store(&held->lost, false);
     atomic_store(&held->done, 0);
     pthread_cond_signal(&keeper->changed);
@@ -170,7 +175,22 @@ void keeper_let_go(struct keeper *keeper, unsigned slot) {
     pthread_mutex_unlock(&keeper->lock);
 }
 
-bool keeper_progress(struct keeper *keeper, unsigned slot, uint64_t done) {
+void keeper_progress(struct keeper *keeper, unsigned slot, uint64_t done) {
     atomic_store(&keeper->slots[slot].done, done);
+}
+
+bool keeper_is_lost(struct keeper *keeper, unsigned slot) {
     return atomic_load(&keeper->slots[slot].lost);
+}
+
+void keeper_give_back(struct keeper *keeper) {
+    pthread_mutex_lock(&keeper->lock);
+    for (unsigned n = 0; n < keeper->slot_count; n++) {
+        if (keeper->slots[n].due_ms != NEVER) {
+            keeper->slots[n].give_back = true;
+            keeper->slots[n].due_ms = 0;
+        }
+    }
+    pthread_cond_signal(&keeper->changed);
+    pthread_mutex_unlock(&keeper->lock);
 }

@@ -19,7 +19,13 @@ void keeper_destroy(struct keeper **keeper);
 /* From here on the lease of job is renewed, until keeper_let_go. Copies what it needs of job. */
 void keeper_hold(struct keeper *keeper, unsigned slot, const struct claimed_job *job);
 void keeper_let_go(struct keeper *keeper, unsigned slot);
-/* Tells how many realisations are done; true when the lease is lost or the study cancelled. */
-bool keeper_progress(struct keeper *keeper, unsigned slot, uint64_t done);
+/* Tells how many realisations are done. */
+void keeper_progress(struct keeper *keeper, unsigned slot, uint64_t done);
+/* The lease of what the slot holds is lost, given back, or the study cancelled: its result is
+ * unwanted. */
+bool keeper_is_lost(struct keeper *keeper, unsigned slot);
+/* Gives back the leases of all jobs held now, while they still run: others need not wait for the
+ * end of a long realisation. */
+void keeper_give_back(struct keeper *keeper);
 
 #endif

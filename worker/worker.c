@@ -7,7 +7,13 @@
 #include <sys/random.h>
 #include <unistd.h>
 
-enum { THREADS_MOST = 1024, STOP_POLL_MS = 100, TICK_MS = 500, PAUSE_FIRST_MS = 50 };
+enum {
+    THREADS_MOST = 1024,
+    STOP_POLL_MS = 100,
+    TICK_MS = 500,
+    PAUSE_FIRST_MS = 50,
+    GRACE_MS = 2000 /* for the realisation under way, once told to end */
+};
 
 void crew_end(struct crew *crew) {
     pthread_mutex_lock(&crew->lock);
@@ -45,7 +51,7 @@ void crew_pause(struct crew *crew, struct backoff *backoff, int64_t most_ms) {
 /* Watches over the threads until all have ended; true when it was told to end them. */
 static bool crew_watch(struct crew *crew) {
     const struct worker_options *options = crew->options;
-    int64_t tick_ms = clock_ms() + TICK_MS;
+    int64_t tick_ms = clock_ms() + TICK_MS, give_back_ms = INT64_MAX;
     bool stopped = false, at_work = true;
     while (at_work) {
         pthread_mutex_lock(&crew->lock);
@@ -61,7 +67,12 @@ static bool crew_watch(struct crew *crew) {
         }
         if (stop && !stopped) {
             stopped = true;
+            give_back_ms = clock_ms() + GRACE_MS;
             crew_end(crew);
+        }
+        if (clock_ms() >= give_back_ms) {
+            give_back_ms = INT64_MAX;
+            keeper_give_back(crew->keeper);
         }
     }
     return stopped;
