@@ -1,0 +1,217 @@
+/* Reading the surface of a case: effective values, every fault that no single range shows with its
+ * pointer and words, and the grid that follows. */
+#include "jobs/surface_case.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static cJSON *case_of(const char *surface) {
+    char text[1000];
+    snprintf(text, sizeof text, "{\"surface\": %s}", surface);
+    cJSON *parameters = cJSON_Parse(text);
+    assert_non_null(parameters);
+    return parameters;
+}
+
+static struct surface_case read(const char *surface) {
+    struct surface_case out;
+    struct error err = {0};
+    cJSON *parameters = case_of(surface);
+    if (surface_case_read(&out, parameters, NULL, &err) != 0)
+        fail_msg("%s: %s", surface, err.text);
+    cJSON_Delete(parameters);
+    return out;
+}
+
+static void defaults(void **state) {
+    (void)state;
+    struct surface_case surface = read("{\"hurst\": 0.8, \"wavelength_ratio\": 16}");
+    assert_int_equal(surface.dimension, 2);
+    assert_int_equal(surface.grid.nx, 1024);
+    assert_int_equal(surface.grid.ny, 1024);
+    assert_true(surface.grid.lx == 128 && surface.grid.ly == 128);
+    assert_true(surface.spectrum.wavelength_long == 16 && surface.spectrum.wavelength_short == 1 &&
+                surface.spectrum.wavelength_rolloff == 16);
+    assert_int_equal(surface.spectrum.scale, SCALE_NONE);
+    assert_int_equal(surface.options.heights.type, HEIGHTS_GAUSSIAN);
+    assert_true(surface.options.tolerance == 1e-3 && surface.options.max_iterations == 1000);
+    assert_int_equal(surface_case_band(&surface), 128);
+    assert_true(surface_case_exact(&surface));
+    surface_case_clear(&surface);
+}
+
+static void everything_given(void **state) {
+    (void)state;
+    struct surface_case surface =
+        read("{\"dimension\": 1, \"hurst\": 1, \"wavelength_ratio\": 10, \"rolloff_ratio\": 2,"
+             " \"length_ratio\": 3, \"points_per_wavelength\": 4, \"rms_slope\": 0.1,"
+             " \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 1.5, \"tolerance\": 0,"
+             " \"keep\": \"heights\", \"iteration\": \"plain\", \"draw\": \"quantiles\","
+             " \"stall_gain\": 0.1, \"stall_iterations\": 20, \"max_iterations\": 50,"
+             " \"relaxed_iterations\": 7}}");
+    const struct surface_options *options = &surface.options;
+    assert_int_equal(surface.grid.nx, 120);
+    assert_int_equal(surface.grid.ny, 1);
+    assert_true(surface.spectrum.wavelength_rolloff == 5);
+    assert_true(surface.spectrum.scale == SCALE_RMS_SLOPE && surface.spectrum.scale_value == 0.1);
+    assert_true(options->heights.type == HEIGHTS_WEIBULL_MAX && options->heights.shape == 1.5);
+    assert_true(options->keep == KEEP_HEIGHTS && options->iteration == ITERATION_PLAIN);
+    assert_true(options->draw == DRAW_QUANTILES && options->tolerance == 0);
+    assert_true(options->stall_gain == 0.1 && options->stall_iterations == 20);
+    assert_true(options->max_iterations == 50 && options->relaxed_iterations == 7);
+    assert_false(surface_case_exact(&surface));
+    surface_case_clear(&surface);
+}
+
+/* dx is never coarser than asked; an integer behind a rounding is that integer. */
+static void grids(void **state) {
+    (void)state;
+    struct surface_case surface =
+        read("{\"hurst\": 0.8, \"wavelength_ratio\": 9.7515, \"length_ratio\": 8}");
+    assert_int_equal(surface.grid.nx, 630); /* 624.096: the next even 2, 3, 5, 7 number */
+    surface_case_clear(&surface);
+    surface = read("{\"hurst\": 0.8, \"wavelength_ratio\": 7, \"length_ratio\": 7,"
+                   " \"points_per_wavelength\": 3}");
+    assert_int_equal(surface.grid.nx, 147); /* an integer stays as it is, odd or not */
+    surface_case_clear(&surface);
+    surface = read("{\"hurst\": 0.8, \"wavelength_ratio\": 0.30000000000000004e1,"
+                   " \"length_ratio\": 1.1, \"points_per_wavelength\": 10}");
+    assert_int_equal(surface.grid.nx, 33);
+    surface_case_clear(&surface);
+    surface = read("{\"hurst\": 0.8, \"wavelength_ratio\": 1, \"length_ratio\": 1,"
+                   " \"points_per_wavelength\": 2}");
+    assert_int_equal(surface.grid.nx, 2);
+    surface_case_clear(&surface);
+}
+
+/* Table 3.5 of the reference: ratios for a given alpha by the continuous formula. */
+static void ratios_of_alpha(void **state) {
+    (void)state;
+    const double hurst[] = {0.4, 0.6, 0.8}, alpha[] = {5, 10, 15};
+    const double table[3][3] = {
+        {9.751, 23.058, 37.921}, {8.308, 16.538, 24.126}, {7.669, 14.163, 19.661}};
+    for (int h = 0; h < 3; h++) {
+        for (int a = 0; a < 3; a++) {
+            char text[200];
+            snprintf(text, sizeof text,
+                     "{\"hurst\": %g, \"nayak_alpha\": %g, \"alpha_formula\": \"continuous\"}",
+                     hurst[h], alpha[a]);
+            struct surface_case surface = read(text);
+            /* its last printed digit, and the reference cut some off where it should have rounded
+             */
+            assert_true(fabs(surface.wavelength_ratio - table[h][a]) <= 0.0011);
+            surface_case_clear(&surface);
+        }
+    }
+}
+
+static void other_spectra(void **state) {
+    (void)state;
+    struct surface_case surface = read("{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": "
+                                       "\"exponential_acf\", \"length\": [2]}}");
+    assert_true(surface.spectrum.correlation_x == 2 && surface.spectrum.correlation_y == 2);
+    assert_int_equal(surface_case_band(&surface), surface.grid.nx / 2);
+    surface_case_clear(&surface);
+    surface = read("{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"table\","
+                   " \"wave_number\": [1, 2, 6], \"density\": [3, 2, 0]}}");
+    assert_int_equal(surface.spectrum.table_count, 3);
+    assert_true(surface.spectrum.table_wave_number[2] == 6 &&
+                surface.spectrum.table_density[1] == 2);
+    assert_int_equal(surface_case_band(&surface), 30); /* 6 * 32 / (2 pi) */
+    surface_case_clear(&surface);
+}
+
+struct broken {
+    const char *surface, *pointer, *words;
+};
+static const struct broken BROKEN[] = {
+    {"{\"wavelength_ratio\": 8}", "/surface/hurst", "needs it"},
+    {"{\"hurst\": 0.8}", "/surface/wavelength_ratio", "or nayak_alpha"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"nayak_alpha\": 5}", "/surface/nayak_alpha",
+     "not both"},
+    {"{\"hurst\": 0.8, \"nayak_alpha\": 1.2}", "/surface/nayak_alpha", "alpha"},
+    {"{\"hurst\": 1.4, \"wavelength_ratio\": 8}", "/surface/hurst", "(0, 1]"},
+    {"{\"hurst\": 0, \"wavelength_ratio\": 8}", "/surface/hurst", "(0, 1]"},
+    {"{\"hurst\": \"x\", \"wavelength_ratio\": 8}", "/surface/hurst", "number"},
+    {"{\"dimension\": 1.5, \"hurst\": 0.8, \"wavelength_ratio\": 8}", "/surface/dimension",
+     "integer"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"rolloff_ratio\": 9}", "/surface/rolloff_ratio",
+     "more than wavelength_ratio"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 1, \"length_ratio\": 2.5}", "/surface/length_ratio",
+     "no wave"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 1024}", "/surface/points_per_wavelength", "46340"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"rms_slope\": 1, \"rms_height\": 1}",
+     "/surface/rms_height", "not both"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_min\"}}",
+     "/surface/heights/shape", "[0.5, 20]"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"normal\"}}",
+     "/surface/heights/distribution", "gaussian"},
+    {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"exponential_acf\"}}",
+     "/surface/spectrum/length", "correlation lengths"},
+    {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"exponential_acf\", \"length\": [0]}}",
+     "/surface/spectrum/length", "1 to 2 numbers"},
+    {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"table\", \"wave_number\": [1, 2]}}",
+     "/surface/spectrum/density", "as many"},
+    {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"table\", \"wave_number\": [2, 1],"
+     " \"density\": [1, 1]}}",
+     "/surface/spectrum/wave_number", "must rise"},
+    {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"table\", \"wave_number\": [1, 2],"
+     " \"density\": [0, 0]}}",
+     "/surface/spectrum/density", "above 0"},
+    {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"table\", \"wave_number\": [1, 99],"
+     " \"density\": [1, 1]}}",
+     "/surface/spectrum/wave_number", "resolves"},
+    {"{\"spectrum\": {\"type\": \"table\", \"wave_number\": [1, 2], \"density\": [1, 1]}}",
+     "/surface/wavelength_ratio", "needs it"},
+};
+
+static void faults_have_pointer_and_words(void **state) {
+    (void)state;
+    for (size_t a = 0; a < sizeof BROKEN / sizeof *BROKEN; a++) {
+        struct surface_case surface;
+        struct fault_list faults = {0};
+        struct error err = {0};
+        cJSON *parameters = case_of(BROKEN[a].surface);
+        assert_int_equal(surface_case_read(&surface, parameters, &faults, &err), ERROR_INPUT);
+        if (faults.count == 0 || strcmp(faults.faults[0].pointer, BROKEN[a].pointer) != 0 ||
+            strstr(faults.faults[0].detail, BROKEN[a].words) == NULL)
+            fail_msg("%s: %zu faults, the first %s: %s", BROKEN[a].surface, faults.count,
+                     faults.count > 0 ? faults.faults[0].pointer : "",
+                     faults.count > 0 ? faults.faults[0].detail : "");
+        assert_non_null(strstr(err.text, BROKEN[a].words));
+        fault_list_clear(&faults);
+        assert_int_equal(surface_case_read(&surface, parameters, NULL, &err), ERROR_INPUT);
+        cJSON_Delete(parameters);
+    }
+}
+
+/* All faults of a surface at once, not the first alone. */
+static void all_faults_at_once(void **state) {
+    (void)state;
+    struct surface_case surface;
+    struct fault_list faults = {0};
+    cJSON *parameters =
+        case_of("{\"hurst\": 2, \"length_ratio\": 0, \"heights\": {\"shape\": 1, \"keep\": 3}}");
+    assert_int_equal(surface_case_read(&surface, parameters, &faults, NULL), ERROR_INPUT);
+    assert_true(faults.count >= 4);
+    fault_list_clear(&faults);
+    cJSON_Delete(parameters);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(defaults),
+        cmocka_unit_test(everything_given),
+        cmocka_unit_test(grids),
+        cmocka_unit_test(ratios_of_alpha),
+        cmocka_unit_test(other_spectra),
+        cmocka_unit_test(faults_have_pointer_and_words),
+        cmocka_unit_test(all_faults_at_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,232 @@
+/* Tallies and estimates: the errors are those of their definition over realisations, and any split
+ * and order of merging gives the same bits. */
+#include "jobs/tally.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+enum { REALISATIONS = 60, CELLS = 12 };
+
+struct sample {
+    uint64_t n[REALISATIONS][CELLS], things[REALISATIONS];
+    double k[REALISATIONS][CELLS];
+};
+static struct sample sample;
+
+static uint64_t next_word(uint64_t *state) {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return *state;
+}
+
+static int draw_sample(void **state) {
+    (void)state;
+    uint64_t seed = (uint64_t)time(NULL) | 1;
+    printf("seed %llu\n", (unsigned long long)seed);
+    for (size_t r = 0; r < REALISATIONS; r++) {
+        sample.things[r] = 0;
+        for (size_t cell = 0; cell < CELLS; cell++) {
+            uint64_t n = next_word(&seed) % (10 * (cell + 1));
+            sample.n[r][cell] = cell == 3 ? 0 : n;
+            sample.things[r] += sample.n[r][cell];
+            sample.k[r][cell] =
+                (double)sample.n[r][cell] * (1 + (double)(next_word(&seed) % 1000) / 1e4);
+        }
+    }
+    return 0;
+}
+
+struct block {
+    struct tally_total total;
+    struct tally tally;
+    struct tally_sums sums;
+};
+
+static void block_create(struct block *block) {
+    *block = (struct block){0};
+    assert_int_equal(tally_create(&block->tally, CELLS, NULL), 0);
+    assert_int_equal(tally_sums_create(&block->sums, CELLS, NULL), 0);
+}
+
+static void block_clear(struct block *block) {
+    tally_clear(&block->tally);
+    tally_sums_clear(&block->sums);
+}
+
+static void block_fill(struct block *block, size_t first, size_t last) {
+    block_create(block);
+    for (size_t r = first; r < last; r++) {
+        tally_total_add(&block->total, sample.things[r]);
+        for (size_t cell = 0; cell < CELLS; cell++) {
+            if (sample.n[r][cell] == 0)
+                continue;
+            tally_add(&block->tally, cell, sample.n[r][cell], sample.things[r]);
+            tally_sums_add(&block->sums, cell, sample.k[r][cell], sample.n[r][cell]);
+        }
+    }
+}
+
+static void block_merge(struct block *into, const struct block *from) {
+    tally_total_merge(&into->total, &from->total);
+    tally_merge(&into->tally, &from->tally);
+    tally_sums_merge(&into->sums, &from->sums);
+}
+
+static struct bytes block_bytes(const struct block *block) {
+    struct bytes bytes = {0};
+    tally_total_put(&bytes, &block->total);
+    tally_put(&bytes, &block->tally);
+    tally_sums_put(&bytes, &block->sums);
+    assert_false(bytes.failed);
+    return bytes;
+}
+
+/* sqrt(M/(M-1) sum (a_r - R b_r)^2) / sum b_r, as it is written. */
+static struct estimate brute_force(const double *a, const double *b) {
+    long double as = 0, bs = 0, squares = 0;
+    for (size_t r = 0; r < REALISATIONS; r++) {
+        as += (long double)a[r];
+        bs += (long double)b[r];
+    }
+    for (size_t r = 0; r < REALISATIONS; r++) {
+        long double rest = (long double)a[r] - as / bs * (long double)b[r];
+        squares += rest * rest;
+    }
+    long double m = REALISATIONS;
+    return (struct estimate){(double)(as / bs), (double)(sqrtl(m / (m - 1) * squares) / bs)};
+}
+
+static void assert_close(double got, double expected, double tolerance) {
+    if (!(fabs(got - expected) <= tolerance * fabs(expected)))
+        fail_msg("%.17g is not %.17g", got, expected);
+}
+
+/* 1e-12: rounding of a difference of sums that agree in less than 4 digits. */
+static void errors_are_those_of_the_ratio(void **state) {
+    (void)state;
+    struct block block;
+    block_fill(&block, 0, REALISATIONS);
+    for (size_t cell = 0; cell < CELLS; cell++) {
+        double n[REALISATIONS], things[REALISATIONS], k[REALISATIONS];
+        for (size_t r = 0; r < REALISATIONS; r++) {
+            n[r] = (double)sample.n[r][cell];
+            things[r] = (double)sample.things[r];
+            k[r] = sample.k[r][cell];
+        }
+        struct estimate got = tally_share(&block.tally, cell, &block.total);
+        struct estimate expected = brute_force(n, things);
+        if (cell == 3) { /* an empty cell: nothing seen, and nothing to tell its error from */
+            assert_true(got.value == 0 && got.standard_error == 0);
+            assert_true(
+                isnan(tally_sums_ratio(&block.sums, &block.tally, cell, REALISATIONS).value));
+            continue;
+        }
+        assert_close(got.value, expected.value, 1e-14);
+        assert_close(got.standard_error, expected.standard_error, 1e-12);
+        got = tally_sums_ratio(&block.sums, &block.tally, cell, REALISATIONS);
+        expected = brute_force(k, n);
+        assert_close(got.value, expected.value, 1e-13);
+        assert_close(got.standard_error, expected.standard_error, 1e-10);
+    }
+    block_clear(&block);
+}
+
+/* Random splits, merged in random order, against all realisations in one block. */
+static void merging_is_exact(void **state) {
+    (void)state;
+    uint64_t seed = 99;
+    struct block whole, parts[REALISATIONS];
+    block_fill(&whole, 0, REALISATIONS);
+    struct bytes expected = block_bytes(&whole);
+    for (int trial = 0; trial < 50; trial++) {
+        size_t count = 0;
+        for (size_t first = 0; first < REALISATIONS;) {
+            size_t last = first + 1 + next_word(&seed) % 20;
+            last = last < REALISATIONS ? last : REALISATIONS;
+            block_fill(&parts[count++], first, last);
+            first = last;
+        }
+        struct block merged;
+        block_create(&merged);
+        for (size_t left = count; left > 0; left--) {
+            size_t pick = (size_t)(next_word(&seed) % left);
+            block_merge(&merged, &parts[pick]);
+            block_clear(&parts[pick]);
+            parts[pick] = parts[left - 1];
+        }
+        struct bytes got = block_bytes(&merged);
+        assert_int_equal(got.size, expected.size);
+        assert_memory_equal(got.data, expected.data, got.size);
+        bytes_clear(&got);
+        block_clear(&merged);
+    }
+    bytes_clear(&expected);
+    block_clear(&whole);
+}
+
+/* A million realisations of 2^26 points: no overflow, and the share keeps all digits. */
+static void a_million_realisations(void **state) {
+    (void)state;
+    struct tally tally;
+    struct tally_total total = {0};
+    assert_int_equal(tally_create(&tally, 2, NULL), 0);
+    const uint64_t points = UINT64_C(1) << 26, n = UINT64_C(1) << 24;
+    for (uint64_t r = 0; r < 1000000; r++) {
+        tally_total_add(&total, points);
+        tally_add(&tally, 0, n + r % 2, points);
+        tally_add(&tally, 1, points - n - r % 2, points);
+    }
+    /* n_r alternates between n and n + 1: deviation 1/2 about the mean, up to M/(M-1) */
+    struct estimate share = tally_share(&tally, 0, &total);
+    assert_close(share.value, ((double)n + 0.5) / (double)points, 1e-15);
+    assert_close(share.standard_error, 0.5 / (double)points / 999.9995, 1e-9);
+    tally_clear(&tally);
+}
+
+/* What all lies in one cell has a share without error; one realisation has none to tell. */
+static void certain_and_alone(void **state) {
+    (void)state;
+    struct tally tally;
+    struct tally_total total = {0};
+    assert_int_equal(tally_create(&tally, 1, NULL), 0);
+    assert_true(isnan(tally_share(&tally, 0, &total).value));
+    for (uint64_t things = 3; things < 10; things++) {
+        tally_total_add(&total, things);
+        tally_add(&tally, 0, things, things);
+        struct estimate share = tally_share(&tally, 0, &total);
+        assert_true(share.value == 1);
+        assert_true(things == 3 ? isnan(share.standard_error) : share.standard_error == 0);
+    }
+    tally_clear(&tally);
+}
+
+static void means_and_weights(void **state) {
+    (void)state;
+    const double x[] = {1, NAN, 2, 6}, weight[] = {1, 5, 1, 2};
+    struct estimate mean = estimate_mean(4, x);
+    assert_close(mean.value, 3, 1e-15);
+    assert_close(mean.standard_error, sqrt(7.0 / 3), 1e-15); /* deviation sqrt(7) */
+    struct estimate weighted = estimate_weighted(4, x, weight);
+    assert_close(weighted.value, 15.0 / 4, 1e-15);
+    /* residuals w (x - 15/4): -11/4, -7/4, 18/4 */
+    assert_close(weighted.standard_error, sqrt(1.5 * (121 + 49 + 324)) / 16, 1e-15);
+    assert_true(isnan(estimate_mean(0, NULL).value));
+    assert_true(isnan(estimate_mean(1, x).standard_error));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_are_those_of_the_ratio),
+        cmocka_unit_test(merging_is_exact),
+        cmocka_unit_test(a_million_realisations),
+        cmocka_unit_test(certain_and_alone),
+        cmocka_unit_test(means_and_weights),
+    };
+    return cmocka_run_group_tests(tests, draw_sample, NULL);
+}
