@@ -19,8 +19,11 @@ static const double UNIT = 0x1p-60;
 static const double LARGEST = 0x1p60;
 
 static void add_units(struct exact_sum *sum, fixed_point units) {
-    if (__builtin_add_overflow(sum->total, units, &sum->total))
+    fixed_point total;
+    if (__builtin_add_overflow(sum->total, units, &total))
         sum->lost++;
+    else
+        sum->total = total;
 }
 
 void exact_sum_add(struct exact_sum *sum, double value) {

@@ -18,8 +18,8 @@ static inline double bins_width(const struct bins *bins) {
 static inline double bins_centre(const struct bins *bins, size_t b) {
     return bins->low + ((double)b + 0.5) * bins_width(bins);
 }
-/* 0 underflow, 1..count inside, count + 1 overflow (also NaN). A value on an inner edge belongs to the
- * bin above, the value high to the last bin. */
+/* 0 underflow, 1..count inside, count + 1 overflow (also NaN). A value on an inner edge belongs to
+ * the bin above, the value high to the last bin. */
 static inline size_t bins_find(const struct bins *bins, double x) {
     if (x < bins->low)
         return 0;

@@ -4,11 +4,12 @@
 
 #include "core/surface/spectrum.h"
 
-/* By central finite differences on the periodic grid, as the reference (2.35, 3.20). */
+/* By finite differences on the periodic grid, as the reference: forward ones for slopes (2.7),
+ * central second ones for curvatures (3.20). */
 struct roughness {
     double mean, rms_height, rms_slope, rms_curvature; /* about the mean; profile: |z'|, z'' */
-    double skewness, kurtosis;                         /* 0 with rms_height 0: NaN */
-    double m2, m4, nayak_alpha;                        /* finite-difference moments (mean of x and y) */
+    double skewness, kurtosis;                         /* NaN for a flat map */
+    double m2, m4, nayak_alpha; /* finite-difference moments (mean of x and y) */
     double lowest, highest;
 };
 void roughness_measure(const struct grid *grid, const double *z, struct roughness *out);
@@ -17,16 +18,18 @@ void roughness_measure(const struct grid *grid, const double *z, struct roughnes
 int roughness_spectral(const struct grid *grid, const double *z, struct moments *out,
                        struct error *err);
 
-/* Number of radial bins of the functions below for a grid: rings of width one in |m| (min(lx,ly)). */
+/* Number of radial bins of the functions below for a grid: rings of width one in |m| (min(lx,ly)).
+ */
 size_t radial_bins(const struct grid *grid);
 /* Power spectral density, radially averaged for surfaces: C(k) such that m00 = integral of
- * C dkx dky (surface) or of C dk over both signs (profile). wave_number and density have radial_bins
- * entries (bin r: r - 1/2 <= |m| < r + 1/2, wave_number 2 pi r / min(lx, ly)). */
+ * C dkx dky (surface) or of C dk over both signs (profile). wave_number and density have
+ * radial_bins entries (bin r: r - 1/2 <= |m| < r + 1/2, wave_number 2 pi r / min(lx, ly)). */
 int psd_measure(const struct grid *grid, const double *z, double *wave_number, double *density,
                 struct error *err);
 /* Likewise of a discrete spectrum, which costs no transform. */
 void psd_of_modes(const struct modes *modes, double *wave_number, double *density);
-/* Autocorrelation R(r)/R(0) at lags 0, dx, 2dx … (nx/2 + 1 of them), radially averaged for surfaces. */
+/* Autocorrelation R(r)/R(0) at lags 0, dx, 2dx … (nx/2 + 1 of them), radially averaged for
+ * surfaces. */
 int acf_measure(const struct grid *grid, const double *z, double *lag, double *correlation,
                 struct error *err);
 int acf_of_modes(const struct modes *modes, double *lag, double *correlation, struct error *err);

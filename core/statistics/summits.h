@@ -1,8 +1,9 @@
 /* Summits of surfaces, peaks of profiles, on periodic grids.
  *
- * A grid summit is strictly higher than its 8 (nine-point) or 4 (five-point) neighbours, in profiles
- * than its 2: a plateau holds none. A refined summit is a true maximum (zero gradient, negative
- * definite Hessian) of the band-limited surface through the grid, found between the points. */
+ * A grid summit is strictly higher than its 8 (nine-point) or 4 (five-point) neighbours, in
+ * profiles than its 2: a plateau holds none. A refined summit is a true maximum (zero gradient,
+ * negative definite Hessian) of the band-limited surface through the grid, found between the
+ * points. */
 #ifndef RUGO_CORE_STATISTICS_SUMMITS_H
 #define RUGO_CORE_STATISTICS_SUMMITS_H
 
@@ -22,6 +23,7 @@ struct summit_list {
     size_t count, capacity;
 };
 void summit_list_clear(struct summit_list *list);
+int summit_list_add(struct summit_list *list, const struct summit *summit, struct error *err);
 
 struct summit_finder;
 /* Workspace, made once a case. mode_x, mode_y bound the band of the surfaces to come (spectral

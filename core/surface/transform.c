@@ -12,7 +12,8 @@ enum { ROWS = 8 }; /* rows gathered together: a cache line of each column serves
 
 struct transform {
     size_t nx, ny, columns; /* columns = mode_x + 1 */
-    size_t half;            /* nx/2 + 1: values of one row's half spectrum */
+    size_t mode_y;
+    size_t half; /* nx/2 + 1: values of one row's half spectrum */
     double complex *spectrum;
     double complex *rows; /* ROWS x half */
     double *lines;        /* ROWS x nx */
@@ -59,6 +60,7 @@ int transform_create(struct transform **out, const struct grid *grid, size_t mod
     t->nx = grid->nx;
     t->ny = grid->ny;
     t->columns = mode_x + 1;
+    t->mode_y = mode_y;
     t->half = grid->nx / 2 + 1;
     t->spectrum = fftw_alloc_complex(t->columns * t->ny);
     t->rows = fftw_alloc_complex(ROWS * t->half);
@@ -93,11 +95,14 @@ double complex *transform_spectrum(struct transform *transform) {
     return transform->spectrum;
 }
 
-void transform_inverse(struct transform *t, double *z) {
+void transform_inverse_columns(struct transform *t) {
     if (t->ny > 1)
         fftw_execute(t->column_inverse);
-    for (size_t j = 0; j < t->ny; j += ROWS) {
-        size_t rows = t->ny - j < ROWS ? t->ny - j : ROWS;
+}
+
+void transform_inverse_rows(struct transform *t, size_t first, size_t count, double *z) {
+    for (size_t j = first; j < first + count; j += ROWS) {
+        size_t rows = first + count - j < ROWS ? first + count - j : ROWS;
         for (size_t row = 0; row < ROWS; row++)
             memset(t->rows + row * t->half + t->columns, 0,
                    (t->half - t->columns) * sizeof *t->rows);
@@ -105,7 +110,32 @@ void transform_inverse(struct transform *t, double *z) {
             for (size_t row = 0; row < rows; row++)
                 t->rows[row * t->half + i] = t->spectrum[i * t->ny + j + row];
         fftw_execute(t->row_inverse);
-        memcpy(z + j * t->nx, t->lines, rows * t->nx * sizeof *z);
+        memcpy(z + (j - first) * t->nx, t->lines, rows * t->nx * sizeof *z);
+    }
+}
+
+void transform_inverse(struct transform *t, double *z) {
+    transform_inverse_columns(t);
+    transform_inverse_rows(t, 0, t->ny, z);
+}
+
+static void column_pad(const double complex *from, size_t from_ny, double complex *to, size_t to_ny,
+                       size_t mode_y, double factor) {
+    memset(to, 0, to_ny * sizeof *to);
+    for (size_t my = 0; my <= mode_y; my++) {
+        bool split = my > 0 && 2 * my == from_ny && 2 * my < to_ny;
+        double part = split ? factor / 2 : factor;
+        to[my] = part * from[my];
+        if (my > 0 && 2 * my != to_ny)
+            to[to_ny - my] = part * from[from_ny - my];
+    }
+}
+
+void transform_pad(struct transform *from, struct transform *to) {
+    for (size_t mx = 0; mx < from->columns; mx++) {
+        bool split = mx > 0 && 2 * mx == from->nx && 2 * mx < to->nx;
+        column_pad(from->spectrum + mx * from->ny, from->ny, to->spectrum + mx * to->ny, to->ny,
+                   from->mode_y, split ? 0.5 : 1);
     }
 }
 

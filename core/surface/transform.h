@@ -25,6 +25,14 @@ double complex *transform_spectrum(struct transform *transform);
 /* z[ny*nx] from the plan's spectrum, which it destroys. Rows beyond mode_y are taken as zero.
  * Self-conjugate modes must be real; the mx = 0 column must be conjugate-symmetric. */
 void transform_inverse(struct transform *transform, double *z);
+/* The same in two steps, for surfaces too big to hold: the columns once, then any rows
+ * first .. first + count - 1 into z[count*nx], as often as wanted. */
+void transform_inverse_columns(struct transform *transform);
+void transform_inverse_rows(struct transform *transform, size_t first, size_t count, double *z);
+/* The spectrum of `from` into that of `to`, which has the same band and another grid: zero padding.
+ * A Nyquist mode of an even grid stands for two modes of a finer one, each of half its amplitude.
+ */
+void transform_pad(struct transform *from, struct transform *to);
 /* The plan's spectrum (all of rows, columns up to mode_x) from z, which it keeps. */
 void transform_forward(struct transform *transform, const double *z);
 

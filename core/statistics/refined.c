@@ -1,0 +1,322 @@
+#include "core/statistics/refined.h"
+#include "core/statistics/grid_summits.h"
+#include "core/surface/transform.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    POINTS = 8,  /* of the interpolant along an axis: 3 before its cell, 4 behind */
+    TRAVEL = 6,  /* rows or columns that a search may move from its start */
+    MARGIN = 10, /* TRAVEL and half an interpolant */
+    STRIP = 8,   /* rows searched at a time */
+    WINDOW = STRIP + 2 * MARGIN,
+    STEPS = 40,
+};
+
+struct refined {
+    struct grid grid, fine;
+    size_t mode_x, mode_y;
+    struct transform *coarse, *dense;
+    double *window;  /* WINDOW x fine.nx: rows first - MARGIN .. first + STRIP + MARGIN - 1 */
+    size_t *columns; /* starts of one row */
+};
+
+static size_t fine_points(size_t points, size_t mode) {
+    size_t wanted = REFINED_POINTS * (mode ? mode : 1);
+    return points * ((wanted + points - 1) / points);
+}
+
+static struct grid fine_grid(const struct grid *grid, size_t mode_x, size_t mode_y) {
+    struct grid fine = *grid;
+    fine.nx = fine_points(grid->nx, mode_x);
+    fine.ny = grid_is_profile(grid) ? 1 : fine_points(grid->ny, mode_y);
+    return fine;
+}
+
+int refined_create(struct refined **out, const struct grid *grid, size_t mode_x, size_t mode_y,
+                   struct error *err) {
+    struct refined *r = array_create(1, sizeof *r);
+    if (!r)
+        return error_memory(err, sizeof *r, "a summit search");
+    r->grid = *grid;
+    r->fine = fine_grid(grid, mode_x, mode_y);
+    r->mode_x = mode_x;
+    r->mode_y = mode_y;
+    int status = transform_create(&r->coarse, grid, mode_x, mode_y, err);
+    if (!status)
+        status = transform_create(&r->dense, &r->fine, mode_x, mode_y, err);
+    size_t rows = grid_is_profile(grid) ? 1 : WINDOW;
+    r->window = array_create(rows * r->fine.nx, sizeof *r->window);
+    r->columns = array_create(r->fine.nx, sizeof *r->columns);
+    if (!status && (!r->window || !r->columns))
+        status = error_memory(err, rows * r->fine.nx * sizeof *r->window, "rows of a surface");
+    if (status) {
+        refined_destroy(&r);
+        return status;
+    }
+    *out = r;
+    return 0;
+}
+
+void refined_destroy(struct refined **refined) {
+    struct refined *r = *refined;
+    if (!r)
+        return;
+    transform_destroy(&r->coarse);
+    transform_destroy(&r->dense);
+    free(r->window);
+    free(r->columns);
+    free(r);
+    *refined = NULL;
+}
+
+double refined_bytes(const struct grid *grid, size_t mode_x, size_t mode_y) {
+    struct grid fine = fine_grid(grid, mode_x, mode_y);
+    double columns = (double)(mode_x + 1) * (double)(grid->ny + fine.ny);
+    double rows = grid_is_profile(grid) ? 1 : WINDOW;
+    return columns * sizeof(double complex) + (rows + 1) * (double)fine.nx * sizeof(double);
+}
+
+/* Lagrange basis on the points -3..4 at t in about [0, 1], with first and second derivatives. */
+struct basis {
+    double value[POINTS], slope[POINTS], bend[POINTS];
+};
+
+static void basis_at(double t, struct basis *basis) {
+    static const double SCALE[POINTS] = {-1.0 / 5040, 1.0 / 720, -1.0 / 240, 1.0 / 144,
+                                         -1.0 / 144,  1.0 / 240, -1.0 / 720, 1.0 / 5040};
+    for (int a = 0; a < POINTS; a++) {
+        double value = SCALE[a], slope = 0, bend = 0;
+        for (int b = 0; b < POINTS; b++) {
+            if (b == a)
+                continue;
+            double factor = t - (b - 3);
+            bend = bend * factor + 2 * slope;
+            slope = slope * factor + value;
+            value *= factor;
+        }
+        basis->value[a] = value;
+        basis->slope[a] = slope;
+        basis->bend[a] = bend;
+    }
+}
+
+/* Value and derivatives at a point, in units of the fine grid. */
+struct jet {
+    double z, x, y, xx, xy, yy;
+};
+
+static void jet_of_profile(const struct refined *r, double x, struct jet *jet) {
+    long nx = (long)r->fine.nx, cell = (long)floor(x);
+    struct basis bx;
+    basis_at(x - (double)cell, &bx);
+    *jet = (struct jet){0};
+    for (int a = 0; a < POINTS; a++) {
+        long i = ((cell + a - 3) % nx + nx) % nx;
+        jet->z += bx.value[a] * r->window[i];
+        jet->x += bx.slope[a] * r->window[i];
+        jet->xx += bx.bend[a] * r->window[i];
+    }
+}
+
+/* y counts from the first row of the window. */
+static void jet_at(const struct refined *r, double x, double y, struct jet *jet) {
+    if (grid_is_profile(&r->fine)) {
+        jet_of_profile(r, x, jet);
+        return;
+    }
+    long nx = (long)r->fine.nx, cell_x = (long)floor(x), cell_y = (long)floor(y);
+    struct basis bx, by;
+    basis_at(x - (double)cell_x, &bx);
+    basis_at(y - (double)cell_y, &by);
+    long column[POINTS];
+    for (int a = 0; a < POINTS; a++)
+        column[a] = ((cell_x + a - 3) % nx + nx) % nx;
+    *jet = (struct jet){0};
+    for (int b = 0; b < POINTS; b++) {
+        const double *row = r->window + (cell_y + b - 3) * nx;
+        double z = 0, slope = 0, bend = 0;
+        for (int a = 0; a < POINTS; a++) {
+            double value = row[column[a]];
+            z += bx.value[a] * value;
+            slope += bx.slope[a] * value;
+            bend += bx.bend[a] * value;
+        }
+        jet->z += by.value[b] * z;
+        jet->x += by.value[b] * slope;
+        jet->xx += by.value[b] * bend;
+        jet->y += by.slope[b] * z;
+        jet->xy += by.slope[b] * slope;
+        jet->yy += by.bend[b] * z;
+    }
+}
+
+static bool is_maximum(const struct refined *r, const struct jet *jet) {
+    if (grid_is_profile(&r->fine))
+        return jet->xx < 0;
+    return jet->xx + jet->yy < 0 && jet->xx * jet->yy > jet->xy * jet->xy;
+}
+
+/* Newton's step where the surface is concave, a climb along the gradient elsewhere; at most half a
+ * cell. */
+static void step_up(const struct refined *r, const struct jet *jet, double *dx, double *dy) {
+    if (!is_maximum(r, jet)) {
+        *dx = jet->x;
+        *dy = jet->y;
+    } else if (grid_is_profile(&r->fine)) {
+        *dx = -jet->x / jet->xx;
+        *dy = 0;
+    } else {
+        double determinant = jet->xx * jet->yy - jet->xy * jet->xy;
+        *dx = (jet->xy * jet->y - jet->yy * jet->x) / determinant;
+        *dy = (jet->xy * jet->x - jet->xx * jet->y) / determinant;
+    }
+    double length = hypot(*dx, *dy);
+    bool climb = !is_maximum(r, jet);
+    if (length > 0.5 || (climb && length > 0)) {
+        *dx *= 0.5 / length;
+        *dy *= 0.5 / length;
+    }
+}
+
+/* From a grid maximum to the true one; false when there is none within TRAVEL. */
+static bool climb(const struct refined *r, double x0, double y0, double *x, double *y,
+                  struct jet *jet) {
+    *x = x0;
+    *y = y0;
+    for (int step = 0; step < STEPS; step++) {
+        double dx, dy;
+        jet_at(r, *x, *y, jet);
+        step_up(r, jet, &dx, &dy);
+        *x += dx;
+        *y += dy;
+        if (!(fabs(*x - x0) < TRAVEL && fabs(*y - y0) < TRAVEL))
+            return false;
+        if (hypot(dx, dy) < 1e-7) {
+            jet_at(r, *x, *y, jet);
+            return is_maximum(r, jet);
+        }
+    }
+    return false;
+}
+
+static double wrapped(double x, double period) {
+    double inside = x - period * floor(x / period);
+    return inside < period ? inside : 0;
+}
+
+/* Searches from the maxima of one fine row, `row` rows into the window, which starts at fine row
+ * first. */
+static int row_search(struct refined *r, double first, size_t row, struct summit_list *list,
+                      struct error *err) {
+    const struct grid *fine = &r->fine;
+    size_t nx = fine->nx;
+    bool profile = grid_is_profile(fine);
+    const double *middle = r->window + row * nx;
+    size_t found = row_summits(profile ? NULL : middle - nx, middle, profile ? NULL : middle + nx,
+                               nx, false, r->columns);
+    double dx = grid_dx(fine), dy = profile ? 1 : grid_dy(fine);
+    for (size_t s = 0; s < found; s++) {
+        double x, y;
+        struct jet jet;
+        if (!climb(r, (double)r->columns[s], (double)row, &x, &y, &jet))
+            continue;
+        double bend = profile ? jet.xx / (dx * dx) : (jet.xx / (dx * dx) + jet.yy / (dy * dy)) / 2;
+        struct summit summit = {
+            .x = wrapped(x, (double)nx) * dx,
+            .y = profile ? 0 : wrapped(first + y, (double)fine->ny) * dy,
+            .height = jet.z,
+            .curvature = -bend,
+        };
+        int status = summit_list_add(list, &summit, err);
+        if (status)
+            return status;
+    }
+    return 0;
+}
+
+static int by_row(const void *a, const void *b) {
+    const struct summit *s = a, *t = b;
+    if (s->y != t->y)
+        return s->y < t->y ? -1 : 1;
+    return (s->x > t->x) - (s->x < t->x);
+}
+
+/* Distance on a circle. */
+static double apart(double a, double b, double period) {
+    double distance = fabs(a - b);
+    return fmin(distance, period - distance);
+}
+
+/* Drops summits found from several starts: sorted by row, copies are near neighbours in the list.
+ * A dropped one is marked by x < 0 until the list is closed up. */
+static void merge_copies(const struct grid *fine, struct summit_list *list) {
+    const double near = 1e-3; /* of a fine cell; searches end within 1e-6 */
+    struct summit *s = list->summits;
+    bool profile = grid_is_profile(fine);
+    double near_x = near * grid_dx(fine), near_y = profile ? 1 : near * grid_dy(fine);
+    double ly = profile ? 2 : fine->ly;
+    if (list->count > 1)
+        qsort(s, list->count, sizeof *s, by_row);
+    for (size_t i = 0; i < list->count; i++) {
+        for (size_t step = 1; s[i].x >= 0 && step < list->count; step++) {
+            struct summit *other = &s[(i + step) % list->count];
+            double along = profile ? apart(other->x, s[i].x, fine->lx) - near_x
+                                   : apart(other->y, s[i].y, ly) - near_y;
+            if (other->x >= 0 && !(along < 0))
+                break;
+            if (other->x >= 0 && apart(other->x, s[i].x, fine->lx) < near_x)
+                other->x = -1;
+        }
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < list->count; i++)
+        if (s[i].x >= 0)
+            s[kept++] = s[i];
+    list->count = kept;
+}
+
+/* Fills window rows row .. row + count - 1 with the fine rows from `first` on, periodic. */
+static void window_fill(struct refined *r, long first, size_t row, size_t count) {
+    long ny = (long)r->fine.ny;
+    for (size_t done = 0; done < count;) {
+        size_t at = (size_t)((((first + (long)done) % ny) + ny) % ny);
+        size_t rows = count - done;
+        if (rows > r->fine.ny - at)
+            rows = r->fine.ny - at;
+        transform_inverse_rows(r->dense, at, rows, r->window + (row + done) * r->fine.nx);
+        done += rows;
+    }
+}
+
+static int strips_search(struct refined *r, struct summit_list *list, struct error *err) {
+    size_t nx = r->fine.nx, ny = r->fine.ny, kept = WINDOW - STRIP;
+    window_fill(r, -MARGIN, STRIP, kept);
+    for (size_t first = 0; first < ny; first += STRIP) {
+        memmove(r->window, r->window + STRIP * nx, kept * nx * sizeof *r->window);
+        window_fill(r, (long)first + MARGIN, kept, STRIP);
+        for (size_t row = 0; row < STRIP && first + row < ny; row++) {
+            int status = row_search(r, (double)first - MARGIN, MARGIN + row, list, err);
+            if (status)
+                return status;
+        }
+    }
+    return 0;
+}
+
+int refined_find(struct refined *r, const double *z, struct summit_list *list, struct error *err) {
+    transform_forward(r->coarse, z);
+    transform_pad(r->coarse, r->dense);
+    transform_inverse_columns(r->dense);
+    int status;
+    if (grid_is_profile(&r->fine)) {
+        transform_inverse_rows(r->dense, 0, 1, r->window);
+        status = row_search(r, 0, 0, list, err);
+    } else {
+        status = strips_search(r, list, err);
+    }
+    if (!status)
+        merge_copies(&r->fine, list);
+    return status;
+}

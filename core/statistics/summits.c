@@ -1,0 +1,166 @@
+#include "core/statistics/summits.h"
+#include "core/statistics/grid_summits.h"
+#include "core/statistics/refined.h"
+#include "core/surface/transform.h"
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+struct summit_finder {
+    struct grid grid;
+    enum summit_stencil stencil;
+    size_t mode_x, mode_y;
+    size_t *columns;             /* one row's summits */
+    struct transform *transform; /* spectral curvature: exact derivatives, NULL otherwise */
+    double *curvature;           /* of every point, likewise */
+    struct refined *refined;     /* SUMMITS_REFINED, NULL otherwise */
+};
+
+void summit_list_clear(struct summit_list *list) {
+    free(list->summits);
+    *list = (struct summit_list){0};
+}
+
+int summit_list_add(struct summit_list *list, const struct summit *summit, struct error *err) {
+    if (list->count == list->capacity) {
+        size_t capacity = list->capacity ? 2 * list->capacity : 1024;
+        size_t bytes = capacity * sizeof *list->summits;
+        struct summit *larger =
+            capacity < SIZE_MAX / sizeof *larger ? realloc(list->summits, bytes) : NULL;
+        if (!larger)
+            return error_memory(err, bytes, "summits");
+        list->summits = larger;
+        list->capacity = capacity;
+    }
+    list->summits[list->count++] = *summit;
+    return 0;
+}
+
+static int finder_fill(struct summit_finder *f, enum summit_curvature curvature,
+                       struct error *err) {
+    if (f->stencil == SUMMITS_REFINED)
+        return refined_create(&f->refined, &f->grid, f->mode_x, f->mode_y, err);
+    f->columns = array_create(f->grid.nx, sizeof *f->columns);
+    if (!f->columns)
+        return error_memory(err, f->grid.nx * sizeof *f->columns, "a row of summits");
+    if (curvature == CURVATURE_FINITE_DIFFERENCE)
+        return 0;
+    f->curvature = array_create(grid_points(&f->grid), sizeof *f->curvature);
+    if (!f->curvature)
+        return error_memory(err, grid_points(&f->grid) * sizeof *f->curvature, "curvatures");
+    return transform_create(&f->transform, &f->grid, f->mode_x, f->mode_y, err);
+}
+
+int summit_finder_create(struct summit_finder **out, const struct grid *grid,
+                         enum summit_stencil stencil, enum summit_curvature curvature,
+                         size_t mode_x, size_t mode_y, struct error *err) {
+    int status = grid_check(grid, err);
+    if (status)
+        return status;
+    struct summit_finder *f = array_create(1, sizeof *f);
+    if (!f)
+        return error_memory(err, sizeof *f, "a summit finder");
+    f->grid = *grid;
+    f->stencil = stencil;
+    f->mode_x = mode_x;
+    f->mode_y = mode_y;
+    status = finder_fill(f, curvature, err);
+    if (status) {
+        summit_finder_destroy(&f);
+        return status;
+    }
+    *out = f;
+    return 0;
+}
+
+void summit_finder_destroy(struct summit_finder **finder) {
+    struct summit_finder *f = *finder;
+    if (!f)
+        return;
+    refined_destroy(&f->refined);
+    transform_destroy(&f->transform);
+    free(f->curvature);
+    free(f->columns);
+    free(f);
+    *finder = NULL;
+}
+
+double summit_finder_bytes(const struct grid *grid, enum summit_stencil stencil,
+                           enum summit_curvature curvature, size_t mode_x, size_t mode_y) {
+    if (stencil == SUMMITS_REFINED)
+        return refined_bytes(grid, mode_x, mode_y);
+    double bytes = (double)grid->nx * sizeof(size_t);
+    if (curvature == CURVATURE_SPECTRAL)
+        bytes += (double)grid_points(grid) * sizeof(double) +
+                 (double)(mode_x + 1) * (double)grid->ny * sizeof(double complex);
+    return bytes;
+}
+
+/* -(z_xx + z_yy)/2 of every point (profiles -z_xx), exact for a band-limited surface. */
+static void curvature_fill(struct summit_finder *f, const double *z) {
+    const struct grid *grid = &f->grid;
+    size_t ny = grid->ny;
+    double step_x = 2 * M_PI / grid->lx, step_y = grid_is_profile(grid) ? 0 : 2 * M_PI / grid->ly;
+    double half = grid_is_profile(grid) ? 1 : 0.5;
+    transform_forward(f->transform, z);
+    double complex *mode = transform_spectrum(f->transform);
+    for (size_t mx = 0; mx <= f->mode_x; mx++)
+        for (size_t row = 0; row < ny; row++, mode++) {
+            size_t my = row <= ny / 2 ? row : ny - row;
+            double kx = (double)mx * step_x, ky = (double)my * step_y;
+            *mode *= my <= f->mode_y ? half * (kx * kx + ky * ky) : 0;
+        }
+    transform_inverse(f->transform, f->curvature);
+}
+
+/* Central differences (theory.md 3.20). */
+static double difference_curvature(const struct grid *grid, const double *z, size_t i, size_t j) {
+    size_t nx = grid->nx, ny = grid->ny;
+    const double *row = z + j * nx;
+    double dx = grid_dx(grid), dy = grid_dy(grid);
+    double left = row[i ? i - 1 : nx - 1], right = row[i + 1 < nx ? i + 1 : 0];
+    double xx = (left - 2 * row[i] + right) / (dx * dx);
+    if (grid_is_profile(grid))
+        return -xx;
+    double up = z[(j ? j - 1 : ny - 1) * nx + i], down = z[(j + 1 < ny ? j + 1 : 0) * nx + i];
+    double yy = (up - 2 * row[i] + down) / (dy * dy);
+    return -(xx + yy) / 2;
+}
+
+static int row_add(struct summit_finder *f, const double *z, size_t j, size_t found,
+                   struct summit_list *list, struct error *err) {
+    const struct grid *grid = &f->grid;
+    for (size_t s = 0; s < found; s++) {
+        size_t i = f->columns[s], point = j * grid->nx + i;
+        struct summit summit = {
+            .x = (double)i * grid_dx(grid),
+            .y = grid_is_profile(grid) ? 0 : (double)j * grid_dy(grid),
+            .height = z[point],
+            .curvature = f->curvature ? f->curvature[point] : difference_curvature(grid, z, i, j),
+        };
+        int status = summit_list_add(list, &summit, err);
+        if (status)
+            return status;
+    }
+    return 0;
+}
+
+int summits_find(struct summit_finder *f, const double *z, struct summit_list *list,
+                 struct error *err) {
+    list->count = 0;
+    if (f->stencil == SUMMITS_REFINED)
+        return refined_find(f->refined, z, list, err);
+    if (f->curvature)
+        curvature_fill(f, z);
+    size_t nx = f->grid.nx, ny = f->grid.ny;
+    bool corners = f->stencil == SUMMITS_NINE_POINT, profile = grid_is_profile(&f->grid);
+    for (size_t j = 0; j < ny; j++) {
+        const double *up = profile ? NULL : z + (j ? j - 1 : ny - 1) * nx;
+        const double *down = profile ? NULL : z + (j + 1 < ny ? j + 1 : 0) * nx;
+        size_t found = row_summits(up, z + j * nx, down, nx, corners, f->columns);
+        int status = row_add(f, z, j, found, list, err);
+        if (status)
+            return status;
+    }
+    return 0;
+}
