@@ -1,0 +1,373 @@
+/* The kind "statistics" from parameters to curves: any split into blocks and any order of merging
+ * gives the same document, foreign and damaged results are refused whole, and the curves and errors
+ * are those that the realisations themselves give. */
+#include "core/statistics/summits.h"
+#include "jobs/kind.h"
+#include "jobs/value.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+enum { REALISATIONS = 24, SEED = 5, CASE = 2 };
+
+static const char GAUSSIAN[] =
+    "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
+    " \"points_per_wavelength\": 4, \"rms_slope\": 0.1},"
+    " \"statistics\": {\"bins\": {\"height\": [0, 2, 10], \"curvature\": [-9, -1, 16]}}}";
+static const char WEIBULL[] =
+    "{\"surface\": {\"hurst\": 0.4, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
+    " \"points_per_wavelength\": 4, \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 2,"
+    " \"keep\": \"heights\"}}, \"statistics\": {\"summits\": \"five_point\"}}";
+static const char PROFILE[] =
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.6, \"wavelength_ratio\": 16},"
+    " \"statistics\": {\"summits\": \"refined\"}}";
+static const char *const STUDIES[] = {GAUSSIAN, WEIBULL, PROFILE};
+enum { STUDY_COUNT = 3 };
+
+static uint64_t next_word(uint64_t *state) {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return *state;
+}
+
+static const struct job_kind *kind(void) {
+    return kind_find("statistics");
+}
+
+static cJSON *parse(const char *text) {
+    cJSON *parameters = cJSON_Parse(text);
+    assert_non_null(parameters);
+    return parameters;
+}
+
+static struct job_runner *runner_of(const char *study) {
+    struct job_runner *runner = NULL;
+    struct error err = {0};
+    cJSON *parameters = parse(study);
+    if (kind()->runner_create(&runner, parameters, SEED, CASE, &err) != 0)
+        fail_msg("%s", err.text);
+    cJSON_Delete(parameters);
+    return runner;
+}
+
+static struct job_merger *merger_of(const char *study) {
+    struct job_merger *merger = NULL;
+    struct error err = {0};
+    cJSON *parameters = parse(study);
+    if (kind()->merger_create(&merger, parameters, &err) != 0)
+        fail_msg("%s", err.text);
+    cJSON_Delete(parameters);
+    return merger;
+}
+
+static struct job_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
+    struct job_result result = {0};
+    struct error err = {0};
+    if (kind()->run(runner, first, count, NULL, &result, &err) != 0)
+        fail_msg("%s", err.text);
+    return result;
+}
+
+static void merge(struct job_merger *merger, const struct job_result *result) {
+    struct error err = {0};
+    if (kind()->merge(merger, result, &err) != 0)
+        fail_msg("%s", err.text);
+}
+
+static cJSON *curves_of(struct job_merger *merger) {
+    cJSON *document = NULL;
+    struct error err = {0};
+    if (kind()->curves(merger, &document, &err) != 0)
+        fail_msg("%s", err.text);
+    return document;
+}
+
+static char *text_of(struct job_merger *merger) {
+    cJSON *document = curves_of(merger);
+    char *text = cJSON_PrintUnformatted(document);
+    assert_non_null(text);
+    cJSON_Delete(document);
+    return text;
+}
+
+static const cJSON *curve_of(const cJSON *document, const char *quantity) {
+    const cJSON *curve;
+    cJSON_ArrayForEach(curve, value_at(document, "/curves")) {
+        if (strcmp(value_at(curve, "/quantity")->valuestring, quantity) == 0)
+            return curve;
+    }
+    fail_msg("no curve %s", quantity);
+    return NULL;
+}
+
+static double at(const cJSON *curve, const char *key, int point) {
+    const cJSON *value = cJSON_GetArrayItem(value_at(curve, key), point);
+    assert_non_null(value);
+    return cJSON_IsNumber(value) ? value->valuedouble : NAN;
+}
+
+static double scalar(const cJSON *document, const char *name, const char *what) {
+    char pointer[100];
+    snprintf(pointer, sizeof pointer, "/scalars/%s/%s", name, what);
+    const cJSON *value = value_at(document, pointer);
+    return cJSON_IsNumber(value) ? value->valuedouble : NAN;
+}
+
+/* Random blocks, run by several runners, merged in random order: the same text. */
+static void any_split_and_order(void **state) {
+    (void)state;
+    uint64_t seed = (uint64_t)time(NULL) | 1;
+    printf("seed %llu\n", (unsigned long long)seed);
+    for (int s = 0; s < STUDY_COUNT; s++) {
+        struct job_runner *runners[] = {runner_of(STUDIES[s]), runner_of(STUDIES[s])};
+        struct job_merger *whole = merger_of(STUDIES[s]);
+        struct job_result result = run(runners[0], 0, REALISATIONS);
+        merge(whole, &result);
+        job_result_clear(&result);
+        char *expected = text_of(whole);
+        for (int trial = 0; trial < 3; trial++) {
+            struct job_merger *merger = merger_of(STUDIES[s]);
+            struct job_result parts[REALISATIONS];
+            size_t count = 0;
+            for (uint64_t first = 0; first < REALISATIONS;) {
+                uint64_t size = 1 + next_word(&seed) % 9;
+                size = first + size <= REALISATIONS ? size : REALISATIONS - first;
+                parts[count] = run(runners[count % 2], first, size);
+                count++;
+                first += size;
+            }
+            for (size_t left = count; left > 0; left--) {
+                size_t pick = (size_t)(next_word(&seed) % left);
+                merge(merger, &parts[pick]);
+                job_result_clear(&parts[pick]);
+                parts[pick] = parts[left - 1];
+            }
+            char *got = text_of(merger);
+            assert_string_equal(got, expected);
+            free(got);
+            kind()->merger_destroy(&merger);
+        }
+        free(expected);
+        kind()->merger_destroy(&whole);
+        kind()->runner_destroy(&runners[0]);
+        kind()->runner_destroy(&runners[1]);
+    }
+}
+
+static void assert_refused(struct job_merger *merger, const struct job_result *result,
+                           const char *words) {
+    struct error err = {0};
+    int status = kind()->merge(merger, result, &err);
+    if (status != ERROR_INPUT || strstr(err.text, words) == NULL)
+        fail_msg("'%s' expected, but status %d, '%s'", words, status, err.text);
+}
+
+/* Another case's, another block's, twice the same, damaged, cut: refused, and nothing is added. */
+static void foreign_and_damaged(void **state) {
+    (void)state;
+    struct job_runner *runner = runner_of(GAUSSIAN), *other = runner_of(PROFILE);
+    struct job_merger *merger = merger_of(GAUSSIAN);
+    struct job_result good = run(runner, 3, 4), next = run(runner, 7, 4);
+    struct job_result foreign = run(other, 0, 2);
+    merge(merger, &good);
+    char *before = text_of(merger);
+    assert_refused(merger, &good, "realisation 3 is there already");
+    assert_refused(merger, &foreign, "other parameters");
+    struct job_result bad = next;
+    bad.first = 6;
+    assert_refused(merger, &bad, "realisation 6 is there already");
+    bad.first = 0;
+    assert_refused(merger, &bad, "realisation 3 is there already");
+    bad = next;
+    bad.count = 3;
+    assert_refused(merger, &bad, "scalars beside it");
+    bad = next;
+    bad.scalar_count--;
+    assert_refused(merger, &bad, "scalars a realisation");
+    for (size_t size = 0; size < next.size; size += 1 + next.size / 500) {
+        bad = next;
+        bad.size = size;
+        assert_refused(merger, &bad, "the partial result");
+    }
+    for (size_t bit = 0; bit < 8 * next.size; bit += 1 + next.size / 97) {
+        next.data[bit / 8] ^= (unsigned char)(1u << (bit % 8));
+        assert_refused(merger, &next, "the partial result");
+        next.data[bit / 8] ^= (unsigned char)(1u << (bit % 8));
+    }
+    char *after = text_of(merger);
+    assert_string_equal(after, before);
+    merge(merger, &next);
+    free(before);
+    free(after);
+    job_result_clear(&good);
+    job_result_clear(&next);
+    job_result_clear(&foreign);
+    kind()->merger_destroy(&merger);
+    kind()->runner_destroy(&runner);
+    kind()->runner_destroy(&other);
+}
+
+/* A histogram is the counts over all realisations, and its error that of the ratio, from the
+ * realisations one by one. 1e-12: rounding. */
+static void curves_against_brute_force(void **state) {
+    (void)state;
+    struct job_runner *runner = runner_of(GAUSSIAN);
+    struct job_merger *merger = merger_of(GAUSSIAN);
+    double n[REALISATIONS], share[REALISATIONS], total = 0, sum = 0, squares = 0;
+    const int bin = 4; /* [0.8, 1): well filled */
+    for (uint64_t r = 0; r < REALISATIONS; r++) {
+        struct job_merger *single = merger_of(GAUSSIAN);
+        struct job_result result = run(runner, r, 1);
+        merge(single, &result);
+        merge(merger, &result);
+        cJSON *document = curves_of(single);
+        n[r] = scalar(document, "summits", "value");
+        share[r] = at(curve_of(document, "summit_height_pdf"), "/y", bin) * 0.2;
+        assert_true(isnan(at(curve_of(document, "summit_height_pdf"), "/standard_error", bin)));
+        cJSON_Delete(document);
+        job_result_clear(&result);
+        kind()->merger_destroy(&single);
+        total += n[r];
+        sum += n[r] * share[r];
+    }
+    for (size_t r = 0; r < REALISATIONS; r++)
+        squares += pow(n[r] * share[r] - sum / total * n[r], 2);
+    double m = REALISATIONS;
+    cJSON *document = curves_of(merger);
+    const cJSON *pdf = curve_of(document, "summit_height_pdf");
+    assert_true(fabs(at(pdf, "/y", bin) - sum / total / 0.2) <= 1e-12);
+    assert_true(fabs(at(pdf, "/standard_error", bin) - sqrt(m / (m - 1) * squares) / total / 0.2) <=
+                1e-12);
+    assert_true(fabs(scalar(document, "summits", "value") - total / m) <= 1e-12 * total);
+    cJSON_Delete(document);
+    kind()->merger_destroy(&merger);
+    kind()->runner_destroy(&runner);
+}
+
+/* Densities and what fell outside add up to one; the joint density has the marginals. */
+static void normalisation(void **state) {
+    (void)state;
+    struct job_runner *runner = runner_of(GAUSSIAN);
+    struct job_merger *merger = merger_of(GAUSSIAN);
+    struct job_result result = run(runner, 0, REALISATIONS);
+    merge(merger, &result);
+    cJSON *document = curves_of(merger);
+    const cJSON *pdf = curve_of(document, "summit_height_pdf");
+    const cJSON *cdf = curve_of(document, "summit_height_cdf");
+    const cJSON *joint = curve_of(document, "summit_joint_pdf");
+    double summits = scalar(document, "summits", "value") * REALISATIONS, inside = 0, all = 0;
+    double below = value_at(pdf, "/underflow")->valuedouble;
+    double above = value_at(pdf, "/overflow")->valuedouble;
+    assert_true(below > 0 && above > 0);
+    for (int b = 0; b < 10; b++) {
+        inside += at(pdf, "/y", b) * 0.2;
+        assert_true(fabs(at(cdf, "/y", b) - inside - below / summits) <= 1e-12);
+        const cJSON *row = cJSON_GetArrayItem(value_at(joint, "/y"), b);
+        for (int t = 0; t < 16; t++)
+            all += cJSON_GetArrayItem(row, t)->valuedouble * 0.2 * 0.5;
+    }
+    assert_true(fabs(inside + (below + above) / summits - 1) <= 1e-12);
+    assert_true(fabs(all + value_at(joint, "/overflow")->valuedouble / summits - 1) <= 1e-12);
+    const cJSON *heights = curve_of(document, "height_pdf");
+    assert_true(value_at(heights, "/underflow")->valuedouble > 0);
+    cJSON_Delete(document);
+    job_result_clear(&result);
+    kind()->merger_destroy(&merger);
+    kind()->runner_destroy(&runner);
+}
+
+/* Bins that miss everything: no share, all counted outside, no NaN where there is a number. */
+static void bins_that_miss(void **state) {
+    (void)state;
+    static const char study[] =
+        "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
+        " \"points_per_wavelength\": 4},"
+        " \"statistics\": {\"bins\": {\"height\": [50, 60, 3], \"curvature\": [1, 2, 2]}}}";
+    struct job_runner *runner = runner_of(study);
+    struct job_merger *merger = merger_of(study);
+    struct job_result result = run(runner, 0, 3);
+    merge(merger, &result);
+    cJSON *document = curves_of(merger);
+    const cJSON *pdf = curve_of(document, "summit_height_pdf");
+    assert_true(at(pdf, "/y", 1) == 0 && at(pdf, "/standard_error", 1) == 0);
+    assert_true(value_at(pdf, "/underflow")->valuedouble ==
+                3 * scalar(document, "summits", "value"));
+    cJSON_Delete(document);
+    job_result_clear(&result);
+    kind()->merger_destroy(&merger);
+    kind()->runner_destroy(&runner);
+}
+
+/* Before any result there are curves too, all of them empty of values. */
+static void no_realisation_yet(void **state) {
+    (void)state;
+    struct job_merger *merger = merger_of(GAUSSIAN);
+    cJSON *document = curves_of(merger);
+    assert_true(value_at(document, "/realisations")->valuedouble == 0);
+    assert_true(isnan(at(curve_of(document, "summit_height_pdf"), "/y", 0)));
+    assert_true(scalar(document, "nayak_alpha", "value") > 1.5);
+    cJSON_Delete(document);
+    kind()->merger_destroy(&merger);
+}
+
+static int stop_at_two(void *context, uint64_t done) {
+    (void)context;
+    return done == 2;
+}
+
+static void stopping(void **state) {
+    (void)state;
+    struct job_runner *runner = runner_of(GAUSSIAN);
+    const struct job_control control = {stop_at_two, NULL};
+    struct job_result result = {.first = 77};
+    struct error err = {0};
+    assert_int_equal(kind()->run(runner, 0, 5, &control, &result, &err), ERROR_STOPPED);
+    assert_non_null(strstr(err.text, "2 of 5"));
+    assert_true(result.first == 77 && result.data == NULL);
+    kind()->runner_destroy(&runner);
+}
+
+/* Faults of a statistics case come with those of its surface. */
+static void checking(void **state) {
+    (void)state;
+    struct fault_list faults = {0};
+    struct job_estimate estimate;
+    cJSON *parameters = parse(GAUSSIAN);
+    assert_int_equal(kind()->check(parameters, &faults, &estimate, NULL), 0);
+    assert_int_equal(faults.count, 0);
+    assert_int_equal(estimate.nx, 32);
+    assert_true(estimate.memory_bytes > 1e5 && estimate.memory_bytes < 1e8);
+    assert_true(estimate.seconds > 0 && estimate.relative_error > 0 &&
+                estimate.relative_error < 10);
+    cJSON_Delete(parameters);
+    parameters = parse("{\"surface\": {\"hurst\": 0.8}, \"statistics\": {\"bins\":"
+                       " {\"height\": [3, 3, 5], \"curvature\": [0, 1, 0.5]}}}");
+    assert_int_equal(kind()->check(parameters, &faults, &estimate, NULL), 0);
+    assert_int_equal(faults.count, 3);
+    assert_string_equal(faults.faults[1].pointer, "/statistics/bins/height");
+    assert_non_null(strstr(faults.faults[1].detail, "below high"));
+    assert_string_equal(faults.faults[2].pointer, "/statistics/bins/curvature");
+    fault_list_clear(&faults);
+    cJSON_Delete(parameters);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_split_and_order),
+        cmocka_unit_test(foreign_and_damaged),
+        cmocka_unit_test(curves_against_brute_force),
+        cmocka_unit_test(normalisation),
+        cmocka_unit_test(bins_that_miss),
+        cmocka_unit_test(no_realisation_yet),
+        cmocka_unit_test(stopping),
+        cmocka_unit_test(checking),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
