@@ -76,12 +76,11 @@ struct series {
     double *x, *y, *standard_error, *theory;
 };
 static int series_create(struct series *out, size_t n, struct error *err) {
-    out->x = array_create(n, 4 * sizeof(double));
-    if (out->x == NULL)
-        return error_memory(err, n * 4 * sizeof(double), "a curve");
-    out->y = out->x + n;
-    out->standard_error = out->x + 2 * n;
-    out->theory = out->x + 3 * n;
+    double *x = array_create(n, 4 * sizeof *x);
+    *out = (struct series){0};
+    if (x == NULL)
+        return error_memory(err, n * 4 * sizeof *x, "a curve");
+    *out = (struct series){x, x + n, x + 2 * n, x + 3 * n};
     return 0;
 }
 
@@ -93,7 +92,7 @@ static int density_curve(const struct statistics_case *study, const struct modes
                          const struct statistics_tally *tally, cJSON *curves, struct error *err) {
     size_t n = radial_bins(&modes->grid), last = n - 1;
     bool exact = surface_case_exact(&study->surface);
-    struct series series, reference;
+    struct series series = {0}, reference = {0};
     int status = series_create(&series, n, err);
     if (status != 0)
         return status;
@@ -169,7 +168,7 @@ static int correlation_curve(const struct statistics_case *study, const struct m
                              const struct statistics_tally *tally, cJSON *curves,
                              struct error *err) {
     bool exact = surface_case_exact(&study->surface);
-    struct series series;
+    struct series series = {0};
     size_t n;
     int status = prescribed_correlation(study, modes, &series, &n, err);
     if (status != 0)
