@@ -140,7 +140,9 @@ static bool put_scalars(cJSON *scalars, const struct statistics_case *study,
             estimate = estimate_mean(columns->n, column(columns, a));
         done = put_scalar(scalars, STATISTICS_SCALARS[a], estimate, theory[a]);
     }
-    return done;
+    /* as given, or as solved for nayak_alpha */
+    return done && put_scalar(scalars, "wavelength_ratio",
+                              (struct estimate){study->surface.wavelength_ratio, 0}, NAN);
 }
 
 int statistics_scalars_json(const struct statistics_case *study, const struct moments *moments,

@@ -2,6 +2,7 @@
  * gives the same document, foreign and damaged results are refused whole, and the curves and errors
  * are those that the realisations themselves give. */
 #include "core/statistics/summits.h"
+#include "jobs/bytes.h"
 #include "jobs/kind.h"
 #include "jobs/value.h"
 #include <math.h>
@@ -214,6 +215,42 @@ static void foreign_and_damaged(void **state) {
     kind()->runner_destroy(&other);
 }
 
+/* Changed bytes under a seal made anew, as someone might send on purpose: taken or refused, but
+ * never a crash, a read past the end or an overflow (run under sanitizers). */
+static void malicious(void **state) {
+    (void)state;
+    uint64_t seed = (uint64_t)time(NULL) | 1;
+    printf("seed %llu\n", (unsigned long long)seed);
+    struct job_runner *runner = runner_of(GAUSSIAN);
+    struct job_merger *merger = merger_of(GAUSSIAN);
+    struct job_result good = run(runner, 0, 2);
+    unsigned char *copy = malloc(good.size);
+    assert_non_null(copy);
+    size_t taken = 0;
+    for (int trial = 0; trial < 20000; trial++) {
+        struct job_result bad = good;
+        memcpy(copy, good.data, good.size);
+        bad.data = copy;
+        bad.first = (uint64_t)trial * 2;
+        bad.size = trial % 2 ? good.size : 8 + (size_t)(next_word(&seed) % (good.size - 8));
+        for (uint64_t change = next_word(&seed) % 4; change > 0; change--)
+            copy[next_word(&seed) % good.size] = (unsigned char)(next_word(&seed) >> 13);
+        uint64_t hash = hash_bytes(HASH_START, bad.size - 8, copy);
+        for (size_t a = 0; a < 8; a++)
+            copy[bad.size - 8 + a] = (unsigned char)(hash >> (8 * a));
+        struct error err = {0};
+        int status = kind()->merge(merger, &bad, &err);
+        assert_true(status == 0 || status == ERROR_INPUT);
+        taken += status == 0;
+    }
+    assert_true(taken > 1000); /* the unchanged ones at least: the seal is made as it should be */
+    cJSON_Delete(curves_of(merger));
+    free(copy);
+    job_result_clear(&good);
+    kind()->merger_destroy(&merger);
+    kind()->runner_destroy(&runner);
+}
+
 /* A histogram is the counts over all realisations, and its error that of the ratio, from the
  * realisations one by one. 1e-12: rounding. */
 static void curves_against_brute_force(void **state) {
@@ -362,6 +399,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_split_and_order),
         cmocka_unit_test(foreign_and_damaged),
+        cmocka_unit_test(malicious),
         cmocka_unit_test(curves_against_brute_force),
         cmocka_unit_test(normalisation),
         cmocka_unit_test(bins_that_miss),
