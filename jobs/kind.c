@@ -6,7 +6,7 @@
 const struct job_kind *const JOB_KINDS[] = {
     &STATISTICS_KIND,
 };
-const size_t JOB_KIND_COUNT = sizeof JOB_KINDS / sizeof *JOB_KINDS;
+const size_t JOB_KIND_COUNT = sizeof JOB_KINDS / sizeof JOB_KINDS[0];
 
 const struct job_kind *kind_find(const char *name) {
     for (size_t a = 0; a < JOB_KIND_COUNT; a++)

@@ -166,14 +166,17 @@ void statistics_case_estimate(const struct statistics_case *study, struct job_es
     double points = (double)grid_points(grid), alpha;
     double summits = fmax(1, expected_summits(surface, &alpha));
     double spread = sqrt(fmax(0.05, 1 - 0.8968 / fmax(alpha, 1))); /* of summit heights */
+    bool exact = surface_case_exact(surface);
     out->nx = grid->nx;
     out->ny = grid->ny;
     /* a list of summits doubles as it grows; spectra of height maps take a transform of the grid */
     out->memory_bytes =
         generator_bytes(grid, mode_x, mode_y, &surface->options) +
-        summit_finder_bytes(grid, study->stencil, study->curvature, mode_x, mode_y) +
+        (exact ? summit_finder_bytes(grid, study->stencil, study->curvature, mode_x, mode_y)
+               : summit_finder_bytes(grid, study->stencil, study->curvature, grid->nx / 2,
+                                     grid->ny / 2)) +
         statistics_tally_bytes(study) + 2 * summits * sizeof(struct summit) +
-        (surface_case_exact(surface) ? 0 : 24 * points) + 6e6;
+        (exact ? 0 : 24 * points) + 6e6;
     out->seconds = expected_seconds(study);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */
     out->relative_error = 2.239 * sqrt(spread / (summits * bins_width(&study->height)));

@@ -21,8 +21,10 @@ static int workshop_create(struct workshop *shop, struct error *err) {
                                &shop->pdf, &shop->cdf, &shop->curvature};
     for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++) {
         *arrays[a] = array_create(cells, sizeof(double));
-        if (*arrays[a] == NULL)
-            return error_memory(err, cells * sizeof(double), "curves");
+        if (*arrays[a] == NULL) {
+            error_memory(err, cells * sizeof(double), "curves");
+            return ERROR_MEMORY;
+        }
     }
     shop->curves = cJSON_CreateArray();
     return shop->curves != NULL ? 0 : error_memory(err, sizeof(cJSON), "curves");

@@ -42,7 +42,8 @@ int spectra_create(struct spectra *out, const struct statistics_case *study,
     out->reference = array_create(most, sizeof(double));
     if (out->abscissa == NULL || out->measured == NULL || out->reference == NULL) {
         spectra_clear(out);
-        return error_memory(err, 3 * most * sizeof(double), "spectra");
+        error_memory(err, 3 * most * sizeof(double), "spectra");
+        return ERROR_MEMORY;
     }
     psd_of_modes(modes, out->abscissa, out->reference);
     reference_of(out->densities, out->reference);
@@ -78,8 +79,10 @@ struct series {
 static int series_create(struct series *out, size_t n, struct error *err) {
     double *x = array_create(n, 4 * sizeof *x);
     *out = (struct series){0};
-    if (x == NULL)
-        return error_memory(err, n * 4 * sizeof *x, "a curve");
+    if (x == NULL) {
+        error_memory(err, n * 4 * sizeof *x, "a curve");
+        return ERROR_MEMORY;
+    }
     *out = (struct series){x, x + n, x + 2 * n, x + 3 * n};
     return 0;
 }

@@ -80,9 +80,10 @@ static bool band_has_mode(int dimension, double low, double high) {
     high *= 1 + ROUNDING;
     if (dimension == 1 || high >= low + 1)
         return floor(high) >= ceil(low);
-    for (double mx = 0; mx <= high; mx++) {
-        double my = ceil(sqrt(fmax(0, low * low - mx * mx)));
-        if (mx * mx + my * my <= high * high)
+    for (size_t mx = 0; (double)mx <= high; mx++) {
+        double square = (double)mx * (double)mx;
+        double my = ceil(sqrt(fmax(0, low * low - square)));
+        if (square + my * my <= high * high)
             return true;
     }
     return false;
@@ -176,7 +177,7 @@ static int read_table(struct surface_case *out, const struct case_reader *reader
         if (out->table == NULL)
             status = error_memory(err, 2 * n * sizeof *out->table, "a table spectrum");
     }
-    if (out->table != NULL) {
+    if (out->table != NULL && wave_number != NULL && density != NULL) {
         memcpy(out->table, wave_number, n * sizeof *wave_number);
         memcpy(out->table + n, density, n * sizeof *density);
         out->spectrum.table_count = n;

@@ -138,7 +138,8 @@ static int parse_csv(struct height_map *map, struct table *table, double dx, str
 static int check_point(const struct table *table, size_t nx, size_t point, double dx, double dy,
                        struct error *err) {
     const double *first = table->numbers, *at = table->numbers + 3 * point;
-    double x = first[0] + (double)(point % nx) * dx, y = first[1] + (double)(point / nx) * dy;
+    size_t i = point % nx, j = point / nx;
+    double x = first[0] + (double)i * dx, y = first[1] + (double)j * dy;
     double scale = 1e-6; /* of a step: coordinates are often printed with few digits */
     double guard = 1e-5 * fabs(dx) + scale * (fabs(first[0]) + fabs(x));
     double guard_y = 1e-5 * fabs(dy) + scale * (fabs(first[1]) + fabs(y));

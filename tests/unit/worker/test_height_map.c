@@ -45,20 +45,17 @@ static void round_trip(void **state) {
     }
 }
 
-/* Every write that fails is an error: a file opened for reading takes none. */
+/* A write that fails is an error: this device is always full. */
 static void failing_write(void **state) {
     (void)state;
     const struct grid grid = {64, 64, 1, 1};
-    double *z = calloc(64 * 64, sizeof *z);
+    static const double z[64 * 64];
     FILE *file = fopen("/dev/full", "wb");
-    if (file == NULL) {
-        free(z);
+    if (file == NULL)
         skip();
-    }
     struct error err = {0};
     assert_int_equal(height_map_write(file, HEIGHT_MAP_CSV, &grid, z, &err), ERROR_SYSTEM);
     fclose(file);
-    free(z);
 }
 
 /* Builds an npy file from its header's dictionary and raw data; static buffer. */
