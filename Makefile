@@ -33,6 +33,9 @@ LIBS_schema = -lsqlite3 $(LIBS_jobs)
 LIBS_worker = -lcurl $(LIBS_schema)
 LIBS_server = -lmicrohttpd $(LIBS_worker)
 
+# Files linked in as data: _binary_<path with underscores>_start and _end.
+embedded = $(wildcard $(1)/migrations/*.sql $(1)/web/* $(1)/*.yaml)
+
 # Each layer is an archive; a layer's tests link it and the layers below, so that one can work on one layer alone.
 LAYERS   = core schema jobs worker server
 BELOW_core   = core
@@ -52,8 +55,12 @@ $(BUILD)/%.c.o: %.c
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) -MMD -MP -c $< -o $@
 
+$(BUILD)/%.data.o: %
+	@mkdir -p $(@D)
+	$(LD) -r -b binary -z noexecstack $< -o $@
+
 define LAYER
-$(BUILD)/lib$(1).a: $(call objects,$(call sources,$(1)))
+$(BUILD)/lib$(1).a: $(call objects,$(call sources,$(1))) $(patsubst %,$(BUILD)/%.data.o,$(call embedded,$(1)))
 	@mkdir -p $$(@D); rm -f $$@
 	$(AR) rcs $$@ $$^
 endef

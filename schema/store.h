@@ -1,5 +1,6 @@
-/* The store: studies, the queue of jobs with leases, partial results, published curves, in one SQLite
- * file. The only code that speaks SQL. schema/README.md draws the states and documents the views.
+/* The store: studies, the queue of jobs with leases, partial results, published curves, in one
+ * SQLite file. The only code that speaks SQL. schema/README.md draws the states and documents the
+ * views.
  *
  * One handle belongs to one thread at a time. Every state change is one transaction
  * (BEGIN IMMEDIATE), or a savepoint within store_begin .. store_commit (group commit). Waiting for
@@ -16,9 +17,9 @@ enum { STUDY_ID_SIZE = 17, TOKEN_SIZE = 33, ATTEMPTS_MOST = 3 };
 
 struct store;
 struct store_options {
-    bool read_only;      /* ERROR_ABSENT when the file does not exist */
-    bool existing;       /* do not create */
-    int64_t lease_ms;    /* 0: 60 000 */
+    bool read_only;                   /* ERROR_ABSENT when the file does not exist */
+    bool existing;                    /* do not create */
+    int64_t lease_ms;                 /* 0: 60 000 */
     int64_t (*now_ms)(void *context); /* lease clock; NULL: CLOCK_BOOTTIME */
     void *context;
 };
@@ -32,18 +33,20 @@ int store_begin(struct store *store, struct error *err);
 int store_commit(struct store *store, struct error *err);
 
 /* --- studies --- */
-/* Queues a study with its jobs. key (may be NULL): a second submission with the same key and the same
- * source gives the first one's id and *existing = true; another source under it: ERROR_STATE. */
-int store_submit(struct store *store, const struct study *study, const char *key, char id[STUDY_ID_SIZE],
-                 bool *existing, struct error *err);
+/* Queues a study with its jobs. key (may be NULL): a second submission with the same key and the
+ * same source gives the first one's id and *existing = true; another source under it: ERROR_STATE.
+ */
+int store_submit(struct store *store, const struct study *study, const char *key,
+                 char id[STUDY_ID_SIZE], bool *existing, struct error *err);
 
 struct study_status {
     char id[STUDY_ID_SIZE];
-    char *name, *kind;       /* owned */
-    const char *state;       /* static: queued running done failed cancelled */
+    char *name, *kind;                  /* owned */
+    const char *state;                  /* static: queued running done failed cancelled */
     uint64_t seed, cases, realisations; /* realisations of each case */
     uint64_t jobs, jobs_done, jobs_failed, jobs_running, jobs_waiting, jobs_cancelled;
-    uint64_t realisations_total, realisations_done, realisations_failed; /* done includes running jobs' reports */
+    uint64_t realisations_total, realisations_done,
+        realisations_failed; /* done includes running jobs' reports */
     double seconds;          /* spent by completed jobs, summed over workers */
     double seconds_left;     /* estimate of work left, one worker; NaN before anything is known */
     uint64_t workers;        /* distinct workers with a live lease */
@@ -54,8 +57,8 @@ void study_status_clear(struct study_status *status);
 int store_status(struct store *store, const char *id, struct study_status *out, struct error *err);
 /* Up to limit studies created after study `after` ("" from the start), oldest first; frees by
  * study_status_clear each, then free. */
-int store_list(struct store *store, const char *after, size_t limit, struct study_status **out, size_t *count,
-               struct error *err);
+int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
+               size_t *count, struct error *err);
 int store_cancel(struct store *store, const char *id, struct error *err); /* ERROR_STATE if ended */
 /* Failed jobs wait again with fresh attempts; *count of them. */
 int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err);
@@ -80,15 +83,15 @@ struct claimed_job {
 void claimed_job_clear(struct claimed_job *job);
 
 struct claim {
-    const char *worker, *host;    /* for the log */
-    const char *const *kinds;     /* NULL-terminated; NULL: any */
-    const char *study;            /* only this study; NULL: any */
-    size_t count;                 /* at most */
+    const char *worker, *host; /* for the log */
+    const char *const *kinds;  /* NULL-terminated; NULL: any */
+    const char *study;         /* only this study; NULL: any */
+    size_t count;              /* at most */
 };
 /* Hands out waiting jobs and those whose lease ran out (which count an attempt; the last failed
  * attempt fails the job with "lease ran out ..."). Oldest study first. *count may be 0. */
-int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs, size_t *count,
-                struct error *err);
+int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs,
+                size_t *count, struct error *err);
 /* Renews the lease; done: realisations so far. ERROR_STATE when the lease is lost or the study
  * cancelled (the text says which). */
 int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_t done,
@@ -103,14 +106,15 @@ struct block_result {
     size_t size;
     double seconds;
 };
-/* Stores the result once. Completing again with the same token is harmless (0, *first_time false); a
- * lost lease is ERROR_STATE and its result dropped. *case_done: no job of the case is left. */
-int store_complete(struct store *store, int64_t job, const char *token, const struct block_result *result,
-                   bool *first_time, bool *case_done, struct error *err);
+/* Stores the result once. Completing again with the same token is harmless (0, *first_time false);
+ * a lost lease is ERROR_STATE and its result dropped. *case_done: no job of the case is left. */
+int store_complete(struct store *store, int64_t job, const char *token,
+                   const struct block_result *result, bool *first_time, bool *case_done,
+                   struct error *err);
 /* The attempt failed: waits again, or fails for good after ATTEMPTS_MOST; reason kept. permanent:
  * fail at once. */
-int store_fail(struct store *store, int64_t job, const char *token, const char *reason, bool permanent,
-               struct error *err);
+int store_fail(struct store *store, int64_t job, const char *token, const char *reason,
+               bool permanent, struct error *err);
 /* Hands a job back unharmed: the attempt does not count. */
 int store_release(struct store *store, int64_t job, const char *token, struct error *err);
 /* Study, case and expected block of a job under a live lease or done under this token (to check a
@@ -131,9 +135,9 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
 typedef int result_visit(void *context, const struct block_result *result, struct error *err);
 int store_results(struct store *store, const char *study, uint64_t case_number, result_visit *visit,
                   void *context, struct error *err);
-/* Replaces the published curves and scalars of a case ({"scalars", "curves"} of interface.md) for the
- * views curve_points and case_scalars; keeps the document too. revision: of case_info when it was read;
- * an older one than published is ignored. */
+/* Replaces the published curves and scalars of a case ({"scalars", "curves"} of interface.md) for
+ * the views curve_points and case_scalars; keeps the document too. revision: of case_info when it
+ * was read; an older one than published is ignored. */
 int store_publish(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
                   const cJSON *curves, struct error *err);
 /* The published document of a case, or NULL in *out when there is none of this revision. */
@@ -148,7 +152,8 @@ int store_costs(struct store *store, const char *study, struct case_cost **out, 
                 struct error *err);
 
 /* --- upkeep --- */
-int store_snapshot(struct store *store, const char *path, struct error *err); /* VACUUM INTO; path must not exist */
+int store_snapshot(struct store *store, const char *path,
+                   struct error *err); /* VACUUM INTO; path must not exist */
 struct store_metrics {
     uint64_t studies, jobs_waiting, jobs_running, jobs_done, jobs_failed, jobs_cancelled;
     uint64_t wal_bytes, database_bytes;

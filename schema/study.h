@@ -53,7 +53,8 @@ int study_read(struct study **out, const char *text, size_t size, const char *co
                struct fault_list *faults, struct error *err);
 void study_destroy(struct study **study);
 
-/* JSON Schema (draft 2020-12) of studies of these kinds; caller deletes. NULL when out of memory. */
+/* JSON Schema (draft 2020-12) of studies of these kinds; caller deletes. NULL when out of memory.
+ */
 cJSON *study_schema(const struct study_kind *kinds, size_t kind_count);
 
 #endif

@@ -1,0 +1,352 @@
+/* Partial results out, published curves in and out. */
+#include "schema/store_internal.h"
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+void case_info_clear(struct case_info *info) {
+    cJSON_Delete(info->parameters);
+    *info = (struct case_info){0};
+}
+
+static int parse_column(sqlite3_stmt *row, int column, const struct json_limits *limits,
+                        cJSON **out, struct error *err) {
+    const char *text = (const char *)sqlite3_column_text(row, column);
+    size_t size = (size_t)sqlite3_column_bytes(row, column);
+    int status = json_parse(text ? text : "", size, limits, out, err);
+    return status ? error_context(err, "the database holds malformed JSON") : 0;
+}
+
+int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
+               struct error *err) {
+    int64_t row;
+    sqlite3_stmt *found;
+    int status = study_row(store, study, &row, err);
+    if (!status)
+        status = store_query(store, &found, err,
+                             "SELECT c.parameters, s.seed, s.realisations, c.realisations_done, "
+                             "c.revision FROM study_case c JOIN study s ON s.id = c.study_id WHERE "
+                             "s.id = ? AND c.number = ?",
+                             "ii", row, (int64_t)case_number);
+    if (!status)
+        status = store_step(store, found, err);
+    if (status == 0)
+        return error_set(err, ERROR_ABSENT, "study %s has no case %llu", study,
+                         (unsigned long long)case_number);
+    if (status < 0)
+        return status;
+    struct case_info info = {
+        .seed = strtoull((const char *)sqlite3_column_text(found, 1), NULL, 10),
+        .realisations = (uint64_t)sqlite3_column_int64(found, 2),
+        .realisations_done = (uint64_t)sqlite3_column_int64(found, 3),
+        .revision = (uint64_t)sqlite3_column_int64(found, 4),
+    };
+    status = parse_column(found, 0, NULL, &info.parameters, err);
+    sqlite3_reset(found);
+    if (!status)
+        *out = info;
+    return status;
+}
+
+/* --- partial results --- */
+
+/* A stored block may hold more numbers than a study may. */
+static const struct json_limits RESULT_LIMITS = {.bytes = SIZE_MAX, .depth = 8, .values = SIZE_MAX};
+
+struct stored_block {
+    cJSON *names, *rows;
+    const char **name_list;
+    double *scalars;
+};
+
+static void stored_block_clear(struct stored_block *block) {
+    cJSON_Delete(block->names);
+    cJSON_Delete(block->rows);
+    free(block->name_list);
+    free(block->scalars);
+}
+
+static int fill_scalars(struct stored_block *block, size_t count, size_t rows, struct error *err) {
+    block->name_list = array_create(count, sizeof *block->name_list);
+    block->scalars = array_create(count * rows, sizeof *block->scalars);
+    if (!block->name_list || !block->scalars)
+        return error_memory(err, count * rows * sizeof *block->scalars, "scalars");
+    size_t n = 0, s = 0;
+    for (const cJSON *name = block->names->child; name; name = name->next)
+        block->name_list[n++] = cJSON_IsString(name) ? name->valuestring : "";
+    for (const cJSON *row = block->rows->child; row; row = row->next)
+        for (const cJSON *value = row->child; value && s < count * rows; value = value->next)
+            block->scalars[s++] = cJSON_IsNumber(value) ? value->valuedouble : NAN;
+    if (s != count * rows)
+        return error_set(err, ERROR_SYSTEM, "a stored result has %zu scalars instead of %zu", s,
+                         count * rows);
+    return 0;
+}
+
+static int read_block(sqlite3_stmt *row, struct stored_block *block, struct block_result *result,
+                      struct error *err) {
+    int status = parse_column(row, 2, &RESULT_LIMITS, &block->names, err);
+    if (!status)
+        status = parse_column(row, 3, &RESULT_LIMITS, &block->rows, err);
+    size_t count = status ? 0 : (size_t)cJSON_GetArraySize(block->names);
+    *result = (struct block_result){.first = (uint64_t)sqlite3_column_int64(row, 0),
+                                    .count = (uint64_t)sqlite3_column_int64(row, 1),
+                                    .scalar_count = count,
+                                    .data = sqlite3_column_blob(row, 4),
+                                    .size = (size_t)sqlite3_column_bytes(row, 4),
+                                    .seconds = sqlite3_column_double(row, 5)};
+    if (!status)
+        status = fill_scalars(block, count, (size_t)result->count, err);
+    result->names = block->name_list;
+    result->scalars = block->scalars;
+    return status;
+}
+
+int store_results(struct store *store, const char *study, uint64_t case_number, result_visit *visit,
+                  void *context, struct error *err) {
+    int64_t id;
+    sqlite3_stmt *row;
+    int status = study_row(store, study, &id, err);
+    if (!status)
+        status = store_query(store, &row, err,
+                             "SELECT first, count, names, scalars, data, seconds FROM result WHERE "
+                             "study_id = ? AND case_number = ? ORDER BY first",
+                             "ii", id, (int64_t)case_number);
+    if (status)
+        return status;
+    while ((status = store_step(store, row, err)) == 1) {
+        struct stored_block block = {0};
+        struct block_result result;
+        status = read_block(row, &block, &result, err);
+        if (!status)
+            status = visit(context, &result, err);
+        stored_block_clear(&block);
+        if (status)
+            break;
+    }
+    sqlite3_reset(row);
+    return status;
+}
+
+/* --- publication --- */
+
+/* A number of a document, or NULL for SQL where it is null or missing. */
+static int bind_number(sqlite3_stmt *statement, int column, const cJSON *value) {
+    return cJSON_IsNumber(value) ? sqlite3_bind_double(statement, column, value->valuedouble)
+                                 : sqlite3_bind_null(statement, column);
+}
+
+static int run_bound(struct store *store, sqlite3_stmt *statement, struct error *err) {
+    int status = store_step(store, statement, err);
+    if (status > 0)
+        sqlite3_reset(statement);
+    return status < 0 ? status : 0;
+}
+
+struct target {
+    struct store *store;
+    int64_t study, case_number;
+};
+
+static int insert_scalar(const struct target *target, const cJSON *scalar, struct error *err) {
+    sqlite3_stmt *statement;
+    int status =
+        store_query(target->store, &statement, err,
+                    "INSERT INTO scalar (study_id, case_number, name, value, standard_error, "
+                    "theory) VALUES (?, ?, ?, ?4, ?5, ?6)",
+                    "iit", target->study, target->case_number, scalar->string);
+    static const char *const FIELDS[] = {"value", "standard_error", "theory"};
+    for (int f = 0; !status && f < 3; f++)
+        if (bind_number(statement, 4 + f, cJSON_GetObjectItemCaseSensitive(scalar, FIELDS[f])))
+            status = store_error(target->store, err);
+    return status ? status : run_bound(target->store, statement, err);
+}
+
+static int insert_point(struct store *store, int64_t curve, int64_t number,
+                        const cJSON *const values[4], struct error *err) {
+    sqlite3_stmt *statement;
+    int status =
+        store_query(store, &statement, err,
+                    "INSERT INTO point (curve_id, number, x, x2, y, standard_error) VALUES "
+                    "(?1, ?2, ?3, ?4, ?5, ?6)",
+                    "ii", curve, number);
+    for (int v = 0; !status && v < 4; v++)
+        if (bind_number(statement, 3 + v, values[v]))
+            status = store_error(store, err);
+    return status ? status : run_bound(store, statement, err);
+}
+
+static const cJSON *next_of(const cJSON *item) {
+    return item ? item->next : NULL;
+}
+
+static const cJSON *first_of(const cJSON *object, const char *name) {
+    const cJSON *array = cJSON_GetObjectItemCaseSensitive(object, name);
+    return cJSON_IsArray(array) ? array->child : NULL;
+}
+
+/* A row of a matrix: only its non-zero cells become points. */
+static int insert_row(struct store *store, int64_t curve, int64_t *number, const cJSON *x,
+                      const cJSON *x2, const cJSON *y, const cJSON *deviation, struct error *err) {
+    int status = 0;
+    for (; !status && y && x2; y = y->next, x2 = x2->next, deviation = next_of(deviation))
+        if (cJSON_IsNumber(y) && y->valuedouble != 0)
+            status = insert_point(store, curve, (*number)++, (const cJSON *[]){x, x2, y, deviation},
+                                  err);
+    return status;
+}
+
+static int insert_points(struct store *store, int64_t curve, const cJSON *document,
+                         struct error *err) {
+    const cJSON *x = first_of(document, "x"), *x2 = first_of(document, "x2");
+    const cJSON *y = first_of(document, "y"), *deviation = first_of(document, "standard_error");
+    int64_t number = 0;
+    int status = 0;
+    for (; !status && x && y; x = x->next, y = y->next, deviation = next_of(deviation)) {
+        if (cJSON_IsArray(y))
+            status = insert_row(store, curve, &number, x, x2, y->child,
+                                cJSON_IsArray(deviation) ? deviation->child : NULL, err);
+        else
+            status =
+                insert_point(store, curve, number++, (const cJSON *[]){x, NULL, y, deviation}, err);
+    }
+    return status;
+}
+
+static int insert_curve(const struct target *target, const cJSON *document, struct error *err) {
+    const cJSON *quantity = cJSON_GetObjectItemCaseSensitive(document, "quantity");
+    const cJSON *series = cJSON_GetObjectItemCaseSensitive(document, "series");
+    const cJSON *model = cJSON_GetObjectItemCaseSensitive(document, "model");
+    sqlite3_stmt *statement;
+    int status =
+        store_query(target->store, &statement, err,
+                    "INSERT INTO curve (study_id, case_number, quantity, series, model, level) "
+                    "VALUES (?, ?, ?, ?, ?, ?6)",
+                    "iittt", target->study, target->case_number,
+                    cJSON_IsString(quantity) ? quantity->valuestring : "",
+                    cJSON_IsString(series) ? series->valuestring : "",
+                    cJSON_IsString(model) ? model->valuestring : NULL);
+    if (!status && bind_number(statement, 6, cJSON_GetObjectItemCaseSensitive(document, "level")))
+        status = store_error(target->store, err);
+    if (!status)
+        status = run_bound(target->store, statement, err);
+    int64_t curve = sqlite3_last_insert_rowid(target->store->db);
+    return status ? status : insert_points(target->store, curve, document, err);
+}
+
+static int clear_case(const struct target *target, struct error *err) {
+    int status =
+        store_run(target->store, err, "DELETE FROM curve WHERE study_id = ? AND case_number = ?",
+                  "ii", target->study, target->case_number);
+    if (!status)
+        status = store_run(target->store, err,
+                           "DELETE FROM scalar WHERE study_id = ? AND case_number = ?", "ii",
+                           target->study, target->case_number);
+    return status;
+}
+
+static int write_case(const struct target *target, uint64_t revision, const cJSON *curves,
+                      const char *text, struct error *err) {
+    int status = clear_case(target, err);
+    const cJSON *scalars = cJSON_GetObjectItemCaseSensitive(curves, "scalars");
+    const cJSON *list = cJSON_GetObjectItemCaseSensitive(curves, "curves");
+    for (const cJSON *s = scalars ? scalars->child : NULL; !status && s; s = s->next)
+        status = insert_scalar(target, s, err);
+    for (const cJSON *c = list ? list->child : NULL; !status && c; c = c->next)
+        status = insert_curve(target, c, err);
+    if (!status)
+        status = store_run(
+            target->store, err,
+            "INSERT OR REPLACE INTO published (study_id, case_number, revision, document) "
+            "VALUES (?, ?, ?, ?)",
+            "iiit", target->study, target->case_number, (int64_t)revision, text);
+    return status;
+}
+
+int store_publish(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
+                  const cJSON *curves, struct error *err) {
+    struct target target = {store, 0, (int64_t)case_number};
+    int64_t known = -1;
+    char *text = json_print(curves);
+    if (!text)
+        return error_memory(err, 0, "a document of curves");
+    int status = change_begin(store, err);
+    if (status) {
+        free(text);
+        return status;
+    }
+    status = study_row(store, study, &target.study, err);
+    if (!status)
+        status =
+            store_integer(store, &known, err,
+                          "SELECT revision FROM published WHERE study_id = ? AND case_number = ?",
+                          "ii", target.study, target.case_number);
+    if (status == ERROR_ABSENT && target.study)
+        status = 0;
+    if (!status && known < (int64_t)revision)
+        status = write_case(&target, revision, curves, text, err);
+    free(text);
+    return change_end(store, status, err);
+}
+
+int store_published(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
+                    cJSON **out, struct error *err) {
+    int64_t id;
+    sqlite3_stmt *row;
+    int status = study_row(store, study, &id, err);
+    if (!status)
+        status =
+            store_query(store, &row, err,
+                        "SELECT document FROM published WHERE study_id = ? AND case_number = ? "
+                        "AND revision = ?",
+                        "iii", id, (int64_t)case_number, (int64_t)revision);
+    if (!status)
+        status = store_step(store, row, err);
+    if (status < 0)
+        return status;
+    *out = NULL;
+    if (status == 0)
+        return 0;
+    status = parse_column(row, 0, &RESULT_LIMITS, out, err);
+    sqlite3_reset(row);
+    return status;
+}
+
+/* --- costs --- */
+
+int store_costs(struct store *store, const char *study, struct case_cost **out, size_t *count,
+                struct error *err) {
+    int64_t id, cases = 0;
+    sqlite3_stmt *row;
+    struct case_cost *costs = NULL;
+    size_t n = 0;
+    int status = study_row(store, study, &id, err);
+    if (!status)
+        status = store_integer(store, &cases, err, "SELECT cases FROM study WHERE id = ?", "i", id);
+    if (!status && !(costs = array_create((size_t)cases, sizeof *costs)))
+        status = error_memory(err, (size_t)cases * sizeof *costs, "costs");
+    if (!status)
+        status =
+            store_query(store, &row, err,
+                        "SELECT number, realisations_done, (SELECT realisations FROM study WHERE "
+                        "id = study_id), jobs, (SELECT sum(attempts) FROM job WHERE job.study_id "
+                        "= study_case.study_id AND job.case_number = number), seconds FROM "
+                        "study_case WHERE study_id = ? ORDER BY number",
+                        "i", id);
+    while (!status && n < (size_t)cases && (status = store_step(store, row, err)) == 1) {
+        costs[n++] = (struct case_cost){
+            (uint64_t)sqlite3_column_int64(row, 0), (uint64_t)sqlite3_column_int64(row, 1),
+            (uint64_t)sqlite3_column_int64(row, 2), (uint64_t)sqlite3_column_int64(row, 3),
+            (uint64_t)sqlite3_column_int64(row, 4), sqlite3_column_double(row, 5)};
+        status = 0;
+    }
+    if (status < 0) {
+        free(costs);
+        return status;
+    }
+    sqlite3_reset(row);
+    *out = costs;
+    *count = n;
+    return 0;
+}
