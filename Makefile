@@ -1,9 +1,13 @@
 # Rugo's one build file. `make run` and `make test` need nothing but make itself: `make deps` fetches the rest.
 #   BUILD=dir        where objects go (build)
+#   V=1              show each command
 #   SAN=address,undefined | SAN=thread   sanitizers      COV=1 coverage      DEBUG=1 no optimisation
 BUILD  ?= build
 PREFIX ?= /usr/local
 CC     ?= cc
+
+Q      = $(if $(V),,@)
+say    = $(if $(V),@:,@echo)
 
 PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl cmocka
 APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev \
@@ -53,28 +57,31 @@ all: $(BUILD)/rugo
 
 $(BUILD)/%.c.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -MMD -MP -c $< -o $@
+	$(say) CC $<
+	$(Q)$(CC) $(CFLAGS) -MMD -MP -c $< -o $@
 
 $(BUILD)/%.data.o: %
 	@mkdir -p $(@D)
-	$(LD) -r -b binary -z noexecstack $< -o $@
+	$(Q)$(LD) -r -b binary -z noexecstack $< -o $@
 
 define LAYER
 $(BUILD)/lib$(1).a: $(call objects,$(call sources,$(1))) $(patsubst %,$(BUILD)/%.data.o,$(call embedded,$(1)))
 	@mkdir -p $$(@D); rm -f $$@
-	$(AR) rcs $$@ $$^
+	$(Q)$(AR) rcs $$@ $$^
 endef
 $(foreach layer,$(LAYERS),$(eval $(call LAYER,$(layer))))
 
 $(BUILD)/rugo: $(call objects,$(MAIN)) $(call archive,$(BELOW_server))
-	$(CC) $(LDFLAGS) -o $@ $^ $(LIBS_server)
+	$(say) LD $@
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS_server)
 
 # Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them.
 SUPPORT = $(call objects,$(wildcard tests/support/*.c))
 define TESTS
 TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c))
 $$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(call archive,$(BELOW_$(2)))
-	$(CC) $(LDFLAGS) -o $$@ $$^ -lcmocka $(LIBS_$(2))
+	$(say) LD $$@
+	$(Q)$(CC) $(LDFLAGS) -o $$@ $$^ -lcmocka $(LIBS_$(2))
 $(1)-$(2): $$(TESTS_$(1)_$(2))
 	tests/run-tests $$^
 .PHONY: $(1)-$(2)

@@ -279,7 +279,7 @@ static int migrate(struct store *store, int64_t version, struct error *err) {
 /* Reads whose file this is and brings it to the present version, under the write lock if it must.
  */
 static int check_version(struct store *store, bool locked, struct error *err) {
-    int64_t application, version, tables;
+    int64_t application = 0, version = 0, tables = 0;
     int status = pragma_integer(store, "PRAGMA application_id", &application, err);
     if (!status)
         status = pragma_integer(store, "PRAGMA user_version", &version, err);

@@ -20,7 +20,7 @@ static int parse_column(sqlite3_stmt *row, int column, const struct json_limits 
 
 int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
                struct error *err) {
-    int64_t row;
+    int64_t row = 0;
     sqlite3_stmt *found;
     int status = study_row(store, study, &row, err);
     if (!status)
@@ -105,7 +105,7 @@ static int read_block(sqlite3_stmt *row, struct stored_block *block, struct bloc
 
 int store_results(struct store *store, const char *study, uint64_t case_number, result_visit *visit,
                   void *context, struct error *err) {
-    int64_t id;
+    int64_t id = 0;
     sqlite3_stmt *row;
     int status = study_row(store, study, &id, err);
     if (!status)
@@ -292,7 +292,7 @@ int store_publish(struct store *store, const char *study, uint64_t case_number, 
 
 int store_published(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
                     cJSON **out, struct error *err) {
-    int64_t id;
+    int64_t id = 0;
     sqlite3_stmt *row;
     int status = study_row(store, study, &id, err);
     if (!status)
@@ -317,7 +317,7 @@ int store_published(struct store *store, const char *study, uint64_t case_number
 
 int store_costs(struct store *store, const char *study, struct case_cost **out, size_t *count,
                 struct error *err) {
-    int64_t id, cases = 0;
+    int64_t id = 0, cases = 0;
     sqlite3_stmt *row;
     struct case_cost *costs = NULL;
     size_t n = 0;

@@ -280,7 +280,7 @@ static int cancel_jobs(struct store *store, int64_t row, struct error *err) {
 }
 
 int store_cancel(struct store *store, const char *id, struct error *err) {
-    int64_t row, ended;
+    int64_t row = 0, ended = 0;
     int status = change_begin(store, err);
     if (status)
         return status;
@@ -364,7 +364,7 @@ static int append_failure(sqlite3_stmt *row, struct failure **list, size_t count
 
 int store_failures(struct store *store, const char *id, struct failure **out, size_t *count,
                    struct error *err) {
-    int64_t row;
+    int64_t row = 0;
     sqlite3_stmt *statement;
     struct failure *list = NULL;
     size_t n = 0;
