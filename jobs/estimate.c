@@ -1,18 +1,6 @@
 #include "jobs/estimate.h"
+#include "jobs/sum.h"
 #include <math.h>
-
-/* Neumaier's compensated sum. */
-struct sum {
-    double total, rest;
-};
-static void sum_add(struct sum *sum, double x) {
-    double total = sum->total + x;
-    sum->rest += fabs(sum->total) >= fabs(x) ? (sum->total - total) + x : (x - total) + sum->total;
-    sum->total = total;
-}
-static double sum_value(const struct sum *sum) {
-    return sum->total + sum->rest;
-}
 
 static double weight_of(const double *x, const double *weight, size_t r) {
     if (!isfinite(x[r]))

@@ -1,11 +1,15 @@
 #include "jobs/kind.h"
-#include "jobs/statistics.h"
 #include <stdlib.h>
 #include <string.h>
 
-const struct job_kind *const JOB_KINDS[] = {
-    &STATISTICS_KIND,
-};
+/* One line a kind; each is defined in the file of its name. */
+#define KINDS(KIND) KIND(STATISTICS_KIND)
+
+#define DECLARE(kind) extern const struct job_kind kind;
+KINDS(DECLARE)
+
+#define ADDRESS(kind) &(kind),
+const struct job_kind *const JOB_KINDS[] = {KINDS(ADDRESS)};
 const size_t JOB_KIND_COUNT = sizeof JOB_KINDS / sizeof JOB_KINDS[0];
 
 const struct job_kind *kind_find(const char *name) {

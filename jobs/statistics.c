@@ -1,4 +1,5 @@
-#include "jobs/statistics.h"
+/* The kind "statistics": summit statistics, spectra and roughness of random surfaces. */
+#include "jobs/kind.h"
 #include "jobs/statistics_curves.h"
 #include "jobs/statistics_scalars.h"
 #include "jobs/statistics_spectra.h"

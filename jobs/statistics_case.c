@@ -139,11 +139,10 @@ static double expected_summits(const struct surface_case *surface, double *alpha
 
 /* CPU seconds a realisation on a 3 GHz core, fitted to runs of 256 x 256 to 8192 x 8192: an
  * iteration of relaxed reflections takes 5 to 6 ns a point, of plain alternation 17, and it stalls
- * near 120. */
+ * near 120; all is dearer beyond the caches. */
 static double expected_seconds(const struct statistics_case *study) {
     const struct surface_options *options = &study->surface.options;
-    double points = (double)grid_points(&study->surface.grid);
-    double nanoseconds = 6 * (1 + 0.4 * fmax(0, log2(points) - 20)); /* beyond the caches */
+    double points = (double)grid_points(&study->surface.grid), nanoseconds = 6;
     if (options->heights.type != HEIGHTS_GAUSSIAN) {
         bool plain = options->iteration == ITERATION_PLAIN;
         double iterations = plain ? 120 : (double)options->relaxed_iterations + 3;
@@ -155,7 +154,7 @@ static double expected_seconds(const struct statistics_case *study) {
         nanoseconds += 4;
     if (!surface_case_exact(&study->surface))
         nanoseconds += 17; /* spectra are measured */
-    return 1e-9 * nanoseconds * points;
+    return 1e-9 * nanoseconds * points * (1 + 0.4 * fmax(0, log2(points) - 20));
 }
 
 void statistics_case_estimate(const struct statistics_case *study, struct job_estimate *out) {

@@ -2,6 +2,7 @@
 #include "core/theory/nayak.h"
 #include "jobs/estimate.h"
 #include "jobs/statistics_theory.h"
+#include "jobs/sum.h"
 #include "jobs/value.h"
 #include <math.h>
 #include <stdlib.h>
@@ -36,28 +37,30 @@ const char *const STATISTICS_SCALARS[SCALAR_COUNT + 1] = {
     [SCALAR_EPS_S0_AMPLITUDE] = "eps_s0_amplitude",
 };
 
-/* Mean and variance of heights, mean curvature, of the summits of one realisation. */
+/* Mean and variance of heights, mean curvature, of the summits of one realisation; NaN (0/0) where
+ * there is none. */
 static void measure_summits(const struct statistics_case *study, const struct moments *moments,
                             const struct summit_list *list, double *out) {
     const struct grid *grid = &study->surface.grid;
     double n = (double)list->count, ratio = study->surface.wavelength_ratio;
     bool surface = study->surface.dimension == 2;
-    double height = 0, curvature = 0, variance = 0;
+    struct sum heights = {0, 0}, curvatures = {0, 0}, squares = {0, 0};
     for (size_t a = 0; a < list->count; a++) {
-        height += list->summits[a].height;
-        curvature += list->summits[a].curvature;
+        sum_add(&heights, list->summits[a].height);
+        sum_add(&curvatures, list->summits[a].curvature);
     }
+    double height = sum_value(&heights) / n, curvature = sum_value(&curvatures) / n;
     for (size_t a = 0; a < list->count; a++) {
-        double deviation = list->summits[a].height - height / n;
-        variance += deviation * deviation;
+        double deviation = list->summits[a].height - height;
+        sum_add(&squares, deviation * deviation);
     }
     out[SCALAR_SUMMITS] = n;
     out[SCALAR_SUMMIT_DENSITY] = n / (surface ? grid->lx * grid->ly : grid->lx);
     out[SCALAR_SUMMIT_DENSITY_PER_AREA] =
         out[SCALAR_SUMMIT_DENSITY] * (surface ? ratio * ratio : ratio);
-    out[SCALAR_SUMMIT_HEIGHT_MEAN] = list->count > 0 ? height / n / sqrt(moments->m0) : NAN;
-    out[SCALAR_SUMMIT_HEIGHT_VARIANCE] = list->count > 0 ? variance / n / moments->m0 : NAN;
-    out[SCALAR_SUMMIT_CURVATURE_MEAN] = list->count > 0 ? curvature / n / sqrt(moments->m4) : NAN;
+    out[SCALAR_SUMMIT_HEIGHT_MEAN] = height / sqrt(moments->m0);
+    out[SCALAR_SUMMIT_HEIGHT_VARIANCE] = sum_value(&squares) / n / moments->m0;
+    out[SCALAR_SUMMIT_CURVATURE_MEAN] = curvature / sqrt(moments->m4);
 }
 
 void statistics_scalars_measure(const struct statistics_case *study, const struct moments *moments,
