@@ -1,0 +1,63 @@
+/* Every study in jobs/studies reads without a fault and opens into the cases its README promises.
+ */
+#include "worker/kinds.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static struct study *study_of(const char *name) {
+    const char *source = getenv("RUGO_SOURCE"); /* set by tests/run-tests */
+    char path[4096], text[65536];
+    struct fault_list faults = {0};
+    struct error err = {0};
+    struct study *study = NULL;
+    snprintf(path, sizeof path, "%s/jobs/studies/%s.json", source != NULL ? source : ".", name);
+    FILE *file = fopen(path, "rb");
+    if (file == NULL)
+        fail_msg("cannot open %s", path);
+    size_t size = fread(text, 1, sizeof text, file);
+    fclose(file);
+    if (kinds_read_study(&study, text, size, NULL, &faults, &err) != 0)
+        fail_msg("%s: %s %s", name, err.text, faults.faults != NULL ? faults.faults[0].detail : "");
+    fault_list_clear(&faults);
+    return study;
+}
+
+static void ready_studies(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        size_t cases, largest; /* grid of the largest case */
+        uint64_t realisations;
+    } studies[] = {{"demo", 3, 512, 400},
+                   {"gaussian-nayak", 5, 8192, 1000},
+                   {"weibull-statistics", 40, 1024, 1000},
+                   {"nayak-hurst", 18, 2400, 1000},
+                   {"nayak-hurst-continuous", 18, 2430, 1000}};
+    for (size_t a = 0; a < sizeof studies / sizeof *studies; a++) {
+        struct study *study = study_of(studies[a].name);
+        double seconds = 0;
+        size_t largest = 0;
+        assert_string_equal(study->name, studies[a].name);
+        assert_int_equal(study->case_count, studies[a].cases);
+        assert_int_equal(study->realisations, studies[a].realisations);
+        for (size_t c = 0; c < study->case_count; c++) {
+            const struct study_cost *cost = &study->cases[c].cost;
+            seconds += cost->seconds * (double)study->realisations;
+            largest = cost->nx > largest ? cost->nx : largest;
+        }
+        printf("%s: %.0f CPU seconds expected, largest grid %zu\n", studies[a].name, seconds,
+               largest);
+        assert_int_equal(largest, studies[a].largest);
+        study_destroy(&study);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(ready_studies)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
