@@ -5,8 +5,9 @@
 
 #include "schema/store.h"
 
-/* Reads, checks and queues a study: {id, name, state, cases, jobs}. ERROR_INPUT with faults filled for
- * an invalid one (nothing queued), without faults for malformed text; ERROR_STATE: key used for another. */
+/* Reads, checks and queues a study: {id, name, state, cases, jobs}. ERROR_INPUT with faults filled
+ * for an invalid one (nothing queued), without faults for malformed text; ERROR_STATE: key used for
+ * another. */
 int api_submit(struct store *store, const char *text, size_t size, const char *const *overrides,
                const char *key, cJSON **out, bool *existing, struct fault_list *faults,
                struct error *err);

@@ -36,7 +36,8 @@ int command_fail(const char *command, const struct error *err);
 int command_fail_faults(const char *command, const struct fault_list *faults);
 /* The file's bytes, NUL-terminated; "-" is standard input. Caller frees. */
 int file_read(const char *path, size_t limit, char **text, size_t *size, struct error *err);
-/* The token of --token-file (its first line) or of RUGO_TOKEN; *token NULL where neither. Caller frees. */
+/* The token of --token-file (its first line) or of RUGO_TOKEN; *token NULL where neither. Caller
+ * frees. */
 int token_read(const char *token_file, char **token, struct error *err);
 
 #endif
