@@ -23,77 +23,65 @@ static bool number_fits(const struct parameter *row, const cJSON *value) {
     return row->type != PARAMETER_INTEGER || x == floor(x);
 }
 
-/* The value of a row, given or default; *owned is what the caller deletes. */
-static const cJSON *value_of(const struct case_reader *reader, const struct parameter *row,
-                             cJSON **owned) {
-    *owned = NULL;
+/* The value of a row where it is given; null counts as absent. */
+static const cJSON *given(const struct case_reader *reader, const struct parameter *row) {
     const cJSON *value = value_at(reader->parameters, row->path);
-    if ((value == NULL || cJSON_IsNull(value)) && row->default_json != NULL)
-        value = *owned = cJSON_Parse(row->default_json);
     return cJSON_IsNull(value) ? NULL : value;
+}
+
+/* The next number of a default such as "[-4, 8, 240]" or "0.5"; false at its end. Defaults are read
+ * where they stand: nothing is allocated that could fail and leave a case with another meaning. */
+static bool next_number(const char **at, double *number) {
+    char *stop;
+    *at += strspn(*at, "[, ");
+    *number = strtod(*at, &stop);
+    bool found = stop != *at;
+    *at = stop;
+    return found;
 }
 
 double case_number(const struct case_reader *reader, const char *path) {
     const struct parameter *row = row_of(reader, path);
     if (row == NULL)
         return NAN;
-    cJSON *owned;
-    const cJSON *value = value_of(reader, row, &owned);
-    double number = NAN;
-    if (value != NULL && number_fits(row, value))
-        number = value->valuedouble;
-    else if (value != NULL)
-        fault_add(reader->faults, path, "must be %s in %c%g, %g%c",
-                  row->type == PARAMETER_INTEGER ? "an integer" : "a number",
-                  row->above_minimum ? '(' : '[', row->minimum, row->maximum,
-                  row->below_maximum ? ')' : ']');
-    cJSON_Delete(owned);
-    return number;
+    const cJSON *value = given(reader, row);
+    if (value == NULL)
+        return row->default_json != NULL ? strtod(row->default_json, NULL) : NAN;
+    if (number_fits(row, value))
+        return value->valuedouble;
+    fault_add(reader->faults, path, "must be %s in %c%g, %g%c",
+              row->type == PARAMETER_INTEGER ? "an integer" : "a number",
+              row->above_minimum ? '(' : '[', row->minimum, row->maximum,
+              row->below_maximum ? ')' : ']');
+    return NAN;
 }
 
 size_t case_choice(const struct case_reader *reader, const char *path) {
     const struct parameter *row = row_of(reader, path);
     if (row == NULL)
         return 0;
-    cJSON *owned;
-    const cJSON *value = value_of(reader, row, &owned);
-    size_t choice = 0;
-    if (cJSON_IsString(value))
-        while (row->choices[choice] != NULL &&
-               strcmp(row->choices[choice], value->valuestring) != 0)
-            choice++;
-    if (!cJSON_IsString(value) || row->choices[choice] == NULL) {
-        fault_add(reader->faults, path, "must be one of the choices, such as \"%s\"",
-                  row->choices[0]);
-        choice = 0;
+    const cJSON *value = given(reader, row);
+    const char *text = cJSON_IsString(value) ? value->valuestring : "";
+    size_t length = strlen(text), choice = 0;
+    if (value == NULL && row->default_json != NULL) {
+        text = row->default_json + 1; /* within its quotes */
+        length = strcspn(text, "\"");
     }
-    cJSON_Delete(owned);
-    return choice;
+    while (row->choices[choice] != NULL && (strlen(row->choices[choice]) != length ||
+                                            memcmp(row->choices[choice], text, length) != 0))
+        choice++;
+    if (row->choices[choice] != NULL)
+        return choice;
+    fault_add(reader->faults, path, "must be one of the choices, such as \"%s\"", row->choices[0]);
+    return 0;
 }
 
-/* Copies an array that fits the row; *out stays NULL where it does not. */
-static int numbers_copy(const struct case_reader *reader, const struct parameter *row,
-                        const cJSON *value, double **out, size_t *n, struct error *err) {
+static bool numbers_fit(const struct parameter *row, const cJSON *value) {
     size_t size = cJSON_IsArray(value) ? (size_t)cJSON_GetArraySize(value) : 0;
-    bool fits = size >= row->items_low && size <= row->items_high && size > 0;
-    const cJSON *item = NULL;
-    for (item = fits ? value->child : NULL; item != NULL && fits; item = item->next)
+    bool fits = size >= row->items_low && size <= row->items_high;
+    for (const cJSON *item = fits ? value->child : NULL; item != NULL && fits; item = item->next)
         fits = number_fits(row, item);
-    if (!fits) {
-        fault_add(reader->faults, row->path, "must be %zu to %zu numbers in %c%g, %g]",
-                  row->items_low, row->items_high, row->above_minimum ? '(' : '[', row->minimum,
-                  row->maximum);
-        return 0;
-    }
-    double *numbers = array_create(size, sizeof *numbers);
-    if (numbers == NULL)
-        return error_memory(err, size * sizeof *numbers, row->path);
-    size_t a = 0;
-    for (item = value->child; item != NULL; item = item->next)
-        numbers[a++] = item->valuedouble;
-    *out = numbers;
-    *n = size;
-    return 0;
+    return fits;
 }
 
 int case_numbers(const struct case_reader *reader, const char *path, double **out, size_t *n,
@@ -101,13 +89,27 @@ int case_numbers(const struct case_reader *reader, const char *path, double **ou
     *out = NULL;
     *n = 0;
     const struct parameter *row = row_of(reader, path);
-    if (row == NULL)
+    const cJSON *value = row != NULL ? given(reader, row) : NULL;
+    if (row == NULL || (value == NULL && row->default_json == NULL))
         return 0;
-    cJSON *owned;
-    const cJSON *value = value_of(reader, row, &owned);
-    int status = value == NULL ? 0 : numbers_copy(reader, row, value, out, n, err);
-    cJSON_Delete(owned);
-    return status;
+    if (value != NULL && !numbers_fit(row, value)) {
+        fault_add(reader->faults, row->path, "must be %zu to %zu numbers in %c%g, %g]",
+                  row->items_low, row->items_high, row->above_minimum ? '(' : '[', row->minimum,
+                  row->maximum);
+        return 0;
+    }
+    double *numbers = array_create(row->items_high, sizeof *numbers);
+    if (numbers == NULL)
+        return error_memory(err, row->items_high * sizeof *numbers, row->path);
+    const char *at = row->default_json;
+    if (value != NULL)
+        for (const cJSON *item = value->child; item != NULL; item = item->next)
+            numbers[(*n)++] = item->valuedouble;
+    else
+        while (*n < row->items_high && next_number(&at, &numbers[*n]))
+            ++*n;
+    *out = numbers;
+    return 0;
 }
 
 int case_status(const struct fault_list *faults, size_t before, struct error *err) {
@@ -124,20 +126,30 @@ static uint64_t hash_number(uint64_t hash, double number) {
     return hash_bytes(hash, sizeof number, &number);
 }
 
+static uint64_t hash_default(uint64_t hash, const char *json) {
+    if (json == NULL)
+        return hash;
+    if (*json == '"')
+        return hash_bytes(hash, strcspn(json + 1, "\""), json + 1);
+    for (double number; next_number(&json, &number);)
+        hash = hash_number(hash, number);
+    return hash;
+}
+
 uint64_t case_fingerprint(const struct case_reader *reader) {
     uint64_t hash = HASH_START;
     for (size_t a = 0; a < reader->count; a++) {
-        cJSON *owned;
-        const cJSON *value = value_of(reader, &reader->table[a], &owned);
+        const cJSON *value = given(reader, &reader->table[a]);
         hash = hash_number(hash, (double)a);
-        if (cJSON_IsNumber(value))
+        if (value == NULL)
+            hash = hash_default(hash, reader->table[a].default_json);
+        else if (cJSON_IsNumber(value))
             hash = hash_number(hash, value->valuedouble);
         else if (cJSON_IsString(value))
             hash = hash_bytes(hash, strlen(value->valuestring), value->valuestring);
         else if (cJSON_IsArray(value))
             for (const cJSON *item = value->child; item != NULL; item = item->next)
                 hash = hash_number(hash, item->valuedouble);
-        cJSON_Delete(owned);
     }
     return hash;
 }
