@@ -1,9 +1,9 @@
 /* rugo characterise FILE: what a height map in a file is like. */
 #include "schema/json.h"
 #include "server/command.h"
+#include "server/options.h"
 #include "worker/characterisation.h"
 #include "worker/height_map.h"
-#include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,31 +17,22 @@ struct options {
     bool json;
 };
 
-static int read_options(int argc, char **argv, struct options *out, struct error *err) {
-    static const struct option LONG[] = {{"dx", required_argument, NULL, 'd'},
-                                         {"format", required_argument, NULL, 'f'},
-                                         {NULL, 0, NULL, 0}};
-    *out = (struct options){0};
-    optind = 1;
-    opterr = 0;
-    for (int option; (option = getopt_long(argc, argv, ":d:f:", LONG, NULL)) != -1;) {
+static bool read_options(int argc, char **argv, struct options *out) {
+    const char *dx = NULL, *format = "text";
+    const struct option_row rows[] = {
+        {"dx", OPTION_TEXT, &dx}, {"format", OPTION_TEXT, &format}, {NULL, OPTION_FLAG, NULL}};
+    if (!options_parse(argc, argv, rows, 1, 1, &out->path))
+        return false;
+    if (dx != NULL) {
         char *stop;
-        if (option == 'd') {
-            out->dx = strtod(optarg, &stop);
-            if (stop == optarg || *stop != '\0' || !(out->dx > 0 && isfinite(out->dx)))
-                return error_set(err, ERROR_INPUT, "--dx: '%s' is not a number above 0", optarg);
-        } else if (option == 'f' && (!strcmp(optarg, "json") || !strcmp(optarg, "text")))
-            out->json = !strcmp(optarg, "json");
-        else if (option == 'f')
-            return error_set(err, ERROR_INPUT, "--format: '%s' is not json or text", optarg);
-        else
-            return error_set(err, ERROR_INPUT, "unknown or incomplete option '%s'",
-                             argv[optind - 1]);
+        out->dx = strtod(dx, &stop);
+        if (stop == dx || *stop != '\0' || !(out->dx > 0 && isfinite(out->dx)))
+            return usage_error(NAME, "--dx %.40s is not a number above 0", dx);
     }
-    if (optind != argc - 1)
-        return error_set(err, ERROR_INPUT, "wants one FILE");
-    out->path = argv[optind];
-    return 0;
+    out->json = strcmp(format, "json") == 0;
+    if (!out->json && strcmp(format, "text") != 0)
+        return usage_error(NAME, "--format %.40s is not json or text", format);
+    return true;
 }
 
 static int print(const struct options *options, const struct height_map *map, struct error *err) {
@@ -66,14 +57,14 @@ static int print(const struct options *options, const struct height_map *map, st
 }
 
 int command_characterise(int argc, char **argv) {
-    struct options options;
+    struct options options = {0};
     struct height_map map = {0};
     struct error err = {0};
     char *text = NULL;
     size_t size;
-    int status = read_options(argc, argv, &options, &err);
-    if (status == 0)
-        status = file_read(options.path, FILE_MOST, &text, &size, &err);
+    if (!read_options(argc, argv, &options))
+        return EXIT_USAGE;
+    int status = file_read(options.path, FILE_MOST, &text, &size, &err);
     if (status == 0) {
         enum height_map_format format = height_map_format_of(options.path);
         if (format == HEIGHT_MAP_FORMATS)

@@ -1,12 +1,11 @@
 /* rugo generate STUDY.json: one surface of a study, to look at or to use elsewhere. */
 #include "jobs/surface_case.h"
 #include "server/command.h"
+#include "server/options.h"
 #include "worker/characterisation.h"
 #include "worker/height_map.h"
 #include "worker/kinds.h"
 #include <errno.h>
-#include <getopt.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -14,71 +13,43 @@
 static const char NAME[] = "generate";
 
 struct options {
-    const char *study, *output; /* output NULL or "-": standard output */
-    uint64_t case_number, realisation;
+    const char *study, *output; /* output NULL: standard output */
+    const char **overrides;     /* owned, NULL-terminated; its strings are of argv */
+    int64_t case_number, realisation;
     enum height_map_format format;
 };
 
-static int read_count(const char *option, const char *text, uint64_t *out, struct error *err) {
-    char *stop;
-    errno = 0;
-    unsigned long long value = strtoull(text, &stop, 10);
-    if (*text < '0' || *text > '9' || *stop != '\0' || errno != 0)
-        return error_set(err, ERROR_INPUT, "%s: '%s' is not a number from 0 on", option, text);
-    *out = value;
-    return 0;
-}
-
-static int read_format(const char *text, enum height_map_format *out, struct error *err) {
-    for (*out = HEIGHT_MAP_NPY; *out < HEIGHT_MAP_FORMATS; (*out)++)
-        if (strcmp(text, HEIGHT_MAP_NAMES[*out]) == 0)
-            return 0;
-    return error_set(err, ERROR_INPUT, "--format: '%s' is not npy, csv or xyz", text);
-}
-
 /* The format asked for, or that of the output's name, or npy. */
-static int choose_format(struct options *options, struct error *err) {
-    bool to_file = options->output != NULL && strcmp(options->output, "-") != 0;
-    if (!to_file)
+static bool choose_format(struct options *options, const char *name) {
+    if (options->output != NULL && strcmp(options->output, "-") == 0)
         options->output = NULL;
-    if (options->format == HEIGHT_MAP_FORMATS && to_file)
+    options->format = HEIGHT_MAP_FORMATS;
+    if (name != NULL) {
+        for (options->format = HEIGHT_MAP_NPY;
+             options->format < HEIGHT_MAP_FORMATS &&
+             strcmp(name, HEIGHT_MAP_NAMES[options->format]) != 0;)
+            options->format++;
+        if (options->format == HEIGHT_MAP_FORMATS)
+            return usage_error(NAME, "--format %.40s is not npy, csv or xyz", name);
+    } else if (options->output != NULL)
         options->format = height_map_format_of(options->output);
     if (options->format == HEIGHT_MAP_FORMATS)
         options->format = HEIGHT_MAP_NPY;
-    if (!to_file && options->format == HEIGHT_MAP_NPY && isatty(STDOUT_FILENO))
-        return error_set(err, ERROR_INPUT, "npy is not for a terminal: give -o FILE, or --format");
-    return 0;
+    if (options->output == NULL && options->format == HEIGHT_MAP_NPY && isatty(STDOUT_FILENO))
+        return usage_error(NAME, "npy is not for a terminal: give -o FILE or --format");
+    return true;
 }
 
-static int read_options(int argc, char **argv, struct options *out, struct error *err) {
-    static const struct option LONG[] = {{"case", required_argument, NULL, 'c'},
-                                         {"realisation", required_argument, NULL, 'r'},
-                                         {"format", required_argument, NULL, 'f'},
-                                         {"output", required_argument, NULL, 'o'},
-                                         {NULL, 0, NULL, 0}};
-    int status = 0;
-    *out = (struct options){.format = HEIGHT_MAP_FORMATS};
-    optind = 1;
-    opterr = 0;
-    for (int option; (option = getopt_long(argc, argv, ":c:r:f:o:", LONG, NULL)) != -1;) {
-        if (option == 'c')
-            status = read_count("--case", optarg, &out->case_number, err);
-        else if (option == 'r')
-            status = read_count("--realisation", optarg, &out->realisation, err);
-        else if (option == 'f')
-            status = read_format(optarg, &out->format, err);
-        else if (option == 'o')
-            out->output = optarg;
-        else
-            status =
-                error_set(err, ERROR_INPUT, "unknown or incomplete option '%s'", argv[optind - 1]);
-        if (status != 0)
-            return status;
-    }
-    if (optind != argc - 1)
-        return error_set(err, ERROR_INPUT, "wants one STUDY.json");
-    out->study = argv[optind];
-    return choose_format(out, err);
+static bool read_options(int argc, char **argv, struct options *out) {
+    const char *format = NULL;
+    const struct option_row rows[] = {{"case", OPTION_INDEX, &out->case_number},
+                                      {"realisation", OPTION_INDEX, &out->realisation},
+                                      {"format", OPTION_TEXT, &format},
+                                      {"o", OPTION_TEXT, &out->output},
+                                      {"output", OPTION_TEXT, &out->output},
+                                      {"set", OPTION_LIST, out->overrides},
+                                      {NULL, OPTION_FLAG, NULL}};
+    return options_parse(argc, argv, rows, 1, 1, &out->study) && choose_format(out, format);
 }
 
 static int write_output(const struct options *options, const struct grid *grid, const double *z,
@@ -130,11 +101,12 @@ static int generate(const struct options *options, const struct study *study, st
     struct surface_case surface;
     struct surface_report report = {0};
     struct generator *generator = NULL;
-    if (options->case_number >= study->case_count)
-        return error_set(err, ERROR_INPUT, "there is no case %llu: the study has %zu",
-                         (unsigned long long)options->case_number, study->case_count);
-    int status =
-        surface_case_read(&surface, study->cases[options->case_number].parameters, NULL, err);
+    const struct random_key key = {study->seed, (uint64_t)options->case_number,
+                                   (uint64_t)options->realisation};
+    if (key.case_number >= study->case_count)
+        return error_set(err, ERROR_INPUT, "there is no case %lld: the study has %zu",
+                         (long long)options->case_number, study->case_count);
+    int status = surface_case_read(&surface, study->cases[key.case_number].parameters, NULL, err);
     if (status != 0)
         return status;
     double *z = array_create(grid_points(&surface.grid), sizeof *z);
@@ -144,9 +116,7 @@ static int generate(const struct options *options, const struct study *study, st
         status =
             generator_create(&generator, &surface.spectrum, &surface.grid, &surface.options, err);
     if (status == 0)
-        status = generator_run(
-            generator, (struct random_key){study->seed, options->case_number, options->realisation},
-            z, &report, err);
+        status = generator_run(generator, key, z, &report, err);
     generator_destroy(&generator);
     if (status == 0)
         status = write_output(options, &surface.grid, z, err);
@@ -158,22 +128,28 @@ static int generate(const struct options *options, const struct study *study, st
 }
 
 int command_generate(int argc, char **argv) {
-    struct options options;
+    struct options options = {.overrides = array_create((size_t)argc + 1, sizeof(char *))};
     struct fault_list faults = {0};
     struct study *study = NULL;
     struct error err = {0};
     char *text = NULL;
     size_t size;
-    int status = read_options(argc, argv, &options, &err);
+    int status = 0, ended = EXIT_DONE;
+    if (options.overrides == NULL)
+        status = error_memory(&err, ((size_t)argc + 1) * sizeof(char *), "options");
+    else if (!read_options(argc, argv, &options)) {
+        free(options.overrides);
+        return EXIT_USAGE;
+    }
     if (status == 0)
         status = file_read(options.study, JSON_LIMITS.bytes, &text, &size, &err);
     if (status == 0)
-        status = kinds_read_study(&study, text, size, NULL, &faults, &err);
+        status = kinds_read_study(&study, text, size, options.overrides, &faults, &err);
     if (status == 0)
         status = generate(&options, study, &err);
-    int ended = EXIT_DONE;
     if (status != 0)
         ended = faults.count > 0 ? command_fail_faults(NAME, &faults) : command_fail(NAME, &err);
+    free(options.overrides);
     free(text);
     study_destroy(&study);
     fault_list_clear(&faults);
