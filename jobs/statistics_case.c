@@ -154,7 +154,7 @@ static double expected_seconds(const struct statistics_case *study) {
         nanoseconds += 4;
     if (!surface_case_exact(&study->surface))
         nanoseconds += 17; /* spectra are measured */
-    return 1e-9 * nanoseconds * points * (1 + 0.4 * fmax(0, log2(points) - 20));
+    return 1e-4 + 1e-9 * nanoseconds * points * (1 + 0.4 * fmax(0, log2(points) - 20));
 }
 
 void statistics_case_estimate(const struct statistics_case *study, struct job_estimate *out) {

@@ -134,16 +134,16 @@ static int parse_csv(struct height_map *map, struct table *table, double dx, str
     return 0;
 }
 
+/* Of a step: coordinates come printed with few digits. */
+static const double OFF_GRID = 0.01;
+
 /* Checks that point number `point` is where a regular grid has it. */
 static int check_point(const struct table *table, size_t nx, size_t point, double dx, double dy,
                        struct error *err) {
     const double *first = table->numbers, *at = table->numbers + 3 * point;
     size_t i = point % nx, j = point / nx;
     double x = first[0] + (double)i * dx, y = first[1] + (double)j * dy;
-    double scale = 1e-6; /* of a step: coordinates are often printed with few digits */
-    double guard = 1e-5 * fabs(dx) + scale * (fabs(first[0]) + fabs(x));
-    double guard_y = 1e-5 * fabs(dy) + scale * (fabs(first[1]) + fabs(y));
-    if (fabs(at[0] - x) <= guard && fabs(at[1] - y) <= guard_y)
+    if (fabs(at[0] - x) <= OFF_GRID * dx && fabs(at[1] - y) <= OFF_GRID * dy)
         return 0;
     return error_set(
         err, ERROR_INPUT,
