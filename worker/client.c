@@ -363,6 +363,8 @@ int client_json(struct client *client, const struct request *request, cJSON **ou
     cJSON *value = NULL;
     if (reply.status < 200 || reply.status > 299) {
         status = reply_error(&reply, err);
+    } else if (reply.size == 0 && reply.status != 204) { /* cut off within the headers, too */
+        status = error_set(err, ERROR_SYSTEM, "the server's answer is empty");
     } else if (reply.size > 0) {
         status = json_parse(reply.body, reply.size, &REPLY_LIMITS, &value, err);
         if (status == ERROR_INPUT) { /* what came is wrong, not what was asked */

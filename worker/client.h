@@ -35,7 +35,7 @@ struct request {
 int client_send(struct client *client, const struct request *request, struct reply *reply,
                 struct error *err);
 /* The same, and turns a status >= 400 into an error with the problem's detail and pointers; parses
- * the body (NULL for an empty one). 404 ERROR_ABSENT, 409 ERROR_STATE, 4xx ERROR_INPUT, 5xx
+ * the body (NULL for a 204). 404 ERROR_ABSENT, 409 ERROR_STATE, 4xx ERROR_INPUT, 5xx
  * ERROR_SYSTEM. */
 int client_json(struct client *client, const struct request *request, cJSON **out,
                 struct error *err);

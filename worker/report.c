@@ -3,9 +3,9 @@
  * The errors of a curve are sizes over all its points: the statistical one is |standard error|/|y|,
  * the deviation from a theory |y - theory|/|theory|, |.| being the root of the sum of squares over
  * the points where both are known. A case's statistical error is that of its main curve, the first
- * one that a theory stands beside, or else the first one with an error at all. Statistical errors
- * fall with the square root of the realisations, so that half the error costs three times what was
- * spent. */
+ * one that has an error and a theory beside it, or else the first one with an error at all.
+ * Statistical errors fall with the square root of the realisations, so that half the error costs
+ * three times what was spent. */
 #include "worker/aggregate.h"
 #include "worker/flat.h"
 #include "worker/wire_field.h"
@@ -129,11 +129,12 @@ static cJSON *scalar_reports(const cJSON *scalars) {
 static const cJSON *main_curve(const cJSON *curves) {
     const cJSON *curve, *found = NULL;
     cJSON_ArrayForEach(curve, curves) {
-        bool theory = cJSON_IsObject(field_at(curve, "theory")) && field_at(curve, "theory")->child;
-        if (theory && isfinite(curve_error(curve))) {
+        const cJSON *theory = field_at(curve, "theory");
+        bool random = curve_error(curve) > 0; /* false for NaN, and for what is known exactly */
+        if (random && theory && theory->child) {
             return curve;
         }
-        if (!found && isfinite(curve_error(curve))) {
+        if (random && !found) {
             found = curve;
         }
     }

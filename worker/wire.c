@@ -133,7 +133,7 @@ static int read_numbers(const cJSON *value, struct claimed_job *job, struct erro
     status = status ? status : field_count(value, "count", &job->count, err);
     status = status ? status : field_count(value, "attempt", &job->attempt, err);
     status = status ? status : field_seconds(value, "lease_seconds", &lease, err);
-    job->lease_ms = lease > 1e9 ? 1000000000000 : (int64_t)(lease * 1000.0);
+    job->lease_ms = lease > 1e9 ? 1000000000000 : llround(lease * 1000.0);
     if (!status && job->count == 0) {
         status = field_fault("count", "at least 1", err);
     }

@@ -106,8 +106,9 @@ static void broken_answers_are_errors(void **state) {
     for (size_t n = 0; n < sizeof answers / sizeof answers[0]; n++) {
         struct stub stub = {.manner = ANSWER_AND_CLOSE, .answer = answers[n]};
         struct error err = {0};
-        assert_int_equal(ask(&stub, &err), ERROR_SYSTEM);
-        assert_true(err.text[0] != '\0');
+        if (ask(&stub, &err) != ERROR_SYSTEM || err.text[0] == '\0') {
+            fail_msg("taken: %s", answers[n]);
+        }
     }
 }
 
