@@ -1,0 +1,72 @@
+/* The memory that `check` states for a worker is what a realisation takes at its peak, within 20 %:
+ * each case runs in a process of its own, whose largest resident set is measured. */
+#include "jobs/kind.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static const struct {
+    const char *name, *parameters;
+} CASES[] = {
+    {"Gaussian, 8192 x 8192", "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 128}}"},
+    {"Weibull, 2048 x 2048",
+     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 32,"
+     " \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 2, \"max_iterations\": 5}}}"},
+    {"Gaussian, refined, 2048 x 2048", "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 32},"
+                                       " \"statistics\": {\"summits\": \"refined\"}}"},
+};
+
+static int run_one(const struct job_kind *kind, const cJSON *parameters) {
+    struct job_runner *runner = NULL;
+    struct job_result result = {0};
+    int status = kind->runner_create(&runner, parameters, 1, 0, NULL);
+    if (status == 0)
+        status = kind->run(runner, 0, 1, NULL, &result, NULL);
+    job_result_clear(&result);
+    kind->runner_destroy(&runner);
+    return status == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+static void stated_memory(void **state) {
+    (void)state;
+    const struct job_kind *kind = kind_find("statistics");
+    for (size_t a = 0; a < sizeof CASES / sizeof *CASES; a++) {
+        struct fault_list faults = {0};
+        struct job_estimate estimate = {0};
+        struct rusage usage;
+        int ended = 0;
+        cJSON *parameters = cJSON_Parse(CASES[a].parameters);
+        assert_int_equal(kind->check(parameters, &faults, &estimate, NULL), 0);
+        assert_int_equal(faults.count, 0);
+        double available = (double)sysconf(_SC_AVPHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+        if (available < 1.5 * estimate.memory_bytes) {
+            printf("SKIP: %s needs %.0f MB\n", CASES[a].name, estimate.memory_bytes / 1e6);
+            cJSON_Delete(parameters);
+            skip();
+        }
+        fflush(stdout);
+        pid_t child = fork();
+        assert_true(child >= 0);
+        if (child == 0)
+            _exit(run_one(kind, parameters));
+        assert_int_equal(wait4(child, &ended, 0, &usage), child);
+        assert_true(WIFEXITED(ended) && WEXITSTATUS(ended) == EXIT_SUCCESS);
+        double measured = 1024.0 * (double)usage.ru_maxrss;
+        printf("%s: %.1f MB stated, %.1f MB measured\n", CASES[a].name, estimate.memory_bytes / 1e6,
+               measured / 1e6);
+        assert_true(measured > 0.8 * estimate.memory_bytes);
+        assert_true(measured < 1.2 * estimate.memory_bytes);
+        cJSON_Delete(parameters);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(stated_memory)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
