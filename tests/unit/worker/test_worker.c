@@ -162,11 +162,12 @@ static void cancelled_study_is_left(void **state) {
     fixture_close(&fixture);
 }
 
-static int64_t in_an_hour(void *context) {
-    (void)context;
+/* The lease clock, some hours later. */
+static int64_t in_hours(void *context) {
+    const int64_t *hours = context;
     struct timespec now = {0};
     clock_gettime(CLOCK_BOOTTIME, &now);
-    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000 + 3600000;
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000 + *hours * 3600000;
 }
 
 /* First takes the running job away, as a worker does whose predecessor's lease ran out; then gives
@@ -189,7 +190,8 @@ static void lost_lease_is_not_reported(void **state) {
     fixture_submit(&fixture, LONG_STUDY, 20000, NULL, 0);
     struct scene scene = {.fixture = &fixture};
     struct error err = {0};
-    struct store_options later = {.now_ms = in_an_hour};
+    int64_t hours = 1;
+    struct store_options later = {.now_ms = in_hours, .context = &hours};
     assert_int_equal(store_open(&scene.thief, fixture.database, &later, &err), 0);
     struct worker_options options = drain(&fixture, 1);
     options.source.lease_ms = 300;
@@ -256,6 +258,39 @@ static void wrong_job_fails_with_its_reason(void **state) {
     fixture_close(&fixture);
 }
 
+/* A job that takes its workers down with it: after three of them it fails, with a reason, and the
+ * next worker finds the queue empty. */
+static void deadly_job_fails_after_three_workers(void **state) {
+    (void)state;
+    struct fixture fixture;
+    fixture_open(&fixture);
+    fixture_submit(&fixture, SMALL_STUDY, 48, NULL, 0);
+    struct error err = {0};
+    for (int64_t hours = 0; hours <= ATTEMPTS_MOST; hours++) {
+        struct store *victim = NULL;
+        struct store_options later = {.now_ms = in_hours, .context = &hours};
+        struct claim claim = {.worker = "victim", .count = 2};
+        struct claimed_job jobs[2] = {{0}, {0}};
+        size_t count = 0;
+        assert_int_equal(store_open(&victim, fixture.database, &later, &err), 0);
+        assert_int_equal(store_claim(victim, &claim, jobs, &count, &err), 0);
+        assert_int_equal(count, hours < ATTEMPTS_MOST ? 2 : 0);
+        claimed_job_clear(&jobs[0]);
+        claimed_job_clear(&jobs[1]);
+        store_close(&victim); /* gone without a word */
+    }
+    struct worker_options options = drain(&fixture, 1);
+    work(&options, 0);
+    struct failure *failures = NULL;
+    size_t count = 0;
+    assert_int_equal(store_failures(fixture.store, fixture.study, &failures, &count, &err), 0);
+    assert_int_equal(count, 2);
+    assert_int_equal(failures[0].attempts, ATTEMPTS_MOST);
+    assert_non_null(strstr(failures[0].reason, "lease ran out"));
+    failures_free(failures, count);
+    fixture_close(&fixture);
+}
+
 static int tick_end(void *context) {
     struct scene *scene = context;
     return ++scene->ticks == 2;
@@ -305,6 +340,7 @@ int main(void) {
         cmocka_unit_test(lost_lease_is_not_reported),
         cmocka_unit_test(long_job_keeps_its_lease),
         cmocka_unit_test(wrong_job_fails_with_its_reason),
+        cmocka_unit_test(deadly_job_fails_after_three_workers),
         cmocka_unit_test(server_away_is_waited_for),
         cmocka_unit_test(wrong_options_are_refused),
     };
