@@ -14,17 +14,17 @@ enum parameter_type {
 };
 
 struct parameter {
-    const char *path; /* JSON pointer in the study: "/surface/hurst" */
+    const char *path;             /* JSON pointer in the study: "/surface/hurst" */
+    const char *help;             /* one line; unit or normalisation in it */
+    const char *default_json;     /* NULL: absent unless given */
+    const char *const *choices;   /* NULL-terminated */
+    double minimum, maximum;      /* of each number; ignored for choices */
+    size_t items_low, items_high; /* PARAMETER_NUMBERS */
     enum parameter_type type;
-    double minimum, maximum;         /* of each number; ignored for choices */
-    bool above_minimum;              /* minimum itself excluded: "(0, 1]" */
-    bool below_maximum;              /* maximum itself excluded */
-    size_t items_low, items_high;    /* PARAMETER_NUMBERS */
-    const char *const *choices;      /* NULL-terminated */
-    bool required;                   /* in every study of this kind */
-    bool sweep;                      /* a list of values makes cases */
-    const char *default_json;        /* NULL: absent unless given */
-    const char *help;                /* one line; unit or normalisation in it */
+    bool above_minimum; /* minimum itself excluded: "(0, 1]" */
+    bool below_maximum; /* maximum itself excluded */
+    bool required;      /* in every study of this kind */
+    bool sweep;         /* a list of values makes cases */
 };
 
 #endif

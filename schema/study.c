@@ -248,7 +248,8 @@ static int check_cases(struct study *study, double memory_limit, struct fault_li
     for (size_t c = 0; c < study->case_count; c++) {
         struct study_case *one = &study->cases[c];
         struct fault_list found = {0};
-        int status = study->kind->check(one->parameters, &found, &one->cost, err);
+        int status =
+            study->kind->check(study->kind->context, one->parameters, &found, &one->cost, err);
         if (!status && !found.count && memory_limit > 0 && one->cost.memory_bytes > memory_limit)
             fault_add(&found, "",
                       "a worker needs %.3g GiB for a grid of %zu by %zu; allowed: "

@@ -21,8 +21,10 @@ struct study_kind {
     const struct parameter *parameters;
     size_t parameter_count;
     uint64_t default_realisations;
-    int (*check)(const cJSON *parameters, struct fault_list *faults, struct study_cost *cost,
-                 struct error *err);
+    /* Adds faults that no single range shows, and estimates the cost; context is handed through. */
+    int (*check)(const void *context, const cJSON *parameters, struct fault_list *faults,
+                 struct study_cost *cost, struct error *err);
+    const void *context;
 };
 
 struct study_case {

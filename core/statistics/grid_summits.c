@@ -1,13 +1,13 @@
 #include "core/statistics/grid_summits.h"
+#include "core/vectors.h"
 #include <stdint.h>
 
 enum { BLOCK = 64 }; /* points compared at once before looking for a hit */
 
 /* above[i] = all ones where m[i] beats its neighbours; returns non-zero when any does. Plain loops
  * of one width, so that the compiler makes vectors of them. */
-__attribute__((target_clones("avx2", "default"))) static int64_t
-compare_block(const double *u, const double *m, const double *d, bool corners, size_t n,
-              int64_t *above) {
+WIDE_VECTORS static int64_t compare_block(const double *u, const double *m, const double *d,
+                                          bool corners, size_t n, int64_t *above) {
     int64_t any = 0;
     for (size_t i = 0; i < n; i++)
         above[i] = -(int64_t)(m[i] > m[i - 1]) & -(int64_t)(m[i] > m[i + 1]);

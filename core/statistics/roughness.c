@@ -1,5 +1,6 @@
 #include "core/statistics/roughness.h"
 #include "core/surface/transform.h"
+#include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -33,9 +34,8 @@ static inline void point_add(struct row_sums *sums, size_t l, double left, doubl
     sums->bend[l] += bend_x * bend_y;
 }
 
-__attribute__((target_clones("avx2", "default"))) static void
-row_add(const double *up, const double *row, const double *down, size_t nx, double mean,
-        struct row_sums *sums) {
+WIDE_VECTORS static void row_add(const double *up, const double *row, const double *down, size_t nx,
+                                 double mean, struct row_sums *sums) {
     point_add(sums, 0, row[nx - 1], row[0], row[1], up[0], down[0], mean);
     size_t i = 1;
     for (; i + LANES < nx; i += LANES)
