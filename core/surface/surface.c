@@ -13,8 +13,7 @@ const struct surface_options SURFACE_DEFAULTS = {
     .stall_gain = 0.05,
     .stall_iterations = 10,
     .max_iterations = 1000,
-    .relaxed_iterations =
-        25, /* number of summits within 0.6 % of the limit; 100 gain nothing more */
+    .relaxed_iterations = 40, /* nongaussian.c says how near to the limit that is */
     .relaxation = 0.8,
 };
 

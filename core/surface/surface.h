@@ -17,14 +17,14 @@ enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
 struct surface_options {
     struct heights heights;
     enum surface_keep keep;           /* which of the two last iterates is returned */
-    enum surface_iteration iteration; /* relaxed reflections (RAAR, then plain), or plain as the reference */
+    enum surface_iteration iteration; /* accelerated and relaxed, or plain as the reference */
     enum surface_draw draw;           /* target heights drawn at random, or exact quantiles */
-    double tolerance;                 /* on eps_h, eps_s, eps_s0; default 1e-3; 0 runs to the stall */
-    double stall_gain;                /* default 0.05: stuck when the worst error has not gained this */
-    size_t stall_iterations;          /* default 10: ... in so many iterations */
-    size_t max_iterations;            /* default 1000, of both kinds together */
-    size_t relaxed_iterations;        /* default: surface.c says which and why */
-    double relaxation;                /* default 0.8 */
+    double tolerance;          /* on eps_h, eps_s, eps_s0; default 1e-3; 0 runs to the stall */
+    double stall_gain;         /* default 0.05: stuck when the worst error has not gained this */
+    size_t stall_iterations;   /* default 10: ... in so many iterations */
+    size_t max_iterations;     /* default 1000, of both kinds together */
+    size_t relaxed_iterations; /* default 40; nongaussian.c says why */
+    double relaxation;         /* default 0.8 */
 };
 extern const struct surface_options SURFACE_DEFAULTS; /* Gaussian, and the defaults above */
 
@@ -33,8 +33,8 @@ enum surface_end { END_DIRECT, END_CONVERGED, END_STALLED, END_LIMIT }; /* END_D
 struct surface_report {
     size_t iterations;
     enum surface_end end;
-    double eps_h, eps_s, eps_s0;                     /* PSD form (the one that stops) */
-    double eps_s_amplitude, eps_s0_amplitude;        /* amplitude form, as the authors' code */
+    double eps_h, eps_s, eps_s0;              /* PSD form (the one that stops) */
+    double eps_s_amplitude, eps_s0_amplitude; /* amplitude form, as the authors' code */
 };
 
 struct generator;

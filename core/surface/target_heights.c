@@ -48,14 +48,3 @@ int target_heights_draw(const struct heights *heights, const struct height_momen
     }
     return standardise(sorted, n, err);
 }
-
-int target_heights_thin(const double *sorted, size_t n, double *thin, size_t m, struct error *err) {
-    double stride = (double)n / (double)m;
-    for (size_t i = 0; i < m; i++) {
-        double at = ((double)i + 0.5) * stride - 0.5;
-        size_t low = (size_t)at;
-        size_t high = low + 1 < n ? low + 1 : low;
-        thin[i] = sorted[low] + (at - (double)low) * (sorted[high] - sorted[low]);
-    }
-    return standardise(thin, m, err);
-}

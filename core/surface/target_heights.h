@@ -14,8 +14,4 @@ int target_heights_draw(const struct heights *heights, const struct height_momen
                         enum surface_draw draw, struct random_key key, size_t n,
                         struct ranker *ranker, double *sorted, struct error *err);
 
-/* The same distribution on fewer points: thin[0..m) from sorted[0..n), m <= n, standardised again.
- */
-int target_heights_thin(const double *sorted, size_t n, double *thin, size_t m, struct error *err);
-
 #endif
