@@ -9,9 +9,9 @@ CC     ?= cc
 Q      = $(if $(V),,@)
 say    = $(if $(V),@:,@echo)
 
-PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl cmocka
+PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl nettle cmocka
 APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev \
-           libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev libcmocka-dev
+           libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev nettle-dev libcmocka-dev
 # those without a pkg-config file
 HEADERS  = /usr/include/Random123/philox.h
 
@@ -35,7 +35,7 @@ LIBS_core   = -lfftw3 -lgsl -lgslcblas -lm
 LIBS_jobs   = -lcjson $(LIBS_core)
 LIBS_schema = -lsqlite3 $(LIBS_jobs)
 LIBS_worker = -lcurl $(LIBS_schema)
-LIBS_server = -lmicrohttpd $(LIBS_worker)
+LIBS_server = -lmicrohttpd -lnettle $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
 embedded = $(wildcard $(1)/migrations/*.sql $(1)/web/* $(1)/*.yaml)

@@ -143,6 +143,10 @@ int store_publish(struct store *store, const char *study, uint64_t case_number, 
 /* The published document of a case, or NULL in *out when there is none of this revision. */
 int store_published(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
                     cJSON **out, struct error *err);
+/* A complete case whose curves are not published at its revision: the one behind `skip` others.
+ * ERROR_ABSENT when there is none. */
+int store_unpublished(struct store *store, uint64_t skip, char study[STUDY_ID_SIZE],
+                      uint64_t *case_number, struct error *err);
 /* Cost and time of each case for the report. */
 struct case_cost {
     uint64_t case_number, realisations_done, realisations, jobs, attempts;
