@@ -89,8 +89,8 @@ void height_error_destroy(struct height_error **height_error) {
 }
 
 double height_error_bytes(const struct grid *grid) {
-    double half = (double)(grid->nx / 2 + 1) * (double)grid->ny;
-    return sizeof(double complex) * half +
+    size_t columns = grid->nx / 2 + 1;
+    return sizeof(double complex) * (double)columns * (double)grid->ny +
            2.0 * sizeof(uint32_t) * (double)bins_for(grid_points(grid));
 }
 

@@ -19,14 +19,14 @@ double height_error_bytes(const struct grid *grid);
 
 /* Fixes the bins of a run: Scott's width, an edge on the bound of the distribution (or on its
  * mean). sorted[points]: all heights of z_h, rising. */
-void height_error_start(struct height_error *height_error, const struct height_moments *moments,
+void height_error_start(struct height_error *e, const struct height_moments *moments,
                         const double *sorted);
 
 /* Fills the errors of report. spectrum: the half spectrum of z_h on the band, as transform_forward
  * leaves it. eps_s0 needs a transform of the whole grid; without `complete` it is done only where
  * its bound by Parseval's sum exceeds both other errors, and eps_s0 is that bound otherwise: the
  * largest of the three errors is exact either way. Returns that largest error. */
-double height_error_measure(struct height_error *height_error, const double *z_s, const double *z_h,
+double height_error_measure(struct height_error *e, const double *z_s, const double *z_h,
                             const double complex *spectrum, bool complete,
                             struct surface_report *report);
 

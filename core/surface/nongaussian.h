@@ -16,9 +16,8 @@ void nongaussian_destroy(struct nongaussian **nongaussian);
 
 /* On entry z[ny*nx] is the Gaussian start, on return the surface. transform belongs to the grid and
  * band of modes; its spectrum is overwritten. report may be NULL. After an error z is undefined. */
-int nongaussian_run(struct nongaussian *nongaussian, struct transform *transform,
-                    struct random_key key, double *z, struct surface_report *report,
-                    struct error *err);
+int nongaussian_run(struct nongaussian *g, struct transform *transform, struct random_key key,
+                    double *z, struct surface_report *report, struct error *err);
 
 /* Peak bytes held by one of these on a grid and band; z and the caller's transform not counted. */
 double nongaussian_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,

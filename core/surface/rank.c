@@ -12,7 +12,6 @@
  *
  * Memory: 18 bytes a key and some tables (ranker_bytes). */
 #include "core/surface/rank.h"
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -140,9 +139,10 @@ static int map_set(struct ranker *ranker, const double *key, struct error *err) 
         high[0] = high[a] > high[0] ? high[a] : high[0];
     }
     double scale = (double)ranker->cells * JUST_BELOW_ONE / (high[0] - low[0]);
-    ranker->lowest = low[0];
-    /* Equal keys, a denormal range, a range beyond DBL_MAX: all in one cell. */
-    ranker->scale = isfinite(scale) && isfinite(high[0] - low[0]) ? scale : 0;
+    /* Equal keys, a denormal range, a range beyond DBL_MAX: all in cell 0. */
+    bool usable = isfinite(scale) && isfinite(high[0] - low[0]);
+    ranker->lowest = usable ? low[0] : 0;
+    ranker->scale = usable ? scale : 0;
     return 0;
 }
 
