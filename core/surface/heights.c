@@ -86,7 +86,7 @@ static int quantile_moments(const struct heights *heights, struct height_moments
     powers_integrate(heights, mean, central, &tail);
     if (!isfinite(central[2]) || !(tail <= TAIL_SHARE * central[2]))
         return error_set(err, ERROR_INPUT, "the quantile function has no finite fourth moment");
-    if (!(central[0] > 0))
+    if (!(sqrt(central[0]) > 1e-12 * fabs(mean))) /* less is rounding */
         return error_set(err, ERROR_INPUT, "the quantile function is constant");
     out->mean = mean;
     out->deviation = sqrt(central[0]);

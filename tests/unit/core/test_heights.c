@@ -1,0 +1,206 @@
+/* Protects: the moments, bounds, quantiles and densities of the height distributions, to the
+ * reference's tables and without loss of digits at the ends of the range of shapes. */
+#include "core/random.h"
+#include "core/surface/heights.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+#include <string.h>
+
+static struct height_moments moments_of(enum heights_type type, double shape) {
+    struct heights heights = {.type = type, .shape = shape};
+    struct height_moments moments;
+    assert_int_equal(heights_moments(&heights, &moments, NULL), 0);
+    return moments;
+}
+
+/* Table 3.3 and theory.md's bounds, to their printed digits. */
+static void moments_are_those_of_the_table(void **state) {
+    (void)state;
+    static const double TABLE[][4] = {{1, 2, 9, 1},
+                                      {1.2, 1.5211, 6.2357, 1.1949},
+                                      {1.5, 1.0720, 4.3904, 1.4728},
+                                      {2, 0.6311, 3.2451, 1.9131},
+                                      {3.602, 0.0001, 2.7168, 3.2428}};
+    for (size_t row = 0; row < sizeof TABLE / sizeof *TABLE; row++) {
+        struct height_moments low = moments_of(HEIGHTS_WEIBULL_MIN, TABLE[row][0]);
+        struct height_moments high = moments_of(HEIGHTS_WEIBULL_MAX, TABLE[row][0]);
+        check_close(low.skewness, TABLE[row][1], 0.5e-4);
+        check_close(low.kurtosis, TABLE[row][2], 0.5e-4);
+        check_close(-low.lowest, TABLE[row][3], 0.5e-4);
+        assert_true(isinf(low.highest));
+        check_close(high.skewness, -low.skewness, 0);
+        check_close(high.kurtosis, low.kurtosis, 0);
+        check_close(high.highest, -low.lowest, 0);
+        check_close(high.mean, -low.mean, 0);
+        assert_true(isinf(high.lowest) && high.lowest < 0);
+    }
+}
+
+/* At C = 20 four digits of the central moments cancel when they are formed from raw ones; the
+ * values are from 50-digit arithmetic. 1e-11: what remains of the cancellation in lgamma's
+ * arguments. */
+static void extreme_shapes_keep_their_digits(void **state) {
+    (void)state;
+    struct height_moments half = moments_of(HEIGHTS_WEIBULL_MIN, 0.5);
+    check_relative(half.mean, 2.0, 1e-14);
+    check_relative(half.deviation, 4.4721359549995793928, 1e-13);
+    check_relative(half.skewness, 6.6187612133993780616, 1e-13);
+    check_relative(half.kurtosis, 87.72, 1e-13);
+    struct height_moments twenty = moments_of(HEIGHTS_WEIBULL_MIN, 20);
+    check_relative(twenty.mean, 0.973504265562775643202, 1e-13);
+    check_relative(twenty.deviation, 0.060334192610442550955, 1e-11);
+    check_relative(twenty.skewness, -0.86796509517451089683, 1e-11);
+    check_relative(twenty.kurtosis, 4.267200759255400820984, 1e-11);
+}
+
+static void quantiles_invert_the_distribution(void **state) {
+    (void)state;
+    static const double PROBABILITIES[] = {1e-12, 1e-3, 0.2, 0.5, 0.9, 1 - 1e-9};
+    static const double SHAPES[] = {0.5, 1, 3.602, 20};
+    static const enum heights_type TYPES[] = {HEIGHTS_GAUSSIAN, HEIGHTS_WEIBULL_MIN,
+                                              HEIGHTS_WEIBULL_MAX};
+    for (size_t t = 0; t < 3; t++)
+        for (size_t s = 0; s < 4; s++)
+            for (size_t k = 0; k < sizeof PROBABILITIES / sizeof *PROBABILITIES; k++) {
+                struct heights heights = {.type = TYPES[t], .shape = SHAPES[s]};
+                struct height_moments moments = moments_of(TYPES[t], SHAPES[s]);
+                double p = PROBABILITIES[k];
+                double z = heights_quantile(&heights, &moments, p);
+                /* z has lost digits near a bound: an error of 4e-16 there moves p by the density */
+                double lost = 4e-16 * heights_pdf(&heights, &moments, z) * fmax(1, fabs(z)) * 40;
+                check_close(heights_cdf(&heights, &moments, z), p, 1e-11 * p + fmin(lost, 1e-6));
+            }
+}
+
+/* The density is the slope of the distribution, and integrates to 1 with mean 0 and variance 1. */
+static void densities_are_standardised(void **state) {
+    (void)state;
+    struct heights heights = {.type = HEIGHTS_WEIBULL_MAX, .shape = 1.5};
+    struct height_moments moments = moments_of(heights.type, heights.shape);
+    double sum = 0, mean = 0, square = 0, step = 1e-4;
+    for (double z = moments.highest - step / 2; z > -15; z -= step) {
+        double weight = step * heights_pdf(&heights, &moments, z);
+        sum += weight;
+        mean += weight * z;
+        square += weight * z * z;
+        double low = heights_cdf(&heights, &moments, z - step / 2);
+        double high = heights_cdf(&heights, &moments, z + step / 2);
+        if (z < moments.highest - 0.01) /* midpoint rule: f'' step^2 / 24, large at the bound */
+            check_close(high - low, weight, 1e-6 * step);
+    }
+    check_close(sum, 1, 1e-6); /* the square-root start at the bound: step^1.5 */
+    check_close(mean, 0, 1e-5);
+    check_close(square, 1, 1e-5);
+    check_close(heights_pdf(&heights, &moments, moments.highest + 0.1), 0, 0);
+    check_close(heights_cdf(&heights, &moments, moments.highest + 0.1), 1, 0);
+}
+
+/* A million draws: mean, variance, skewness and kurtosis within 4 standard errors, these from the
+ * blocks' spread (heavy tails make formulas for them useless). */
+static void draws_have_the_moments(void **state) {
+    (void)state;
+    enum { BLOCKS = 100, DRAWS = 10000 };
+    static const double SHAPES[] = {1, 1.2, 1.5, 2, 3.602};
+    double *u = malloc(DRAWS * sizeof *u);
+    assert_non_null(u);
+    for (size_t s = 0; s < 5; s++) {
+        struct heights heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = SHAPES[s]};
+        struct height_moments moments = moments_of(heights.type, heights.shape);
+        const double expected[4] = {0, 1, moments.skewness, moments.kurtosis};
+        double sum[4] = {0}, square[4] = {0};
+        for (size_t block = 0; block < BLOCKS; block++) {
+            random_uniform((struct random_key){7, s, block}, STREAM_HEIGHTS, 0, DRAWS, u);
+            double power[4] = {0};
+            for (size_t i = 0; i < DRAWS; i++) {
+                double z = heights_quantile(&heights, &moments, fmax(u[i], 0x1p-54));
+                for (size_t k = 0; k < 4; k++)
+                    power[k] += pow(z, (double)k + 1) / DRAWS;
+            }
+            for (size_t k = 0; k < 4; k++) {
+                sum[k] += power[k];
+                square[k] += power[k] * power[k];
+            }
+        }
+        for (size_t k = 0; k < 4; k++) {
+            double mean = sum[k] / BLOCKS;
+            double error = sqrt((square[k] / BLOCKS - mean * mean) / (BLOCKS - 1));
+            check_close(mean, expected[k], 4 * error);
+        }
+    }
+    free(u);
+}
+
+static double exponential_quantile(double p, const void *context) {
+    return *(const double *)context - 3 * log1p(-p);
+}
+static double falling_quantile(double p, const void *context) {
+    (void)context;
+    return -p;
+}
+static double constant_quantile(double p, const void *context) {
+    (void)p, (void)context;
+    return 2;
+}
+static double cauchy_quantile(double p, const void *context) {
+    (void)context;
+    return tan(M_PI * (p - 0.5));
+}
+static double step_quantile(double p, const void *context) {
+    (void)context;
+    return p < 0.25 ? -1 : 1;
+}
+
+static void quantile_functions_are_standardised(void **state) {
+    (void)state;
+    double shift = -7;
+    struct heights heights = {
+        .type = HEIGHTS_QUANTILE, .quantile = exponential_quantile, .context = &shift};
+    struct height_moments moments;
+    assert_int_equal(heights_moments(&heights, &moments, NULL), 0);
+    check_close(moments.mean, -4, 1e-11); /* quadrature's stated 12 digits */
+    check_close(moments.deviation, 3, 1e-11);
+    check_close(moments.skewness, 2, 1e-9);
+    check_close(moments.kurtosis, 9, 1e-8);
+    check_close(heights_quantile(&heights, &moments, 0.5), M_LN2 - 1, 1e-11);
+    assert_true(isnan(heights_pdf(&heights, &moments, 0)));
+    heights.quantile = step_quantile; /* jumps: the stated three digits */
+    assert_int_equal(heights_moments(&heights, &moments, NULL), 0);
+    check_close(moments.mean, 0.5, 2e-3);
+    check_close(moments.deviation, sqrt(0.75), 2e-3);
+}
+
+static void nonsense_is_refused(void **state) {
+    (void)state;
+    static const double SHAPES[] = {0.4999, 20.001, -1, 0, NAN, INFINITY};
+    struct height_moments moments;
+    struct error err;
+    for (size_t s = 0; s < sizeof SHAPES / sizeof *SHAPES; s++) {
+        struct heights heights = {.type = HEIGHTS_WEIBULL_MAX, .shape = SHAPES[s]};
+        assert_int_equal(heights_moments(&heights, &moments, &err), ERROR_INPUT);
+        assert_non_null(strstr(err.text, "[0.5, 20]"));
+    }
+    struct heights heights = {.type = HEIGHTS_QUANTILE};
+    assert_int_equal(heights_moments(&heights, &moments, &err), ERROR_INPUT);
+    heights.quantile = falling_quantile;
+    assert_int_equal(heights_moments(&heights, &moments, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "rising"));
+    heights.quantile = constant_quantile;
+    assert_int_equal(heights_moments(&heights, &moments, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "constant"));
+    heights.quantile = cauchy_quantile;
+    assert_int_equal(heights_moments(&heights, &moments, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "moment"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(moments_are_those_of_the_table),
+        cmocka_unit_test(extreme_shapes_keep_their_digits),
+        cmocka_unit_test(quantiles_invert_the_distribution),
+        cmocka_unit_test(densities_are_standardised),
+        cmocka_unit_test(draws_have_the_moments),
+        cmocka_unit_test(quantile_functions_are_standardised),
+        cmocka_unit_test(nonsense_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
