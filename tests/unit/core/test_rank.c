@@ -152,7 +152,7 @@ static void compare(const char *name, key_function make, size_t n) {
     memcpy(sorted, key, n * sizeof *sorted);
     assert_int_equal(rank_sort(ranker, sorted, &err), 0);
     for (size_t p = 0; p < n; p++)
-        if (memcmp(&sorted[p], &key[position[p]], sizeof *key) != 0)
+        if (sorted[p] != key[position[p]] || signbit(sorted[p]) != signbit(key[position[p]]))
             fail_msg("%s, n = %zu, seed %llu: sorted[%zu] = %g, not %g", name, n,
                      (unsigned long long)seed, p, sorted[p], key[position[p]]);
     ranker_destroy(&ranker);

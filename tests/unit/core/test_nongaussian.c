@@ -1,0 +1,381 @@
+/* Protects: what non-Gaussian generation promises of every surface: the exact spectrum or the exact
+ * heights, errors that are those of the returned pair, an end for every tolerance, refusals instead
+ * of NaN. */
+#include "core/surface/height_error.h"
+#include "core/surface/nongaussian.h"
+#include "core/surface/rank.h"
+#include "core/surface/surface.h"
+#include "core/surface/target_heights.h"
+#include "tests/support/check.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct random_key KEY = {11, 3, 5};
+
+static struct spectrum self_affine(double longest, double shortest) {
+    return (struct spectrum){.type = SPECTRUM_SELF_AFFINE,
+                             .hurst = 0.8,
+                             .wavelength_long = longest,
+                             .wavelength_rolloff = longest,
+                             .wavelength_short = shortest,
+                             .scale = SCALE_RMS_HEIGHT,
+                             .scale_value = 2.5e-7};
+}
+
+static struct surface_options weibull(enum heights_type type, double shape) {
+    struct surface_options options = SURFACE_DEFAULTS;
+    options.heights = (struct heights){.type = type, .shape = shape};
+    return options;
+}
+
+/* One surface and all that made it. */
+struct sample {
+    struct grid grid;
+    struct generator *generator;
+    double *z;
+    struct surface_report report;
+};
+
+static int sample_create(struct sample *s, struct grid grid, const struct spectrum *spectrum,
+                         const struct surface_options *options, struct error *err) {
+    *s = (struct sample){.grid = grid};
+    int status = generator_create(&s->generator, spectrum, &grid, options, err);
+    if (status)
+        return status;
+    s->z = malloc(grid_points(&grid) * sizeof *s->z);
+    assert_non_null(s->z);
+    return generator_run(s->generator, KEY, s->z, &s->report, err);
+}
+
+static void sample_destroy(struct sample *s) {
+    generator_destroy(&s->generator);
+    free(s->z);
+}
+
+/* Largest |(power of z) / (power of modes) - 1|, and the power elsewhere over the whole one. */
+static double spectrum_departure(const struct sample *s, double *elsewhere) {
+    const struct modes *modes = generator_modes(s->generator);
+    const struct grid *grid = &s->grid;
+    struct transform *transform = NULL;
+    assert_int_equal(transform_create(&transform, grid, grid->nx / 2, grid->ny / 2, NULL), 0);
+    transform_forward(transform, s->z);
+    const double complex *spectrum = transform_spectrum(transform);
+    double worst = 0, whole = 0;
+    *elsewhere = 0;
+    for (size_t mx = 0; mx <= grid->nx / 2; mx++)
+        for (size_t row = 0; row < grid->ny; row++) {
+            long my = row <= grid->ny / 2 ? (long)row : (long)row - (long)grid->ny;
+            bool inside = mx <= modes->mode_x && (size_t)labs(my) <= modes->mode_y;
+            double wanted = inside ? modes_power(modes, mx, my) : 0;
+            double had = pow(cabs(spectrum[mx * grid->ny + row]), 2);
+            whole += had;
+            if (wanted > 0)
+                worst = fmax(worst, fabs(had / wanted - 1));
+            else
+                *elsewhere += had;
+        }
+    *elsewhere /= whole;
+    transform_destroy(&transform);
+    return worst;
+}
+
+static void check_report(const struct surface_report *report) {
+    const double errors[] = {report->eps_h, report->eps_s, report->eps_s0, report->eps_s_amplitude,
+                             report->eps_s0_amplitude};
+    for (size_t e = 0; e < sizeof errors / sizeof *errors; e++)
+        assert_true(errors[e] >= 0 && isfinite(errors[e]));
+    assert_true(report->end == END_CONVERGED || report->end == END_STALLED ||
+                report->end == END_LIMIT);
+    assert_true(report->iterations > 0);
+}
+
+/* 1e-12: rounding of one transform pair, relative to the smallest mode kept. */
+static void kept_spectrum_is_exact(void **state) {
+    (void)state;
+    static const struct grid GRIDS[] = {
+        {128, 128, 1, 1}, {97, 61, 1, 1}, {60, 250, 1, 2}, {2048, 1, 1, 1}, {32, 32, 1, 1}};
+    struct spectrum spectrum = self_affine(0.5, 1. / 16); /* 32 x 32: two points a wave */
+    for (int iteration = 0; iteration < 2; iteration++)
+        for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++) {
+            struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 1);
+            options.iteration = iteration ? ITERATION_PLAIN : ITERATION_RELAXED;
+            struct sample s;
+            assert_int_equal(sample_create(&s, GRIDS[g], &spectrum, &options, NULL), 0);
+            double elsewhere;
+            check_close(spectrum_departure(&s, &elsewhere), 0, 1e-12);
+            check_close(elsewhere, 0, 1e-24);
+            check_report(&s.report);
+            sample_destroy(&s);
+        }
+}
+
+static int by_value(const void *a, const void *b) {
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/* Sorted, the surface is the standardised quantiles times the RMS height. */
+static void kept_heights_are_exact(void **state) {
+    (void)state;
+    struct grid grid = {81, 64, 1, 1};
+    struct spectrum spectrum = self_affine(0.5, 1. / 12);
+    struct surface_options options = weibull(HEIGHTS_WEIBULL_MIN, 1.5);
+    options.keep = KEEP_HEIGHTS;
+    options.draw = DRAW_QUANTILES;
+    struct sample s;
+    assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+    size_t n = grid_points(&grid);
+    qsort(s.z, n, sizeof *s.z, by_value);
+    struct height_moments moments;
+    struct ranker *ranker = NULL;
+    double *target = malloc(n * sizeof *target);
+    assert_non_null(target);
+    assert_int_equal(heights_moments(&options.heights, &moments, NULL), 0);
+    assert_int_equal(ranker_create(&ranker, n, NULL), 0);
+    assert_int_equal(target_heights_draw(&options.heights, &moments, DRAW_QUANTILES, KEY, n, ranker,
+                                         target, NULL),
+                     0);
+    for (size_t i = 0; i < n; i++)
+        check_close(s.z[i], 2.5e-7 * target[i], 1e-13 * 2.5e-7 * fmax(1, fabs(target[i])));
+    ranker_destroy(&ranker);
+    free(target);
+    sample_destroy(&s);
+}
+
+/* Drawn heights have zero mean and unit deviation as a sample, rise, and repeat. */
+static void drawn_heights_are_standardised(void **state) {
+    (void)state;
+    enum { N = 30011 };
+    struct heights heights = {.type = HEIGHTS_WEIBULL_MAX, .shape = 0.5};
+    struct height_moments moments;
+    struct ranker *ranker = NULL;
+    double *first = malloc(N * sizeof *first), *again = malloc(N * sizeof *again);
+    assert_true(first && again);
+    assert_int_equal(heights_moments(&heights, &moments, NULL), 0);
+    assert_int_equal(ranker_create(&ranker, N, NULL), 0);
+    for (int draw = DRAW_RANDOM; draw <= DRAW_QUANTILES; draw++) {
+        enum surface_draw kind = draw ? DRAW_QUANTILES : DRAW_RANDOM;
+        assert_int_equal(target_heights_draw(&heights, &moments, kind, KEY, N, ranker, first, NULL),
+                         0);
+        assert_int_equal(target_heights_draw(&heights, &moments, kind, KEY, N, ranker, again, NULL),
+                         0);
+        assert_memory_equal(first, again, N * sizeof *first);
+        double mean = 0, square = 0;
+        for (size_t i = 0; i < N; i++) {
+            assert_true(i == 0 || first[i] >= first[i - 1]);
+            mean += first[i] / N;
+            square += first[i] * first[i] / N;
+        }
+        check_close(mean, 0, 1e-13); /* rounding of N naive additions of this test */
+        check_close(square, 1, 1e-12);
+    }
+    ranker_destroy(&ranker);
+    free(first);
+    free(again);
+}
+
+/* The errors from their definitions (3.33, 3.34), by a transform of the whole grid and a histogram
+ * of its own, for the pair of which KEEP_SPECTRUM and KEEP_HEIGHTS return one each. */
+static void errors_are_those_of_the_pair(void **state) {
+    (void)state;
+    struct grid grid = {96, 80, 1, 1};
+    struct spectrum spectrum = self_affine(0.5, 0.1);
+    struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 1);
+    struct sample s, h;
+    assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+    options.keep = KEEP_HEIGHTS;
+    assert_int_equal(sample_create(&h, grid, &spectrum, &options, NULL), 0);
+    const struct modes *modes = generator_modes(s.generator);
+    size_t n = grid_points(&grid);
+    struct transform *transform = NULL;
+    assert_int_equal(transform_create(&transform, &grid, grid.nx / 2, grid.ny / 2, NULL), 0);
+    transform_forward(transform, h.z);
+    double band = 0, band_amplitude = 0, powers = 0, amplitudes = 0, null = 0, null_power = 0;
+    double counted = 0;
+    for (size_t mx = 0; mx <= grid.nx / 2; mx++)
+        for (size_t row = 0; row < grid.ny; row++) {
+            long my = row <= grid.ny / 2 ? (long)row : (long)row - (long)grid.ny;
+            double weight = mx == 0 || 2 * mx == grid.nx ? 1 : 2;
+            bool inside = mx <= modes->mode_x && (size_t)labs(my) <= modes->mode_y;
+            double wanted = inside ? modes_power(modes, mx, my) : 0;
+            double had = pow(cabs(transform_spectrum(transform)[mx * grid.ny + row]), 2);
+            if (wanted > 0) {
+                counted += weight;
+                powers += weight * wanted;
+                amplitudes += weight * sqrt(wanted);
+                band += weight * pow(had / wanted - 1, 2);
+                band_amplitude += weight * pow(sqrt(had / wanted) - 1, 2);
+            } else {
+                null += weight * had * had;
+                null_power += weight * had;
+            }
+        }
+    double nulls = (double)n - counted;
+    check_close(counted, (double)modes->count, 0);
+    check_relative(s.report.eps_s, sqrt(band / counted), 1e-9);
+    check_relative(s.report.eps_s_amplitude, sqrt(band_amplitude / counted), 1e-9);
+    check_relative(s.report.eps_s0, sqrt(null / nulls) / (powers / counted), 1e-9);
+    check_relative(s.report.eps_s0_amplitude, sqrt(null_power / nulls) / (amplitudes / counted),
+                   1e-6); /* by Parseval: a difference from 1 */
+    double deviation = 2.5e-7, width = 3.49 / cbrt((double)n), distance = 0;
+    int counts[2][4001] = {{0}};
+    for (size_t i = 0; i < n; i++) {
+        counts[0][(int)floor((s.z[i] / deviation - 1) / width) + 2000]++;
+        counts[1][(int)floor((h.z[i] / deviation - 1) / width) + 2000]++;
+    }
+    for (int b = 0; b <= 4000; b++)
+        distance += fabs((double)(counts[0][b] - counts[1][b])) / (double)n;
+    /* A height on an edge may be counted on either side of it. */
+    check_close(s.report.eps_h, distance, 4.0 / (double)n);
+    assert_memory_equal(&s.report, &h.report, sizeof s.report);
+    transform_destroy(&transform);
+    sample_destroy(&s);
+    sample_destroy(&h);
+}
+
+/* Surfaces with no good answer still get one, with errors that are numbers. */
+static void hard_cases_end(void **state) {
+    (void)state;
+    static const struct grid GRIDS[] = {{2, 1, 1, 1},  {2, 2, 1, 1},    {3, 1, 1, 1},
+                                        {3, 3, 1, 1},  {5, 2, 1, 1},    {7, 31, 1, 1},
+                                        {64, 1, 1, 1}, {16, 128, 1, 1}, {64, 64, 1, 1}};
+    static const double SHAPES[] = {0.5, 1, 20};
+    struct spectrum spectrum = self_affine(1, 1); /* one wave, or one ring */
+    for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++)
+        for (size_t c = 0; c < 12; c++) {
+            struct surface_options options =
+                weibull(c % 2 ? HEIGHTS_WEIBULL_MIN : HEIGHTS_WEIBULL_MAX, SHAPES[c / 2 % 3]);
+            options.iteration = c < 6 ? ITERATION_RELAXED : ITERATION_PLAIN;
+            options.tolerance = 0;
+            struct sample s;
+            assert_int_equal(sample_create(&s, GRIDS[g], &spectrum, &options, NULL), 0);
+            double square = 0;
+            for (size_t i = 0; i < grid_points(&s.grid); i++)
+                square += s.z[i] * s.z[i] / (double)grid_points(&s.grid);
+            check_relative(sqrt(square), 2.5e-7, 1e-12);
+            check_report(&s.report);
+            assert_true(s.report.iterations <= options.max_iterations);
+            sample_destroy(&s);
+        }
+}
+
+/* The stall rule ends plain runs; a wide tolerance ends them at once; a limit is kept to. */
+static void runs_end_as_they_should(void **state) {
+    (void)state;
+    struct grid grid = {64, 64, 1, 1};
+    struct spectrum spectrum = self_affine(0.5, 1. / 8);
+    struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 1);
+    options.iteration = ITERATION_PLAIN;
+    struct sample s;
+    assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+    assert_int_equal(s.report.end, END_STALLED);
+    assert_true(s.report.iterations > options.stall_iterations);
+    sample_destroy(&s);
+    options.tolerance = 100;
+    assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+    assert_int_equal(s.report.end, END_CONVERGED);
+    assert_int_equal(s.report.iterations, 1);
+    sample_destroy(&s);
+    options.tolerance = 0;
+    for (size_t limit = 1; limit < 8; limit++)
+        for (int iteration = 0; iteration < 2; iteration++) {
+            options.iteration = iteration ? ITERATION_PLAIN : ITERATION_RELAXED;
+            options.max_iterations = limit;
+            assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+            assert_int_equal(s.report.end, END_LIMIT);
+            assert_int_equal(s.report.iterations, limit);
+            sample_destroy(&s);
+        }
+}
+
+/* A second run of a generator has the bits of a first one: nothing of a run stays behind. */
+static void runs_repeat(void **state) {
+    (void)state;
+    struct grid grid = {64, 48, 1, 1};
+    struct spectrum spectrum = self_affine(0.5, 1. / 8);
+    struct surface_options options = weibull(HEIGHTS_WEIBULL_MIN, 1.2);
+    struct sample s;
+    assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+    size_t n = grid_points(&grid);
+    double *again = malloc(n * sizeof *again);
+    assert_non_null(again);
+    struct surface_report report;
+    struct random_key other = {1, 2, 3};
+    assert_int_equal(generator_run(s.generator, other, again, NULL, NULL), 0);
+    assert_memory_not_equal(again, s.z, n * sizeof *again);
+    assert_int_equal(generator_run(s.generator, KEY, again, &report, NULL), 0);
+    assert_memory_equal(again, s.z, n * sizeof *again);
+    assert_memory_equal(&report, &s.report, sizeof report);
+    free(again);
+    sample_destroy(&s);
+}
+
+static double three_values(double p, const void *context) {
+    (void)context;
+    return p < 0.3 ? -1 : p < 0.9 ? 0 : 4;
+}
+static double normal_but_for_the_middle(double p, const void *context) {
+    (void)context;
+    return p == 0.5 ? NAN : log(p / (1 - p));
+}
+
+/* Heights with ties are placed; a quantile function that fails only where it is used is told. */
+static void quantile_functions_are_used(void **state) {
+    (void)state;
+    struct grid grid = {63, 63, 1, 1};
+    struct spectrum spectrum = self_affine(0.5, 1. / 8);
+    struct surface_options options = SURFACE_DEFAULTS;
+    options.heights = (struct heights){.type = HEIGHTS_QUANTILE, .quantile = three_values};
+    options.keep = KEEP_HEIGHTS;
+    options.draw = DRAW_QUANTILES;
+    struct sample s;
+    assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+    check_report(&s.report);
+    qsort(s.z, grid_points(&grid), sizeof *s.z, by_value);
+    size_t different = 1;
+    for (size_t i = 1; i < grid_points(&grid); i++)
+        different += s.z[i] != s.z[i - 1];
+    assert_int_equal(different, 3);
+    sample_destroy(&s);
+    struct error err;
+    options.heights.quantile = normal_but_for_the_middle; /* (i + 1/2)/63^2 meets 1/2 */
+    int status = sample_create(&s, grid, &spectrum, &options, &err);
+    assert_true(status == ERROR_NUMERIC || status == ERROR_INPUT);
+    sample_destroy(&s);
+}
+
+static void bad_options_are_refused(void **state) {
+    (void)state;
+    struct grid grid = {32, 32, 1, 1};
+    struct spectrum spectrum = self_affine(0.5, 0.25);
+    struct error err;
+    for (int fault = 0; fault < 9; fault++) {
+        struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, fault == 0 ? 0.4 : 1);
+        options.tolerance = fault == 1 ? -1 : fault == 2 ? NAN : 1e-3;
+        options.stall_gain = fault == 3 ? 1 : fault == 4 ? -0.1 : 0.05;
+        options.stall_iterations = fault == 5 ? 0 : 10;
+        options.max_iterations = fault == 6 ? 0 : 10;
+        options.relaxation = fault == 7 ? 0 : fault == 8 ? 1.1 : 0.8;
+        struct generator *generator = NULL;
+        assert_int_equal(generator_create(&generator, &spectrum, &grid, &options, &err),
+                         ERROR_INPUT);
+        assert_null(generator);
+        assert_true(strlen(err.text) > 10);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(kept_spectrum_is_exact),
+        cmocka_unit_test(kept_heights_are_exact),
+        cmocka_unit_test(drawn_heights_are_standardised),
+        cmocka_unit_test(errors_are_those_of_the_pair),
+        cmocka_unit_test(hard_cases_end),
+        cmocka_unit_test(runs_end_as_they_should),
+        cmocka_unit_test(runs_repeat),
+        cmocka_unit_test(quantile_functions_are_used),
+        cmocka_unit_test(bad_options_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
