@@ -3,6 +3,7 @@
 #include "server/api.h"
 #include "server/command.h"
 #include "worker/client.h"
+#include "worker/kinds.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -103,9 +104,14 @@ int access_submit(struct access *access, const char *text, size_t size,
                   const char *const *overrides, cJSON **out, struct fault_list *faults,
                   struct error *err) {
     bool existing;
+    struct study *study = NULL;
     if (access->client)
         return submit_remote(access, text, size, overrides, out, err);
-    return api_submit(access->store, text, size, overrides, NULL, out, &existing, faults, err);
+    int status = kinds_read_study(&study, text, size, overrides, faults, err);
+    if (!status)
+        status = api_submit(access->store, study, NULL, out, &existing, err);
+    study_destroy(&study);
+    return status;
 }
 
 int access_status(struct access *access, const char *id, cJSON **out, struct error *err) {

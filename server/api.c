@@ -1,5 +1,4 @@
 #include "server/api.h"
-#include "worker/kinds.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,16 +35,11 @@ static cJSON *submitted(const struct study_status *status, bool *complete) {
     return document;
 }
 
-int api_submit(struct store *store, const char *text, size_t size, const char *const *overrides,
-               const char *key, cJSON **out, bool *existing, struct fault_list *faults,
-               struct error *err) {
-    struct study *study = NULL;
+int api_submit(struct store *store, const struct study *study, const char *key, cJSON **out,
+               bool *existing, struct error *err) {
     char id[STUDY_ID_SIZE];
-    int status = kinds_read_study(&study, text, size, overrides, faults, err);
-    if (!status)
-        status = store_submit(store, study, key, id, existing, err);
-    study_destroy(&study);
     struct study_status now = {0};
+    int status = store_submit(store, study, key, id, existing, err);
     if (!status)
         status = store_status(store, id, &now, err);
     if (status)

@@ -1,0 +1,20 @@
+/* Handlers of the routes; route.c has the table. id is the segment that stands for * in the
+ * pattern. */
+#ifndef RUGO_SERVER_ROUTE_H
+#define RUGO_SERVER_ROUTE_H
+
+#include "server/http.h"
+
+enum { SEGMENT_SIZE = 64 };
+typedef void route_handler(struct exchange *exchange, const char *id);
+
+route_handler handle_study_create, handle_study_list, handle_study, handle_study_cancel,
+    handle_study_retry, handle_curves, handle_report, handle_events;
+route_handler handle_claim, handle_heartbeat, handle_complete, handle_fail, handle_release;
+route_handler handle_health, handle_metrics, handle_snapshot, handle_openapi, handle_schema,
+    handle_page, handle_script, handle_style;
+
+/* The body as JSON; answers 400 itself and gives NULL where it is none. */
+cJSON *body_json(struct exchange *exchange);
+
+#endif

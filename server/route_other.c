@@ -1,0 +1,118 @@
+/* Health, metrics, snapshot, descriptions and the page. */
+#include "server/route.h"
+#include "worker/kinds.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define EMBEDDED(name)                                                                             \
+    extern const char _binary_server_##name##_start[];                                             \
+    extern const char _binary_server_##name##_end[]
+EMBEDDED(openapi_yaml);
+EMBEDDED(web_index_html);
+EMBEDDED(web_app_js);
+EMBEDDED(web_style_css);
+
+#define ANSWER_EMBEDDED(exchange, type, name)                                                      \
+    answer_static(exchange, type, _binary_server_##name##_start,                                   \
+                  (size_t)(_binary_server_##name##_end - _binary_server_##name##_start))
+
+void handle_openapi(struct exchange *exchange, const char *id) {
+    (void)id;
+    ANSWER_EMBEDDED(exchange, "application/yaml", openapi_yaml);
+}
+
+void handle_page(struct exchange *exchange, const char *id) {
+    (void)id;
+    ANSWER_EMBEDDED(exchange, "text/html; charset=utf-8", web_index_html);
+}
+
+void handle_script(struct exchange *exchange, const char *id) {
+    (void)id;
+    ANSWER_EMBEDDED(exchange, "text/javascript; charset=utf-8", web_app_js);
+}
+
+void handle_style(struct exchange *exchange, const char *id) {
+    (void)id;
+    ANSWER_EMBEDDED(exchange, "text/css; charset=utf-8", web_style_css);
+}
+
+void handle_schema(struct exchange *exchange, const char *id) {
+    (void)id;
+    answer_json(exchange, 200, study_schema(kinds_table(), kinds_count()));
+}
+
+void handle_health(struct exchange *exchange, const char *id) {
+    (void)id;
+    struct store *reader;
+    struct error err = {0};
+    struct store_metrics metrics;
+    int status = service_reader(exchange->service, &reader, &err);
+    if (!status)
+        status = store_metrics(reader, &metrics, &err);
+    service_give_back(exchange->service, reader);
+    if (status) {
+        answer_error(exchange, &err);
+        return;
+    }
+    cJSON *document = cJSON_CreateObject();
+    if (document)
+        cJSON_AddStringToObject(document, "status", "ok");
+    answer_json(exchange, 200, document);
+}
+
+void handle_metrics(struct exchange *exchange, const char *id) {
+    (void)id;
+    struct error err = {0};
+    char *text;
+    if (service_metrics(exchange->service, &text, &err))
+        answer_error(exchange, &err);
+    else
+        answer_text(exchange, 200, "text/plain; version=0.0.4; charset=utf-8", text);
+}
+
+/* --- snapshot --- */
+
+/* Copies beside the database, where there is room of the same kind, and opens the copy without a
+ * name: it is gone with the connection, whatever ends it. */
+static int snapshot_file(struct exchange *exchange, int *file, uint64_t *size, struct error *err) {
+    struct store *reader;
+    char path[4200];
+    struct stat info;
+    snprintf(path, sizeof path, "%s.snapshot-%d-%p", exchange->service->database, (int)getpid(),
+             (void *)exchange);
+    int status = service_reader(exchange->service, &reader, err);
+    if (!status)
+        status = store_snapshot(reader, path, err);
+    service_give_back(exchange->service, reader);
+    if (status)
+        return status;
+    *file = open(path, O_RDONLY | O_CLOEXEC);
+    unlink(path);
+    if (*file < 0 || fstat(*file, &info))
+        return error_set(err, ERROR_SYSTEM, "the snapshot cannot be read: %s", strerror(errno));
+    *size = (uint64_t)info.st_size;
+    return 0;
+}
+
+void handle_snapshot(struct exchange *exchange, const char *id) {
+    (void)id;
+    struct error err = {0};
+    int file = -1;
+    uint64_t size = 0;
+    if (snapshot_file(exchange, &file, &size, &err)) {
+        if (file >= 0)
+            close(file);
+        answer_error(exchange, &err);
+        return;
+    }
+    exchange_unbound(exchange);
+    exchange->status = 200;
+    exchange->response = MHD_create_response_from_fd64(size, file);
+    answer_header(exchange, "Content-Type", "application/vnd.sqlite3");
+    answer_header(exchange, "Content-Disposition", "attachment; filename=\"rugo.db\"");
+}
