@@ -121,6 +121,15 @@ static bool scan_digits(struct gate *gate) {
     return gate->at > start || refuse(gate, "a malformed number");
 }
 
+/* Integers without point or exponent are meant exactly; a double holds them up to 2^53. */
+static bool is_inexact_integer(const char *text, size_t length) {
+    char digits[64];
+    snprintf(digits, sizeof digits, "%.*s", (int)length, text);
+    errno = 0;
+    long long value = strtoll(digits, NULL, 10);
+    return !strpbrk(digits, ".eE") && (errno || value > 1LL << 53 || value < -(1LL << 53));
+}
+
 static bool scan_number(struct gate *gate) {
     const char *start = gate->at;
     if (next_is(gate, '-'))
@@ -145,6 +154,10 @@ static bool scan_number(struct gate *gate) {
         return refuse(gate, "a malformed number");
     if (gate->at - start > 60) /* cJSON reads numbers through a buffer of 64 */
         return refuse(gate, "a number of more than 60 characters");
+    if (is_inexact_integer(start, (size_t)(gate->at - start)))
+        return refuse(gate,
+                      "an integer beyond 2^53, which would be changed; write a larger seed as "
+                      "a decimal string");
     /* The text ends behind its last value with NUL or punctuation: strtod stops where the scan did.
      */
     if (!isfinite(strtod(start, NULL)))
@@ -323,8 +336,9 @@ static void put_number(FILE *file, double number) {
         fputs("null", file);
         return;
     }
+    bool large = fabs(number) > 0x1p53; /* no integer to be read exactly: give it an exponent */
     for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, number);
+        snprintf(text, sizeof text, large ? "%.*e" : "%.*g", digits - large, number);
         if (strtod(text, NULL) == number) {
             break;
         }

@@ -1,0 +1,180 @@
+#include "tests/support/process.h"
+#include "tests/support/check.h"
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { ARGUMENTS_MOST = 40 };
+
+const char *rugo(void) {
+    const char *path = getenv("RUGO");
+    return path ? path : "build/rugo";
+}
+
+void sleep_ms(long milliseconds) {
+    struct timespec pause = {milliseconds / 1000, milliseconds % 1000 * 1000000};
+    nanosleep(&pause, NULL);
+}
+
+static void redirect(const char *path, int to) {
+    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (file < 0 || dup2(file, to) < 0)
+        _exit(127);
+    close(file);
+}
+
+void process_start(struct process *process, const char *name, const char *const *arguments) {
+    const char *argv[ARGUMENTS_MOST + 2] = {rugo()};
+    size_t count = 1;
+    for (; *arguments && count <= ARGUMENTS_MOST; arguments++)
+        argv[count++] = *arguments;
+    snprintf(process->out, sizeof process->out, "%s.out", name);
+    snprintf(process->err, sizeof process->err, "%s.err", name);
+    unlink(process->out);
+    process->pid = fork();
+    assert_true(process->pid >= 0);
+    if (process->pid > 0)
+        return;
+    redirect(process->out, STDOUT_FILENO);
+    redirect(process->err, STDERR_FILENO);
+    execv(argv[0], (char *const *)(uintptr_t)argv);
+    _exit(127);
+}
+
+int process_wait(struct process *process, int seconds) {
+    int status = 0;
+    for (int tries = 0; waitpid(process->pid, &status, WNOHANG) == 0; tries++) {
+        if (tries > 100 * seconds) {
+            kill(process->pid, SIGKILL);
+            print_error("%s did not end within %d s\n", process->out, seconds);
+            fail();
+        }
+        sleep_ms(10);
+    }
+    process->pid = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+int run_rugo(const char *name, const char *const *arguments) {
+    struct process process;
+    process_start(&process, name, arguments);
+    return process_wait(&process, 120);
+}
+
+void process_kill(struct process *process, int signal_number) {
+    if (process->pid)
+        kill(process->pid, signal_number);
+}
+
+char *slurp(const char *path) {
+    FILE *file = fopen(path, "rb");
+    size_t size = 0, room = 1 << 16;
+    char *text = malloc(room);
+    assert_true(file && text);
+    while ((size += fread(text + size, 1, room - size - 1, file)) + 1 == room)
+        assert_non_null(text = realloc(text, room *= 2));
+    text[size] = 0;
+    fclose(file);
+    return text;
+}
+
+void spit(const char *path, const char *text) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+bool contains(const char *path, const char *text) {
+    if (access(path, R_OK))
+        return false;
+    char *all = slurp(path);
+    bool found = strstr(all, text) != NULL;
+    free(all);
+    return found;
+}
+
+void wait_for_text(const char *path, const char *text) {
+    for (int tries = 0; !contains(path, text); tries++) {
+        if (tries > 2000) {
+            print_error("\"%s\" did not come in %s\n", text, path);
+            fail();
+        }
+        sleep_ms(10);
+    }
+}
+
+unsigned serve_start(struct process *process, const char *const *more) {
+    const char *arguments[ARGUMENTS_MOST + 1] = {"serve", "--listen", "127.0.0.1:0"};
+    size_t count = 3;
+    for (; more && *more; more++)
+        arguments[count++] = *more;
+    process_start(process, "serve", arguments);
+    wait_for_text(process->out, "\n");
+    char *line = slurp(process->out);
+    unsigned port = 0;
+    assert_int_equal(sscanf(line, "listening on http://127.0.0.1:%u", &port), 1);
+    free(line);
+    return port;
+}
+
+int http_connect(unsigned port) {
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    int connection = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    struct timeval limit = {.tv_sec = 30};
+    assert_true(connection >= 0);
+    setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    assert_int_equal(connect(connection, (struct sockaddr *)&address, sizeof address), 0);
+    return connection;
+}
+
+char *http_raw(unsigned port, const char *bytes, size_t size) {
+    int connection = http_connect(port);
+    /* A server that refuses early stops reading: what it answered still counts. */
+    for (size_t sent = 0; sent < size;) {
+        ssize_t part = send(connection, bytes + sent, size - sent, MSG_NOSIGNAL);
+        if (part <= 0)
+            break;
+        sent += (size_t)part;
+    }
+    size_t used = 0, room = 1 << 16;
+    char *text = malloc(room);
+    assert_non_null(text);
+    for (ssize_t part; (part = recv(connection, text + used, room - used - 1, 0)) > 0;) {
+        used += (size_t)part;
+        if (used + 1 == room)
+            assert_non_null(text = realloc(text, room *= 2));
+    }
+    text[used] = 0;
+    close(connection);
+    return text;
+}
+
+int http_exchange(unsigned port, const char *method, const char *path, const char *headers,
+                  const char *body, char **answer) {
+    char *request = NULL;
+    size_t size = body ? strlen(body) : 0;
+    assert_true(asprintf(&request,
+                         "%s %s HTTP/1.1\r\nHost: 127.0.0.1:%u\r\nConnection: close\r\n%s"
+                         "Content-Length: %zu\r\n\r\n%s",
+                         method, path, port, headers ? headers : "", size, body ? body : "") > 0);
+    char *reply = http_raw(port, request, strlen(request));
+    free(request);
+    int status = 0;
+    sscanf(reply, "HTTP/1.1 %d", &status);
+    if (answer) {
+        const char *start = strstr(reply, "\r\n\r\n");
+        *answer = strdup(start ? start + 4 : "");
+    }
+    free(reply);
+    return status;
+}

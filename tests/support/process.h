@@ -1,0 +1,45 @@
+/* Real processes for system tests: start, watch, kill; and plain HTTP over a socket. A failure
+ * fails the test. */
+#ifndef RUGO_TESTS_SUPPORT_PROCESS_H
+#define RUGO_TESTS_SUPPORT_PROCESS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <sys/types.h>
+
+/* The executable under test: $RUGO, or build/rugo. */
+const char *rugo(void);
+
+struct process {
+    pid_t pid;             /* 0: none */
+    char out[64], err[64]; /* files in the test's folder that take its output */
+};
+/* Starts rugo with the arguments (NULL-terminated, without the program's name); output goes to
+ * files NAME.out and NAME.err. */
+void process_start(struct process *process, const char *name, const char *const *arguments);
+/* Waits for its end (at most `seconds`, then the test fails); exit status, or 128 + the signal. */
+int process_wait(struct process *process, int seconds);
+/* Start and wait. */
+int run_rugo(const char *name, const char *const *arguments);
+void process_kill(struct process *process, int signal_number);
+/* Contents of a file of the test's folder; the caller frees. */
+char *slurp(const char *path);
+void spit(const char *path, const char *text);
+bool contains(const char *path, const char *text);
+/* Waits until a file contains a text, 20 s at most. */
+void wait_for_text(const char *path, const char *text);
+void sleep_ms(long milliseconds);
+
+/* Starts `rugo serve` on a free port with further arguments; the port. */
+unsigned serve_start(struct process *process, const char *const *more);
+
+/* One exchange over a new connection: sends the bytes, reads to the end (Connection: close is up to
+ * the caller). The caller frees. */
+char *http_raw(unsigned port, const char *bytes, size_t size);
+/* A request with Connection: close; status and body (caller frees; NULL where not wanted). */
+int http_exchange(unsigned port, const char *method, const char *path, const char *headers,
+                  const char *body, char **answer);
+/* An open connection to the port. */
+int http_connect(unsigned port);
+
+#endif
