@@ -233,9 +233,9 @@ static int long_bench(size_t surfaces, struct error *err) {
     struct surface_options limit_options = plain(1500), relaxed = maximum(), twice = maximum();
     struct surface_options stalled = maximum(), plain_400 = plain(400);
     double *limit = array_create(surfaces * FIGURES, sizeof *limit);
-    int status = limit ? 0 : error_memory(err, surfaces * sizeof *limit, "figures");
-    if (!status)
-        status = bench_create(&bench, 4, 8, &limit_options, err);
+    if (!limit)
+        return error_memory(err, surfaces * FIGURES * sizeof *limit, "figures");
+    int status = bench_create(&bench, 4, 8, &limit_options, err);
     for (size_t r = 0; !status && r < surfaces; r++)
         status = bench_surface(&bench, r, limit + r * FIGURES, err);
     twice.relaxed_iterations *= 4;
