@@ -124,9 +124,12 @@ static int time_rank(struct error *err) {
     struct ranker *ranker = NULL;
     double figures[FIGURES], times[REPEATS];
     double *sorted = array_create(n, sizeof *sorted), *placed = array_create(n, sizeof *placed);
+    if (!sorted || !placed) {
+        free(sorted);
+        free(placed);
+        return error_memory(err, 2 * n * sizeof *sorted, "heights");
+    }
     int status = bench_create(&bench, 16, 8, &options, err);
-    if (!status && (!sorted || !placed))
-        status = error_memory(err, n * sizeof *sorted, "heights");
     if (!status)
         status = bench_surface(&bench, 0, figures, err);
     if (!status)
