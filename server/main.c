@@ -48,7 +48,8 @@ static const struct command COMMANDS[] = {
      "  --allow-host NAME   another name of this server; may be repeated\n"},
     {"work", "", "claim and run jobs of a store or a server", command_work,
      PLACE "  --workers N         threads (as many as processors)\n"
-           "  --drain             end when the queue is empty\n"},
+           "  --drain             end when the queue is empty\n"
+           "  --lease SECONDS     how long this worker may be silent, with --db (60)\n"},
     {"generate", "STUDY.json", "one surface of a study, and its characterisation", command_generate,
      "  --case K            of this case (0)\n"
      "  --realisation R     this realisation (0)\n"
