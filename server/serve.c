@@ -129,12 +129,6 @@ static void announce(const struct serve *serve) {
 
 static int serve_run(struct serve *serve, struct error *err) {
     struct crew crew = {.serve = serve};
-    struct http_options options = {.address = serve->address,
-                                   .port = serve->port,
-                                   .connections = serve->connections,
-                                   .per_address = serve->per_address,
-                                   .deadline_s = serve->deadline_s,
-                                   .hosts = serve->hosts};
     int status = read_listen(serve, err);
     if (!status)
         status = read_tokens(serve, err);
@@ -143,6 +137,12 @@ static int serve_run(struct serve *serve, struct error *err) {
     if (!status)
         status =
             service_open(&serve->service, serve->database, 1000 * (int64_t)serve->lease_s, err);
+    struct http_options options = {.address = serve->address,
+                                   .port = serve->port,
+                                   .connections = serve->connections,
+                                   .per_address = serve->per_address,
+                                   .deadline_s = serve->deadline_s,
+                                   .hosts = serve->hosts};
     if (!status)
         status = http_start(&serve->http, &serve->service, &options, err);
     if (!status) {
