@@ -138,15 +138,15 @@ static double expected_summits(const struct surface_case *surface, double *alpha
 }
 
 /* CPU seconds a realisation on a 3 GHz core, fitted to runs of 256 x 256 to 8192 x 8192: an
- * iteration of relaxed reflections takes 5 to 6 ns a point, of plain alternation 17, and it stalls
- * near 120; all is dearer beyond the caches. */
+ * iteration takes about 15 ns a point, and plain alternation stalls near 120 of them; all is dearer
+ * beyond the caches. */
 static double expected_seconds(const struct statistics_case *study) {
     const struct surface_options *options = &study->surface.options;
     double points = (double)grid_points(&study->surface.grid), nanoseconds = 6;
     if (options->heights.type != HEIGHTS_GAUSSIAN) {
         bool plain = options->iteration == ITERATION_PLAIN;
         double iterations = plain ? 120 : (double)options->relaxed_iterations + 3;
-        nanoseconds += fmin(iterations, (double)options->max_iterations) * (plain ? 17 : 5.5);
+        nanoseconds += fmin(iterations, (double)options->max_iterations) * 15;
     }
     if (study->stencil == SUMMITS_REFINED)
         nanoseconds += 15;

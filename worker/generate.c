@@ -67,7 +67,7 @@ static int write_output(const struct options *options, const struct grid *grid, 
 }
 
 static const char *end_name(enum surface_end end) {
-    static const char *const names[] = {"direct", "converged", "stalled", "at the limit"};
+    static const char *const names[] = {"direct", "converged", "stalled", "schedule"};
     return names[end];
 }
 
