@@ -14,7 +14,8 @@
 #define check_close(value, expected, tolerance)                                                    \
     check_close_at(value, expected, tolerance, #value, __FILE__, __LINE__)
 #define check_relative(value, expected, tolerance)                                                 \
-    check_close_at(value, expected, (tolerance)*fabs(expected), #value, __FILE__, __LINE__)
+    check_close_at(value, expected, (tolerance)*fabs((double)(expected)), #value, __FILE__,        \
+                   __LINE__)
 
 static inline void check_close_at(double value, double expected, double tolerance, const char *what,
                                   const char *file, int line) {

@@ -1,0 +1,197 @@
+/* Protects: discrete spectra and their moments, the Nayak parameter and its inverses, and the words
+ * for input that is out of range. */
+#include "core/surface/spectrum.h"
+#include "tests/support/check.h"
+#include <string.h>
+
+static struct spectrum self_affine(double hurst, double ratio) {
+    return (struct spectrum){.type = SPECTRUM_SELF_AFFINE,
+                             .hurst = hurst,
+                             .wavelength_long = ratio,
+                             .wavelength_rolloff = ratio,
+                             .wavelength_short = 1};
+}
+
+static double alpha_of(double hurst, double ratio) {
+    size_t n = (size_t)(64 * ratio);
+    struct grid grid = {n, n, 8 * ratio, 8 * ratio};
+    struct spectrum spectrum = self_affine(hurst, ratio);
+    struct modes *modes = NULL;
+    struct moments moments;
+    assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
+    modes_moments(modes, &moments);
+    check_relative(moments.m00, 1, 1e-14);
+    check_relative(moments.m40 + moments.m04, 2 * 3 * moments.m22, 0.02); /* nearly isotropic */
+    modes_destroy(&modes);
+    return moments.nayak_alpha;
+}
+
+/* Table 3.1 of the reference and its H = 0.2 cases, in the four digits of theory.md. */
+static void discrete_alpha(void **state) {
+    (void)state;
+    static const double RATIOS[] = {8, 16, 32, 64}, ALPHAS[] = {5.3368, 11.8862, 29.1068, 75.8794};
+    for (size_t r = 0; r < 4; r++)
+        check_close(alpha_of(0.8, RATIOS[r]), ALPHAS[r], 5e-5);
+    check_close(alpha_of(0.2, 8), 3.7617, 5e-5);
+    check_close(alpha_of(0.2, 16), 5.6087, 5e-5);
+}
+
+static void continuous_alpha(void **state) {
+    (void)state;
+    static const double RATIOS[] = {8, 16, 32, 64, 128};
+    static const double ALPHAS[] = {5.2277, 11.5992, 28.3264, 73.7299, 200.3832};
+    for (size_t r = 0; r < 5; r++)
+        check_close(spectrum_alpha_continuous(2, 0.8, RATIOS[r], 1), ALPHAS[r], 5e-5);
+    check_close(spectrum_alpha_continuous(2, 0.8, 16, 2), 7.396412562, 5e-10);
+    check_close(spectrum_alpha_continuous(1, 0.8, 16, 2), 5.385274454, 5e-10);
+    /* continuous in H through the exponents that vanish */
+    for (double hurst = 0; hurst <= 1; hurst++) {
+        double inside = hurst == 0 ? 1e-9 : 1 - 1e-9;
+        check_relative(spectrum_alpha_continuous(2, hurst, 16, 1),
+                       spectrum_alpha_continuous(2, inside, 16, 1), 1e-7);
+    }
+    assert_true(isnan(spectrum_alpha_continuous(2, 0.8, 0.5, 1)));
+    assert_true(isnan(spectrum_alpha_continuous(3, 0.8, 8, 1)));
+    check_relative(spectrum_alpha_continuous(2, 0.8, 1, 1), 1.5, 1e-12);
+}
+
+/* Table 3.5 of the reference, four digits. */
+static void ratios_of_given_alpha(void **state) {
+    (void)state;
+    static const double HURST[] = {0.4, 0.6, 0.8};
+    static const double RATIOS[3][3] = {
+        {9.7515, 23.0577, 37.9214}, {8.3084, 16.5381, 24.1261}, {7.6687, 14.1626, 19.6607}};
+    for (size_t h = 0; h < 3; h++)
+        for (size_t a = 0; a < 3; a++) {
+            double ratio, reached, alpha = 5 * (double)(a + 1);
+            assert_int_equal(spectrum_ratio_continuous(2, HURST[h], 1, alpha, &ratio, NULL), 0);
+            check_close(ratio, RATIOS[h][a], 5.1e-5);
+            assert_int_equal(
+                spectrum_ratio_discrete(2, HURST[h], 1, 8, alpha, &ratio, &reached, NULL), 0);
+            check_close(reached, alpha, 0.005); /* half a step of the staircase */
+            check_close(alpha_of(HURST[h], ratio), reached, 1e-6);
+        }
+}
+
+static void alpha_out_of_reach(void **state) {
+    (void)state;
+    struct error err = {0};
+    double ratio, reached;
+    assert_int_equal(spectrum_ratio_continuous(2, 0.8, 1, 1.2, &ratio, &err), ERROR_NUMERIC);
+    assert_non_null(strstr(err.text, "alpha = 1.2"));
+    assert_non_null(strstr(err.text, "allowed: 1.5 to"));
+    assert_int_equal(spectrum_ratio_discrete(2, 0.8, 1, 8, 1.2, &ratio, &reached, &err),
+                     ERROR_NUMERIC);
+    assert_int_equal(spectrum_ratio_discrete(1, 0.5, 1, 8, 1e30, &ratio, &reached, &err),
+                     ERROR_NUMERIC);
+}
+
+/* The modes of an exponential autocorrelation fill the grid and have its anisotropy. */
+static void exponential_spectrum(void **state) {
+    (void)state;
+    struct grid grid = {128, 64, 40, 20};
+    struct spectrum spectrum = {.type = SPECTRUM_EXPONENTIAL_ACF,
+                                .correlation_x = 2,
+                                .correlation_y = 0.5,
+                                .scale = SCALE_RMS_HEIGHT,
+                                .scale_value = 3};
+    struct modes *modes = NULL;
+    struct moments moments;
+    assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
+    assert_int_equal(modes->mode_x, 64);
+    assert_int_equal(modes->count, 128 * 64 - 1);
+    double kx = 2 * M_PI * 3 / 40, ky = 2 * M_PI * 5 / 20;
+    double expected = pow((1 + 4 * kx * kx) / (1 + 4 * kx * kx + 0.25 * ky * ky), 1.5);
+    check_relative(modes_power(modes, 3, -5) / modes_power(modes, 3, 0), expected, 1e-13);
+    modes_moments(modes, &moments);
+    check_relative(moments.rms_height, 3, 1e-14);
+    assert_true(moments.m02 > moments.m20);
+    modes_destroy(&modes);
+}
+
+static void table_spectrum(void **state) {
+    (void)state;
+    const double k[] = {0.5, 1, 4}, density[] = {4, 2, 2.0 / 64};
+    struct grid grid = {64, 1, 20 * M_PI, 1}; /* wave numbers 0.1 m */
+    struct spectrum spectrum = {
+        .type = SPECTRUM_TABLE, .table_count = 3, .table_wave_number = k, .table_density = density};
+    struct modes *modes = NULL;
+    struct grid fine = {128, 1, 20 * M_PI, 1};
+    assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL),
+                     ERROR_INPUT); /* 40 waves on 64 points */
+    assert_int_equal(modes_create(&modes, &spectrum, &fine, NULL), 0);
+    assert_true(modes_power(modes, 4, 0) == 0 && modes_power(modes, 5, 0) > 0);
+    check_relative(modes_power(modes, 20, 0) / modes_power(modes, 10, 0), 1.0 / 8,
+                   1e-12); /* k^-3 */
+    modes_destroy(&modes);
+}
+
+static void scale_by_slope(void **state) {
+    (void)state;
+    struct spectrum spectrum = self_affine(0.5, 4);
+    struct grid grid = {256, 256, 32, 32};
+    struct modes *modes = NULL;
+    struct moments moments;
+    spectrum.scale = SCALE_RMS_SLOPE;
+    spectrum.scale_value = 0.1;
+    assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
+    modes_moments(modes, &moments);
+    check_relative(moments.rms_slope, 0.1, 1e-14);
+    modes_destroy(&modes);
+}
+
+/* Dimensionless figures do not depend on the unit of length. */
+static void units_do_not_matter(void **state) {
+    (void)state;
+    double expected = alpha_of(0.8, 4);
+    for (double unit = 1e-9; unit <= 1e6; unit *= 1e15) {
+        struct grid grid = {256, 256, 32 * unit, 32 * unit};
+        struct spectrum spectrum = self_affine(0.8, 4);
+        spectrum.wavelength_long = spectrum.wavelength_rolloff = 4 * unit;
+        spectrum.wavelength_short = unit;
+        struct modes *modes = NULL;
+        struct moments moments;
+        assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
+        modes_moments(modes, &moments);
+        check_relative(moments.nayak_alpha, expected, 1e-12);
+        modes_destroy(&modes);
+    }
+}
+
+static void wrong_input_is_named(void **state) {
+    (void)state;
+    struct grid grid = {512, 512, 64, 64};
+    static const struct {
+        double hurst, longest, rolloff, shortest;
+        const char *text;
+    } WRONG[] = {
+        {1.4, 8, 8, 1, "hurst = 1.4; allowed: 0 to 1"}, {NAN, 8, 8, 1, "hurst = nan"},
+        {0.8, -8, 8, 1, "longest wavelength = -8"},     {0.8, 8, 8, 9, "shortest wavelength = 9"},
+        {0.8, 8, 9, 1, "roll-off wavelength = 9"},      {0.8, 8, 8, 0.1, "do not resolve"},
+        {0.8, 1e-3, 1e-3, 1e-3, "do not resolve"},
+    };
+    for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
+        struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                    .hurst = WRONG[w].hurst,
+                                    .wavelength_long = WRONG[w].longest,
+                                    .wavelength_rolloff = WRONG[w].rolloff,
+                                    .wavelength_short = WRONG[w].shortest};
+        struct modes *modes = NULL;
+        struct error err = {0};
+        assert_int_equal(modes_create(&modes, &spectrum, &grid, &err), ERROR_INPUT);
+        if (!strstr(err.text, WRONG[w].text))
+            print_error("\"%s\" is not in \"%s\"\n", WRONG[w].text, err.text);
+        assert_non_null(strstr(err.text, WRONG[w].text));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(discrete_alpha),        cmocka_unit_test(continuous_alpha),
+        cmocka_unit_test(ratios_of_given_alpha), cmocka_unit_test(alpha_out_of_reach),
+        cmocka_unit_test(exponential_spectrum),  cmocka_unit_test(table_spectrum),
+        cmocka_unit_test(scale_by_slope),        cmocka_unit_test(units_do_not_matter),
+        cmocka_unit_test(wrong_input_is_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

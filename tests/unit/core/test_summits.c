@@ -1,0 +1,177 @@
+/* Protects: which points are summits, on any grid, against brute force; plateaus and ties are none;
+ * refined summits are the true maxima. */
+#include "core/statistics/summits.h"
+#include "core/surface/surface.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+
+static size_t count_summits(const struct grid *grid, const double *z, enum summit_stencil stencil,
+                            struct summit_list *list) {
+    struct summit_finder *finder = NULL;
+    assert_int_equal(summit_finder_create(&finder, grid, stencil, CURVATURE_FINITE_DIFFERENCE,
+                                          grid->nx / 2, grid->ny / 2, NULL),
+                     0);
+    assert_int_equal(summits_find(finder, z, list, NULL), 0);
+    summit_finder_destroy(&finder);
+    return list->count;
+}
+
+static size_t brute_force(const struct grid *grid, const double *z, bool corners) {
+    size_t count = 0;
+    long nx = (long)grid->nx, ny = (long)grid->ny;
+    for (long j = 0; j < ny; j++)
+        for (long i = 0; i < nx; i++) {
+            bool summit = true;
+            for (long b = -1; b <= 1; b++)
+                for (long a = -1; a <= 1; a++) {
+                    if ((a == 0 && b == 0) || (ny == 1 && b != 0) || (!corners && a != 0 && b != 0))
+                        continue;
+                    double other = z[(j + b + ny) % ny * nx + (i + a + nx) % nx];
+                    summit = summit && z[j * nx + i] > other;
+                }
+            count += summit;
+        }
+    return count;
+}
+
+/* Coarse levels make ties; sizes about the block of 64 columns and its remainders. */
+static void grid_summits_are_those_of_brute_force(void **state) {
+    (void)state;
+    static const struct grid GRIDS[] = {
+        {2, 2, 1, 1},  {3, 2, 1, 1},   {2, 5, 1, 1},    {64, 7, 1, 1}, {65, 66, 1, 1},
+        {66, 3, 1, 1}, {67, 30, 1, 1}, {130, 17, 1, 1}, {2, 1, 1, 1},  {200, 1, 1, 1}};
+    struct summit_list list = {0};
+    uint64_t seed = 3;
+    for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++)
+        for (int levels = 3; levels <= 3000; levels *= 10) {
+            size_t n = grid_points(&GRIDS[g]);
+            double *z = malloc(n * sizeof *z);
+            assert_non_null(z);
+            for (size_t p = 0; p < n; p++) {
+                seed = seed * 6364136223846793005u + 1442695040888963407u;
+                z[p] = (double)((seed >> 33) % (uint64_t)levels);
+            }
+            assert_int_equal(count_summits(&GRIDS[g], z, SUMMITS_NINE_POINT, &list),
+                             brute_force(&GRIDS[g], z, true));
+            assert_int_equal(count_summits(&GRIDS[g], z, SUMMITS_FIVE_POINT, &list),
+                             brute_force(&GRIDS[g], z, false));
+            free(z);
+        }
+    summit_list_clear(&list);
+}
+
+static void flat_and_plateau_hold_none(void **state) {
+    (void)state;
+    const struct grid grid = {10, 10, 1, 1};
+    struct summit_list list = {0};
+    double z[100] = {0};
+    assert_int_equal(count_summits(&grid, z, SUMMITS_NINE_POINT, &list), 0);
+    assert_int_equal(count_summits(&grid, z, SUMMITS_REFINED, &list), 0);
+    z[44] = z[45] = 1;
+    assert_int_equal(count_summits(&grid, z, SUMMITS_NINE_POINT, &list), 0);
+    z[45] = 2;
+    assert_int_equal(count_summits(&grid, z, SUMMITS_NINE_POINT, &list), 1);
+    check_close(list.summits[0].x, 0.5, 1e-15);
+    check_close(list.summits[0].y, 0.4, 1e-15);
+    summit_list_clear(&list);
+}
+
+/* cos cos has its maxima where they are put, height 1 and mean curvature k^2; off the grid points.
+ */
+static void refined_summits_are_exact(void **state) {
+    (void)state;
+    enum { N = 24 };
+    const struct grid grid = {N, N, 3, 3};
+    double z[N * N], shift_x = 0.0317, shift_y = 0.0911, k = 2 * M_PI * 2 / 3;
+    struct summit_list list = {0};
+    struct summit_finder *finder = NULL;
+    for (size_t j = 0; j < N; j++)
+        for (size_t i = 0; i < N; i++)
+            z[j * N + i] =
+                cos(k * (3.0 * (double)i / N - shift_x)) * cos(k * (3.0 * (double)j / N - shift_y));
+    assert_int_equal(
+        summit_finder_create(&finder, &grid, SUMMITS_REFINED, CURVATURE_SPECTRAL, 2, 2, NULL), 0);
+    assert_int_equal(summits_find(finder, z, &list, NULL), 0);
+    assert_int_equal(list.count, 8);
+    for (size_t s = 0; s < list.count; s++) {
+        const struct summit *summit = &list.summits[s];
+        /* interpolation error of 8 points at 24 points a wave: below 1e-8 in height, 1e-5 in
+         * curvature */
+        check_close(cos(k * (summit->x - shift_x)) * cos(k * (summit->y - shift_y)), 1, 1e-9);
+        check_close(summit->height, 1, 1e-7);
+        check_relative(summit->curvature, k * k, 1e-5);
+    }
+    summit_finder_destroy(&finder);
+    summit_list_clear(&list);
+}
+
+static void curvatures_of_a_wave(void **state) {
+    (void)state;
+    const struct grid grid = {32, 32, 1, 1};
+    double z[1024], k = 2 * M_PI * 2, dx = 1.0 / 32;
+    struct summit_list list = {0};
+    for (size_t j = 0; j < 32; j++)
+        for (size_t i = 0; i < 32; i++)
+            z[j * 32 + i] = cos(k * (double)i * dx) + cos(k * (double)j * dx);
+    for (int spectral = 0; spectral < 2; spectral++) {
+        struct summit_finder *finder = NULL;
+        assert_int_equal(
+            summit_finder_create(&finder, &grid, SUMMITS_NINE_POINT,
+                                 spectral ? CURVATURE_SPECTRAL : CURVATURE_FINITE_DIFFERENCE, 2, 2,
+                                 NULL),
+            0);
+        assert_int_equal(summits_find(finder, z, &list, NULL), 0);
+        assert_int_equal(list.count, 4);
+        double expected = spectral ? k * k : 2 * (1 - cos(k * dx)) / (dx * dx);
+        check_relative(list.summits[3].curvature, expected, 1e-12);
+        summit_finder_destroy(&finder);
+    }
+    summit_list_clear(&list);
+}
+
+/* Refined summits of one surface do not depend on the grid that samples it. */
+static void refined_summits_belong_to_the_surface(void **state) {
+    (void)state;
+    struct summit_list lists[2] = {{0}, {0}};
+    for (size_t l = 0; l < 2; l++) {
+        size_t n = l ? 512 : 128;
+        struct grid grid = {n, n, 32, 32};
+        struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                    .hurst = 0.8,
+                                    .wavelength_long = 4,
+                                    .wavelength_rolloff = 4,
+                                    .wavelength_short = 1};
+        struct generator *generator = NULL;
+        struct summit_finder *finder = NULL;
+        double *z = malloc(n * n * sizeof *z);
+        assert_non_null(z);
+        assert_int_equal(generator_create(&generator, &spectrum, &grid, &SURFACE_DEFAULTS, NULL),
+                         0);
+        assert_int_equal(generator_run(generator, (struct random_key){2, 0, 0}, z, NULL, NULL), 0);
+        assert_int_equal(
+            summit_finder_create(&finder, &grid, SUMMITS_REFINED, CURVATURE_SPECTRAL, 32, 32, NULL),
+            0);
+        assert_int_equal(summits_find(finder, z, &lists[l], NULL), 0);
+        generator_destroy(&generator);
+        summit_finder_destroy(&finder);
+        free(z);
+    }
+    assert_int_equal(lists[0].count, lists[1].count);
+    for (size_t s = 0; s < lists[0].count; s++) {
+        check_close(lists[0].summits[s].x, lists[1].summits[s].x, 1e-4);
+        check_close(lists[0].summits[s].height, lists[1].summits[s].height, 1e-6);
+    }
+    summit_list_clear(&lists[0]);
+    summit_list_clear(&lists[1]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(grid_summits_are_those_of_brute_force),
+        cmocka_unit_test(flat_and_plateau_hold_none),
+        cmocka_unit_test(refined_summits_are_exact),
+        cmocka_unit_test(curvatures_of_a_wave),
+        cmocka_unit_test(refined_summits_belong_to_the_surface),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,119 @@
+/* Protects: band-limited transforms against sums written out, on odd, even, prime and tiny grids.
+ */
+#include "core/surface/transform.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+
+static const struct grid GRIDS[] = {{16, 12, 1, 1}, {15, 9, 1, 1}, {13, 7, 1, 1},
+                                    {2, 2, 1, 1},   {3, 2, 1, 1},  {32, 1, 1, 1},
+                                    {17, 1, 1, 1},  {2, 1, 1, 1},  {40, 19, 1, 1}};
+enum { GRID_COUNT = sizeof GRIDS / sizeof *GRIDS };
+
+static double noise(uint64_t *seed) {
+    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+    return (double)(int64_t)*seed * 0x1p-63;
+}
+
+static void forward_is_the_sum(void **state) {
+    (void)state;
+    uint64_t seed = 1;
+    for (size_t g = 0; g < GRID_COUNT; g++) {
+        const struct grid *grid = &GRIDS[g];
+        size_t nx = grid->nx, ny = grid->ny, mode_x = nx / 2, mode_y = ny / 2;
+        struct transform *transform = NULL;
+        double *z = malloc(nx * ny * sizeof *z);
+        assert_non_null(z);
+        for (size_t p = 0; p < nx * ny; p++)
+            z[p] = noise(&seed);
+        assert_int_equal(transform_create(&transform, grid, mode_x, mode_y, NULL), 0);
+        transform_forward(transform, z);
+        for (size_t mx = 0; mx <= mode_x; mx++)
+            for (size_t row = 0; row < ny; row++) {
+                double complex sum = 0;
+                for (size_t j = 0; j < ny; j++)
+                    for (size_t i = 0; i < nx; i++)
+                        sum +=
+                            z[j * nx + i] *
+                            cexp(-2 * M_PI * I *
+                                 ((double)(mx * i) / (double)nx + (double)(row * j) / (double)ny));
+                sum /= (double)(nx * ny);
+                check_close(cabs(transform_spectrum(transform)[mx * ny + row] - sum), 0, 1e-14);
+            }
+        /* and back */
+        double *again = malloc(nx * ny * sizeof *again);
+        assert_non_null(again);
+        transform_inverse(transform, again);
+        for (size_t p = 0; p < nx * ny; p++)
+            check_close(again[p], z[p], 1e-14);
+        free(z);
+        free(again);
+        transform_destroy(&transform);
+    }
+}
+
+static void rows_one_by_one_are_the_whole(void **state) {
+    (void)state;
+    const struct grid grid = {20, 21, 1, 1};
+    struct transform *transform = NULL;
+    double whole[420], parts[420];
+    assert_int_equal(transform_create(&transform, &grid, 4, 3, NULL), 0);
+    for (int pass = 0; pass < 2; pass++) {
+        double complex *spectrum = transform_spectrum(transform);
+        for (size_t k = 0; k < 5 * 21; k++)
+            spectrum[k] = 0;
+        spectrum[2 * 21 + 3] = 1 + 2 * I;
+        spectrum[4 * 21 + 20] = -I;
+        if (pass == 0) {
+            transform_inverse(transform, whole);
+        } else {
+            transform_inverse_columns(transform);
+            for (size_t j = 0; j < 21; j += 5)
+                transform_inverse_rows(transform, j, 21 - j < 5 ? 21 - j : 5, parts + j * 20);
+        }
+    }
+    assert_memory_equal(whole, parts, sizeof whole);
+    transform_destroy(&transform);
+}
+
+/* A Nyquist mode of the coarse grid becomes two halves on the finer one: the same heights at common
+ * points. */
+static void padding_keeps_the_surface(void **state) {
+    (void)state;
+    const struct grid coarse = {8, 6, 1, 1}, fine = {24, 18, 1, 1};
+    struct transform *from = NULL, *to = NULL;
+    double z[48], dense[432];
+    uint64_t seed = 9;
+    for (size_t p = 0; p < 48; p++)
+        z[p] = noise(&seed);
+    assert_int_equal(transform_create(&from, &coarse, 4, 3, NULL), 0);
+    assert_int_equal(transform_create(&to, &fine, 4, 3, NULL), 0);
+    transform_forward(from, z);
+    transform_pad(from, to);
+    transform_inverse(to, dense);
+    for (size_t j = 0; j < 6; j++)
+        for (size_t i = 0; i < 8; i++)
+            check_close(dense[3 * j * 24 + 3 * i], z[j * 8 + i], 1e-14);
+    transform_destroy(&from);
+    transform_destroy(&to);
+}
+
+static void bands_beyond_the_grid_are_refused(void **state) {
+    (void)state;
+    struct transform *transform = NULL;
+    const struct grid grid = {8, 8, 1, 1}, none = {0, 8, 1, 1}, flat = {8, 8, 0, 1};
+    assert_int_equal(transform_create(&transform, &grid, 5, 4, NULL), ERROR_INPUT);
+    assert_int_equal(transform_create(&transform, &grid, 4, 5, NULL), ERROR_INPUT);
+    assert_int_equal(transform_create(&transform, &none, 0, 0, NULL), ERROR_INPUT);
+    assert_int_equal(transform_create(&transform, &flat, 0, 0, NULL), ERROR_INPUT);
+    assert_null(transform);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(forward_is_the_sum),
+        cmocka_unit_test(rows_one_by_one_are_the_whole),
+        cmocka_unit_test(padding_keeps_the_surface),
+        cmocka_unit_test(bands_beyond_the_grid_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
