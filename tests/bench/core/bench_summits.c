@@ -1,0 +1,75 @@
+/* Summit stencils: time beside error. 200 Gaussian surfaces (H 0.8, ratio 8, L/lambda_l 8) at each
+ * sampling. */
+#include "core/statistics/summits.h"
+#include "core/surface/surface.h"
+#include "core/theory/nayak.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum { SURFACES = 200 };
+
+static double cpu_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
+}
+
+static int bench(size_t points, enum summit_stencil stencil, const char *name, struct error *err) {
+    size_t n = 64 * points;
+    struct grid grid = {n, n, 64, 64};
+    struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                .hurst = 0.8,
+                                .wavelength_long = 8,
+                                .wavelength_rolloff = 8,
+                                .wavelength_short = 1};
+    struct generator *generator = NULL;
+    struct summit_finder *finder = NULL;
+    struct summit_list list = {0};
+    struct moments moments;
+    double ms = 0, sum = 0, square = 0, *z = array_create(n * n, sizeof *z);
+    int status = z ? 0 : error_memory(err, n * n * sizeof *z, "heights");
+    if (!status)
+        status = generator_create(&generator, &spectrum, &grid, &SURFACE_DEFAULTS, err);
+    if (!status)
+        status =
+            summit_finder_create(&finder, &grid, stencil, CURVATURE_FINITE_DIFFERENCE, 64, 64, err);
+    for (uint64_t r = 0; !status && r < SURFACES; r++) {
+        status = generator_run(generator, (struct random_key){1, 0, r}, z, NULL, err);
+        double start = cpu_ms();
+        if (!status)
+            status = summits_find(finder, z, &list, err);
+        ms += cpu_ms() - start;
+        sum += (double)list.count / SURFACES;
+        square += (double)list.count * (double)list.count / SURFACES;
+    }
+    if (!status) {
+        modes_moments(generator_modes(generator), &moments);
+        double nayak = nayak_summit_density(moments.m2, moments.m4) * 64 * 64;
+        printf("%2zu points a wave  %-10s  %7.2f ms  density/Nayak %.4f +- %.4f\n", points, name,
+               ms / SURFACES, sum / nayak, sqrt((square - sum * sum) / (SURFACES - 1)) / nayak);
+    }
+    free(z);
+    generator_destroy(&generator);
+    summit_finder_destroy(&finder);
+    summit_list_clear(&list);
+    return status;
+}
+
+int main(void) {
+    static const struct {
+        enum summit_stencil stencil;
+        const char *name;
+    } STENCILS[] = {{SUMMITS_NINE_POINT, "nine-point"},
+                    {SUMMITS_FIVE_POINT, "five-point"},
+                    {SUMMITS_REFINED, "refined"}};
+    struct error err = {0};
+    for (size_t points = 4; points <= 16; points *= 2)
+        for (size_t s = 0; s < 3; s++)
+            if (bench(points, STENCILS[s].stencil, STENCILS[s].name, &err)) {
+                fprintf(stderr, "bench_summits: %s\n", err.text);
+                return 1;
+            }
+    return 0;
+}

@@ -1,0 +1,82 @@
+/* Gaussian surfaces with their nine-point summits: CPU time of each step, one core, medians, and
+ * beside them the error of the RMS height and what the surface costs in memory. */
+#include "core/statistics/roughness.h"
+#include "core/statistics/summits.h"
+#include "core/surface/surface.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum { REPEATS = 9, STEPS = 3 };
+
+static double cpu_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
+}
+
+static int by_value(const void *a, const void *b) {
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+static int bench(size_t n, struct error *err) {
+    double ratio = (double)n / 64;
+    struct grid grid = {n, n, 8 * ratio, 8 * ratio};
+    struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                .hurst = 0.8,
+                                .wavelength_long = ratio,
+                                .wavelength_rolloff = ratio,
+                                .wavelength_short = 1};
+    struct generator *generator = NULL;
+    struct summit_finder *finder = NULL;
+    struct summit_list list = {0};
+    struct roughness roughness = {0};
+    double times[STEPS][REPEATS], worst = 0, *z = array_create(n * n, sizeof *z);
+    int status = z ? 0 : error_memory(err, n * n * sizeof *z, "heights");
+    if (!status)
+        status = generator_create(&generator, &spectrum, &grid, &SURFACE_DEFAULTS, err);
+    if (!status)
+        status = summit_finder_create(&finder, &grid, SUMMITS_NINE_POINT,
+                                      CURVATURE_FINITE_DIFFERENCE, n / 8, n / 8, err);
+    for (int r = 0; !status && r < REPEATS; r++) {
+        double start = cpu_ms();
+        status = generator_run(generator, (struct random_key){1, 0, (uint64_t)r}, z, NULL, err);
+        times[0][r] = cpu_ms() - start;
+        if (!status)
+            status = summits_find(finder, z, &list, err);
+        times[1][r] = cpu_ms() - start - times[0][r];
+        roughness_measure(&grid, z, &roughness);
+        times[2][r] = cpu_ms() - start - times[0][r] - times[1][r];
+        worst = fmax(worst, fabs(roughness.rms_height - 1));
+    }
+    if (!status) {
+        printf("%6zu", n);
+        for (int s = 0; s < STEPS; s++) {
+            qsort(times[s], REPEATS, sizeof **times, by_value);
+            printf("  %9.2f (%.2f-%.2f)", times[s][REPEATS / 2], times[s][0],
+                   times[s][REPEATS - 1]);
+        }
+        printf("  %8.1e  %5.2f\n", worst,
+               generator_bytes(&grid, n / 8, n / 8, &SURFACE_DEFAULTS) /
+                   (8.0 * (double)n * (double)n));
+    }
+    free(z);
+    generator_destroy(&generator);
+    summit_finder_destroy(&finder);
+    summit_list_clear(&list);
+    return status;
+}
+
+int main(void) {
+    struct error err = {0};
+    printf("%6s  %s  %s  %s  %s  %s\n", "N", "generation ms (spread)", "summits ms (spread)",
+           "roughness ms (spread)", "error of RMS height", "memory/surface");
+    for (size_t n = 256; n <= 4096; n *= 2)
+        if (bench(n, &err)) {
+            fprintf(stderr, "bench_surface: %s\n", err.text);
+            return 1;
+        }
+    return 0;
+}
