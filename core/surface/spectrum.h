@@ -20,9 +20,11 @@ struct spectrum {
      * lx/long <= |m| <= lx/short inclusive (with a rounding guard of 1e-9 relative) */
     double hurst; /* [0, 1] */
     double wavelength_long, wavelength_rolloff, wavelength_short;
-    /* exponential ACF exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (2.17, 2.18); not band-limited: fills the grid */
+    /* exponential ACF exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (2.17, 2.18); not band-limited: fills the
+     * grid */
     double correlation_x, correlation_y;
-    /* table: density (isotropic, any scale) at rising |k|, log-log interpolated, 0 outside; borrowed */
+    /* table: density (isotropic, any scale) at rising |k|, log-log interpolated, 0 outside;
+     * borrowed */
     size_t table_count;
     const double *table_wave_number; /* radians per length */
     const double *table_density;
@@ -40,8 +42,8 @@ struct modes {
     size_t count;          /* non-null modes of the full plane */
 };
 
-/* Samples the spectrum on the grid and scales it. ERROR_INPUT when the spectrum is out of range, has
- * no mode on this grid, or the grid does not resolve its shortest wavelength (needs at least 2
+/* Samples the spectrum on the grid and scales it. ERROR_INPUT when the spectrum is out of range,
+ * has no mode on this grid, or the grid does not resolve its shortest wavelength (needs at least 2
  * points a wave; the shared Nyquist mode of 2 points a wave is kept as one self-conjugate mode). */
 int modes_create(struct modes **out, const struct spectrum *spectrum, const struct grid *grid,
                  struct error *err);
@@ -53,24 +55,25 @@ static inline double modes_power(const struct modes *modes, size_t mx, long my) 
 /* Spectral moments (theory.md 2.33, 2.37). A profile has m00 = m0, m20 = m2, m40 = m4, others 0. */
 struct moments {
     double m00, m20, m02, m11, m22, m40, m04, m31, m13;
-    double m0, m2, m4;                          /* isotropic: m00, (m20+m02)/2, (m40+m04)/2 */
-    double nayak_alpha;                         /* m0 m4 / m2^2 */
+    double m0, m2, m4;                           /* isotropic: m00, (m20+m02)/2, (m40+m04)/2 */
+    double nayak_alpha;                          /* m0 m4 / m2^2 */
     double rms_height, rms_slope, rms_curvature; /* (2.35) */
 };
 /* Pairwise or compensated sums: relative error about 1e-15. */
 void modes_moments(const struct modes *modes, struct moments *out);
 
-/* Nayak parameter of the continuous self-affine spectrum (3.37 and its profile form), dimension 1 or 2;
- * ratio_long = lambda_l/lambda_s, ratio_rolloff = lambda_l/lambda_r >= 1. NaN when out of domain. */
+/* Nayak parameter of the continuous self-affine spectrum (3.37 and its profile form), dimension 1
+ * or 2; ratio_long = lambda_l/lambda_s, ratio_rolloff = lambda_l/lambda_r >= 1. NaN when out of
+ * domain. */
 double spectrum_alpha_continuous(int dimension, double hurst, double ratio_long,
                                  double ratio_rolloff);
 /* The wavelength ratio lambda_l/lambda_s that gives alpha; ERROR_NUMERIC with the range that can
  * be reached when none does. */
 int spectrum_ratio_continuous(int dimension, double hurst, double ratio_rolloff, double alpha,
                               double *ratio, struct error *err);
-/* The same by the discrete sums of a cell of length_ratio long waves (square). The discrete alpha is
- * a step function of the ratio; the returned ratio's lambda_s is that of the mode ring whose alpha is
- * nearest, and *reached says which alpha that is. */
+/* The same by the discrete sums of a cell of length_ratio long waves (square). The discrete alpha
+ * is a step function of the ratio; the returned ratio's lambda_s is that of the mode ring whose
+ * alpha is nearest, and *reached says which alpha that is. */
 int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, double length_ratio,
                             double alpha, double *ratio, double *reached, struct error *err);
 
