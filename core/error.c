@@ -5,15 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-int error_set(struct error *err, int code, const char *format, ...) {
-    if (err) {
-        va_list arguments;
-        va_start(arguments, format);
-        err->code = code;
-        vsnprintf(err->text, sizeof err->text, format, arguments);
-        va_end(arguments);
-    }
-    return code;
+void error_fill(struct error *err, int code, const char *format, ...) {
+    if (!err)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    err->code = code;
+    vsnprintf(err->text, sizeof err->text, format, arguments);
+    va_end(arguments);
 }
 
 int error_context(struct error *err, const char *format, ...) {
@@ -37,10 +36,6 @@ int error_context(struct error *err, const char *format, ...) {
     memmove(err->text + head, err->text, tail + 1);
     memcpy(err->text, context, head);
     return err->code;
-}
-
-int error_memory(struct error *err, size_t bytes, const char *what) {
-    return error_set(err, ERROR_MEMORY, "cannot allocate %zu bytes for %s", bytes, what);
 }
 
 void *array_create(size_t count, size_t size) {

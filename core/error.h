@@ -23,13 +23,19 @@ struct error {
     char text[480];
 };
 
-/* Fills err (which may be NULL) and returns code. */
-__attribute__((format(printf, 3, 4))) int error_set(struct error *err, int code, const char *format,
-                                                    ...);
+/* Fills err (which may be NULL); its value is code, a constant where the call is, so that readers
+ * and analysers see that it is not 0. */
+#define error_set(err, code, ...) (error_fill((err), (code), __VA_ARGS__), error_code(code))
+static inline int error_code(int code) {
+    return code;
+}
+__attribute__((format(printf, 3, 4))) void error_fill(struct error *err, int code,
+                                                      const char *format, ...);
 /* Puts "context: " in front of the text of err; returns err->code. */
 __attribute__((format(printf, 2, 3))) int error_context(struct error *err, const char *format, ...);
-/* "cannot allocate N bytes for WHAT"; returns ERROR_MEMORY. */
-int error_memory(struct error *err, size_t bytes, const char *what);
+/* "cannot allocate N bytes for WHAT"; its value is ERROR_MEMORY. */
+#define error_memory(err, bytes, what)                                                             \
+    error_set(err, ERROR_MEMORY, "cannot allocate %zu bytes for %s", (size_t)(bytes), (what))
 
 /* malloc of count * size bytes, zeroed; NULL when out of memory or when the product overflows. */
 void *array_create(size_t count, size_t size);

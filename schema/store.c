@@ -139,7 +139,7 @@ int store_step(struct store *store, sqlite3_stmt *statement, struct error *err) 
 }
 
 int store_run(struct store *store, struct error *err, const char *sql, const char *format, ...) {
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     va_list arguments;
     va_start(arguments, format);
     int status = query(store, &statement, err, sql, format, arguments);
@@ -155,7 +155,7 @@ int store_run(struct store *store, struct error *err, const char *sql, const cha
 
 int store_integer(struct store *store, int64_t *out, struct error *err, const char *sql,
                   const char *format, ...) {
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     va_list arguments;
     va_start(arguments, format);
     int status = query(store, &statement, err, sql, format, arguments);

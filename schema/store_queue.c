@@ -19,7 +19,7 @@ struct job_row {
 
 static int read_job(struct store *store, int64_t id, const char *token, struct job_row *job,
                     struct error *err) {
-    sqlite3_stmt *row;
+    sqlite3_stmt *row = NULL;
     int status =
         store_query(store, &row, err,
                     "SELECT study_id, case_number, first, count, attempts, state = 'running', "
@@ -107,7 +107,7 @@ static int job_give_up(struct store *store, const struct job_row *job, const cha
 
 /* One job whose lease ran out waits again, or has failed. 1 when there was one. */
 static int expire_one(struct store *store, struct error *err) {
-    sqlite3_stmt *row;
+    sqlite3_stmt *row = NULL;
     int status =
         store_query(store, &row, err,
                     "SELECT id, coalesce(worker, '?') FROM job WHERE state = 'running' AND "
@@ -131,7 +131,7 @@ static int expire_one(struct store *store, struct error *err) {
 
 static int copy_study(struct store *store, int64_t study, struct claimed_job *job,
                       struct error *err) {
-    sqlite3_stmt *row;
+    sqlite3_stmt *row = NULL;
     int status = store_query(store, &row, err,
                              "SELECT s.public, s.kind, s.seed, c.parameters FROM study s JOIN "
                              "study_case c ON c.study_id = s.id WHERE s.id = ? AND c.number = ?",
@@ -152,7 +152,7 @@ static int copy_study(struct store *store, int64_t study, struct claimed_job *jo
 /* 1 and a job, or 0 when nothing waits. */
 static int claim_one(struct store *store, const struct claim *claim, int64_t only,
                      const char *kinds, struct claimed_job *job, struct error *err) {
-    sqlite3_stmt *row;
+    sqlite3_stmt *row = NULL;
     int status = random_text(job->token, TOKEN_SIZE - 1, err);
     if (!status)
         status = store_query(

@@ -22,7 +22,7 @@ static int parse_column(sqlite3_stmt *row, int column, const struct json_limits 
 int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
                struct error *err) {
     int64_t row = 0;
-    sqlite3_stmt *found;
+    sqlite3_stmt *found = NULL;
     int status = study_row(store, study, &row, err);
     if (!status)
         status = store_query(store, &found, err,
@@ -107,7 +107,7 @@ static int read_block(sqlite3_stmt *row, struct stored_block *block, struct bloc
 int store_results(struct store *store, const char *study, uint64_t case_number, result_visit *visit,
                   void *context, struct error *err) {
     int64_t id = 0;
-    sqlite3_stmt *row;
+    sqlite3_stmt *row = NULL;
     int status = study_row(store, study, &id, err);
     if (!status)
         status = store_query(store, &row, err,
@@ -151,7 +151,7 @@ struct target {
 };
 
 static int insert_scalar(const struct target *target, const cJSON *scalar, struct error *err) {
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     int status =
         store_query(target->store, &statement, err,
                     "INSERT INTO scalar (study_id, case_number, name, value, standard_error, "
@@ -166,7 +166,7 @@ static int insert_scalar(const struct target *target, const cJSON *scalar, struc
 
 static int insert_point(struct store *store, int64_t curve, int64_t number,
                         const cJSON *const values[4], struct error *err) {
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     int status =
         store_query(store, &statement, err,
                     "INSERT INTO point (curve_id, number, x, x2, y, standard_error) VALUES "
@@ -219,7 +219,7 @@ static int insert_curve(const struct target *target, const cJSON *document, stru
     const cJSON *quantity = cJSON_GetObjectItemCaseSensitive(document, "quantity");
     const cJSON *series = cJSON_GetObjectItemCaseSensitive(document, "series");
     const cJSON *model = cJSON_GetObjectItemCaseSensitive(document, "model");
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     int status =
         store_query(target->store, &statement, err,
                     "INSERT INTO curve (study_id, case_number, quantity, series, model, level) "
@@ -294,7 +294,7 @@ int store_publish(struct store *store, const char *study, uint64_t case_number, 
 int store_published(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
                     cJSON **out, struct error *err) {
     int64_t id = 0;
-    sqlite3_stmt *row;
+    sqlite3_stmt *row = NULL;
     int status = study_row(store, study, &id, err);
     if (!status)
         status =
@@ -316,7 +316,7 @@ int store_published(struct store *store, const char *study, uint64_t case_number
 
 int store_unpublished(struct store *store, uint64_t skip, char study[STUDY_ID_SIZE],
                       uint64_t *case_number, struct error *err) {
-    sqlite3_stmt *row;
+    sqlite3_stmt *row = NULL;
     int status =
         store_query(store, &row, err,
                     "SELECT s.public, c.number FROM study_case c JOIN study s ON s.id = "
@@ -342,7 +342,7 @@ int store_unpublished(struct store *store, uint64_t skip, char study[STUDY_ID_SI
 int store_costs(struct store *store, const char *study, struct case_cost **out, size_t *count,
                 struct error *err) {
     int64_t id = 0, cases = 0;
-    sqlite3_stmt *row;
+    sqlite3_stmt *row = NULL;
     struct case_cost *costs = NULL;
     size_t n = 0;
     int status = study_row(store, study, &id, err);

@@ -77,7 +77,7 @@ static int find_key(struct store *store, const struct study *study, const char *
                     char id[STUDY_ID_SIZE], struct error *err) {
     if (!key)
         return 0;
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     int status = store_query(store, &statement, err,
                              "SELECT public, source = ? FROM study WHERE submit_key = ?", "tt",
                              study->source, key);
@@ -173,7 +173,7 @@ static int time_left(struct store *store, int64_t row, struct study_status *out,
         out->seconds_left = 0;
         return 0;
     }
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     int status =
         store_query(store, &statement, err,
                     "SELECT sum(estimate * realisations_done), sum(estimate * (?2 - "
@@ -197,7 +197,7 @@ void study_status_clear(struct study_status *status) {
 }
 
 int store_status(struct store *store, const char *id, struct study_status *out, struct error *err) {
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     struct study_status read = {0};
     int status = store_query(store, &statement, err,
                              "SELECT " STATUS_COLUMNS " FROM study WHERE public = ?", "t", id);
@@ -234,7 +234,7 @@ int store_list(struct store *store, const char *after, size_t limit, struct stud
     struct study_status *list = array_create(limit, sizeof *list);
     int64_t *rows = array_create(limit, sizeof *rows);
     size_t n = 0;
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     if (!list || !rows)
         status = error_memory(err, limit * sizeof *list, "a list of studies");
     if (!status)
@@ -365,7 +365,7 @@ static int append_failure(sqlite3_stmt *row, struct failure **list, size_t count
 int store_failures(struct store *store, const char *id, struct failure **out, size_t *count,
                    struct error *err) {
     int64_t row = 0;
-    sqlite3_stmt *statement;
+    sqlite3_stmt *statement = NULL;
     struct failure *list = NULL;
     size_t n = 0;
     int status = study_row(store, id, &row, err);

@@ -22,7 +22,7 @@ static uint64_t file_bytes(const char *path, const char *suffix) {
 }
 
 int store_metrics(struct store *store, struct store_metrics *out, struct error *err) {
-    sqlite3_stmt *row;
+    sqlite3_stmt *row = NULL;
     int status =
         store_query(store, &row, err,
                     "SELECT count(*), total(jobs_waiting), total(jobs_running), "

@@ -286,7 +286,7 @@ static int fill(struct study *study, const cJSON *document, const struct study_k
         check_names(study->kind, document, "", faults);
         check_parameters(study->kind, document, faults);
     }
-    if (faults->count)
+    if (faults->count || !study->kind)
         return faulty(faults, err);
     study->source = json_print(document);
     if (!study->name || !study->source)

@@ -44,7 +44,7 @@ void answer_json(struct exchange *exchange, unsigned status, cJSON *document) {
 
 void answer_static(struct exchange *exchange, const char *type, const char *data, size_t size) {
     finish(exchange, 200, type,
-           MHD_create_response_from_buffer(size, (void *)(uintptr_t)data, MHD_RESPMEM_PERSISTENT));
+           MHD_create_response_from_buffer(size, (void *)data, MHD_RESPMEM_PERSISTENT));
 }
 
 void answer_empty(struct exchange *exchange, unsigned status) {

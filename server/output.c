@@ -49,7 +49,7 @@ static int write_json(const cJSON *curves, const char *folder, struct error *err
 }
 
 static void print_number(FILE *file, const cJSON *value) {
-    if (cJSON_IsNumber(value))
+    if (value && cJSON_IsNumber(value))
         fprintf(file, "%.17g", value->valuedouble);
 }
 
@@ -96,7 +96,7 @@ static void write_matrix_row(FILE *file, const cJSON *x, const cJSON *curve,
                              const cJSON *const *columns, size_t count) {
     const cJSON *cells[2 + THEORIES_MOST];
     for (size_t c = 0; c < count; c++)
-        cells[c] = cJSON_IsArray(columns[c]) ? columns[c]->child : NULL;
+        cells[c] = columns[c] ? columns[c]->child : NULL;
     const cJSON *x2 = member(curve, "x2");
     for (x2 = x2 ? x2->child : NULL; x2; x2 = x2->next, advance(cells, count))
         write_row(file, x, x2, cells, count);

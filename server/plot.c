@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* The picture, in SVG user units; the plot area inside its margins, the legend at its right. */
-enum { WIDTH = 960, HEIGHT = 560, LEFT = 80, RIGHT = 700, TOP = 30, BOTTOM = 490 };
+enum { WIDTH = 1040, HEIGHT = 560, LEFT = 80, RIGHT = 700, TOP = 30, BOTTOM = 490 };
 
 /* Okabe & Ito (2008): told apart by every reader. */
 static const char *const COLOURS[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
@@ -125,13 +125,15 @@ static void draw_tick(FILE *file, const struct frame *frame, bool horizontal, do
 static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
     const struct axis *axis = horizontal ? &frame->x : &frame->y;
     if (axis->logarithmic) {
-        for (double value = pow(10, ceil(log10(axis->low))); value <= axis->high; value *= 10)
-            draw_tick(file, frame, horizontal, value);
+        int last = (int)floor(log10(axis->high));
+        for (int decade = (int)ceil(log10(axis->low)); decade <= last; decade++)
+            draw_tick(file, frame, horizontal, pow(10, decade));
         return;
     }
     double step = tick_step(axis);
-    for (double n = ceil(axis->low / step); n * step <= axis->high * (1 + 1e-12); n++)
-        draw_tick(file, frame, horizontal, n * step);
+    long last = lrint(floor(axis->high / step));
+    for (long n = lrint(ceil(axis->low / step)); n <= last; n++)
+        draw_tick(file, frame, horizontal, (double)n * step);
 }
 
 /* --- text --- */

@@ -14,6 +14,6 @@ void summary_of_list(const cJSON *studies, FILE *file);
 /* Speed against error. */
 void summary_of_report(const cJSON *report, FILE *file);
 /* "2 h 5 min", "12 s", "-" for NaN. */
-void duration_text(double seconds, char *text, size_t size);
+void duration_text(double seconds, char *out, size_t size);
 
 #endif

@@ -11,10 +11,10 @@ WIDE_VECTORS static int64_t compare_block(const double *u, const double *m, cons
     int64_t any = 0;
     for (size_t i = 0; i < n; i++)
         above[i] = -(int64_t)(m[i] > m[i - 1]) & -(int64_t)(m[i] > m[i + 1]);
-    if (u)
+    if (u && d)
         for (size_t i = 0; i < n; i++)
             above[i] &= -(int64_t)(m[i] > u[i]) & -(int64_t)(m[i] > d[i]);
-    if (u && corners)
+    if (u && d && corners)
         for (size_t i = 0; i < n; i++)
             above[i] &= -(int64_t)(m[i] > u[i - 1]) & -(int64_t)(m[i] > u[i + 1]) &
                         -(int64_t)(m[i] > d[i - 1]) & -(int64_t)(m[i] > d[i + 1]);

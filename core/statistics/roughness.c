@@ -161,7 +161,8 @@ static double radius(const struct grid *grid, double mx, double my) {
 }
 
 size_t radial_bins(const struct grid *grid) {
-    return (size_t)(radius(grid, (double)(grid->nx / 2), (double)(grid->ny / 2)) + 0.5) + 1;
+    size_t nyquist_x = grid->nx / 2, nyquist_y = grid->ny / 2;
+    return (size_t)(radius(grid, (double)nyquist_x, (double)nyquist_y) + 0.5) + 1;
 }
 
 void psd_of_modes(const struct modes *modes, double *wave_number, double *density) {

@@ -117,7 +117,7 @@ static size_t column_row(long my, size_t ny) {
 static double complex with_phase(double amplitude, uint64_t word) {
     double phase = 2 * M_PI * ((double)(word >> 11) * 0x1p-53), sine, cosine;
     sincos(phase, &sine, &cosine);
-    return CMPLX(amplitude * cosine, amplitude * sine);
+    return amplitude * cosine + amplitude * sine * I;
 }
 
 /* A column that is its own mirror image (mx = 0, and Nyquist of an even nx): the modes of my < 0
