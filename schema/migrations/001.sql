@@ -124,7 +124,7 @@ CREATE VIEW curve_points AS
     FROM study s JOIN curve c ON c.study_id = s.id JOIN point p ON p.curve_id = c.id;
 CREATE VIEW realisation_scalars AS
     SELECT s.public AS study, r.case_number AS "case", r.first + one.key AS realisation,
-           (SELECT json_group_object(n.value, json_extract(one.value, '$[' || n.key || ']'))
+           (SELECT json_group_object(n.value, one.value -> ('$[' || n.key || ']'))
             FROM json_each(r.names) n) AS scalars
     FROM study s JOIN result r ON r.study_id = s.id, json_each(r.scalars) one;
 CREATE VIEW job_log AS

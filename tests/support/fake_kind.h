@@ -1,0 +1,71 @@
+/* A kind of study with one parameter of every sort, for tests of the schema. */
+#ifndef RUGO_TESTS_SUPPORT_FAKE_KIND_H
+#define RUGO_TESTS_SUPPORT_FAKE_KIND_H
+
+#include "schema/study.h"
+#include <math.h>
+
+static const char *const FAKE_COLOURS[] = {"red", "green", NULL};
+static const struct parameter FAKE_PARAMETERS[] = {
+    {.path = "/box/width",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 1,
+     .above_minimum = true,
+     .required = true,
+     .sweep = true,
+     .help = "in metres"},
+    {.path = "/box/count",
+     .type = PARAMETER_INTEGER,
+     .minimum = 1,
+     .maximum = INFINITY,
+     .sweep = true,
+     .default_json = "2",
+     .help = "of boxes"},
+    {.path = "/box/colour",
+     .type = PARAMETER_CHOICE,
+     .choices = FAKE_COLOURS,
+     .sweep = true,
+     .default_json = "\"red\"",
+     .help = "of the box"},
+    {.path = "/bins",
+     .type = PARAMETER_NUMBERS,
+     .minimum = -9,
+     .maximum = 9,
+     .items_low = 2,
+     .items_high = 3,
+     .sweep = true,
+     .default_json = "[0,1]",
+     .help = "low, high, middle"},
+    {.path = "/seconds",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = INFINITY,
+     .default_json = "1",
+     .help = "a realisation takes"},
+};
+
+/* Refuses width 0.5 together with 7 boxes; a worker needs a byte a box; costs /seconds. */
+static inline int fake_check(const void *context, const cJSON *parameters,
+                             struct fault_list *faults, struct study_cost *cost,
+                             struct error *err) {
+    (void)context;
+    (void)err;
+    double count = json_at(parameters, "/box/count")->valuedouble;
+    if (json_at(parameters, "/box/width")->valuedouble == 0.5 && count == 7)
+        fault_add(faults, "/box/count", "seven boxes are too many for half a metre");
+    *cost = (struct study_cost){.nx = 1,
+                                .ny = 1,
+                                .memory_bytes = count,
+                                .seconds = json_at(parameters, "/seconds")->valuedouble};
+    return 0;
+}
+
+static const struct study_kind FAKE_KIND = {.name = "boxes",
+                                            .parameters = FAKE_PARAMETERS,
+                                            .parameter_count =
+                                                sizeof FAKE_PARAMETERS / sizeof *FAKE_PARAMETERS,
+                                            .default_realisations = 100,
+                                            .check = fake_check};
+
+#endif

@@ -1,0 +1,481 @@
+/* Protects: the states of studies and jobs, through every transition, on a clock that the test
+ * sets: what a lease allows, that nothing is done twice or lost, and what people read of it. */
+#include "schema/store.h"
+#include "tests/support/check.h"
+#include "tests/support/fake_kind.h"
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int64_t clock_ms;
+static int64_t test_clock(void *context) {
+    (void)context;
+    return clock_ms;
+}
+
+static struct store *open_store(const char *path) {
+    struct store *store = NULL;
+    struct store_options options = {.lease_ms = 1000, .now_ms = test_clock};
+    struct error err = {0};
+    if (store_open(&store, path, &options, &err))
+        print_error("%s\n", err.text);
+    assert_non_null(store);
+    return store;
+}
+
+/* Two cases of `realisations` in blocks of ten. */
+static void submit(struct store *store, int realisations, const char *key, char id[STUDY_ID_SIZE]) {
+    char text[200];
+    struct study *study = NULL;
+    struct fault_list faults = {0};
+    snprintf(text, sizeof text,
+             "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":%d,\"seconds\":6,\"box\":{"
+             "\"width\":[0.5,1]}}",
+             realisations);
+    assert_int_equal(study_read(&study, text, strlen(text), NULL, &FAKE_KIND, 1, 0, &faults, NULL),
+                     0);
+    assert_int_equal(store_submit(store, study, key, id, NULL, NULL), 0);
+    study_destroy(&study);
+}
+
+static size_t claim(struct store *store, const char *worker, struct claimed_job *job) {
+    struct claim claim = {.worker = worker, .host = "here", .count = 1};
+    size_t count = 0;
+    assert_int_equal(store_claim(store, &claim, job, &count, NULL), 0);
+    return count;
+}
+
+static const char *const NAMES[] = {"a", "b"};
+
+static int complete(struct store *store, const struct claimed_job *job, bool *first,
+                    bool *case_done, struct error *err) {
+    double scalars[20];
+    for (size_t i = 0; i < 20; i++)
+        scalars[i] = i == 3 ? NAN : (double)(job->first + i) / 3;
+    struct block_result result = {.first = job->first,
+                                  .count = job->count,
+                                  .scalar_count = 2,
+                                  .names = NAMES,
+                                  .scalars = scalars,
+                                  .data = (const unsigned char *)"\0\1data",
+                                  .size = 6,
+                                  .seconds = 2};
+    return store_complete(store, job->id, job->token, &result, first, case_done, err);
+}
+
+static const char *state_of(struct store *store, const char *id) {
+    struct study_status status;
+    assert_int_equal(store_status(store, id, &status, NULL), 0);
+    assert_int_equal(status.jobs, status.jobs_waiting + status.jobs_running + status.jobs_done +
+                                      status.jobs_failed + status.jobs_cancelled);
+    const char *state = status.state;
+    study_status_clear(&status);
+    return state;
+}
+
+static void a_study_runs_to_its_end(void **state) {
+    (void)state;
+    struct store *store = open_store("end.db");
+    char id[STUDY_ID_SIZE];
+    bool first, done;
+    submit(store, 20, NULL, id);
+    assert_string_equal(state_of(store, id), "queued");
+    for (int j = 0; j < 4; j++) {
+        struct claimed_job job;
+        assert_int_equal(claim(store, "w", &job), 1);
+        assert_string_equal(state_of(store, id), "running");
+        assert_int_equal(job.case_number, j / 2);
+        assert_int_equal(job.first, 10 * (j % 2));
+        assert_int_equal(job.attempt, 1);
+        assert_int_equal(complete(store, &job, &first, &done, NULL), 0);
+        assert_true(first && done == (j % 2 == 1));
+        assert_int_equal(complete(store, &job, &first, &done, NULL),
+                         0); /* an answer lost, sent again */
+        assert_false(first);
+        claimed_job_clear(&job);
+    }
+    struct claimed_job none;
+    assert_int_equal(claim(store, "w", &none), 0);
+    assert_string_equal(state_of(store, id), "done");
+    struct study_status status;
+    assert_int_equal(store_status(store, id, &status, NULL), 0);
+    assert_int_equal(status.realisations_done, 40);
+    check_close(status.seconds, 8, 1e-12);
+    assert_true(status.seconds_left == 0 && *status.finished);
+    study_status_clear(&status);
+    struct error err = {0};
+    assert_int_equal(store_cancel(store, id, &err), ERROR_STATE);
+    store_close(&store);
+}
+
+static void leases_run_out_and_fence(void **state) {
+    (void)state;
+    struct store *store = open_store("lease.db");
+    char id[STUDY_ID_SIZE];
+    struct claimed_job slow, quick;
+    struct error err = {0};
+    bool first, done;
+    submit(store, 5, NULL, id);
+    clock_ms = 5000;
+    assert_int_equal(claim(store, "slow", &slow), 1);
+    clock_ms = 5900;
+    assert_int_equal(store_heartbeat(store, slow.id, slow.token, 3, NULL), 0);
+    clock_ms = 6500; /* beyond the first lease, within the renewed one */
+    assert_int_equal(claim(store, "quick", &quick), 1);
+    assert_true(quick.id != slow.id);
+    claimed_job_clear(&quick);
+    clock_ms = 6900;
+    assert_int_equal(claim(store, "quick", &quick), 1);
+    assert_int_equal(quick.id, slow.id);
+    assert_int_equal(quick.attempt, 2);
+    assert_int_equal(store_heartbeat(store, slow.id, slow.token, 4, &err), ERROR_STATE);
+    assert_non_null(strstr(err.text, "lost"));
+    assert_int_equal(complete(store, &slow, &first, &done, &err), ERROR_STATE);
+    assert_int_equal(store_fail(store, slow.id, slow.token, "late", false, &err), ERROR_STATE);
+    assert_int_equal(store_release(store, slow.id, slow.token, &err), ERROR_STATE);
+    clock_ms = 99000; /* ran out, but nobody took it: its result is as good as ever */
+    assert_int_equal(complete(store, &quick, &first, &done, NULL), 0);
+    assert_true(first);
+    clock_ms = 1; /* the clock of a test may go back; a running lease only lives longer */
+    claimed_job_clear(&slow);
+    claimed_job_clear(&quick);
+    store_close(&store);
+}
+
+static void three_attempts_then_failed_with_its_reason(void **state) {
+    (void)state;
+    struct store *store = open_store("fail.db");
+    char id[STUDY_ID_SIZE];
+    struct claimed_job job;
+    clock_ms = 0;
+    submit(store, 10, NULL, id);
+    for (uint64_t attempt = 1; attempt <= 3; attempt++) {
+        assert_int_equal(claim(store, "w", &job), 1);
+        assert_int_equal(job.case_number, 0);
+        assert_int_equal(job.attempt, attempt);
+        assert_int_equal(store_release(store, job.id, job.token, NULL),
+                         0); /* handed back: does not count */
+        claimed_job_clear(&job);
+        assert_int_equal(claim(store, "w", &job), 1);
+        assert_int_equal(job.attempt, attempt);
+        assert_int_equal(store_fail(store, job.id, job.token, "out of luck", false, NULL), 0);
+        claimed_job_clear(&job);
+    }
+    assert_int_equal(claim(store, "w", &job), 1);
+    assert_int_equal(job.case_number, 1);
+    assert_int_equal(store_fail(store, job.id, job.token, "hopeless", true, NULL), 0); /* at once */
+    claimed_job_clear(&job);
+    assert_string_equal(state_of(store, id), "failed");
+    struct failure *failures;
+    size_t count;
+    assert_int_equal(store_failures(store, id, &failures, &count, NULL), 0);
+    assert_int_equal(count, 2);
+    assert_string_equal(failures[0].reason, "out of luck");
+    assert_int_equal(failures[0].attempts, 3);
+    assert_string_equal(failures[1].reason, "hopeless");
+    failures_free(failures, count);
+    uint64_t retried;
+    assert_int_equal(store_retry(store, id, &retried, NULL), 0);
+    assert_int_equal(retried, 2);
+    assert_string_equal(state_of(store, id), "queued");
+    assert_int_equal(claim(store, "w", &job), 1);
+    assert_int_equal(job.attempt, 1);
+    claimed_job_clear(&job);
+    store_close(&store);
+}
+
+/* A job that kills its workers: leases run out three times. */
+static void a_deadly_job_fails(void **state) {
+    (void)state;
+    struct store *store = open_store("deadly.db");
+    char id[STUDY_ID_SIZE];
+    struct claimed_job job;
+    submit(store, 10, NULL, id);
+    for (int death = 0; death < 4; death++) {
+        size_t found = claim(store, "victim", &job);
+        assert_int_equal(found, 1);
+        assert_int_equal(job.case_number, death < 3 ? 0 : 1);
+        claimed_job_clear(&job);
+        clock_ms += 2000;
+    }
+    struct failure *failures;
+    size_t count;
+    assert_int_equal(store_failures(store, id, &failures, &count, NULL), 0);
+    assert_int_equal(count, 1);
+    assert_string_equal(failures[0].reason, "lease ran out on worker victim");
+    failures_free(failures, count);
+    store_close(&store);
+}
+
+static void cancelled_studies_stop_their_jobs(void **state) {
+    (void)state;
+    struct store *store = open_store("cancel.db");
+    char id[STUDY_ID_SIZE];
+    struct claimed_job job;
+    struct error err = {0};
+    bool first, done;
+    submit(store, 20, NULL, id);
+    assert_int_equal(claim(store, "w", &job), 1);
+    assert_int_equal(store_cancel(store, id, NULL), 0);
+    assert_string_equal(state_of(store, id), "cancelled");
+    assert_int_equal(store_heartbeat(store, job.id, job.token, 1, &err), ERROR_STATE);
+    assert_non_null(strstr(err.text, "cancelled"));
+    assert_int_equal(complete(store, &job, &first, &done, &err), ERROR_STATE);
+    assert_int_equal(store_cancel(store, id, &err), ERROR_STATE);
+    uint64_t retried;
+    assert_int_equal(store_retry(store, id, &retried, NULL), 0);
+    assert_int_equal(retried, 4);
+    assert_int_equal(store_cancel(store, "0123456789abcdef", &err), ERROR_ABSENT);
+    claimed_job_clear(&job);
+    store_close(&store);
+}
+
+static void a_key_gives_the_same_study(void **state) {
+    (void)state;
+    struct store *store = open_store("key.db");
+    char one[STUDY_ID_SIZE], two[STUDY_ID_SIZE], three[STUDY_ID_SIZE];
+    submit(store, 10, "k", one);
+    submit(store, 10, "k", two);
+    submit(store, 10, NULL, three);
+    assert_string_equal(one, two);
+    assert_string_not_equal(one, three);
+    store_close(&store);
+}
+
+/* In a group commit a member that fails leaves the others. */
+static void group_commit_keeps_its_members_apart(void **state) {
+    (void)state;
+    struct store *store = open_store("group.db");
+    char id[STUDY_ID_SIZE];
+    struct claimed_job job;
+    struct error err = {0};
+    bool first, done;
+    submit(store, 10, NULL, id);
+    assert_int_equal(claim(store, "w", &job), 1);
+    assert_int_equal(store_begin(store, NULL), 0);
+    assert_int_equal(store_heartbeat(store, job.id, "wrong", 1, &err), ERROR_STATE);
+    assert_int_equal(complete(store, &job, &first, &done, NULL), 0);
+    assert_int_equal(store_cancel(store, "0123456789abcdef", &err), ERROR_ABSENT);
+    assert_int_equal(store_commit(store, NULL), 0);
+    struct study_status status;
+    assert_int_equal(store_status(store, id, &status, NULL), 0);
+    assert_int_equal(status.jobs_done, 1);
+    study_status_clear(&status);
+    claimed_job_clear(&job);
+    store_close(&store);
+}
+
+/* --- what people read --- */
+
+static char *read_text(const char *path, const char *sql) {
+    sqlite3 *db = NULL;
+    sqlite3_stmt *row = NULL;
+    assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
+    if (sqlite3_prepare_v2(db, sql, -1, &row, NULL))
+        print_error("%s\n", sqlite3_errmsg(db));
+    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
+    char *text = strdup((const char *)sqlite3_column_text(row, 0));
+    sqlite3_finalize(row);
+    sqlite3_close(db);
+    return text;
+}
+
+static void check_text(const char *path, const char *sql, const char *expected) {
+    char *text = read_text(path, sql);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static int count_blocks(void *context, const struct block_result *result, struct error *err) {
+    uint64_t *next = context;
+    (void)err;
+    assert_int_equal(result->first, *next);
+    assert_int_equal(result->size, 6);
+    assert_memory_equal(result->data, "\0\1data", 6);
+    assert_true(result->scalars[2] == (double)(result->first + 2) / 3 && isnan(result->scalars[3]));
+    *next = result->first + result->count;
+    return 0;
+}
+
+static void results_and_views(void **state) {
+    (void)state;
+    struct store *store = open_store("views.db");
+    char id[STUDY_ID_SIZE], unpublished[STUDY_ID_SIZE];
+    bool first, done;
+    uint64_t next = 0, case_number;
+    struct claimed_job jobs[4];
+    submit(store, 20, NULL, id);
+    for (int j = 0; j < 4; j++)
+        assert_int_equal(claim(store, "w", &jobs[j]), 1);
+    for (int j = 3; j >= 0; j--) { /* completed backwards, read in order */
+        assert_int_equal(complete(store, &jobs[j], &first, &done, NULL), 0);
+        claimed_job_clear(&jobs[j]);
+    }
+    assert_int_equal(store_results(store, id, 0, count_blocks, &next, NULL), 0);
+    assert_int_equal(next, 20);
+    assert_int_equal(store_unpublished(store, 0, unpublished, &case_number, NULL), 0);
+    assert_int_equal(case_number, 0);
+    struct case_info info;
+    assert_int_equal(store_case(store, id, 0, &info, NULL), 0);
+    cJSON *curves = cJSON_Parse(
+        "{\"scalars\":{\"m0\":{\"value\":1,\"standard_error\":0.5}},\"curves\":[{\"quantity\":"
+        "\"q\",\"series\":\"\",\"x\":[1,2],\"y\":[3,null],\"standard_error\":[0.1,null]},"
+        "{\"quantity\":\"joint\",\"series\":\"s\",\"x\":[1,2],\"x2\":[8,9],\"y\":[[0,5],[0,0]],"
+        "\"standard_error\":[[0,1],[0,0]]}]}");
+    assert_int_equal(store_publish(store, id, 0, info.revision, curves, NULL), 0);
+    assert_int_equal(store_publish(store, id, 0, info.revision - 1, curves, NULL),
+                     0); /* an older one: ignored */
+    cJSON *again = NULL;
+    assert_int_equal(store_published(store, id, 0, info.revision, &again, NULL), 0);
+    assert_true(cJSON_Compare(again, curves, true));
+    cJSON_Delete(again);
+    assert_int_equal(store_published(store, id, 0, info.revision + 1, &again, NULL), 0);
+    assert_null(again);
+    assert_int_equal(store_unpublished(store, 0, unpublished, &case_number, NULL), 0);
+    assert_int_equal(case_number, 1);
+    cJSON_Delete(curves);
+    case_info_clear(&info);
+    assert_int_equal(store_snapshot(store, "copy.db", NULL), 0);
+    struct error err = {0};
+    assert_int_equal(store_snapshot(store, "copy.db", &err), ERROR_INPUT);
+    check_text("copy.db", "SELECT state || percent FROM study_progress", "done100.0");
+    check_text("copy.db",
+               "SELECT count(*) || max(realisation) FROM realisation_scalars WHERE \"case\" = 1",
+               "2019");
+    check_text("copy.db",
+               "SELECT scalars FROM realisation_scalars WHERE \"case\" = 0 AND realisation = 1",
+               "{\"a\":0.6666666666666666,\"b\":null}");
+    check_text("copy.db",
+               "SELECT group_concat(x || ':' || y) FROM curve_points WHERE quantity = 'q'",
+               "1.0:3.0");
+    check_text("copy.db",
+               "SELECT x || ':' || x2 || ':' || y || ':' || standard_error FROM curve_points WHERE "
+               "quantity = 'joint'",
+               "1.0:9.0:5.0:1.0");
+    check_text("copy.db", "SELECT name || value || standard_error FROM case_scalars", "m01.00.5");
+    check_text("copy.db",
+               "SELECT count(*) || group_concat(DISTINCT worker || host || attempts) FROM job_log",
+               "4where1");
+    store_close(&store);
+}
+
+/* --- files that are not ours --- */
+
+static void execute(const char *path, const char *sql) {
+    sqlite3 *db = NULL;
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(db);
+}
+
+static void other_files_are_refused_with_a_word(void **state) {
+    (void)state;
+    struct store *store = open_store("newer.db");
+    store_close(&store);
+    execute("newer.db", "PRAGMA user_version = 99");
+    execute("other.db", "CREATE TABLE t (x)");
+    FILE *file = fopen("junk.db", "w");
+    assert_non_null(file);
+    for (int i = 0; i < 5000; i++)
+        fputs("junk", file);
+    fclose(file);
+    static const struct {
+        const char *path, *text;
+        bool existing;
+    } BAD[] = {{"newer.db", "has schema version 99; this program knows up to", false},
+               {"other.db", "is a database of another program", false},
+               {"junk.db", "is damaged or no database", false},
+               {".", "is not a file", false},
+               {"missing/x.db", "missing/x.db", false},
+               {"absent.db", "there is no database absent.db", true}};
+    for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++) {
+        struct error err = {0};
+        struct store_options options = {.existing = BAD[b].existing};
+        assert_true(store_open(&store, BAD[b].path, &options, &err) < 0);
+        if (!strstr(err.text, BAD[b].text))
+            print_error("%s\n", err.text);
+        assert_non_null(strstr(err.text, BAD[b].text));
+        assert_null(store);
+    }
+}
+
+static void leases_of_another_boot_are_void(void **state) {
+    (void)state;
+    struct store *store = open_store("boot.db");
+    char id[STUDY_ID_SIZE];
+    struct claimed_job job;
+    submit(store, 5, NULL, id);
+    clock_ms = 1000000;
+    assert_int_equal(claim(store, "before", &job), 1);
+    int64_t first = job.id;
+    claimed_job_clear(&job);
+    store_close(&store);
+    execute("boot.db", "UPDATE job SET lease_boot = 'another'");
+    store = open_store("boot.db");
+    clock_ms = 10; /* the boot clock began anew */
+    assert_int_equal(claim(store, "after", &job), 1);
+    assert_int_equal(job.id, first);
+    assert_int_equal(job.attempt, 2);
+    claimed_job_clear(&job);
+    store_close(&store);
+}
+
+/* Two processes take all jobs of one file between them, none twice, with no busy error. */
+static void processes_share_a_file(void **state) {
+    (void)state;
+    struct store *store = open_store("shared.db");
+    char id[STUDY_ID_SIZE];
+    clock_ms = 0;
+    submit(store, 1000, NULL, id);
+    store_close(&store);
+    pid_t children[2];
+    for (int c = 0; c < 2; c++) {
+        children[c] = fork();
+        assert_true(children[c] >= 0);
+        if (children[c])
+            continue;
+        struct store *own = NULL;
+        struct store_options options = {.lease_ms = 1000, .now_ms = test_clock};
+        int status = store_open(&own, "shared.db", &options, NULL);
+        struct claim what = {.worker = c ? "one" : "two", .host = "here", .count = 1};
+        struct claimed_job job;
+        size_t count = 1;
+        bool first, done;
+        while (!status && !(status = store_claim(own, &what, &job, &count, NULL)) && count) {
+            status = complete(own, &job, &first, &done, NULL);
+            status = status ? status : !first;
+            claimed_job_clear(&job);
+        }
+        store_close(&own);
+        _exit(status ? 1 : 0);
+    }
+    for (int c = 0; c < 2; c++) {
+        int status;
+        assert_int_equal(waitpid(children[c], &status, 0), children[c]);
+        assert_int_equal(status, 0);
+    }
+    check_text("shared.db",
+               "SELECT count(*) || '/' || sum(attempts) || '/' || (SELECT state FROM "
+               "study_progress) FROM job_log WHERE state = 'done'",
+               "200/200/done");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_study_runs_to_its_end),
+        cmocka_unit_test(leases_run_out_and_fence),
+        cmocka_unit_test(three_attempts_then_failed_with_its_reason),
+        cmocka_unit_test(a_deadly_job_fails),
+        cmocka_unit_test(cancelled_studies_stop_their_jobs),
+        cmocka_unit_test(a_key_gives_the_same_study),
+        cmocka_unit_test(group_commit_keeps_its_members_apart),
+        cmocka_unit_test(results_and_views),
+        cmocka_unit_test(other_files_are_refused_with_a_word),
+        cmocka_unit_test(leases_of_another_boot_are_void),
+        cmocka_unit_test(processes_share_a_file),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

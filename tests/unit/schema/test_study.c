@@ -1,0 +1,239 @@
+/* Protects: a study is read as it was meant, or every fault of it is told with its pointer, what is
+ * there and what is allowed; sweeps are numbered in the order of the file. */
+#include "tests/support/check.h"
+#include "tests/support/fake_kind.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int read_text(const char *text, struct study **study, struct fault_list *faults,
+                     struct error *err) {
+    return study_read(study, text, strlen(text), NULL, &FAKE_KIND, 1, 1000, faults, err);
+}
+
+#define STUDY(rest) "{\"name\":\"n\",\"kind\":\"boxes\"," rest "}"
+#define BOX(rest) STUDY("\"box\":{\"width\":1" rest "}")
+
+static void faults_are_told_with_pointer_and_range(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *pointer, *detail;
+    } BAD[] = {
+        {"[]", "", "a study is a JSON object"},
+        {"{\"kind\":\"boxes\",\"box\":{\"width\":1}}", "/name", "missing; give the study a name"},
+        {"{\"name\":\"\",\"kind\":\"boxes\",\"box\":{\"width\":1}}", "/name",
+         "not a text of 1 to 200 bytes"},
+        {"{\"name\":7,\"kind\":\"boxes\",\"box\":{\"width\":1}}", "/name",
+         "not a text of 1 to 200 bytes"},
+        {"{\"name\":\"n\"}", "/kind", "missing; give one of \"boxes\""},
+        {"{\"name\":\"n\",\"kind\":\"barrels\"}", "/kind", "\"barrels\" is not one of \"boxes\""},
+        {"{\"name\":\"n\",\"kind\":3}", "/kind", "3 is not one of \"boxes\""},
+        {STUDY("\"box\":{}"), "/box/width", "missing: in metres"},
+        {STUDY("\"seed\":1"), "/box/width", "missing: in metres"},
+        {STUDY("\"box\":{\"width\":1.4}"), "/box/width", "1.4 is not in (0, 1]"},
+        {STUDY("\"box\":{\"width\":0}"), "/box/width", "0 is not in (0, 1]"},
+        {STUDY("\"box\":{\"width\":\"wide\"}"), "/box/width", "\"wide\" is not a number"},
+        {STUDY("\"box\":{\"width\":null}"), "/box/width", "null is not a number"},
+        {STUDY("\"box\":{\"width\":[0.2,1.4]}"), "/box/width/1", "1.4 is not in (0, 1]"},
+        {STUDY("\"box\":{\"width\":[]}"), "/box/width", "an empty list; give at least one value"},
+        {STUDY("\"box\":{\"width\":[[1]]}"), "/box/width/0", "[1] is not a number"},
+        {BOX(",\"count\":2.5"), "/box/count", "2.5 is not an integer"},
+        {BOX(",\"count\":0"), "/box/count", "0 is not in [1, infinity)"},
+        {BOX(",\"count\":true"), "/box/count", "true is not an integer"},
+        {BOX(",\"colour\":\"blue\""), "/box/colour", "\"blue\" is not one of \"red\", \"green\""},
+        {BOX(",\"colour\":1"), "/box/colour", "1 is not one of \"red\", \"green\""},
+        {BOX(",\"color\":\"red\""), "/box/color", "unknown name; did you mean \"colour\"?"},
+        {BOX(",\"weight\":1"), "/box/weight", "unknown name"},
+        {STUDY("\"box\":{\"width\":1},\"bin\":[0,1]"), "/bin",
+         "unknown name; did you mean \"bins\"?"},
+        {STUDY("\"box\":{\"width\":1},\"bins\":[1]"), "/bins",
+         "[1] is not an array of 2 to 3 numbers"},
+        {STUDY("\"box\":{\"width\":1},\"bins\":[1,10]"), "/bins/1", "10 is not in [-9, 9]"},
+        {STUDY("\"box\":{\"width\":1},\"bins\":[[1,2],[3]]"), "/bins/1",
+         "[3] is not an array of 2 to 3 numbers"},
+        {STUDY("\"box\":{\"width\":1},\"bins\":3"), "/bins", "3 is not an array of 2 to 3 numbers"},
+        {STUDY("\"box\":{\"width\":1},\"seconds\":[1,2]"), "/seconds",
+         "a list is not allowed here: this cannot be swept"},
+        {STUDY("\"seed\":-1,\"box\":{\"width\":1}"), "/seed", "-1 is not an integer of 0 or more"},
+        {STUDY("\"seed\":1.5,\"box\":{\"width\":1}"), "/seed",
+         "1.5 is not an integer of 0 or more"},
+        {STUDY("\"seed\":\"18446744073709551616\",\"box\":{\"width\":1}"), "/seed",
+         "\"18446744073709551616\" is not a decimal number up to 18446744073709551615"},
+        {STUDY("\"seed\":\"0x10\",\"box\":{\"width\":1}"), "/seed",
+         "\"0x10\" is not a decimal number up to 18446744073709551615"},
+        {STUDY("\"realisations\":0,\"box\":{\"width\":1}"), "/realisations",
+         "0 is not in [1, 10000000]"},
+        {STUDY("\"realisations\":\"many\",\"box\":{\"width\":1}"), "/realisations",
+         "\"many\" is not an integer"},
+        {STUDY("\"realisations\":{\"target_error\":0.01},\"box\":{\"width\":1}"), "/realisations",
+         "a target error is for a later version; give a number of realisations"},
+        {STUDY("\"box\":{\"width\":[0.5,1],\"count\":7}"), "/box/count",
+         "seven boxes are too many for half a metre"},
+        {BOX(",\"count\":2000"), "",
+         "a worker needs 1.86e-06 GiB for a grid of 1 by 1; allowed: 9.31e-07 GiB on this machine"},
+    };
+    for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++) {
+        struct fault_list faults = {0};
+        struct study *study = NULL;
+        struct error err = {0};
+        assert_int_equal(read_text(BAD[b].text, &study, &faults, &err), ERROR_INPUT);
+        assert_null(study);
+        if (faults.count != 1 || strcmp(faults.faults[0].pointer, BAD[b].pointer) != 0 ||
+            strcmp(faults.faults[0].detail, BAD[b].detail) != 0)
+            print_error("%s: %zu faults, %s: %s\n", BAD[b].text, faults.count,
+                        faults.faults[0].pointer, faults.faults[0].detail);
+        assert_int_equal(faults.count, 1);
+        assert_string_equal(faults.faults[0].pointer, BAD[b].pointer);
+        assert_string_equal(faults.faults[0].detail, BAD[b].detail);
+        fault_list_clear(&faults);
+    }
+}
+
+static void all_faults_are_told_at_once(void **state) {
+    (void)state;
+    struct fault_list faults = {0};
+    struct study *study = NULL;
+    struct error err = {0};
+    assert_int_equal(
+        read_text(
+            "{\"kind\":\"boxes\",\"seed\":-1,\"colour\":1,\"box\":{\"width\":2,\"count\":\"x\"}}",
+            &study, &faults, &err),
+        ERROR_INPUT);
+    assert_int_equal(faults.count, 5);
+    fault_list_clear(&faults);
+    assert_int_equal(read_text(STUDY("\"box\":7"), &study, &faults, &err), ERROR_INPUT);
+    assert_int_equal(faults.count, 2);
+    assert_string_equal(faults.faults[0].detail, "7 is not an object");
+    assert_string_equal(faults.faults[1].pointer, "/box/width");
+    fault_list_clear(&faults);
+}
+
+static void sweeps_run_in_the_order_of_the_file(void **state) {
+    (void)state;
+    struct fault_list faults = {0};
+    struct study *study = NULL;
+    assert_int_equal(read_text(STUDY("\"bins\":[[0,1],[2,3]],\"box\":{\"colour\":[\"green\","
+                                     "\"red\",\"green\"],\"width\":[0.5,1]}"),
+                               &study, &faults, NULL),
+                     0);
+    assert_int_equal(study->case_count, 12);
+    assert_string_equal(study->swept[0], "/bins");
+    assert_string_equal(study->swept[1], "/box/colour");
+    assert_string_equal(study->swept[2], "/box/width");
+    assert_null(study->swept[3]);
+    for (size_t c = 0; c < 12; c++) {
+        const cJSON *p = study->cases[c].parameters;
+        assert_true(json_at(p, "/box/width")->valuedouble == (c % 2 ? 1 : 0.5));
+        assert_string_equal(json_at(p, "/box/colour")->valuestring,
+                            c / 2 % 3 == 1 ? "red" : "green");
+        assert_true(json_at(p, "/bins/0")->valuedouble == (c < 6 ? 0 : 2));
+        assert_true(json_at(p, "/box/count")->valuedouble == 2); /* a default */
+    }
+    study_destroy(&study);
+    assert_null(study);
+}
+
+static void too_many_cases_are_refused_before_they_are_made(void **state) {
+    (void)state;
+    char *text = malloc(200000);
+    struct fault_list faults = {0};
+    struct study *study = NULL;
+    assert_non_null(text);
+    size_t used = (size_t)sprintf(text, "{\"name\":\"n\",\"kind\":\"boxes\",\"box\":{\"width\":[");
+    for (int i = 0; i < 10001; i++)
+        used += (size_t)sprintf(text + used, "%s0.1", i ? "," : "");
+    sprintf(text + used, "]}}");
+    assert_int_equal(read_text(text, &study, &faults, NULL), ERROR_INPUT);
+    assert_string_equal(faults.faults[0].detail, "the lists make more than 10000 cases");
+    fault_list_clear(&faults);
+    free(text);
+}
+
+static void seeds_are_read_whole(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        uint64_t seed;
+    } SEEDS[] = {{BOX(""), 1},
+                 {STUDY("\"seed\":9007199254740992,\"box\":{\"width\":1}"), 9007199254740992u},
+                 {STUDY("\"seed\":\"18446744073709551615\",\"box\":{\"width\":1}"), UINT64_MAX}};
+    for (size_t s = 0; s < 3; s++) {
+        struct fault_list faults = {0};
+        struct study *study = NULL;
+        assert_int_equal(read_text(SEEDS[s].text, &study, &faults, NULL), 0);
+        assert_true(study->seed == SEEDS[s].seed);
+        study_destroy(&study);
+    }
+}
+
+/* Blocks of about a minute and of equal size, never beyond 5000 realisations. */
+static void blocks_take_about_a_minute(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        uint64_t block;
+    } BLOCKS[] = {{STUDY("\"realisations\":100,\"seconds\":1,\"box\":{\"width\":1}"), 50},
+                  {STUDY("\"realisations\":100,\"seconds\":1000,\"box\":{\"width\":1}"), 1},
+                  {STUDY("\"realisations\":100,\"seconds\":0.001,\"box\":{\"width\":1}"), 100},
+                  {STUDY("\"realisations\":12000,\"seconds\":0,\"box\":{\"width\":1}"), 4000}};
+    for (size_t b = 0; b < 4; b++) {
+        struct fault_list faults = {0};
+        struct study *study = NULL;
+        assert_int_equal(read_text(BLOCKS[b].text, &study, &faults, NULL), 0);
+        assert_int_equal(study->cases[0].block, BLOCKS[b].block);
+        study_destroy(&study);
+    }
+}
+
+static void overrides_change_the_document(void **state) {
+    (void)state;
+    static const char *const SETS[] = {"/box/width=[0.25,0.5]", "realisations=7",
+                                       "box.colour=green", NULL};
+    static const char *const BAD[] = {"nothing", NULL}, *const THROUGH[] = {"name.x=1", NULL};
+    struct fault_list faults = {0};
+    struct study *study = NULL;
+    struct error err = {0};
+    const char *text = BOX("");
+    assert_int_equal(study_read(&study, text, strlen(text), SETS, &FAKE_KIND, 1, 0, &faults, NULL),
+                     0);
+    assert_int_equal(study->case_count, 2);
+    assert_int_equal(study->realisations, 7);
+    assert_string_equal(json_at(study->cases[1].parameters, "/box/colour")->valuestring, "green");
+    assert_non_null(strstr(study->source, "\"realisations\":7"));
+    study_destroy(&study);
+    assert_int_equal(study_read(&study, text, strlen(text), BAD, &FAKE_KIND, 1, 0, &faults, &err),
+                     ERROR_INPUT);
+    assert_string_equal(err.text, "\"nothing\" is not PATH=VALUE");
+    assert_int_equal(
+        study_read(&study, text, strlen(text), THROUGH, &FAKE_KIND, 1, 0, &faults, &err),
+        ERROR_INPUT);
+}
+
+static void schema_has_what_the_reader_asks(void **state) {
+    (void)state;
+    cJSON *schema = study_schema(&FAKE_KIND, 1);
+    assert_non_null(schema);
+    const cJSON *box = json_at(schema, "/oneOf/0/properties/box");
+    assert_true(cJSON_IsFalse(json_at(box, "/additionalProperties")));
+    assert_string_equal(json_at(box, "/required/0")->valuestring, "width");
+    assert_true(json_at(box, "/properties/width/anyOf/0/exclusiveMinimum")->valuedouble == 0);
+    assert_true(json_at(box, "/properties/width/anyOf/1/minItems")->valuedouble == 1);
+    assert_string_equal(json_at(box, "/properties/colour/anyOf/0/enum/1")->valuestring, "green");
+    assert_string_equal(json_at(schema, "/oneOf/0/properties/kind/const")->valuestring, "boxes");
+    assert_null(json_at(schema, "/oneOf/0/properties/seconds/anyOf/1"));
+    cJSON_Delete(schema);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(faults_are_told_with_pointer_and_range),
+        cmocka_unit_test(all_faults_are_told_at_once),
+        cmocka_unit_test(sweeps_run_in_the_order_of_the_file),
+        cmocka_unit_test(too_many_cases_are_refused_before_they_are_made),
+        cmocka_unit_test(seeds_are_read_whole),
+        cmocka_unit_test(blocks_take_about_a_minute),
+        cmocka_unit_test(overrides_change_the_document),
+        cmocka_unit_test(schema_has_what_the_reader_asks),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
