@@ -121,9 +121,9 @@ bench: deps
 
 SOURCES = $(shell git ls-files --cached --others --exclude-standard '*.c' '*.h')
 format:
-	clang-format -i $(SOURCES)
+	@clang-format -i $(SOURCES)
 check-format:
-	clang-format --dry-run --Werror $(SOURCES)
+	@clang-format --dry-run --Werror $(SOURCES)
 lint: lint-deps check-format
 	@printf '%s\n' $(filter %.c,$(SOURCES)) | \
 	    xargs -P $$(nproc) -n 1 sh -c 'clang-tidy --quiet "$$0" -- -std=c11 -D_GNU_SOURCE -I. 2>/dev/null || exit 255'

@@ -128,12 +128,9 @@ static cJSON *case_document(const struct study *study, size_t c) {
 }
 
 static int print_document(cJSON *document, struct error *err) {
-    char *text = document ? json_print(document) : NULL;
-    if (text)
-        puts(text);
-    free(text);
+    int status = output_document(document, err);
     cJSON_Delete(document);
-    return text ? 0 : error_memory(err, 0, "a document");
+    return status;
 }
 
 static int print_study_json(const struct study *study, struct error *err) {
@@ -164,18 +161,15 @@ static int print_study_json(const struct study *study, struct error *err) {
 
 static int check(const char *file, const char *const *sets, bool json, struct fault_list *faults,
                  struct error *err) {
-    char *text = NULL;
-    size_t size;
     struct study *study = NULL;
-    int status = file_read(file, JSON_LIMITS.bytes, &text, &size, err);
-    if (!status)
-        status = kinds_read_study(&study, text, size, sets, faults, err);
-    if (!status && json)
+    int status = study_file_read(&study, file, sets, faults, err);
+    if (!status && json) {
         status = print_study_json(study, err);
-    else if (!status)
+    } else if (!status) {
         print_text(study);
+        status = output_flush(err);
+    }
     study_destroy(&study);
-    free(text);
     return status;
 }
 
@@ -200,7 +194,7 @@ int command_check(int argc, char **argv) {
         status = check(file, sets, format && strcmp(format, "json") == 0, &faults, &err);
     int result = !good          ? EXIT_USAGE
                  : !status      ? EXIT_DONE
-                 : faults.count ? command_fail_faults(argv[0], &faults)
+                 : faults.count ? command_fail_faults(file, &faults)
                                 : command_fail(argv[0], &err);
     fault_list_clear(&faults);
     free(sets);

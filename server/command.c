@@ -1,4 +1,5 @@
 #include "server/command.h"
+#include "worker/kinds.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,24 +24,46 @@ void signals_catch(void) {
 
 int command_fail(const char *command, const struct error *err) {
     if (err->code == ERROR_STOPPED) {
-        fprintf(stderr, "rugo %s: interrupted\n", command);
+        fprintf(stderr, "rugo %s: interrupted; nothing is lost, the same command goes on\n",
+                command);
         return EXIT_INTERRUPTED;
     }
     fprintf(stderr, "rugo %s: %s\n", command, err->text);
     return err->code == ERROR_INPUT ? EXIT_USAGE : EXIT_FAILED;
 }
 
-int command_fail_faults(const char *command, const struct fault_list *faults) {
+static const char *name_of(const char *path) {
+    return strcmp(path, "-") == 0 ? "standard input" : path;
+}
+
+int command_fail_faults(const char *file, const struct fault_list *faults) {
     size_t kept = faults->count < FAULTS_KEPT ? faults->count : FAULTS_KEPT;
     for (size_t i = 0; faults->faults && i < kept; i++) {
         const struct fault *fault = &faults->faults[i];
         const char *pointer = fault->pointer ? fault->pointer : "";
-        fprintf(stderr, "rugo %s: %s%s%s\n", command, pointer, *pointer ? ": " : "",
+        fprintf(stderr, "%s: %s%s%s\n", name_of(file), pointer, *pointer ? ": " : "",
                 fault->detail ? fault->detail : "");
     }
     if (faults->count > kept)
-        fprintf(stderr, "rugo %s: and %zu more\n", command, faults->count - kept);
+        fprintf(stderr, "%s: and %zu more\n", name_of(file), faults->count - kept);
     return EXIT_USAGE;
+}
+
+int output_flush(struct error *err) {
+    if (!ferror(stdout) && fflush(stdout) == 0)
+        return 0;
+    return error_set(err, ERROR_SYSTEM, "cannot write the output: %s",
+                     strerror(errno ? errno : EIO));
+}
+
+int output_document(const cJSON *document, struct error *err) {
+    char *text = document ? json_print(document) : NULL;
+    if (!text)
+        return error_memory(err, 0, "a document");
+    puts(text);
+    int status = output_flush(err);
+    free(text);
+    return status;
 }
 
 /* Reads to the end of a stream; the buffer doubles. */
@@ -73,7 +96,7 @@ static int read_stream(FILE *file, const char *path, size_t limit, char **text, 
 
 int file_read(const char *path, size_t limit, char **text, size_t *size, struct error *err) {
     if (strcmp(path, "-") == 0)
-        return read_stream(stdin, "standard input", limit, text, size, err);
+        return read_stream(stdin, name_of(path), limit, text, size, err);
     FILE *file = fopen(path, "rb");
     if (!file)
         return error_set(err, errno == ENOENT ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s", path,
@@ -81,6 +104,18 @@ int file_read(const char *path, size_t limit, char **text, size_t *size, struct 
     int status = read_stream(file, path, limit, text, size, err);
     fclose(file);
     return status;
+}
+
+int study_file_read(struct study **out, const char *path, const char *const *overrides,
+                    struct fault_list *faults, struct error *err) {
+    char *text = NULL;
+    size_t size;
+    int status = file_read(path, JSON_LIMITS.bytes, &text, &size, err);
+    if (status)
+        return status;
+    status = kinds_read_study(out, text, size, overrides, faults, err);
+    free(text);
+    return status ? error_context(err, "%s", name_of(path)) : 0;
 }
 
 int token_read(const char *token_file, char **token, struct error *err) {

@@ -2,7 +2,7 @@
 #ifndef RUGO_SERVER_COMMAND_H
 #define RUGO_SERVER_COMMAND_H
 
-#include "core/error.h"
+#include "schema/study.h"
 #include <signal.h>
 #include <stdbool.h>
 
@@ -33,9 +33,18 @@ void signals_catch(void);
 
 /* Prints "rugo COMMAND: text" to standard error and gives the exit status of an error code. */
 int command_fail(const char *command, const struct error *err);
-int command_fail_faults(const char *command, const struct fault_list *faults);
+/* The same for what is wrong in a file: "FILE: pointer: detail", one a line. */
+int command_fail_faults(const char *file, const struct fault_list *faults);
+/* What was printed to standard output must arrive: ERROR_SYSTEM with the reason when it did not.
+ * To be called right after printing, while errno tells of it. */
+int output_flush(struct error *err);
+/* Prints a JSON document as one line; NULL: out of memory. */
+int output_document(const cJSON *document, struct error *err);
 /* The file's bytes, NUL-terminated; "-" is standard input. Caller frees. */
 int file_read(const char *path, size_t limit, char **text, size_t *size, struct error *err);
+/* The study in a file, read and checked with these changes (--set); errors name the file. */
+int study_file_read(struct study **out, const char *path, const char *const *overrides,
+                    struct fault_list *faults, struct error *err);
 /* The token of --token-file (its first line) or of RUGO_TOKEN; *token NULL where neither. Caller
  * frees. */
 int token_read(const char *token_file, char **token, struct error *err);

@@ -2,9 +2,11 @@
 #include "server/command.h"
 #include "worker/client.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #define VERSION "0.1.0"
 #define PLACE                                                                                      \
@@ -118,12 +120,23 @@ static int dispatch(int argc, char **argv) {
     return EXIT_USAGE;
 }
 
+/* A standard stream that is closed must not become the number of a file opened later: it is opened
+ * the wrong way round, so that using it fails. */
+static void hold_standard_streams(void) {
+    for (int number = STDIN_FILENO; number <= STDERR_FILENO; number++)
+        if (fcntl(number, F_GETFD) < 0 && errno == EBADF)
+            (void)open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 int main(int argc, char **argv) {
-    signal(SIGPIPE, SIG_IGN); /* a closed pipe is a write error like any other */
+    hold_standard_streams();
+    signal(SIGPIPE, SIG_IGN); /* a closed pipe and a file at its limit are errors like any other */
+    signal(SIGXFSZ, SIG_IGN);
     int status = dispatch(argc, argv);
-    if (fflush(stdout) || ferror(stdout)) {
-        fprintf(stderr, "rugo: cannot write the output: %s\n", strerror(errno));
-        return status ? status : EXIT_FAILED;
+    struct error err = {0};
+    if (output_flush(&err) && status == EXIT_DONE) {
+        fprintf(stderr, "rugo: %s\n", err.text);
+        return EXIT_FAILED;
     }
     return status;
 }

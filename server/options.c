@@ -1,4 +1,5 @@
 #include "server/options.h"
+#include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
 #include <limits.h>
@@ -30,10 +31,12 @@ unsigned processors(void) {
 
 static bool read_integer(const char *text, int64_t least, int64_t most, int64_t *out) {
     char *end = NULL;
+    if (!isdigit((unsigned char)*text)) /* strtoll would skip blanks and signs */
+        return false;
     errno = 0;
     long long value = strtoll(text, &end, 10);
     *out = value;
-    return !errno && end != text && !*end && value >= least && value <= most;
+    return !errno && !*end && value >= least && value <= most;
 }
 
 static void list_append(const char **list, const char *text) {
@@ -95,6 +98,16 @@ static const struct option_row *find_row(const struct option_row *rows, int code
     return NULL;
 }
 
+/* What getopt refused: it keeps a short option in optopt, and the code of a long one that came with
+ * a value it does not take. */
+static bool refused(char **argv, const struct option_row *rows) {
+    if (optopt >= 256)
+        return usage_error(argv[0], "--%s takes no value", rows[optopt - 256].name);
+    if (optopt)
+        return usage_error(argv[0], "unknown option -%c", optopt);
+    return usage_error(argv[0], "unknown option %.60s", argv[optind - 1]);
+}
+
 bool options_parse(int argc, char **argv, const struct option_row *rows, int least, int most,
                    const char **arguments) {
     struct option names[ROWS_MOST + 1];
@@ -104,7 +117,7 @@ bool options_parse(int argc, char **argv, const struct option_row *rows, int lea
     optind = 1;
     for (int code; (code = getopt_long(argc, argv, letters, names, NULL)) != -1;) {
         if (code == '?')
-            return usage_error(argv[0], "unknown option %.60s", argv[optind - 1]);
+            return refused(argv, rows);
         if (code == ':')
             return usage_error(argv[0], "%.60s needs a value", argv[optind - 1]);
         if (!take_value(argv[0], find_row(rows, code), optarg))

@@ -11,6 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A run that was killed is started again soon: its blocks need not wait for the usual minute.
+ * Heartbeats come every 5 s. */
+enum { LEASE_MS = 20000 };
+
 struct run {
     const char *file, *database, *folder, **sets;
     unsigned threads;
@@ -46,7 +50,7 @@ static int submit(struct run *run, struct error *err) {
 static int work(struct run *run, struct error *err) {
     struct progress progress = {.store = run->store, .study = run->id};
     struct worker_options options = {
-        .source = {.database = run->database, .study = run->id},
+        .source = {.database = run->database, .study = run->id, .lease_ms = LEASE_MS},
         .threads = run->threads,
         .drain = true,
         .stop = &stop_requested,

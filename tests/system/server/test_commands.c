@@ -1,0 +1,231 @@
+/* Protects: the command line: exit statuses, what wrong usage and input are told, and that a run
+ * goes on where it was stopped, however it was stopped. */
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include "tests/support/small_studies.h"
+#include <signal.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int setup(void **state) {
+    (void)state;
+    spit("one.json", ONE_CASE);
+    spit("blocks.json", SEVERAL_BLOCKS);
+    spit("broken.json", "{\"name\":");
+    spit("wrong.json",
+         "{\"name\":\"w\",\"kind\":\"statistics\",\"surface\":{\"hurst\":[0.2,1.4],\"colour\":1}}");
+    spit("text.csv", "1,2\n3,x\n");
+    return 0;
+}
+
+/* A shell line with $RUGO; its exit status. Output goes to shell.out and shell.err. */
+static int shell(const char *line) {
+    char command[600];
+    snprintf(command, sizeof command, "RUGO='%s'; { %s ; } >shell.out 2>shell.err", rugo(), line);
+    int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+static void wrong_usage_and_input(void **state) {
+    (void)state;
+    static const struct {
+        const char *line;
+        int status;
+        const char *text; /* on standard error */
+    } WRONG[] = {
+        {"$RUGO", 2, "usage: rugo COMMAND"},
+        {"$RUGO dance", 2, "there is no command \"dance\""},
+        {"$RUGO run", 2, "rugo run: an argument is missing"},
+        {"$RUGO run one.json two.json", 2, "unexpected argument two.json"},
+        {"$RUGO run --colour red one.json", 2, "unknown option --colour"},
+        {"$RUGO run --workers 0 one.json", 2, "--workers 0 is not a number of at least 1"},
+        {"$RUGO run --workers many one.json", 2, "--workers many is not a number"},
+        {"$RUGO run one.json --db", 2, "--db needs a value"},
+        {"$RUGO run absent.json", 2, "absent.json: No such file"},
+        {"$RUGO run broken.json", 2, "line 1, column 9"},
+        {"$RUGO run --set nothing one.json", 2, "\"nothing\" is not PATH=VALUE"},
+        {"$RUGO check wrong.json", 2, "/surface/hurst/1: 1.4 is not in (0, 1]"},
+        {"$RUGO check wrong.json", 2, "/surface/colour: unknown name"},
+        {"$RUGO check --format xml one.json", 2, "--format xml is neither text nor json"},
+        {"$RUGO check", 2, "an argument is missing"},
+        {"$RUGO check --set surface.wavelength_ratio=9000 one.json", 2, "/surface"},
+        {"$RUGO submit --db a.db --server http://localhost:1 one.json", 2, "exclude each other"},
+        {"$RUGO submit --token-file t one.json", 2, "--token-file goes with --server"},
+        {"$RUGO submit --server http://127.0.0.1:1 one.json", 1, "127.0.0.1"},
+        {"$RUGO status --db absent.db", 1, "there is no database absent.db"},
+        {"$RUGO curves --db absent.db 0123456789abcdef", 1, "there is no database"},
+        {"$RUGO curves", 2, "an argument is missing"},
+        {"$RUGO curves --case -1 x", 2, "--case -1 is not a number of 0 or more"},
+        {"$RUGO report --db absent.db x", 1, "there is no database"},
+        {"$RUGO cancel --db absent.db x", 1, "there is no database"},
+        {"$RUGO serve --listen nowhere", 2, "--listen nowhere is not ADDRESS:PORT"},
+        {"$RUGO serve --listen 127.0.0.1:99999", 2, "is not ADDRESS:PORT"},
+        {"$RUGO serve --listen 0.0.0.0:0", 2, "tokens are needed"},
+        {"$RUGO work --lease 5 --server http://localhost:1", 2, "--lease goes with --db"},
+        {"$RUGO generate --case 7 one.json", 2, "there is no case 7"},
+        {"$RUGO characterise text.csv", 2, "text.csv"},
+        {"$RUGO characterise absent.npy", 2, "absent.npy"},
+        {"mkdir -p d && $RUGO run --db d one.json", 2, "is not a file"},
+        {"echo junkjunkjunkjunk > junk.db && $RUGO status --db junk.db", 1,
+         "damaged or no database"},
+    };
+    for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
+        int status = shell(WRONG[w].line);
+        if (status != WRONG[w].status || !contains("shell.err", WRONG[w].text)) {
+            char *told = slurp("shell.err");
+            print_error("%s: status %d, %s\n", WRONG[w].line, status, told);
+            free(told);
+        }
+        assert_int_equal(status, WRONG[w].status);
+        assert_true(contains("shell.err", WRONG[w].text));
+    }
+}
+
+static void every_command_has_help(void **state) {
+    (void)state;
+    static const char *const COMMANDS[] = {"run",    "check",    "submit",      "status", "curves",
+                                           "report", "snapshot", "cancel",      "retry",  "serve",
+                                           "work",   "generate", "characterise"};
+    for (size_t c = 0; c < sizeof COMMANDS / sizeof *COMMANDS; c++) {
+        char line[80], usage[80];
+        snprintf(line, sizeof line, "$RUGO %s --help", COMMANDS[c]);
+        snprintf(usage, sizeof usage, "usage: rugo %s", COMMANDS[c]);
+        assert_int_equal(shell(line), 0);
+        assert_true(contains("shell.out", usage));
+    }
+    assert_int_equal(shell("$RUGO --help && $RUGO --version"), 0);
+}
+
+/* The curves of the only study of a database, without what names the run. */
+static char *curves_of(const char *database) {
+    char line[300];
+    snprintf(line, sizeof line,
+             "$RUGO curves --db %s $($RUGO status --db %s | awk 'NR == 2 {print $1}')", database,
+             database);
+    assert_int_equal(shell(line), 0);
+    char *text = slurp("shell.out"), *cases = strstr(text, "\"cases\":");
+    assert_non_null(cases);
+    memmove(text, cases, strlen(cases) + 1);
+    return text;
+}
+
+/* As time would: the leases of a killed process have run out. */
+static void void_leases(const char *database) {
+    sqlite3 *db = NULL;
+    assert_int_equal(sqlite3_open(database, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, "UPDATE job SET lease_until = 0 WHERE state = 'running'",
+                                  NULL, NULL, NULL),
+                     SQLITE_OK);
+    sqlite3_close(db);
+}
+
+static void a_run_goes_on_where_it_was(void **state) {
+    (void)state;
+    struct process run;
+    const char *const killed[] = {"run", "--db",        "killed.db", "--workers",
+                                  "1",   "blocks.json", NULL};
+    const char *const stopped[] = {"run", "--db",        "stopped.db", "--workers",
+                                   "1",   "blocks.json", NULL};
+    assert_int_equal(shell("$RUGO run --db calm.db --workers 1 blocks.json"), 0);
+    process_start(&run, "kill", killed);
+    sleep_ms(150);
+    process_kill(&run, SIGKILL);
+    process_wait(&run, 10);
+    for (int interrupt = 0; interrupt < 2; interrupt++) {
+        process_start(&run, "stop", stopped);
+        sleep_ms(120);
+        process_kill(&run, SIGINT);
+        int status = process_wait(&run, 20);
+        assert_true(status == 130 || status == 0); /* 0: it was quicker than the signal */
+    }
+    assert_int_equal(shell("$RUGO run --db stopped.db blocks.json"), 0);
+    char *calm = curves_of("calm.db"), *after = curves_of("stopped.db");
+    assert_string_equal(after, calm);
+    free(after);
+    void_leases("killed.db"); /* or wait 20 s for them */
+    assert_int_equal(shell("$RUGO run --db killed.db blocks.json"), 0);
+    after = curves_of("killed.db");
+    assert_string_equal(after, calm);
+    free(after);
+    free(calm);
+}
+
+static void a_finished_run_only_prints(void **state) {
+    (void)state;
+    assert_int_equal(shell("$RUGO run --db done.db one.json"), 0);
+    char *first = slurp("shell.out");
+    assert_int_equal(shell("$RUGO run --db done.db one.json"), 0);
+    char *second = slurp("shell.out"), *told = slurp("shell.err");
+    assert_string_equal(first, second);
+    assert_string_equal(told, "");
+    assert_non_null(strstr(first, "summit_density"));
+    free(first);
+    free(second);
+    free(told);
+    assert_int_equal(
+        shell("$RUGO run --db done.db --out out one.json && test -s out/curves.json && test -s "
+              "out/case-0-psd.csv && grep -q '</svg>' out/summit_height_pdf.svg"),
+        0);
+    assert_int_equal(
+        shell("id=$($RUGO status --db done.db | awk 'NR == 2 {print $1}'); $RUGO report --db "
+              "done.db $id && $RUGO status --db done.db $id && $RUGO curves --db done.db --format "
+              "csv --quantity psd $id | grep -q ,psd, && $RUGO snapshot --db done.db copy.db && "
+              "$RUGO status --db copy.db $id | grep -q done && ! $RUGO cancel --db done.db $id && "
+              "$RUGO retry --db done.db $id"),
+        0);
+    assert_int_equal(shell("$RUGO snapshot --db done.db copy.db"), 2);
+    assert_true(contains("shell.err", "copy.db exists"));
+}
+
+static void output_that_cannot_be_written_is_an_error(void **state) {
+    (void)state;
+    assert_int_equal(shell("$RUGO check one.json > /dev/full"), 1);
+    assert_true(contains("shell.err", "cannot write the output"));
+    assert_int_equal(shell("$RUGO run --db full.db one.json > /dev/full"), 1);
+    assert_int_equal(shell("$RUGO run --db full.db --out /dev/null/out one.json"), 1);
+}
+
+/* A limit on the size of files stands for a full disk: a clear word, and with room again the run
+ * goes on. */
+static void a_full_disk_loses_nothing(void **state) {
+    (void)state;
+    int status =
+        shell("trap '' XFSZ; ulimit -f 100; $RUGO run --db tight.db --workers 1 blocks.json");
+    assert_int_equal(status, 1);
+    assert_true(contains("shell.err", "tight.db"));
+    assert_int_equal(shell("$RUGO run --db tight.db --workers 1 blocks.json"), 0);
+    char *calm = curves_of("calm.db"), *tight = curves_of("tight.db");
+    assert_string_equal(tight, calm);
+    free(calm);
+    free(tight);
+}
+
+static void a_surface_goes_out_and_in(void **state) {
+    (void)state;
+    assert_int_equal(shell("$RUGO generate -o z.npy --realisation 3 one.json && $RUGO characterise "
+                           "z.npy --dx 0.125 --format json > z.json"),
+                     0);
+    assert_true(contains("z.json", "\"finite_difference\":{\"rms_slope\":"));
+    assert_int_equal(
+        shell("$RUGO generate -o a.csv --format csv one.json && $RUGO generate -o b.xyz --format "
+              "xyz one.json && $RUGO characterise a.csv --dx 0.125 --format json > a.json && $RUGO "
+              "characterise b.xyz --format json > b.json && test -s a.json && test -s b.json"),
+        0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wrong_usage_and_input),
+        cmocka_unit_test(every_command_has_help),
+        cmocka_unit_test(a_run_goes_on_where_it_was),
+        cmocka_unit_test(a_finished_run_only_prints),
+        cmocka_unit_test(output_that_cannot_be_written_is_an_error),
+        cmocka_unit_test(a_full_disk_loses_nothing),
+        cmocka_unit_test(a_surface_goes_out_and_in),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}
