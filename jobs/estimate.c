@@ -1,5 +1,5 @@
 #include "jobs/estimate.h"
-#include "jobs/sum.h"
+#include "core/sum.h"
 #include <math.h>
 
 static double weight_of(const double *x, const double *weight, size_t r) {

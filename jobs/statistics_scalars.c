@@ -2,7 +2,7 @@
 #include "core/theory/nayak.h"
 #include "jobs/estimate.h"
 #include "jobs/statistics_theory.h"
-#include "jobs/sum.h"
+#include "core/sum.h"
 #include "jobs/value.h"
 #include <math.h>
 #include <stdlib.h>

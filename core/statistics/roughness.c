@@ -1,4 +1,5 @@
 #include "core/statistics/roughness.h"
+#include "core/sum.h"
 #include "core/surface/transform.h"
 #include "core/vectors.h"
 #include <math.h>
@@ -46,20 +47,8 @@ WIDE_VECTORS static void row_add(const double *up, const double *row, const doub
         point_add(sums, 0, row[i - 1], row[i], row[i + 1 < nx ? i + 1 : 0], up[i], down[i], mean);
 }
 
-/* Rows are added to totals with compensation (Neumaier 1974). */
-struct total {
-    double sum, lost;
-};
-
-static void total_add(struct total *total, double value) {
-    double sum = total->sum + value;
-    total->lost +=
-        fabs(total->sum) >= fabs(value) ? (total->sum - sum) + value : (value - sum) + total->sum;
-    total->sum = sum;
-}
-
 static double map_mean(const struct grid *grid, const double *z, double *lowest, double *highest) {
-    struct total total = {0, 0};
+    struct sum total = {0, 0}; /* of rows */
     *lowest = *highest = z[0];
     for (size_t j = 0; j < grid->ny; j++) {
         const double *row = z + j * grid->nx;
@@ -69,16 +58,16 @@ static double map_mean(const struct grid *grid, const double *z, double *lowest,
             *lowest = row[i] < *lowest ? row[i] : *lowest;
             *highest = row[i] > *highest ? row[i] : *highest;
         }
-        total_add(&total, sum);
+        sum_add(&total, sum);
     }
-    return (total.sum + total.lost) / (double)grid_points(grid);
+    return sum_value(&total) / (double)grid_points(grid);
 }
 
 enum { SUMS = sizeof(struct row_sums) / sizeof(double[LANES]) };
 
 /* Means over the map, in the order of struct row_sums. */
 static void map_means(const struct grid *grid, const double *z, double mean, double *means) {
-    struct total totals[SUMS] = {{0}};
+    struct sum totals[SUMS] = {{0}};
     size_t nx = grid->nx, ny = grid->ny;
     for (size_t j = 0; j < ny; j++) {
         const double *up = z + (j ? j - 1 : ny - 1) * nx, *down = z + (j + 1 < ny ? j + 1 : 0) * nx;
@@ -88,10 +77,10 @@ static void map_means(const struct grid *grid, const double *z, double mean, dou
         } sums = {.lanes = {{0}}};
         row_add(up, z + j * nx, down, nx, mean, &sums.named);
         for (size_t s = 0; s < SUMS; s++)
-            total_add(&totals[s], lanes_total(sums.lanes[s]));
+            sum_add(&totals[s], lanes_total(sums.lanes[s]));
     }
     for (size_t s = 0; s < SUMS; s++)
-        means[s] = (totals[s].sum + totals[s].lost) / (double)grid_points(grid);
+        means[s] = sum_value(&totals[s]) / (double)grid_points(grid);
 }
 
 void roughness_measure(const struct grid *grid, const double *z, struct roughness *out) {

@@ -1,21 +1,10 @@
 #include "core/surface/spectrum.h"
+#include "core/sum.h"
 #include <math.h>
 #include <stdlib.h>
 
 /* Wavelengths and cells come from divisions: a mode this close to a band edge is on it. */
 static const double EDGE = 1e-9;
-
-/* A sum whose error does not grow with the number of terms (Neumaier 1974). */
-struct compensated {
-    double total, lost;
-};
-
-static inline void compensated_add(struct compensated *sum, double value) {
-    double total = sum->total + value;
-    sum->lost += fabs(sum->total) >= fabs(value) ? (sum->total - total) + value
-                                                 : (value - total) + sum->total;
-    sum->total = total;
-}
 
 static int refuse(struct error *err, const char *what, double value, const char *allowed) {
     return error_set(err, ERROR_INPUT, "%s = %g; allowed: %s", what, value, allowed);
@@ -235,7 +224,7 @@ enum { MOMENTS = sizeof POWERS / sizeof *POWERS };
 
 void modes_moments(const struct modes *modes, struct moments *out) {
     const struct grid *grid = &modes->grid;
-    struct compensated sums[MOMENTS] = {{0}};
+    struct sum sums[MOMENTS] = {{0}};
     long mode_y = (long)modes->mode_y;
     bool profile = grid_is_profile(grid);
     const double *power = modes->power;
@@ -249,11 +238,11 @@ void modes_moments(const struct modes *modes, struct moments *out) {
             double x[5] = {1, kx, kx * kx, kx * kx * kx, kx * kx * kx * kx};
             double y[5] = {1, ky, ky * ky, ky * ky * ky, ky * ky * ky * ky};
             for (size_t s = 0; s < MOMENTS; s++)
-                compensated_add(&sums[s], weighted * x[POWERS[s][0]] * y[POWERS[s][1]]);
+                sum_add(&sums[s], weighted * x[POWERS[s][0]] * y[POWERS[s][1]]);
         }
     double m[MOMENTS];
     for (size_t s = 0; s < MOMENTS; s++)
-        m[s] = sums[s].total + sums[s].lost;
+        m[s] = sum_value(&sums[s]);
     *out = (struct moments){.m00 = m[0],
                             .m20 = m[1],
                             .m02 = m[2],

@@ -1,6 +1,6 @@
 /* Neumaier's (1974) compensated sum: rounding does not grow with the number of terms. */
-#ifndef RUGO_JOBS_SUM_H
-#define RUGO_JOBS_SUM_H
+#ifndef RUGO_CORE_SUM_H
+#define RUGO_CORE_SUM_H
 
 #include <math.h>
 
