@@ -39,6 +39,8 @@ int error_context(struct error *err, const char *format, ...) {
 }
 
 void *array_create(size_t count, size_t size) {
+    if (size && count > SIZE_MAX / size)
+        return NULL;
     return calloc(count ? count : 1, size ? size : 1);
 }
 
