@@ -1,13 +1,12 @@
 /* Printing numbers that read back: cJSON settles for 15 digits where those come within a relative
  * 2^-52, which is another double. */
-*within a relative 2 ^ -52 : another double.* /
 #include "schema/json.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-                           /* The fewest digits that read back to the same double. */
-                           static void put_number(FILE *file, double number) {
+/* The fewest digits that read back to the same double. */
+static void put_number(FILE *file, double number) {
     char text[32];
     if (!isfinite(number)) {
         fputs("null", file);
