@@ -1,6 +1,7 @@
 #include "core/statistics/refined.h"
 #include "core/statistics/grid_summits.h"
 #include "core/surface/transform.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,12 +15,15 @@ enum {
     STEPS = 40,
 };
 
+static const double SHIFT_X = 0.2371, SHIFT_Y = 0.3119; /* of the fine points, in cells */
+
 struct refined {
     struct grid grid, fine;
     size_t mode_x, mode_y;
     struct transform *coarse, *dense;
-    double *window;  /* WINDOW x fine.nx: rows first - MARGIN .. first + STRIP + MARGIN - 1 */
-    size_t *columns; /* starts of one row */
+    double *window;    /* WINDOW x fine.nx: rows first - MARGIN .. first + STRIP + MARGIN - 1 */
+    size_t *columns;   /* starts of one row */
+    double mean, unit; /* heights of the surface in hand are mean + unit * window */
 };
 
 static size_t fine_points(size_t points, size_t mode) {
@@ -78,7 +82,7 @@ double refined_bytes(const struct grid *grid, size_t mode_x, size_t mode_y) {
     return columns * sizeof(double complex) + (rows + 1) * (double)fine.nx * sizeof(double);
 }
 
-/* Lagrange basis on the points -3..4 at t in about [0, 1], with first and second derivatives. */
+/* Lagrange basis on the points -3..4 at t in [-1/4, 5/4], with first and second derivatives. */
 struct basis {
     double value[POINTS], slope[POINTS], bend[POINTS];
 };
@@ -107,13 +111,27 @@ struct jet {
     double z, x, y, xx, xy, yy;
 };
 
-static void jet_of_profile(const struct refined *r, double x, struct jet *jet) {
-    long nx = (long)r->fine.nx, cell = (long)floor(x);
+/* The cell whose interpolant is used: the last one until x is well outside of it. Derivatives jump
+ * a little from cell to cell, and a search that changed cells on the border would never settle on a
+ * maximum there. */
+static void cell_follow(double x, long *cell) {
+    double t = x - (double)*cell;
+    if (!(t >= -0.25 && t <= 1.25))
+        *cell = (long)floor(x);
+}
+
+struct cell {
+    long x, y;
+};
+
+static void jet_of_profile(const struct refined *r, double x, const struct cell *cell,
+                           struct jet *jet) {
+    long nx = (long)r->fine.nx;
     struct basis bx;
-    basis_at(x - (double)cell, &bx);
+    basis_at(x - (double)cell->x, &bx);
     *jet = (struct jet){0};
     for (int a = 0; a < POINTS; a++) {
-        long i = ((cell + a - 3) % nx + nx) % nx;
+        long i = ((cell->x + a - 3) % nx + nx) % nx;
         jet->z += bx.value[a] * r->window[i];
         jet->x += bx.slope[a] * r->window[i];
         jet->xx += bx.bend[a] * r->window[i];
@@ -121,21 +139,24 @@ static void jet_of_profile(const struct refined *r, double x, struct jet *jet) {
 }
 
 /* y counts from the first row of the window. */
-static void jet_at(const struct refined *r, double x, double y, struct jet *jet) {
+static void jet_at(const struct refined *r, double x, double y, struct cell *cell,
+                   struct jet *jet) {
+    cell_follow(x, &cell->x);
+    cell_follow(y, &cell->y);
     if (grid_is_profile(&r->fine)) {
-        jet_of_profile(r, x, jet);
+        jet_of_profile(r, x, cell, jet);
         return;
     }
-    long nx = (long)r->fine.nx, cell_x = (long)floor(x), cell_y = (long)floor(y);
+    long nx = (long)r->fine.nx;
     struct basis bx, by;
-    basis_at(x - (double)cell_x, &bx);
-    basis_at(y - (double)cell_y, &by);
+    basis_at(x - (double)cell->x, &bx);
+    basis_at(y - (double)cell->y, &by);
     long column[POINTS];
     for (int a = 0; a < POINTS; a++)
-        column[a] = ((cell_x + a - 3) % nx + nx) % nx;
+        column[a] = ((cell->x + a - 3) % nx + nx) % nx;
     *jet = (struct jet){0};
     for (int b = 0; b < POINTS; b++) {
-        const double *row = r->window + (cell_y + b - 3) * nx;
+        const double *row = r->window + (cell->y + b - 3) * nx;
         double z = 0, slope = 0, bend = 0;
         for (int a = 0; a < POINTS; a++) {
             double value = row[column[a]];
@@ -152,16 +173,25 @@ static void jet_at(const struct refined *r, double x, double y, struct jet *jet)
     }
 }
 
-static bool is_maximum(const struct refined *r, const struct jet *jet) {
+/* Negative definite Hessian, its determinant above `share` of its squared trace (which is at most a
+ * quarter). */
+static bool is_concave(const struct refined *r, const struct jet *jet, double share) {
     if (grid_is_profile(&r->fine))
         return jet->xx < 0;
-    return jet->xx + jet->yy < 0 && jet->xx * jet->yy > jet->xy * jet->xy;
+    double trace = jet->xx + jet->yy;
+    return trace < 0 && jet->xx * jet->yy - jet->xy * jet->xy > share * trace * trace;
 }
+
+/* Second derivatives of the interpolant are good to 1e-5: on the ridge of a single wave they
+ * cannot tell a maximum from a saddle. Maxima of random surfaces are as flat as this once in 1e7.
+ */
+static const double RIDGE = 1e-4;
 
 /* Newton's step where the surface is concave, a climb along the gradient elsewhere; at most half a
  * cell. */
 static void step_up(const struct refined *r, const struct jet *jet, double *dx, double *dy) {
-    if (!is_maximum(r, jet)) {
+    bool concave = is_concave(r, jet, 0);
+    if (!concave) {
         *dx = jet->x;
         *dy = jet->y;
     } else if (grid_is_profile(&r->fine)) {
@@ -173,8 +203,7 @@ static void step_up(const struct refined *r, const struct jet *jet, double *dx, 
         *dy = (jet->xy * jet->x - jet->xx * jet->y) / determinant;
     }
     double length = hypot(*dx, *dy);
-    bool climb = !is_maximum(r, jet);
-    if (length > 0.5 || (climb && length > 0)) {
+    if (length > 0.5 || (!concave && length > 0)) {
         *dx *= 0.5 / length;
         *dy *= 0.5 / length;
     }
@@ -183,19 +212,20 @@ static void step_up(const struct refined *r, const struct jet *jet, double *dx, 
 /* From a grid maximum to the true one; false when there is none within TRAVEL. */
 static bool climb(const struct refined *r, double x0, double y0, double *x, double *y,
                   struct jet *jet) {
+    struct cell cell = {(long)x0, (long)y0};
     *x = x0;
     *y = y0;
     for (int step = 0; step < STEPS; step++) {
         double dx, dy;
-        jet_at(r, *x, *y, jet);
+        jet_at(r, *x, *y, &cell, jet);
         step_up(r, jet, &dx, &dy);
         *x += dx;
         *y += dy;
         if (!(fabs(*x - x0) < TRAVEL && fabs(*y - y0) < TRAVEL))
             return false;
         if (hypot(dx, dy) < 1e-7) {
-            jet_at(r, *x, *y, jet);
-            return is_maximum(r, jet);
+            jet_at(r, *x, *y, &cell, jet);
+            return is_concave(r, jet, RIDGE);
         }
     }
     return false;
@@ -224,10 +254,10 @@ static int row_search(struct refined *r, double first, size_t row, struct summit
             continue;
         double bend = profile ? jet.xx / (dx * dx) : (jet.xx / (dx * dx) + jet.yy / (dy * dy)) / 2;
         struct summit summit = {
-            .x = wrapped(x, (double)nx) * dx,
-            .y = profile ? 0 : wrapped(first + y, (double)fine->ny) * dy,
-            .height = jet.z,
-            .curvature = -bend,
+            .x = wrapped(x + SHIFT_X, (double)nx) * dx,
+            .y = profile ? 0 : wrapped(first + y + SHIFT_Y, (double)fine->ny) * dy,
+            .height = r->mean + r->unit * jet.z,
+            .curvature = -r->unit * bend,
         };
         int status = summit_list_add(list, &summit, err);
         if (status)
@@ -252,7 +282,9 @@ static double apart(double a, double b, double period) {
 /* Drops summits found from several starts: sorted by row, copies are near neighbours in the list.
  * A dropped one is marked by x < 0 until the list is closed up. */
 static void merge_copies(const struct grid *fine, struct summit_list *list) {
-    const double near = 1e-3; /* of a fine cell; searches end within 1e-6 */
+    /* Of a fine cell: interpolants of neighbour cells place a flat maximum this far apart at most,
+     * and no two maxima are as near. */
+    const double near = 0.02;
     struct summit *s = list->summits;
     bool profile = grid_is_profile(fine);
     double near_x = near * grid_dx(fine), near_y = profile ? 1 : near * grid_dy(fine);
@@ -305,9 +337,47 @@ static int strips_search(struct refined *r, struct summit_list *list, struct err
     return 0;
 }
 
+/* Takes the mean out of the coarse spectrum and scales it by a power of two to about 1, so that
+ * neither an offset nor a tiny unit drowns the search in rounding. What is no more than the
+ * rounding of the mean is flat. */
+static void spectrum_normalise(struct refined *r) {
+    double complex *mode = transform_spectrum(r->coarse);
+    size_t count = (r->mode_x + 1) * r->grid.ny;
+    double largest = 0;
+    r->mean = creal(mode[0]);
+    mode[0] = 0;
+    for (size_t k = 0; k < count; k++)
+        largest = fmax(largest, fmax(fabs(creal(mode[k])), fabs(cimag(mode[k]))));
+    int exponent = 0;
+    (void)frexp(largest, &exponent);
+    r->unit = ldexp(1, exponent > -1000 ? exponent : -1000);
+    double factor = largest > DBL_EPSILON * fabs(r->mean) ? 1 / r->unit : 0;
+    for (size_t k = 0; k < count; k++)
+        mode[k] *= factor;
+}
+
+/* Moves the fine points by SHIFT_X, SHIFT_Y of a cell: half-way between two of them a symmetric map
+ * may have a maximum, whose tie would start no search. */
+static void samples_shift(struct refined *r) {
+    size_t ny = r->fine.ny;
+    double complex unit_x = cexp(2 * M_PI * SHIFT_X / (double)r->fine.nx * I);
+    double complex unit_y = ny > 1 ? cexp(2 * M_PI * SHIFT_Y / (double)ny * I) : 1;
+    double complex turn_x = 1;
+    for (size_t mx = 0; mx <= r->mode_x; mx++, turn_x *= unit_x) {
+        double complex *column = transform_spectrum(r->dense) + mx * ny, turn_y = 1;
+        for (size_t my = 0; my <= r->mode_y; my++, turn_y *= unit_y) {
+            column[my] *= turn_x * turn_y;
+            if (my > 0)
+                column[ny - my] *= turn_x * conj(turn_y);
+        }
+    }
+}
+
 int refined_find(struct refined *r, const double *z, struct summit_list *list, struct error *err) {
     transform_forward(r->coarse, z);
+    spectrum_normalise(r);
     transform_pad(r->coarse, r->dense);
+    samples_shift(r);
     transform_inverse_columns(r->dense);
     int status;
     if (grid_is_profile(&r->fine)) {
