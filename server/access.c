@@ -61,10 +61,14 @@ void access_close(struct access **access) {
 }
 
 /* An identifier in a path: anything but letters and digits would change the path's meaning. */
+static bool is_study_id(const char *id) {
+    size_t length = strlen(id);
+    return length && length < STUDY_ID_SIZE && strspn(id, "0123456789abcdef") == length;
+}
+
 static int study_path(char *path, size_t size, const char *id, const char *rest,
                       struct error *err) {
-    size_t length = strlen(id);
-    if (!length || length >= STUDY_ID_SIZE || strspn(id, "0123456789abcdef") != length)
+    if (!is_study_id(id))
         return error_set(err, ERROR_ABSENT, "there is no study \"%.40s\"", id);
     snprintf(path, size, "/v1/studies/%s%s", id, rest);
     return 0;
@@ -85,7 +89,8 @@ static int ask_study(struct access *access, const char *method, const char *id, 
 
 /* A server has no --set: the changes are made before the study is sent. */
 static int submit_remote(struct access *access, const char *text, size_t size,
-                         const char *const *overrides, cJSON **out, struct error *err) {
+                         const char *const *overrides, cJSON **out, struct fault_list *faults,
+                         struct error *err) {
     cJSON *document = NULL;
     int status = json_parse(text, size, NULL, &document, err);
     for (size_t i = 0; !status && overrides && overrides[i]; i++)
@@ -94,8 +99,10 @@ static int submit_remote(struct access *access, const char *text, size_t size,
     cJSON_Delete(document);
     if (!status && !body)
         status = error_memory(err, size, "a study");
+    struct request request = {
+        .method = "POST", .path = "/v1/studies", .body = body, .faults = faults};
     if (!status)
-        status = ask(access, "POST", "/v1/studies", body, out, err);
+        status = client_json(access->client, &request, out, err);
     free(body);
     return status;
 }
@@ -106,7 +113,7 @@ int access_submit(struct access *access, const char *text, size_t size,
     bool existing;
     struct study *study = NULL;
     if (access->client)
-        return submit_remote(access, text, size, overrides, out, err);
+        return submit_remote(access, text, size, overrides, out, faults, err);
     int status = kinds_read_study(&study, text, size, overrides, faults, err);
     if (!status)
         status = api_submit(access->store, study, NULL, out, &existing, err);
@@ -121,13 +128,44 @@ int access_status(struct access *access, const char *id, cJSON **out, struct err
 
 enum { PAGE = 100 };
 
-int access_list(struct access *access, const char *after, cJSON **out, struct error *err) {
+static int list_page(struct access *access, const char *after, cJSON **out, struct error *err) {
     char path[96];
     if (!access->client)
         return api_list(access->store, after, PAGE, out, err);
-    snprintf(path, sizeof path, "/v1/studies?limit=%d%s%s", PAGE, after ? "&after=" : "",
-             after ? after : "");
+    snprintf(path, sizeof path, "/v1/studies?limit=%d%s%s", PAGE, *after ? "&after=" : "", after);
     return ask(access, "GET", path, NULL, out, err);
+}
+
+/* Moves the studies of a page to the end of all. */
+static void append_studies(cJSON *all, cJSON *page) {
+    cJSON *from = cJSON_GetObjectItemCaseSensitive(page, "studies");
+    cJSON *to = cJSON_GetObjectItemCaseSensitive(all, "studies");
+    for (cJSON *study; from && (study = cJSON_DetachItemFromArray(from, 0)) != NULL;)
+        cJSON_AddItemToArray(to, study);
+}
+
+int access_list(struct access *access, cJSON **out, struct error *err) {
+    char after[STUDY_ID_SIZE] = "";
+    cJSON *all = cJSON_CreateObject();
+    int status = all && cJSON_AddArrayToObject(all, "studies")
+                     ? 0
+                     : error_memory(err, 0, "a list of studies");
+    for (bool more = !status; more;) {
+        cJSON *page = NULL;
+        status = list_page(access, after, &page, err);
+        if (!status)
+            append_studies(all, page);
+        const char *next = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(page, "next"));
+        more = !status && next && is_study_id(next) && strcmp(next, after) != 0;
+        if (more)
+            snprintf(after, sizeof after, "%s", next);
+        cJSON_Delete(page);
+    }
+    if (status)
+        cJSON_Delete(all);
+    else
+        *out = all;
+    return status;
 }
 
 int access_curves(struct access *access, const char *id, const struct curve_filter *filter,

@@ -28,7 +28,7 @@ int access_submit(struct access *access, const char *text, size_t size,
                   const char *const *overrides, cJSON **out, struct fault_list *faults,
                   struct error *err);
 int access_status(struct access *access, const char *id, cJSON **out, struct error *err);
-int access_list(struct access *access, const char *after, cJSON **out, struct error *err);
+int access_list(struct access *access, cJSON **out, struct error *err); /* of all studies */
 int access_curves(struct access *access, const char *id, const struct curve_filter *filter,
                   cJSON **out, struct error *err);
 int access_report(struct access *access, const char *id, cJSON **out, struct error *err);

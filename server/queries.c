@@ -7,15 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int print_json(const cJSON *document, struct error *err) {
-    char *text = json_print(document);
-    if (!text)
-        return error_memory(err, 0, "a document");
-    puts(text);
-    free(text);
-    return 0;
-}
-
 /* One of two words, the first by default. */
 static bool format_check(const char *command, const char *format, const char *first,
                          const char *second, bool *is_second) {
@@ -26,6 +17,14 @@ static bool format_check(const char *command, const char *format, const char *fi
 }
 
 /* --- submit --- */
+
+static int print_id(const cJSON *document, struct error *err) {
+    const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(document, "id"));
+    if (!id)
+        return error_set(err, ERROR_SYSTEM, "the server's answer has no id");
+    puts(id);
+    return output_flush(err);
+}
 
 int command_submit(int argc, char **argv) {
     struct access_options place = {0};
@@ -47,10 +46,12 @@ int command_submit(int argc, char **argv) {
         status = access_open(&access, &place, ACCESS_CREATE, &err);
     if (!status)
         status = access_submit(access, text, size, sets, &document, &faults, &err);
+    if (status == ERROR_INPUT)
+        error_context(&err, "%s", file);
     if (!status)
-        puts(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(document, "id")));
+        status = print_id(document, &err);
     int result = !status        ? EXIT_DONE
-                 : faults.count ? command_fail_faults(argv[0], &faults)
+                 : faults.count ? command_fail_faults(file, &faults)
                                 : command_fail(argv[0], &err);
     cJSON_Delete(document);
     access_close(&access);
@@ -91,17 +92,17 @@ static int answer(const char *command, const struct access_options *place,
 static int ask_status(struct access *access, const struct question *question, cJSON **out,
                       struct error *err) {
     return question->id ? access_status(access, question->id, out, err)
-                        : access_list(access, NULL, out, err);
+                        : access_list(access, out, err);
 }
 
 static int show_status(const struct question *question, const cJSON *document, struct error *err) {
     if (question->other_format)
-        return print_json(document, err);
+        return output_document(document, err);
     if (question->id)
         summary_of_status(document, stdout);
     else
         summary_of_list(document, stdout);
-    return 0;
+    return output_flush(err);
 }
 
 int command_status(int argc, char **argv) {
@@ -124,10 +125,12 @@ static int ask_curves(struct access *access, const struct question *question, cJ
 static int show_curves(const struct question *question, const cJSON *document, struct error *err) {
     char *text = NULL;
     if (!question->other_format)
-        return print_json(document, err);
+        return output_document(document, err);
     int status = aggregate_csv(document, &text, err);
-    if (!status)
+    if (!status) {
         fputs(text, stdout);
+        status = output_flush(err);
+    }
     free(text);
     return status;
 }
@@ -156,9 +159,9 @@ static int ask_report(struct access *access, const struct question *question, cJ
 
 static int show_report(const struct question *question, const cJSON *document, struct error *err) {
     if (question->other_format)
-        return print_json(document, err);
+        return output_document(document, err);
     summary_of_report(document, stdout);
-    return 0;
+    return output_flush(err);
 }
 
 int command_report(int argc, char **argv) {

@@ -25,16 +25,13 @@ struct run {
 
 /* The same study in the same store is the same run: its text is its key. */
 static int submit(struct run *run, struct error *err) {
-    char *text = NULL, *key = NULL;
-    size_t size;
+    char *key = NULL;
     struct study *study = NULL;
     bool existing = false;
-    int status = file_read(run->file, JSON_LIMITS.bytes, &text, &size, err);
-    if (!status)
-        status = kinds_read_study(&study, text, size, run->sets, &run->faults, err);
+    int status = study_file_read(&study, run->file, run->sets, &run->faults, err);
     if (!status && asprintf(&key, "run %s", study->source) < 0) {
         key = NULL;
-        status = error_memory(err, size, "a study");
+        status = error_memory(err, strlen(study->source), "a study's key");
     }
     if (!status)
         status = store_open(&run->store, run->database, NULL, err);
@@ -42,7 +39,6 @@ static int submit(struct run *run, struct error *err) {
         status = store_submit(run->store, study, key, run->id, &existing, err);
     study_destroy(&study);
     free(key);
-    free(text);
     return status;
 }
 
@@ -67,30 +63,35 @@ static int check_end(struct run *run, const struct study_status *now, struct err
     struct failure *failures = NULL;
     size_t count = 0;
     if (strcmp(now->state, "cancelled") == 0)
-        return error_set(err, ERROR_STATE, "study %s was cancelled; rugo retry %s goes on", run->id,
-                         run->id);
+        return error_set(err, ERROR_STATE, "study %s was cancelled; rugo retry --db %s %s goes on",
+                         run->id, run->database, run->id);
     if (!now->jobs_failed)
         return 0;
     int status = store_failures(run->store, run->id, &failures, &count, err);
     if (!status)
         status = error_set(err, ERROR_STATE,
-                           "study %s: %llu jobs failed (%s); rugo retry %s queues them again",
+                           "study %s: jobs failed: %llu (%.200s); rugo retry --db %s %s queues "
+                           "them again",
                            run->id, (unsigned long long)now->jobs_failed,
-                           count ? failures[0].reason : "?", run->id);
+                           count ? failures[0].reason : "?", run->database, run->id);
     failures_free(failures, count);
     return status;
 }
 
 static int present(struct run *run, struct error *err) {
-    cJSON *curves = NULL;
+    cJSON *curves = NULL, *report = NULL;
     struct curve_filter all = {.case_number = -1};
     int status = aggregate_curves(run->store, run->id, &all, &curves, err);
+    if (!status)
+        status = aggregate_report(run->store, run->id, &report, err);
+    if (!status && run->folder)
+        status = output_write(curves, run->folder, err);
     if (!status) {
-        summary_of_curves(curves, stdout);
-        if (run->folder)
-            status = output_write(curves, run->folder, err);
+        summary_of_curves(curves, report, stdout);
+        status = output_flush(err);
     }
     cJSON_Delete(curves);
+    cJSON_Delete(report);
     return status;
 }
 
@@ -129,7 +130,7 @@ int command_run(int argc, char **argv) {
     signals_catch();
     int status = perform(&run, &err);
     int result = !status            ? EXIT_DONE
-                 : run.faults.count ? command_fail_faults(argv[0], &run.faults)
+                 : run.faults.count ? command_fail_faults(run.file, &run.faults)
                                     : command_fail(argv[0], &err);
     store_close(&run.store);
     fault_list_clear(&run.faults);

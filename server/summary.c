@@ -23,6 +23,8 @@ static const char *text(const cJSON *object, const char *name) {
 void duration_text(double seconds, char *out, size_t size) {
     if (isnan(seconds))
         snprintf(out, size, "-");
+    else if (seconds > 0 && seconds < 0.1)
+        snprintf(out, size, "%.3g ms", 1000 * seconds);
     else if (seconds < 100)
         snprintf(out, size, "%.3g s", seconds);
     else if (seconds < 6000)
@@ -51,19 +53,35 @@ static size_t varied_parameters(const cJSON *cases, const char **names) {
     return count;
 }
 
-/* Scalars that come with a theory in some case. */
-static size_t compared_scalars(const cJSON *cases, const char **names) {
-    size_t count = 0;
-    for (const cJSON *c = cases->child; c; c = c->next) {
-        const cJSON *scalars = member(c, "scalars");
-        for (const cJSON *s = scalars ? scalars->child : NULL; s; s = s->next) {
-            bool known = !cJSON_IsNumber(member(s, "theory"));
-            for (size_t n = 0; n < count && !known; n++)
-                known = strcmp(names[n], s->string) == 0;
-            if (!known && count < COLUMNS_MOST)
-                names[count++] = s->string;
-        }
+/* What a table of results shows first, of the kinds that have it. */
+static const char *const HEADLINES[] = {"nayak_alpha", "summit_density", "summit_height_mean",
+                                        "summit_curvature_mean"};
+enum { HEADLINE_COUNT = sizeof HEADLINES / sizeof *HEADLINES };
+
+static const cJSON *scalar_of(const cJSON *one, const char *name) {
+    return member(member(one, "scalars"), name);
+}
+
+/* Whether some case has this scalar; with its theory. */
+static bool has_scalar(const cJSON *cases, const char *name, bool with_theory) {
+    for (const cJSON *one = cases->child; one; one = one->next) {
+        const cJSON *scalar = scalar_of(one, name);
+        if (scalar && (!with_theory || cJSON_IsNumber(member(scalar, "theory"))))
+            return true;
     }
+    return false;
+}
+
+/* The headlines of these cases; where they have none, all scalars with a theory. */
+static size_t shown_scalars(const cJSON *cases, const char **names) {
+    size_t count = 0;
+    for (size_t h = 0; h < HEADLINE_COUNT; h++)
+        if (has_scalar(cases, HEADLINES[h], false))
+            names[count++] = HEADLINES[h];
+    const cJSON *scalars = count ? NULL : member(cases->child, "scalars");
+    for (const cJSON *s = scalars ? scalars->child : NULL; s && count < COLUMNS_MOST; s = s->next)
+        if (has_scalar(cases, s->string, true))
+            names[count++] = s->string;
     return count;
 }
 
@@ -79,23 +97,25 @@ static const char *last_name(const char *pointer) {
     return slash ? slash + 1 : pointer;
 }
 
-static void scalar_row(struct text_table *table, const cJSON *one, const char *const *varied,
-                       size_t varied_count, const char *name) {
-    const cJSON *scalar = member(member(one, "scalars"), name);
-    double value = number(scalar, "value"), error = number(scalar, "standard_error");
-    double theory = number(scalar, "theory");
-    if (!scalar)
+/* "0.25772 +- 0.00022": as many digits as the error has sense for. */
+static void measured_cell(struct text_table *table, double value, double error) {
+    if (!isfinite(value) || !(error > 1e-9 * fabs(value))) {
+        table_number(table, value);
         return;
-    table_number(table, number(one, "case"));
-    for (size_t p = 0; p < varied_count; p++)
-        value_cell(table, member(member(one, "parameters"), varied[p]));
-    table_number(table, number(one, "realisations"));
-    table_cell(table, "%s", name);
-    table_number(table, value);
-    if (isnan(error))
-        table_cell(table, "-");
+    }
+    int decimals = 1 - (int)floor(log10(error));
+    decimals = decimals < 0 ? 0 : decimals;
+    if (decimals > 9)
+        table_cell(table, "%.5g +- %.2g", value, error);
     else
-        table_cell(table, "%.2g", error);
+        table_cell(table, "%.*f +- %.*f", decimals, value, decimals, error);
+}
+
+static void scalar_cells(struct text_table *table, const cJSON *scalar, bool with_theory) {
+    double value = number(scalar, "value"), theory = number(scalar, "theory");
+    measured_cell(table, value, number(scalar, "standard_error"));
+    if (!with_theory)
+        return;
     table_number(table, theory);
     if (theory != 0 && isfinite(value / theory))
         table_cell(table, "%.4f", value / theory);
@@ -103,28 +123,93 @@ static void scalar_row(struct text_table *table, const cJSON *one, const char *c
         table_cell(table, "-");
 }
 
-void summary_of_curves(const cJSON *curves, FILE *file) {
-    const cJSON *cases = member(curves, "cases");
+/* What a table of results has beside the swept parameters. */
+struct results {
+    const cJSON *cases, *costs; /* costs: the cases of a report, or NULL */
     const char *varied[COLUMNS_MOST], *scalars[COLUMNS_MOST];
+    bool compared[COLUMNS_MOST]; /* with a theory beside it */
+    size_t varied_count, scalar_count;
+    bool uneven; /* not all cases have as many realisations */
+};
+
+static void results_prepare(struct results *results, const cJSON *cases, const cJSON *report) {
+    *results = (struct results){.cases = cases, .costs = member(report, "cases")};
+    results->varied_count = varied_parameters(cases, results->varied);
+    results->scalar_count = shown_scalars(cases, results->scalars);
+    for (size_t s = 0; s < results->scalar_count; s++)
+        results->compared[s] = has_scalar(cases, results->scalars[s], true);
+    for (const cJSON *one = cases->child; one; one = one->next)
+        results->uneven =
+            results->uneven || number(one, "realisations") != number(cases->child, "realisations");
+}
+
+static size_t results_columns(const struct results *results) {
+    size_t columns = 1 + results->varied_count + results->uneven + (results->costs != NULL);
+    for (size_t s = 0; s < results->scalar_count; s++)
+        columns += results->compared[s] ? 3 : 1;
+    return columns;
+}
+
+static void results_heading(const struct results *results, struct text_table *table) {
+    table_cell(table, "case");
+    for (size_t p = 0; p < results->varied_count; p++)
+        table_cell(table, "%s", last_name(results->varied[p]));
+    if (results->uneven)
+        table_cell(table, "realisations");
+    for (size_t s = 0; s < results->scalar_count; s++) {
+        if (results->compared[s])
+            table_fold(table);
+        table_cell(table, "%s", results->scalars[s]);
+        if (results->compared[s]) {
+            table_cell(table, "theory");
+            table_cell(table, "ratio");
+        }
+    }
+    if (results->costs) {
+        table_fold(table);
+        table_cell(table, "time");
+    }
+}
+
+static void results_row(const struct results *results, const cJSON *one, const cJSON *cost,
+                        struct text_table *table) {
+    table_number(table, number(one, "case"));
+    for (size_t p = 0; p < results->varied_count; p++)
+        value_cell(table, member(member(one, "parameters"), results->varied[p]));
+    if (results->uneven)
+        table_number(table, number(one, "realisations"));
+    for (size_t s = 0; s < results->scalar_count; s++)
+        scalar_cells(table, scalar_of(one, results->scalars[s]), results->compared[s]);
+    if (results->costs) {
+        char time[48];
+        duration_text(number(cost, "seconds"), time, sizeof time);
+        table_cell(table, "%s", time);
+    }
+}
+
+void summary_of_curves(const cJSON *curves, const cJSON *report, FILE *file) {
+    const cJSON *cases = member(curves, "cases");
     if (!cJSON_IsArray(cases) || !cases->child)
         return;
-    size_t varied_count = varied_parameters(cases, varied);
-    size_t scalar_count = compared_scalars(cases, scalars);
-    struct text_table table = {.columns = varied_count + 7};
-    table_cell(&table, "case");
-    for (size_t p = 0; p < varied_count; p++)
-        table_cell(&table, "%s", last_name(varied[p]));
-    table_cell(&table, "realisations");
-    table_cell(&table, "scalar");
-    table_cell(&table, "value");
-    table_cell(&table, "std error");
-    table_cell(&table, "theory");
-    table_cell(&table, "ratio");
-    for (const cJSON *one = cases->child; one; one = one->next)
-        for (size_t s = 0; s < scalar_count; s++)
-            scalar_row(&table, one, varied, varied_count, scalars[s]);
-    fprintf(file, "%s (%s), study %s\n", text(curves, "name"), text(curves, "state"),
+    struct results results;
+    results_prepare(&results, cases, report);
+    struct text_table table = {.columns = results_columns(&results)};
+    results_heading(&results, &table);
+    const cJSON *cost = results.costs ? results.costs->child : NULL;
+    for (const cJSON *one = cases->child; one; one = one->next) {
+        results_row(&results, one, cost, &table);
+        cost = cost ? cost->next : NULL;
+    }
+    fprintf(file, "%s (%s), study %s", text(curves, "name"), text(curves, "state"),
             text(curves, "study"));
+    if (!results.uneven)
+        fprintf(file, ", %.0f realisations a case", number(cases->child, "realisations"));
+    if (report) {
+        char time[48];
+        duration_text(number(report, "seconds"), time, sizeof time);
+        fprintf(file, ", %s of work", time);
+    }
+    fputs("\n\n", file);
     table_print(&table, file);
     table_clear(&table);
 }

@@ -5,9 +5,9 @@
 #include <cjson/cJSON.h>
 #include <stdio.h>
 
-/* One row a case of a curves document: what was swept, realisations, and the scalars that a theory
- * stands beside. */
-void summary_of_curves(const cJSON *curves, FILE *file);
+/* One row a case of a curves document: what was swept, the main scalars beside their theory, and
+ * where the report is given (it may be NULL) the time that the case took. */
+void summary_of_curves(const cJSON *curves, const cJSON *report, FILE *file);
 /* Progress of one study, with its failures; of a list of them. */
 void summary_of_status(const cJSON *status, FILE *file);
 void summary_of_list(const cJSON *studies, FILE *file);

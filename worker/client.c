@@ -317,8 +317,9 @@ static int status_code(long status) {
     }
 }
 
-/* Appends " POINTER: DETAIL;" of each fault as far as it fits. */
-static void append_faults(const cJSON *problem, char *text, size_t size) {
+/* Appends "; POINTER: DETAIL" of each fault as far as it fits; faults (or NULL) gets them all. */
+static void append_faults(const cJSON *problem, char *text, size_t size,
+                          struct fault_list *faults) {
     const cJSON *fault;
     cJSON_ArrayForEach(fault, cJSON_GetObjectItemCaseSensitive(problem, "errors")) {
         const char *pointer =
@@ -328,12 +329,15 @@ static void append_faults(const cJSON *problem, char *text, size_t size) {
         size_t length = strlen(text);
         if (pointer && detail) {
             snprintf(text + length, size - length, "; %s: %s", pointer, detail);
+            if (faults) {
+                fault_add(faults, pointer, "%s", detail);
+            }
         }
     }
 }
 
 /* Turns a reply that is no success into an error with the words of its problem document, if any. */
-static int reply_error(const struct reply *reply, struct error *err) {
+static int reply_error(const struct reply *reply, struct fault_list *faults, struct error *err) {
     cJSON *problem = NULL;
     char text[sizeof err->text];
     struct error ignored;
@@ -345,7 +349,7 @@ static int reply_error(const struct reply *reply, struct error *err) {
     }
     if (detail) {
         snprintf(text, sizeof text, "%s", detail);
-        append_faults(problem, text, sizeof text);
+        append_faults(problem, text, sizeof text, faults);
     } else {
         snprintf(text, sizeof text, "the server answered with status %ld", reply->status);
     }
@@ -362,7 +366,7 @@ int client_json(struct client *client, const struct request *request, cJSON **ou
     }
     cJSON *value = NULL;
     if (reply.status < 200 || reply.status > 299) {
-        status = reply_error(&reply, err);
+        status = reply_error(&reply, request->faults, err);
     } else if (reply.size == 0 && reply.status != 204) { /* cut off within the headers, too */
         status = error_set(err, ERROR_SYSTEM, "the server's answer is empty");
     } else if (reply.size > 0) {
@@ -384,7 +388,7 @@ int client_download(struct client *client, const char *path, FILE *file, struct 
     struct reply reply;
     int status = exchange(client, &request, file, &reply, err);
     if (!status && (reply.status < 200 || reply.status > 299)) {
-        status = reply_error(&reply, err);
+        status = reply_error(&reply, NULL, err);
     }
     reply_clear(&reply);
     return status;

@@ -28,6 +28,7 @@ struct request {
     const char *body;            /* JSON text or NULL */
     const char *accept;          /* NULL: application/json */
     const char *idempotency_key; /* or NULL */
+    struct fault_list *faults;   /* client_json adds those of a refusal; or NULL */
     long timeout_ms;             /* 0: 30 000 */
 };
 /* One exchange. 0 for every answer of the server, whatever its status; ERROR_SYSTEM when there is

@@ -132,8 +132,6 @@ int command_generate(int argc, char **argv) {
     struct fault_list faults = {0};
     struct study *study = NULL;
     struct error err = {0};
-    char *text = NULL;
-    size_t size;
     int status = 0, ended = EXIT_DONE;
     if (options.overrides == NULL)
         status = error_memory(&err, ((size_t)argc + 1) * sizeof(char *), "options");
@@ -142,15 +140,13 @@ int command_generate(int argc, char **argv) {
         return EXIT_USAGE;
     }
     if (status == 0)
-        status = file_read(options.study, JSON_LIMITS.bytes, &text, &size, &err);
-    if (status == 0)
-        status = kinds_read_study(&study, text, size, options.overrides, &faults, &err);
+        status = study_file_read(&study, options.study, options.overrides, &faults, &err);
     if (status == 0)
         status = generate(&options, study, &err);
     if (status != 0)
-        ended = faults.count > 0 ? command_fail_faults(NAME, &faults) : command_fail(NAME, &err);
+        ended = faults.count > 0 ? command_fail_faults(options.study, &faults)
+                                 : command_fail(NAME, &err);
     free(options.overrides);
-    free(text);
     study_destroy(&study);
     fault_list_clear(&faults);
     return ended;
