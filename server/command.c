@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-volatile sig_atomic_t stop_requested;
+atomic_int stop_requested;
 
 /* The second one ends at once: nothing is lost but the lease of a running block. */
 static void on_signal(int number) {

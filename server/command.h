@@ -4,6 +4,7 @@
 
 #include "schema/study.h"
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
@@ -28,7 +29,7 @@ int command_generate(int argc, char **argv);
 int command_characterise(int argc, char **argv);
 
 /* Set by SIGINT and SIGTERM once signals_catch was called; the second SIGINT ends at once. */
-extern volatile sig_atomic_t stop_requested;
+extern atomic_int stop_requested;
 void signals_catch(void);
 
 /* Prints "rugo COMMAND: text" to standard error and gives the exit status of an error code. */

@@ -96,7 +96,7 @@ static void threads_and_blocks_leave_the_bits(void **state) {
 /* What the caller's tick does while a long job runs. */
 struct scene {
     struct fixture *fixture;
-    volatile sig_atomic_t stop;
+    atomic_int stop;
     int ticks;
     struct store *thief;
     struct claimed_job stolen;
