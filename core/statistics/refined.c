@@ -26,15 +26,19 @@ struct refined {
     double mean, unit; /* heights of the surface in hand are mean + unit * window */
 };
 
-static size_t fine_points(size_t points, size_t mode) {
-    size_t wanted = REFINED_POINTS * (mode ? mode : 1);
+static size_t fine_points(size_t points, size_t mode, size_t points_a_wave) {
+    size_t wanted = points_a_wave * (mode ? mode : 1);
     return points * ((wanted + points - 1) / points);
 }
 
 static struct grid fine_grid(const struct grid *grid, size_t mode_x, size_t mode_y) {
     struct grid fine = *grid;
-    fine.nx = fine_points(grid->nx, mode_x);
-    fine.ny = grid_is_profile(grid) ? 1 : fine_points(grid->ny, mode_y);
+    if (grid_is_profile(grid)) {
+        fine.nx = fine_points(grid->nx, mode_x, REFINED_PROFILE_POINTS);
+        return fine;
+    }
+    fine.nx = fine_points(grid->nx, mode_x, REFINED_POINTS);
+    fine.ny = fine_points(grid->ny, mode_y, REFINED_POINTS);
     return fine;
 }
 
