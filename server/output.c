@@ -1,5 +1,6 @@
 #include "server/output.h"
 #include "schema/json.h"
+#include "server/document.h"
 #include "server/plot.h"
 #include <errno.h>
 #include <stdbool.h>
@@ -9,15 +10,6 @@
 #include <sys/stat.h>
 
 enum { PATH_SIZE = 4096 };
-
-static const cJSON *member(const cJSON *object, const char *name) {
-    return cJSON_GetObjectItemCaseSensitive(object, name);
-}
-
-static const char *text_of(const cJSON *object, const char *name) {
-    const cJSON *value = member(object, name);
-    return cJSON_IsString(value) ? value->valuestring : "";
-}
 
 /* A file of the folder, closed with a check: a full disk shows at the end. */
 static int open_file(FILE **file, const char *folder, const char *name, struct error *err) {
@@ -118,11 +110,12 @@ static void write_curve(FILE *file, const cJSON *curve) {
 static void curve_name(const cJSON *one, const cJSON *curve, char *name, size_t size) {
     const cJSON *level = member(curve, "level");
     int used = snprintf(name, size, "case-%.0f-%.60s", member(one, "case")->valuedouble,
-                        text_of(curve, "quantity"));
+                        text_of(curve, "quantity", ""));
     static const char *const PARTS[] = {"series", "model"};
     for (size_t p = 0; p < 2; p++)
-        if (*text_of(curve, PARTS[p]))
-            used += snprintf(name + used, size - (size_t)used, "-%.40s", text_of(curve, PARTS[p]));
+        if (*text_of(curve, PARTS[p], ""))
+            used +=
+                snprintf(name + used, size - (size_t)used, "-%.40s", text_of(curve, PARTS[p], ""));
     if (cJSON_IsNumber(level))
         used += snprintf(name + used, size - (size_t)used, "-%g", level->valuedouble);
     snprintf(name + used, size - (size_t)used, ".csv");
@@ -151,7 +144,7 @@ static int write_plots(const cJSON *curves, const char *folder, struct error *er
     const char *last = "";
     int status = 0;
     for (const cJSON *curve = list ? list->child : NULL; !status && curve; curve = curve->next) {
-        const char *quantity = text_of(curve, "quantity");
+        const char *quantity = text_of(curve, "quantity", "");
         char name[128];
         FILE *file;
         if (member(curve, "x2") || strcmp(quantity, last) == 0)

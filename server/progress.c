@@ -5,16 +5,29 @@
 #include <stdio.h>
 #include <unistd.h>
 
-enum { BAR = 30, TERMINAL_MS = 500, PLAIN_MS = 10000 };
+enum { BAR = 20, TERMINAL_MS = 500, PLAIN_MS = 10000 };
 
-/* What is left at the pace so far; the store's estimate before there is one. */
-static double seconds_left(const struct progress *progress, const struct study_status *now) {
-    double elapsed = (double)(clock_ms() - progress->start_ms) / 1000;
+/* The store's estimate, which knows what the cases cost; between two jobs' ends it runs down with
+ * the clock. */
+static double estimate_left(struct progress *progress, const struct study_status *now,
+                            int64_t clock) {
+    double estimate = now->seconds_left / (double)(now->workers ? now->workers : 1);
+    if (!(fabs(estimate - progress->estimate) <= 0)) { /* also the first, or a NaN */
+        progress->estimate = estimate;
+        progress->estimate_ms = clock;
+    }
+    double left = estimate - (double)(clock - progress->estimate_ms) / 1000;
+    return left < 0 ? 0 : left;
+}
+
+/* What is left at the pace so far where all realisations cost the same. */
+static double seconds_left(struct progress *progress, const struct study_status *now,
+                           int64_t clock) {
+    double elapsed = (double)(clock - progress->start_ms) / 1000;
     double done = (double)(now->realisations_done - progress->start_done);
-    double paced = now->seconds_left / (double)(now->workers ? now->workers : 1);
     double left = (double)(now->realisations_total - now->realisations_done);
-    bool uneven = now->cases > 1; /* cases cost differently: the estimate knows */
-    return done > 0 && !uneven ? left * elapsed / done : paced;
+    return done > 0 && now->cases == 1 ? left * elapsed / done
+                                       : estimate_left(progress, now, clock);
 }
 
 static void print_bar(const struct study_status *now, double share, const char *left) {
@@ -43,7 +56,7 @@ int progress_tick(void *context) {
     progress->next_ms = clock + (terminal ? TERMINAL_MS : PLAIN_MS);
     double share = (double)now.realisations_done / (double)now.realisations_total;
     char left[48];
-    duration_text(seconds_left(progress, &now), left, sizeof left);
+    duration_text(seconds_left(progress, &now, clock), left, sizeof left);
     if (terminal)
         print_bar(&now, share, left);
     else

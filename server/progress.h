@@ -10,6 +10,8 @@ struct progress {
     int64_t next_ms;     /* when the next line is due; 0 at first */
     int64_t start_ms;
     uint64_t start_done; /* realisations when it began: time left is measured from there */
+    double estimate;     /* seconds left at estimate_ms; the store's changes as jobs end */
+    int64_t estimate_ms;
     bool shown;
 };
 /* For worker_options.tick; context is a struct progress. */

@@ -1,24 +1,11 @@
 #include "server/summary.h"
+#include "server/document.h"
 #include "server/text_table.h"
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 enum { COLUMNS_MOST = 24 };
-
-static const cJSON *member(const cJSON *object, const char *name) {
-    return cJSON_GetObjectItemCaseSensitive(object, name);
-}
-
-static double number(const cJSON *object, const char *name) {
-    const cJSON *value = member(object, name);
-    return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
-}
-
-static const char *text(const cJSON *object, const char *name) {
-    const cJSON *value = member(object, name);
-    return cJSON_IsString(value) ? value->valuestring : "-";
-}
 
 void duration_text(double seconds, char *out, size_t size) {
     if (isnan(seconds))
@@ -36,20 +23,32 @@ void duration_text(double seconds, char *out, size_t size) {
 
 /* --- curves --- */
 
-/* Pointers whose values differ between cases, or of which some case has none. */
+static bool is_among(const char *name, const char *const *names, size_t count) {
+    for (size_t n = 0; n < count; n++)
+        if (strcmp(names[n], name) == 0)
+            return true;
+    return false;
+}
+
+/* Whether some case has another value than this one. */
+static bool varies(const cJSON *cases, const cJSON *parameter) {
+    for (const cJSON *one = cases->child; one; one = one->next)
+        if (!cJSON_Compare(parameter, member(member(one, "parameters"), parameter->string), true))
+            return true;
+    return false;
+}
+
+/* Pointers whose values differ between cases, in the order of the first case; then those that it
+ * does not have. */
 static size_t varied_parameters(const cJSON *cases, const char **names) {
     size_t count = 0;
-    const cJSON *first = cases->child;
-    for (const cJSON *c = first; c; c = c->next) {
-        const cJSON *parameters = member(c, "parameters");
-        for (const cJSON *p = parameters ? parameters->child : NULL; p; p = p->next) {
-            bool known = cJSON_Compare(p, member(member(first, "parameters"), p->string), true);
-            for (size_t n = 0; n < count && !known; n++)
-                known = strcmp(names[n], p->string) == 0;
-            if (!known && count < COLUMNS_MOST)
+    const cJSON *first = member(cases->child, "parameters");
+    for (const cJSON *one = cases->child; one; one = one->next)
+        for (const cJSON *p = first_of(one, "parameters"); p && count < COLUMNS_MOST; p = p->next) {
+            bool candidate = one == cases->child ? varies(cases, p) : !member(first, p->string);
+            if (candidate && !is_among(p->string, names, count))
                 names[count++] = p->string;
         }
-    }
     return count;
 }
 
@@ -112,8 +111,8 @@ static void measured_cell(struct text_table *table, double value, double error) 
 }
 
 static void scalar_cells(struct text_table *table, const cJSON *scalar, bool with_theory) {
-    double value = number(scalar, "value"), theory = number(scalar, "theory");
-    measured_cell(table, value, number(scalar, "standard_error"));
+    double value = number_of(scalar, "value"), theory = number_of(scalar, "theory");
+    measured_cell(table, value, number_of(scalar, "standard_error"));
     if (!with_theory)
         return;
     table_number(table, theory);
@@ -139,8 +138,8 @@ static void results_prepare(struct results *results, const cJSON *cases, const c
     for (size_t s = 0; s < results->scalar_count; s++)
         results->compared[s] = has_scalar(cases, results->scalars[s], true);
     for (const cJSON *one = cases->child; one; one = one->next)
-        results->uneven =
-            results->uneven || number(one, "realisations") != number(cases->child, "realisations");
+        results->uneven = results->uneven ||
+                          number_of(one, "realisations") != number_of(cases->child, "realisations");
 }
 
 static size_t results_columns(const struct results *results) {
@@ -173,16 +172,16 @@ static void results_heading(const struct results *results, struct text_table *ta
 
 static void results_row(const struct results *results, const cJSON *one, const cJSON *cost,
                         struct text_table *table) {
-    table_number(table, number(one, "case"));
+    table_number(table, number_of(one, "case"));
     for (size_t p = 0; p < results->varied_count; p++)
         value_cell(table, member(member(one, "parameters"), results->varied[p]));
     if (results->uneven)
-        table_number(table, number(one, "realisations"));
+        table_number(table, number_of(one, "realisations"));
     for (size_t s = 0; s < results->scalar_count; s++)
         scalar_cells(table, scalar_of(one, results->scalars[s]), results->compared[s]);
     if (results->costs) {
         char time[48];
-        duration_text(number(cost, "seconds"), time, sizeof time);
+        duration_text(number_of(cost, "seconds"), time, sizeof time);
         table_cell(table, "%s", time);
     }
 }
@@ -200,13 +199,13 @@ void summary_of_curves(const cJSON *curves, const cJSON *report, FILE *file) {
         results_row(&results, one, cost, &table);
         cost = cost ? cost->next : NULL;
     }
-    fprintf(file, "%s (%s), study %s", text(curves, "name"), text(curves, "state"),
-            text(curves, "study"));
+    fprintf(file, "%s (%s), study %s", text_of(curves, "name", "-"), text_of(curves, "state", "-"),
+            text_of(curves, "study", "-"));
     if (!results.uneven)
-        fprintf(file, ", %.0f realisations a case", number(cases->child, "realisations"));
+        fprintf(file, ", %.0f realisations a case", number_of(cases->child, "realisations"));
     if (report) {
         char time[48];
-        duration_text(number(report, "seconds"), time, sizeof time);
+        duration_text(number_of(report, "seconds"), time, sizeof time);
         fprintf(file, ", %s of work", time);
     }
     fputs("\n\n", file);
@@ -219,20 +218,22 @@ void summary_of_curves(const cJSON *curves, const cJSON *report, FILE *file) {
 void summary_of_status(const cJSON *status, FILE *file) {
     const cJSON *jobs = member(status, "jobs"), *realisations = member(status, "realisations");
     char left[48], spent[48];
-    duration_text(number(status, "seconds_left"), left, sizeof left);
-    duration_text(number(status, "seconds"), spent, sizeof spent);
-    fprintf(file, "%s  %s  %s  %s\n", text(status, "id"), text(status, "name"),
-            text(status, "kind"), text(status, "state"));
+    duration_text(number_of(status, "seconds_left"), left, sizeof left);
+    duration_text(number_of(status, "seconds"), spent, sizeof spent);
+    fprintf(file, "%s  %s  %s  %s\n", text_of(status, "id", "-"), text_of(status, "name", "-"),
+            text_of(status, "kind", "-"), text_of(status, "state", "-"));
     fprintf(file, "  realisations %.0f of %.0f, jobs %.0f of %.0f (%.0f running, %.0f failed)\n",
-            number(realisations, "done"), number(realisations, "total"), number(jobs, "done"),
-            number(jobs, "total"), number(jobs, "running"), number(jobs, "failed"));
-    fprintf(file, "  workers %.0f, spent %s, left %s\n", number(status, "workers"), spent, left);
+            number_of(realisations, "done"), number_of(realisations, "total"),
+            number_of(jobs, "done"), number_of(jobs, "total"), number_of(jobs, "running"),
+            number_of(jobs, "failed"));
+    fprintf(file, "  workers %.0f, spent %s, left %s\n", number_of(status, "workers"), spent, left);
     const cJSON *failures = member(status, "failures");
     for (const cJSON *f = failures ? failures->child : NULL; f; f = f->next)
         fprintf(file,
                 "  failed: case %.0f, realisations %.0f to %.0f, %.0f attempts, worker %s: %s\n",
-                number(f, "case"), number(f, "first"), number(f, "first") + number(f, "count") - 1,
-                number(f, "attempts"), text(f, "worker"), text(f, "reason"));
+                number_of(f, "case"), number_of(f, "first"),
+                number_of(f, "first") + number_of(f, "count") - 1, number_of(f, "attempts"),
+                text_of(f, "worker", "-"), text_of(f, "reason", "-"));
 }
 
 void summary_of_list(const cJSON *studies, FILE *file) {
@@ -243,13 +244,13 @@ void summary_of_list(const cJSON *studies, FILE *file) {
         table_cell(&table, "%s", HEADINGS[h]);
     for (const cJSON *s = list ? list->child : NULL; s; s = s->next) {
         const cJSON *realisations = member(s, "realisations");
-        table_cell(&table, "%s", text(s, "id"));
-        table_cell(&table, "%s", text(s, "name"));
-        table_cell(&table, "%s", text(s, "kind"));
-        table_cell(&table, "%s", text(s, "state"));
+        table_cell(&table, "%s", text_of(s, "id", "-"));
+        table_cell(&table, "%s", text_of(s, "name", "-"));
+        table_cell(&table, "%s", text_of(s, "kind", "-"));
+        table_cell(&table, "%s", text_of(s, "state", "-"));
         table_cell(&table, "%.1f",
-                   100 * number(realisations, "done") / number(realisations, "total"));
-        table_cell(&table, "%s", text(s, "created"));
+                   100 * number_of(realisations, "done") / number_of(realisations, "total"));
+        table_cell(&table, "%s", text_of(s, "created", "-"));
     }
     table_print(&table, file);
     table_clear(&table);
@@ -277,14 +278,15 @@ void summary_of_report(const cJSON *report, FILE *file) {
     for (size_t n = 0; n < NUMBER_COUNT; n++)
         table_cell(&table, "%s", HEADINGS[n]);
     for (const cJSON *one = cases->child; one; one = one->next) {
-        table_number(&table, number(one, "case"));
+        table_number(&table, number_of(one, "case"));
         for (size_t p = 0; p < varied_count; p++)
             value_cell(&table, member(member(one, "parameters"), varied[p]));
         for (size_t n = 0; n < NUMBER_COUNT; n++)
-            table_number(&table, number(one, NUMBERS[n]));
+            table_number(&table, number_of(one, NUMBERS[n]));
     }
     fprintf(file, "%s (%s), study %s: cost, and relative errors of the main curve\n",
-            text(report, "name"), text(report, "state"), text(report, "study"));
+            text_of(report, "name", "-"), text_of(report, "state", "-"),
+            text_of(report, "study", "-"));
     table_print(&table, file);
     table_clear(&table);
 }

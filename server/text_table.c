@@ -113,7 +113,8 @@ void table_fold(struct text_table *table) {
 
 void table_print(const struct text_table *table, FILE *file) {
     struct look *looks = table->failed ? NULL : array_create(table->columns, sizeof *looks);
-    if (!looks) {
+    if (!looks || !table->columns) {
+        free(looks);
         fprintf(file, "(no memory for a table)\n");
         return;
     }
