@@ -1,5 +1,5 @@
-/* Summit stencils: time beside error. 200 Gaussian surfaces (H 0.8, ratio 8, L/lambda_l 8) at each
- * sampling. */
+/* Summit stencils: CPU time beside error, on 256 to 2048 points a side. 200 Gaussian surfaces (H
+ * 0.8, ratio 8, L/lambda_l 8) at each sampling, 50 at the finest. */
 #include "core/statistics/summits.h"
 #include "core/surface/surface.h"
 #include "core/theory/nayak.h"
@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { SURFACES = 200 };
-
 static double cpu_ms(void) {
     struct timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -17,7 +15,7 @@ static double cpu_ms(void) {
 }
 
 static int bench(size_t points, enum summit_stencil stencil, const char *name, struct error *err) {
-    size_t n = 64 * points;
+    size_t n = 64 * points, surfaces = points > 16 ? 50 : 200;
     struct grid grid = {n, n, 64, 64};
     struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
                                 .hurst = 0.8,
@@ -35,20 +33,21 @@ static int bench(size_t points, enum summit_stencil stencil, const char *name, s
     if (!status)
         status =
             summit_finder_create(&finder, &grid, stencil, CURVATURE_FINITE_DIFFERENCE, 64, 64, err);
-    for (uint64_t r = 0; !status && r < SURFACES; r++) {
+    for (uint64_t r = 0; !status && r < surfaces; r++) {
         status = generator_run(generator, (struct random_key){1, 0, r}, z, NULL, err);
         double start = cpu_ms();
         if (!status)
             status = summits_find(finder, z, &list, err);
         ms += cpu_ms() - start;
-        sum += (double)list.count / SURFACES;
-        square += (double)list.count * (double)list.count / SURFACES;
+        sum += (double)list.count / (double)surfaces;
+        square += (double)list.count * (double)list.count / (double)surfaces;
     }
     if (!status) {
         modes_moments(generator_modes(generator), &moments);
         double nayak = nayak_summit_density(moments.m2, moments.m4) * 64 * 64;
-        printf("%2zu points a wave  %-10s  %7.2f ms  density/Nayak %.4f +- %.4f\n", points, name,
-               ms / SURFACES, sum / nayak, sqrt((square - sum * sum) / (SURFACES - 1)) / nayak);
+        printf("%4zu x %4zu, %2zu points a wave  %-10s  %7.2f ms  density/Nayak %.4f +- %.4f\n", n,
+               n, points, name, ms / (double)surfaces, sum / nayak,
+               sqrt((square - sum * sum) / (double)(surfaces - 1)) / nayak);
     }
     free(z);
     generator_destroy(&generator);
@@ -65,7 +64,7 @@ int main(void) {
                     {SUMMITS_FIVE_POINT, "five-point"},
                     {SUMMITS_REFINED, "refined"}};
     struct error err = {0};
-    for (size_t points = 4; points <= 16; points *= 2)
+    for (size_t points = 4; points <= 32; points *= 2)
         for (size_t s = 0; s < 3; s++)
             if (bench(points, STENCILS[s].stencil, STENCILS[s].name, &err)) {
                 fprintf(stderr, "bench_summits: %s\n", err.text);

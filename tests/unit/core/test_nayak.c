@@ -154,6 +154,25 @@ static void out_of_domain_is_no_number(void **state) {
     assert_true(isfinite(nayak_joint_pdf(3, -3, 1.5001)));
 }
 
+static double profile_slice(double s, const void *context) {
+    const struct slice *slice = context;
+    return pow(s, slice->order) * profile_peak_joint_pdf(slice->z, -s, slice->alpha);
+}
+
+static void profile_joint_has_its_marginals(void **state) {
+    (void)state;
+    static const double PROFILE[] = {1.01, 1.5, 5, 1e4};
+    for (size_t a = 0; a < 4; a++)
+        for (double z = -1; z <= 3; z += 0.5) {
+            struct slice zeroth = {z, PROFILE[a], 0}, first = {z, PROFILE[a], 1};
+            double density = quadrature(profile_slice, &zeroth, 0, 20, 600);
+            double curvature = quadrature(profile_slice, &first, 0, 20, 600);
+            check_relative(profile_peak_pdf(z, PROFILE[a]), density, 1e-9);
+            check_relative(profile_mean_curvature(z, PROFILE[a]), curvature / density, 1e-9);
+        }
+    assert_true(profile_peak_joint_pdf(0, 0, 5) == 0 && isnan(profile_peak_joint_pdf(0, -1, 1)));
+}
+
 /* Peaks of profiles: the density integrates to 1, its closed distribution is its integral, and the
  * limits alpha -> 1 (Rayleigh) and alpha -> infinity (normal) hold. */
 static void profile_peaks(void **state) {
@@ -183,6 +202,7 @@ int main(void) {
         cmocka_unit_test(overall_curvature),
         cmocka_unit_test(limits),
         cmocka_unit_test(out_of_domain_is_no_number),
+        cmocka_unit_test(profile_joint_has_its_marginals),
         cmocka_unit_test(profile_peaks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

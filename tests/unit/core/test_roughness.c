@@ -110,6 +110,38 @@ static void correlation_is_the_sum(void **state) {
     }
 }
 
+/* On a rectangular cell, odd and even sides, the correlation is the mean over rings one dx wide. */
+static void correlation_of_a_surface_is_the_ring_mean(void **state) {
+    (void)state;
+    enum { NX = 15, NY = 12, LAGS = NX / 2 + 1 };
+    const double ratio = 1.37; /* dy/dx: no lag on the edge of a ring */
+    const struct grid grid = {NX, NY, 3, 0.2 * ratio * NY}; /* dx = 0.2 */
+    double z[NX * NY], lag[LAGS], correlation[LAGS], mean = 0;
+    double sums[LAGS] = {0}, counts[LAGS] = {0};
+    uint64_t seed = 5;
+    for (size_t p = 0; p < (size_t)NX * NY; p++) {
+        seed = seed * 6364136223846793005u + 1442695040888963407u;
+        z[p] = (double)(seed >> 40);
+        mean += z[p] / (NX * NY);
+    }
+    for (long b = -5; b <= NY / 2; b++) /* each lag of the torus once */
+        for (long a = -7; a <= NX / 2; a++) {
+            size_t ring = (size_t)(hypot((double)a, ratio * (double)b) + 0.5);
+            if (ring >= LAGS)
+                continue;
+            counts[ring]++;
+            for (long j = 0; j < NY; j++)
+                for (long i = 0; i < NX; i++)
+                    sums[ring] += (z[j * NX + i] - mean) *
+                                  (z[(j + b + NY) % NY * NX + (i + a + NX) % NX] - mean);
+        }
+    assert_int_equal(acf_measure(&grid, z, lag, correlation, NULL), 0);
+    for (size_t r = 0; r < LAGS; r++) {
+        check_close(lag[r], 0.2 * (double)r, 1e-15);
+        check_close(correlation[r], sums[r] / counts[r] / sums[0], 1e-12);
+    }
+}
+
 /* The density over its rings adds up to the mean square height. */
 static void density_integrates_to_m00(void **state) {
     (void)state;
@@ -140,9 +172,13 @@ static void density_integrates_to_m00(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(differences_have_their_bias), cmocka_unit_test(spectral_moments_are_exact),
-        cmocka_unit_test(hand_made_profile),           cmocka_unit_test(flat_map_has_no_shape),
-        cmocka_unit_test(correlation_is_the_sum),      cmocka_unit_test(density_integrates_to_m00),
+        cmocka_unit_test(differences_have_their_bias),
+        cmocka_unit_test(spectral_moments_are_exact),
+        cmocka_unit_test(hand_made_profile),
+        cmocka_unit_test(flat_map_has_no_shape),
+        cmocka_unit_test(correlation_is_the_sum),
+        cmocka_unit_test(correlation_of_a_surface_is_the_ring_mean),
+        cmocka_unit_test(density_integrates_to_m00),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
