@@ -1,8 +1,8 @@
 #include "jobs/statistics_scalars.h"
+#include "core/sum.h"
 #include "core/theory/nayak.h"
 #include "jobs/estimate.h"
 #include "jobs/statistics_theory.h"
-#include "core/sum.h"
 #include "jobs/value.h"
 #include <math.h>
 #include <stdlib.h>
