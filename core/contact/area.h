@@ -1,0 +1,28 @@
+/* The real contact area of a discrete solution, by several estimators. Fractions of the cell. */
+#ifndef RUGO_CORE_CONTACT_AREA_H
+#define RUGO_CORE_CONTACT_AREA_H
+
+#include "core/surface/grid.h"
+
+struct contact_area {
+    double nodes; /* share of nodes in contact, each with the cell around it: an upper value */
+    double lower; /* segments (profiles) or cells with all corners in contact ... */
+    double upper; /* ... and with any */
+    /* Each edge found below the grid from the pressure inside and the gap outside of it
+     * (p = c sqrt(d), gap = 4c/(3E*) d^(3/2): Johnson 1985, section 5.1; theory.md); in surfaces
+     * the mean over all grid lines. */
+    double edges;
+    /* Surfaces: nodes less 0.1181 x perimeter x dx (Yastrebov, Anciaux & Molinari 2017); profiles:
+     * NaN. */
+    double perimeter;
+};
+
+struct area_workspace;
+int area_workspace_create(struct area_workspace **out, const struct grid *grid, struct error *err);
+void area_workspace_destroy(struct area_workspace **workspace);
+
+/* p in E*, gap at the nodes, both grid_points: as contact_press gives them. */
+void contact_area(struct area_workspace *workspace, const double *p, const double *gap,
+                  struct contact_area *out);
+
+#endif

@@ -1,0 +1,56 @@
+/* How the flat face of a periodic elastic block yields to a frictionless pressure, wave by wave.
+ *
+ * Displacement and pressure are linked by u_hat(k) = S(k) p_hat(k) for every wave vector k != 0;
+ * the mean pressure moves the whole face, which contact absorbs into the approach. Pressures are in
+ * units of E* = E/(1 - nu^2), so that S is a length; plane strain for profiles.
+ *
+ * halfspace: S = 2/|k| (infinite depth), or the exact layer whose far side stays flat and free of
+ *   shear, S = (2/k) (cosh 2kH - 1)/(sinh 2kH + 2kH).
+ * layered: linear finite elements, a column of bilinear quadrilaterals (trilinear hexahedra) a grid
+ *   cell, layers that grow with depth by a factor; the mean dilatation of each element replaces the
+ *   local one (B-bar; Hughes 1980), so that nu = 0.4999 does not lock. Periodic and equal sideways,
+ *   its stiffness falls apart into one block-tridiagonal system in depth a wave vector, which is
+ *   eliminated from the far side up: the exact compliance of the mesh. */
+#ifndef RUGO_CORE_CONTACT_COMPLIANCE_H
+#define RUGO_CORE_CONTACT_COMPLIANCE_H
+
+#include "core/surface/grid.h"
+
+enum contact_model { MODEL_HALFSPACE, MODEL_LAYERED };
+/* Weighting of the gap by the mortar functions of the finite elements: the standard ones (Petrov-
+ * Galerkin, as the reference) average it over neighbours by (1, 4, 1)/6 in each direction; the dual
+ * ones leave the gap at the node. */
+enum gap_weighting { GAP_STANDARD, GAP_DUAL };
+
+struct block {
+    enum contact_model model;
+    double poisson;               /* in [0, 0.5); without influence on a half-space */
+    double height;                /* unit of the grid's lengths; INFINITY: MODEL_HALFSPACE alone */
+    double layer_growth;          /* layered: thickness of a layer over that above it, in [1, 2] */
+    enum gap_weighting weighting; /* layered; a half-space takes the gap at the node */
+};
+enum { LAYERS_MOST = 4096 };
+
+/* Immutable once made: share it between threads. Arrays hold a value a wave vector in the layout of
+ * transform.h: [mx*ny + row], mx = 0 .. nx/2, row = my for my >= 0 and ny + my below. */
+struct compliance {
+    struct grid grid;
+    struct block block;
+    size_t waves;   /* (nx/2 + 1) * ny */
+    double *length; /* owned: S E*; 0 for the mean */
+    double *weight; /* owned: symbol of the gap weighting; NULL: 1 */
+    size_t layers;  /* of the mesh; 0 for a half-space */
+};
+
+/* Thicknesses of the layers of a block from the face down, at most LAYERS_MOST into thickness: the
+ * first is as the finer of dx and dy, all are scaled down by one factor so that they fill the
+ * block. How many, or 0 when too many are needed. */
+size_t block_layers(const struct grid *grid, const struct block *block, double *thickness);
+
+/* ERROR_INPUT for a block out of the ranges above; ERROR_MEMORY. Time: about waves x layers. */
+int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,
+                      struct error *err);
+void compliance_destroy(struct compliance **compliance);
+double compliance_bytes(const struct grid *grid, const struct block *block);
+
+#endif

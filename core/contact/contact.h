@@ -1,0 +1,56 @@
+/* Elastic, frictionless, non-adhesive contact of a rough block on a rigid flat, under a prescribed
+ * mean pressure: the linear models.
+ *
+ * Unknown are the pressures p at the grid points. With u = S p (compliance.h), roughness z towards
+ * the flat and an approach D, the gap is g = D + u - z; p >= 0, g >= 0, p g = 0, mean p = pressure.
+ * Pressures are in units of E*, lengths in the grid's.
+ *
+ * A solver belongs to one thread and one grid; it keeps the surface and the last state, from which
+ * the next load starts. Loads may rise and fall: the contact is elastic. */
+#ifndef RUGO_CORE_CONTACT_CONTACT_H
+#define RUGO_CORE_CONTACT_CONTACT_H
+
+#include "core/contact/compliance.h"
+
+struct contact_options {
+    double tolerance;      /* on the largest violation of complementarity, over the RMS height of
+                              the surface; default 1e-8; 1e-10 is reachable */
+    size_t max_iterations; /* a load; default 2000 */
+};
+extern const struct contact_options CONTACT_DEFAULTS;
+
+/* How one load was solved, and what came out. Arrays are the solver's, valid until its next call.
+ */
+struct contact_state {
+    double pressure;    /* mean, in E* */
+    const double *p;    /* grid_points, in E*; mean = pressure, 0 where open */
+    const double *gap;  /* grid_points, at the nodes whatever the weighting; mean_gap is its mean */
+    double mean_gap;    /* the grid's length */
+    double stiffness;   /* -d pressure/d mean_gap, E* per length; INFINITY in full contact, 0 when
+                           nothing touches */
+    size_t nodes;       /* in contact (p > 0) */
+    size_t iterations;  /* of the conjugate gradients on this grid, 0 in full contact */
+    double work;        /* points x transforms, over all grids: what the time is made of */
+    double violation;   /* largest |g| inside or penetration outside, over the RMS height */
+    double penetration; /* largest -g outside of the contact, over the RMS height; >= 0 */
+};
+
+struct contact;
+
+/* Borrows the compliance, which must outlive it. */
+int contact_create(struct contact **out, const struct compliance *compliance,
+                   const struct contact_options *options, struct error *err);
+void contact_destroy(struct contact **contact);
+double contact_bytes(const struct grid *grid);
+
+/* Takes a surface (copies; any height of its mean) and lifts it off: the next load starts anew.
+ * ERROR_INPUT for a height that is not finite. */
+int contact_begin(struct contact *contact, const double *z, struct error *err);
+/* Presses to a mean pressure >= 0. ERROR_NUMERIC, with the load and what was reached, when the
+ * tolerance is not met; the state before is lost then, and the next load starts anew. */
+int contact_press(struct contact *contact, double pressure, struct contact_state *out,
+                  struct error *err);
+/* The smallest mean pressure of full contact, in E*; from contact_begin on. */
+double contact_full_pressure(const struct contact *contact);
+
+#endif

@@ -1,0 +1,20 @@
+/* Contact patches: nodes in contact, joined along grid lines, across the cell's periodic sides. */
+#ifndef RUGO_CORE_CONTACT_PATCHES_H
+#define RUGO_CORE_CONTACT_PATCHES_H
+
+#include "core/surface/grid.h"
+
+struct patches {
+    size_t count;
+    size_t largest; /* nodes */
+    double mean;    /* nodes a patch; NaN without patches */
+    double second;  /* mean over contact points of the size of their patch: sum n^2/sum n; or NaN */
+};
+struct patch_finder;
+int patch_finder_create(struct patch_finder **out, const struct grid *grid, struct error *err);
+void patch_finder_destroy(struct patch_finder **finder);
+/* In contact: p > 0. sizes (NULL: not wanted) gets the nodes of each patch, room for grid_points.
+ */
+void patches_find(struct patch_finder *finder, const double *p, struct patches *out, size_t *sizes);
+
+#endif
