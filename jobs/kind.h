@@ -61,6 +61,10 @@ struct job_kind {
 
     int (*merger_create)(struct job_merger **out, const cJSON *parameters, struct error *err);
     void (*merger_destroy)(struct job_merger **merger);
+    /* Whether merge would take the block: 0 or its error. Changes nothing, so that many threads may
+     * ask one merger. */
+    int (*fits)(const struct job_merger *merger, const struct job_result *result,
+                struct error *err);
     /* Decodes and adds one block; ERROR_INPUT for data that is not this case's (nothing added). */
     int (*merge)(struct job_merger *merger, const struct job_result *result, struct error *err);
     /* {"realisations": n, "scalars": {...}, "curves": [...]} of interface.md; caller deletes. */

@@ -1,5 +1,5 @@
 /* The queue over HTTP; worker/wire.h says what crosses. */
-#include "jobs/kind.h"
+#include "server/checker.h"
 #include "server/route.h"
 #include "worker/wire.h"
 #include <errno.h>
@@ -123,40 +123,6 @@ static int complete_change(struct store *store, void *context, struct error *err
     return store_complete(store, c->job, c->token, &c->block, &c->first_time, &c->case_done, err);
 }
 
-static int check_names(const struct job_kind *kind, const struct wire_result *wire,
-                       struct error *err) {
-    size_t n = 0;
-    for (; kind->scalars[n]; n++)
-        if (n >= wire->result.scalar_count || strcmp(kind->scalars[n], wire->names[n]) != 0)
-            return error_set(err, ERROR_INPUT, "scalars: number %zu is not \"%s\"", n,
-                             kind->scalars[n]);
-    if (n != wire->result.scalar_count)
-        return error_set(err, ERROR_INPUT, "scalars: %zu names; allowed: %zu",
-                         wire->result.scalar_count, n);
-    return 0;
-}
-
-/* A result that its kind cannot merge is refused here, before it is poison in the store. */
-static int check_result(const struct claimed_job *job, const struct wire_result *wire,
-                        struct error *err) {
-    const struct job_kind *kind = kind_find(job->kind);
-    struct job_merger *merger = NULL;
-    cJSON *parameters = NULL;
-    if (!kind)
-        return error_set(err, ERROR_SYSTEM, "this server does not know the kind %.40s", job->kind);
-    int status = check_names(kind, wire, err);
-    if (!status)
-        status = json_parse(job->parameters, strlen(job->parameters), NULL, &parameters, err);
-    if (!status)
-        status = kind->merger_create(&merger, parameters, err);
-    if (!status)
-        status = kind->merge(merger, &wire->result, err);
-    if (merger)
-        kind->merger_destroy(&merger);
-    cJSON_Delete(parameters);
-    return status;
-}
-
 static int check_against_job(struct exchange *exchange, int64_t id, const struct wire_result *wire,
                              struct error *err) {
     struct store *reader;
@@ -166,7 +132,7 @@ static int check_against_job(struct exchange *exchange, int64_t id, const struct
         status = store_job(reader, id, wire->token, &job, err);
     service_give_back(exchange->service, reader);
     if (!status)
-        status = check_result(&job, wire, err);
+        status = checker_check(exchange->service->checker, &job, wire, err);
     claimed_job_clear(&job);
     return status;
 }

@@ -1,4 +1,5 @@
 #include "server/service.h"
+#include "server/checker.h"
 #include "worker/clock.h"
 #include <inttypes.h>
 #include <stdio.h>
@@ -15,15 +16,18 @@ int service_open(struct service *service, const char *database, int64_t lease_ms
         status = writer_create(&service->writer, service->store, err);
     if (!status)
         status = publisher_create(&service->publisher, database, err);
+    if (!status)
+        status = checker_create(&service->checker, err);
     return status;
 }
 
 void service_close(struct service *service) {
     publisher_destroy(&service->publisher);
     writer_destroy(&service->writer);
-    store_close(&service->store);
     for (size_t r = 0; r < service->reader_count; r++)
         store_close(&service->readers[r]);
+    store_close(&service->store); /* last: a reader cannot clear the write-ahead log away */
+    checker_destroy(&service->checker);
     tokens_destroy(&service->tokens);
     pthread_mutex_destroy(&service->mutex);
 }

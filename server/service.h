@@ -15,6 +15,7 @@ struct service {
     struct store *store;  /* the writer's */
     struct writer *writer;
     struct publisher *publisher;
+    struct checker *checker; /* of results that come in */
     struct tokens *tokens; /* NULL: everyone may do everything (loopback only) */
     int64_t started_ms;    /* clock_ms */
     atomic_bool stopping;
