@@ -1,0 +1,168 @@
+#include "core/contact/compliance.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double PI = 3.14159265358979323846;
+
+static int refuse(struct error *err, const char *what, double value, const char *allowed) {
+    return error_set(err, ERROR_INPUT, "%s = %g; allowed: %s", what, value, allowed);
+}
+
+static int layered_check(const struct block *block, struct error *err) {
+    if (!(block->height > 0 && isfinite(block->height)))
+        return refuse(err, "block height", block->height, "above 0, finite for a layered block");
+    if (!(block->layer_growth >= 1 && block->layer_growth <= 2))
+        return refuse(err, "layer growth", block->layer_growth, "1 to 2");
+    if (block->weighting != GAP_STANDARD && block->weighting != GAP_DUAL)
+        return error_set(err, ERROR_INPUT, "gap weighting %d is unknown", (int)block->weighting);
+    return 0;
+}
+
+static int block_check(const struct block *block, struct error *err) {
+    if (!(block->poisson >= 0 && block->poisson < 0.5))
+        return refuse(err, "Poisson's ratio", block->poisson, "0 or more, below 0.5");
+    switch (block->model) {
+    case MODEL_HALFSPACE:
+        if (!(block->height > 0))
+            return refuse(err, "block height", block->height, "above 0, or infinite");
+        return 0;
+    case MODEL_LAYERED:
+        return layered_check(block, err);
+    }
+    return error_set(err, ERROR_INPUT, "contact model %d is unknown", (int)block->model);
+}
+
+size_t block_layers(const struct grid *grid, const struct block *block, double *thickness) {
+    double first = grid_dx(grid);
+    if (!grid_is_profile(grid))
+        first = fmin(first, grid_dy(grid));
+    /* In units of the first layer; a rounding error of the height adds no layer. */
+    double height = block->height / first * (1 - 1e-12), total = 0, layer = 1;
+    size_t count = 0;
+    for (; total < height && count < LAYERS_MOST; layer *= block->layer_growth) {
+        thickness[count++] = layer;
+        total += layer;
+    }
+    if (!(total >= height && isfinite(total)))
+        return 0;
+    for (size_t k = 0; k < count; k++)
+        thickness[k] *= block->height / total;
+    return count;
+}
+
+static size_t wave_count(const struct grid *grid) {
+    return (grid->nx / 2 + 1) * grid->ny;
+}
+
+static bool has_weight(const struct block *block) {
+    return block->model == MODEL_LAYERED && block->weighting == GAP_STANDARD;
+}
+
+/* |my| of a row of the half spectrum. */
+static size_t row_mode(const struct grid *grid, size_t row) {
+    return row <= grid->ny / 2 ? row : grid->ny - row;
+}
+
+/* S of an elastic layer whose far side stays flat and free of shear, with q = exp(-2kH) taken out
+ * of the hyperbolic functions: no term overflows, none cancels. */
+static double halfspace_length(double k, double height) {
+    double x = 2 * k * height;
+    if (isinf(x))
+        return 2 / k;
+    if (!(x > 0))
+        return height;
+    double q = exp(-x), e = -expm1(-x);
+    return 2 / k * e / (1 + q + 2 * q * (x / e));
+}
+
+static void halfspace_lengths(struct compliance *compliance) {
+    const struct grid *grid = &compliance->grid;
+    for (size_t mx = 0; mx <= grid->nx / 2; mx++)
+        for (size_t row = 0; row < grid->ny; row++) {
+            double qx = (double)mx / grid->lx;
+            double qy = row == 0 ? 0 : (double)row_mode(grid, row) / grid->ly;
+            compliance->length[mx * grid->ny + row] =
+                mx == 0 && row == 0
+                    ? 0
+                    : halfspace_length(2 * PI * hypot(qx, qy), compliance->block.height);
+        }
+}
+
+/* (1, 4, 1)/6 in one direction. */
+static double weight_symbol(size_t mode, size_t n) {
+    return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
+}
+
+static void weight_symbols(struct compliance *compliance) {
+    const struct grid *grid = &compliance->grid;
+    for (size_t mx = 0; mx <= grid->nx / 2; mx++)
+        for (size_t row = 0; row < grid->ny; row++)
+            compliance->weight[mx * grid->ny + row] =
+                weight_symbol(mx, grid->nx) * weight_symbol(row_mode(grid, row), grid->ny);
+}
+
+/* Lengths of very different size leave the range of doubles. */
+static int lengths_check(const struct compliance *compliance, struct error *err) {
+    for (size_t k = 1; k < compliance->waves; k++)
+        if (!(compliance->length[k] > 0 && isfinite(compliance->length[k])))
+            return error_set(err, ERROR_INPUT,
+                             "block height %g on a cell of length %g: their ratio is out of range",
+                             compliance->block.height, compliance->grid.lx);
+    return 0;
+}
+
+static int compliance_allocate(struct compliance *compliance, struct error *err) {
+    size_t waves = compliance->waves;
+    compliance->length = array_create(waves, sizeof *compliance->length);
+    if (has_weight(&compliance->block))
+        compliance->weight = array_create(waves, sizeof *compliance->weight);
+    if (!compliance->length || (has_weight(&compliance->block) && !compliance->weight))
+        return error_memory(err, waves * sizeof *compliance->length, "the compliance");
+    return 0;
+}
+
+static int compliance_fill(struct compliance *compliance, struct error *err) {
+    if (compliance->block.model == MODEL_LAYERED)
+        return error_set(err, ERROR_INPUT, "the layered model is not available");
+    halfspace_lengths(compliance);
+    if (compliance->weight)
+        weight_symbols(compliance);
+    return lengths_check(compliance, err);
+}
+
+int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,
+                      struct error *err) {
+    *out = NULL;
+    int status = grid_check(grid, err);
+    if (!status)
+        status = block_check(block, err);
+    if (status)
+        return status;
+    struct compliance *compliance = array_create(1, sizeof *compliance);
+    if (!compliance)
+        return error_memory(err, sizeof *compliance, "the compliance");
+    compliance->grid = *grid;
+    compliance->block = *block;
+    compliance->waves = wave_count(grid);
+    status = compliance_allocate(compliance, err);
+    if (!status)
+        status = compliance_fill(compliance, err);
+    if (status)
+        compliance_destroy(&compliance);
+    *out = compliance;
+    return status;
+}
+
+void compliance_destroy(struct compliance **compliance) {
+    if (!*compliance)
+        return;
+    free((*compliance)->length);
+    free((*compliance)->weight);
+    free(*compliance);
+    *compliance = NULL;
+}
+
+double compliance_bytes(const struct grid *grid, const struct block *block) {
+    double waves = ((double)(grid->nx / 2) + 1) * (double)grid->ny;
+    return sizeof(struct compliance) + waves * sizeof(double) * (has_weight(block) ? 2 : 1);
+}
