@@ -1,4 +1,5 @@
 #include "core/contact/compliance.h"
+#include "core/contact/layered.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -122,12 +123,14 @@ static int compliance_allocate(struct compliance *compliance, struct error *err)
 }
 
 static int compliance_fill(struct compliance *compliance, struct error *err) {
+    int status = 0;
     if (compliance->block.model == MODEL_LAYERED)
-        return error_set(err, ERROR_INPUT, "the layered model is not available");
-    halfspace_lengths(compliance);
+        status = layered_lengths(compliance, err);
+    else
+        halfspace_lengths(compliance);
     if (compliance->weight)
         weight_symbols(compliance);
-    return lengths_check(compliance, err);
+    return status ? status : lengths_check(compliance, err);
 }
 
 int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,
@@ -154,7 +157,7 @@ int compliance_create(struct compliance **out, const struct grid *grid, const st
 }
 
 void compliance_destroy(struct compliance **compliance) {
-    if (!*compliance)
+    if (!compliance || !*compliance)
         return;
     free((*compliance)->length);
     free((*compliance)->weight);

@@ -1,0 +1,294 @@
+/* Finite elements on equal columns, wave by wave.
+ *
+ * A displacement (i X, i Y, Z) exp(i k.r) at the nodes, X, Y and Z real functions of depth, linear
+ * in each layer. Sideways the products of shape functions and their derivatives become symbols: for
+ * one direction with node distance d and s = sin(k d/2), c = cos(k d/2),
+ *
+ *   <N, N> = 1 - 2 s^2/3   <N', N'> = 4 s^2/d^2   <N, N'> = 2 i s c/d   mean N = c   mean N' = 2 i
+ * s/d
+ *
+ * (over d, the phase taken at the middle of the element). They hold no difference of like numbers,
+ * however long the wave. In depth the displacement of a layer of thickness h is v + zeta w: v at
+ * its far face, v + w at its near face, 0 <= zeta <= 1. With phi the functions (1, zeta) the energy
+ * over area is
+ *
+ *   (1/2) integral of [u phi; u phi']^T [[A, C], [C^T, F]] [u phi; u phi'] dz
+ *
+ * from 2 mu (e:e - (div u)^2/3) + kappa (mean div u)^2, the mean over the element (B-bar; Hughes
+ * 1980): 2 mu/3 and kappa meet different functions of div u, so that a large kappa binds one
+ * dilatation an element alone.
+ *
+ * From the far side up, the stiffness M (3 by 3, over area) that the layers below oppose to v at
+ * the far face of a layer becomes that at its near face by eliminating w. Relative displacements
+ * keep what cancels apart: a long wave's small stiffness to X is never a difference of large ones.
+ */
+#include "core/contact/layered.h"
+#include "core/vectors.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* Waves that go through the layers together: one a lane of the innermost loops. */
+enum { LANES = 32 };
+typedef double lane[LANES];
+
+/* Elasticity with E* = E/(1 - nu^2) = 1. */
+struct material {
+    double mu, kappa; /* shear and bulk modulus */
+};
+
+static struct material material_of(double poisson) {
+    double mu = (1 - poisson) / 2;
+    return (struct material){mu, 2 * mu * (1 + poisson) / (3 * (1 - 2 * poisson))};
+}
+
+/* A direction's symbols for one wave. */
+struct symbols {
+    double mass;       /* <N, N> */
+    double stiffness;  /* <N', N'> */
+    double cross;      /* <N, N'>/i */
+    double mean, tilt; /* of N; of N', over i */
+};
+
+static struct symbols symbols_of(size_t mode, size_t n, double distance) {
+    /* At the Nyquist wave c is 0, not the cosine of a rounded pi/2. */
+    double angle = PI * (double)mode / (double)n;
+    double s = sin(angle), c = 2 * mode == n ? 0 : cos(angle);
+    return (struct symbols){.mass = 1 - 2 * s * s / 3,
+                            .stiffness = 4 * s * s / (distance * distance),
+                            .cross = 2 * s * c / distance,
+                            .mean = c,
+                            .tilt = 2 * s / distance};
+}
+
+/* The waves under way. Of symmetric matrices one half; terms left out are 0. */
+struct waves {
+    lane axx, axy, ayy, azz;           /* A */
+    lane bxx, bxy, byy;                /* the part of A that comes from the mean dilatation */
+    lane cxz, cyz, czx, czy;           /* C: row phi, column phi' */
+    lane fh, fz;                       /* F of X and Y, of Z */
+    lane mxx, mxy, myy, mxz, myz, mzz; /* M */
+    lane compliance;                   /* Z over pressure at the face */
+    size_t mx[LANES], my[LANES];
+    size_t count;
+};
+
+static void wave_add(struct waves *w, const struct material *material, const struct symbols *x,
+                     const struct symbols *y) {
+    size_t l = w->count++;
+    double mu = material->mu, kappa = material->kappa, third = 2 * mu / 3;
+    double kx = x->stiffness * y->mass, ky = x->mass * y->stiffness, mass = x->mass * y->mass;
+    double gx = x->cross * y->mass, gy = x->mass * y->cross;
+    /* mean div u = (tx X + ty Y) phi + tz Z phi' */
+    double tx = -x->tilt * y->mean, ty = -x->mean * y->tilt, tz = x->mean * y->mean;
+    w->bxx[l] = kappa * tx * tx;
+    w->bxy[l] = kappa * tx * ty;
+    w->byy[l] = kappa * ty * ty;
+    w->axx[l] = 2 * third * kx + mu * ky + w->bxx[l];
+    w->axy[l] = (mu - third) * x->cross * y->cross + w->bxy[l];
+    w->ayy[l] = 2 * third * ky + mu * kx + w->byy[l];
+    w->azz[l] = mu * (kx + ky);
+    w->cxz[l] = third * gx + kappa * tx * tz;
+    w->cyz[l] = third * gy + kappa * ty * tz;
+    w->czx[l] = mu * gx;
+    w->czy[l] = mu * gy;
+    w->fh[l] = mu * mass;
+    w->fz[l] = 2 * third * mass + kappa * tz * tz;
+}
+
+struct row {
+    double x, y, z;
+};
+
+struct symmetric {
+    double xx, xy, yy, xz, yz, zz;
+};
+
+/* H = L D L^T, L with ones on its diagonal. */
+struct factor {
+    double x, y, z;    /* 1/D */
+    double yx, zx, zy; /* L */
+};
+
+static inline struct factor factorise(struct symmetric h) {
+    struct factor f;
+    f.x = 1 / h.xx;
+    f.yx = h.xy * f.x;
+    f.zx = h.xz * f.x;
+    f.y = 1 / (h.yy - f.yx * h.xy);
+    double t = h.yz - f.zx * h.xy;
+    f.zy = t * f.y;
+    f.z = 1 / (h.zz - f.zx * h.xz - f.zy * t);
+    return f;
+}
+
+/* L^-1 g */
+static inline struct row forward(struct factor f, struct row g) {
+    struct row u = {.x = g.x};
+    u.y = g.y - f.yx * u.x;
+    u.z = g.z - f.zx * u.x - f.zy * u.y;
+    return u;
+}
+
+static inline double product(struct factor f, struct row u, struct row v) {
+    return u.x * v.x * f.x + u.y * v.y * f.y + u.z * v.z * f.z;
+}
+
+/* M = N - G H^-1 G^T, rows of G as given, into lane l. */
+static inline void condense(struct waves *w, size_t l, struct symmetric n, struct symmetric h,
+                            struct row gx, struct row gy, struct row gz) {
+    struct factor f = factorise(h);
+    struct row x = forward(f, gx), y = forward(f, gy), z = forward(f, gz);
+    w->mxx[l] = n.xx - product(f, x, x);
+    w->mxy[l] = n.xy - product(f, x, y);
+    w->myy[l] = n.yy - product(f, y, y);
+    w->mxz[l] = n.xz - product(f, x, z);
+    w->myz[l] = n.yz - product(f, y, z);
+    w->mzz[l] = n.zz - product(f, z, z);
+}
+
+/* The layer on the far side, where Z = 0 and X, Y are free. Z of w is that of the near face and
+ * stays; w's X and Y go, and a unit pivot stands in for Z. */
+WIDE_VECTORS static void far_layer(struct waves *w, double h) {
+    double a = h / 2, b = h / 3, c = h / 12;
+    for (size_t l = 0; l < LANES; l++) {
+        struct symmetric n = {h * w->axx[l], h * w->axy[l], h * w->ayy[l],
+                              w->cxz[l],     w->cyz[l],     b * w->azz[l] + w->fz[l] / h};
+        double shear = w->fh[l] / h;
+        struct symmetric pivot = {.xx = b * w->axx[l] - c * w->bxx[l] + shear,
+                                  .xy = b * w->axy[l] - c * w->bxy[l],
+                                  .yy = b * w->ayy[l] - c * w->byy[l] + shear,
+                                  .zz = 1};
+        struct row gx = {-a * w->axx[l], -a * w->axy[l], 0};
+        struct row gy = {-a * w->axy[l], -a * w->ayy[l], 0};
+        struct row gz = {(w->czx[l] - w->cxz[l]) / 2, (w->czy[l] - w->cyz[l]) / 2, 0};
+        condense(w, l, n, pivot, gx, gy, gz);
+    }
+}
+
+/* Any other layer: with P, Q, R the blocks of v v, v w, w w and N = M + P, the energy
+ * (v, w fixed by the near face v + w) leaves G = N - Q and H = N - Q - Q^T + R. */
+WIDE_VECTORS static void next_layer(struct waves *w, double h) {
+    double a = h / 2, b = h / 3, c = h / 12;
+    for (size_t l = 0; l < LANES; l++) {
+        struct symmetric m = {w->mxx[l], w->mxy[l], w->myy[l], w->mxz[l], w->myz[l], w->mzz[l]};
+        struct symmetric n = {
+            m.xx + h * w->axx[l], m.xy + h * w->axy[l], m.yy + h * w->ayy[l], m.xz, m.yz,
+            m.zz + h * w->azz[l]};
+        double shear = w->fh[l] / h;
+        struct symmetric pivot = {
+            m.xx + b * w->axx[l] - c * w->bxx[l] + shear, m.xy + b * w->axy[l] - c * w->bxy[l],
+            m.yy + b * w->ayy[l] - c * w->byy[l] + shear, m.xz - (w->cxz[l] + w->czx[l]) / 2,
+            m.yz - (w->cyz[l] + w->czy[l]) / 2,           m.zz + b * w->azz[l] + w->fz[l] / h};
+        double gxy = m.xy + a * w->axy[l];
+        struct row gx = {m.xx + a * w->axx[l], gxy, m.xz - w->cxz[l]};
+        struct row gy = {gxy, m.yy + a * w->ayy[l], m.yz - w->cyz[l]};
+        struct row gz = {m.xz - w->czx[l], m.yz - w->czy[l], m.zz + a * w->azz[l]};
+        condense(w, l, n, pivot, gx, gy, gz);
+    }
+}
+
+/* Z of the face under a unit pressure, X and Y free: (M^-1)_zz. */
+WIDE_VECTORS static void face(struct waves *w) {
+    for (size_t l = 0; l < LANES; l++) {
+        struct symmetric m = {w->mxx[l], w->mxy[l], w->myy[l], w->mxz[l], w->myz[l], w->mzz[l]};
+        w->compliance[l] = factorise(m).z;
+    }
+}
+
+/* A mesh under way; lengths in units of dx, so that no unit of the user's overflows. */
+struct mesh {
+    struct compliance *compliance;
+    struct material material;
+    double *thickness;     /* layers, from the face down */
+    struct symbols *x, *y; /* nx/2 + 1, ny/2 + 1 */
+    bool square;           /* x and y may be swapped */
+    struct waves waves;
+};
+
+/* |mx| and |my| stand for all signs, and on a square grid for both orders. */
+static void length_store(struct compliance *compliance, size_t mx, size_t my, double length) {
+    size_t ny = compliance->grid.ny;
+    double *column = compliance->length + mx * ny;
+    column[my] = length;
+    column[my ? ny - my : 0] = length;
+}
+
+/* Takes the waves through the layers and stores what comes out. */
+static void waves_solve(struct mesh *mesh) {
+    struct waves *w = &mesh->waves;
+    size_t layers = mesh->compliance->layers;
+    far_layer(w, mesh->thickness[layers - 1]);
+    for (size_t k = layers - 1; k-- > 0;)
+        next_layer(w, mesh->thickness[k]);
+    face(w);
+    double unit = grid_dx(&mesh->compliance->grid);
+    for (size_t l = 0; l < w->count; l++) {
+        length_store(mesh->compliance, w->mx[l], w->my[l], unit * w->compliance[l]);
+        if (mesh->square)
+            length_store(mesh->compliance, w->my[l], w->mx[l], unit * w->compliance[l]);
+    }
+    w->count = 0;
+}
+
+static void mesh_solve(struct mesh *mesh) {
+    const struct grid *grid = &mesh->compliance->grid;
+    struct waves *w = &mesh->waves;
+    for (size_t mx = 0; mx <= grid->nx / 2; mx++)
+        for (size_t my = mx == 0; my <= (mesh->square ? mx : grid->ny / 2); my++) {
+            w->mx[w->count] = mx;
+            w->my[w->count] = my;
+            wave_add(w, &mesh->material, &mesh->x[mx], &mesh->y[my]);
+            if (w->count == LANES)
+                waves_solve(mesh);
+        }
+    if (w->count)
+        waves_solve(mesh);
+}
+
+/* Layers and symbols; the block's height is checked, so that only its ratio to dx can fail. */
+static int mesh_prepare(struct mesh *mesh, struct error *err) {
+    struct compliance *compliance = mesh->compliance;
+    const struct grid *grid = &compliance->grid;
+    double dx = grid_dx(grid), dy = grid_is_profile(grid) ? dx : grid_dy(grid);
+    compliance->layers = block_layers(grid, &compliance->block, mesh->thickness);
+    if (compliance->layers == 0)
+        return error_set(err, ERROR_INPUT,
+                         "a block of height %g needs more than %d layers that grow by %g; allowed: "
+                         "a lower block, a larger growth, fewer points",
+                         compliance->block.height, LAYERS_MOST, compliance->block.layer_growth);
+    for (size_t k = 0; k < compliance->layers; k++)
+        mesh->thickness[k] /= dx;
+    for (size_t mx = 0; mx <= grid->nx / 2; mx++)
+        mesh->x[mx] = symbols_of(mx, grid->nx, 1);
+    for (size_t my = 0; my <= grid->ny / 2; my++)
+        mesh->y[my] = symbols_of(my, grid->ny, dy / dx);
+    mesh->square = grid->nx == grid->ny && dx == dy;
+    mesh->material = material_of(compliance->block.poisson);
+    return 0;
+}
+
+int layered_lengths(struct compliance *compliance, struct error *err) {
+    const struct grid *grid = &compliance->grid;
+    size_t symbols = grid->nx / 2 + 1 + grid->ny / 2 + 1;
+    struct mesh *mesh = array_create(1, sizeof *mesh);
+    double *thickness = array_create(LAYERS_MOST, sizeof *thickness);
+    struct symbols *directions = array_create(symbols, sizeof *directions);
+    int status = 0;
+    if (!mesh || !thickness || !directions) {
+        status = error_memory(err, symbols * sizeof *directions, "the mesh of the block");
+    } else {
+        *mesh = (struct mesh){.compliance = compliance,
+                              .thickness = thickness,
+                              .x = directions,
+                              .y = directions + grid->nx / 2 + 1};
+        status = mesh_prepare(mesh, err);
+        if (!status)
+            mesh_solve(mesh);
+    }
+    free(directions);
+    free(thickness);
+    free(mesh);
+    return status;
+}

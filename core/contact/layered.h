@@ -1,0 +1,11 @@
+/* The compliance of a mesh of linear finite elements whose columns are equal, wave by wave. */
+#ifndef RUGO_CORE_CONTACT_LAYERED_H
+#define RUGO_CORE_CONTACT_LAYERED_H
+
+#include "core/contact/compliance.h"
+
+/* Fills length and layers of a compliance whose block was checked. ERROR_INPUT when the block needs
+ * more than LAYERS_MOST layers; ERROR_MEMORY. */
+int layered_lengths(struct compliance *compliance, struct error *err);
+
+#endif
