@@ -59,12 +59,24 @@ int64_t store_now(const struct store *store) {
     return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
+const char *store_time(struct store *store) {
+    time_t now = time(NULL);
+    struct tm utc = {0};
+    if (now != store->time || !*store->time_text) {
+        gmtime_r(&now, &utc);
+        strftime(store->time_text, sizeof store->time_text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+        store->time = now;
+    }
+    return store->time_text;
+}
+
 int random_text(char *text, size_t digits, struct error *err) {
     unsigned char bytes[32];
     if (digits / 2 > sizeof bytes || getrandom(bytes, digits / 2, 0) != (ssize_t)(digits / 2))
         return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
-    for (size_t i = 0; i < digits / 2; i++)
-        snprintf(text + 2 * i, 3, "%02x", bytes[i]);
+    for (size_t i = 0; i < digits; i++)
+        text[i] = "0123456789abcdef"[bytes[i / 2] >> (i % 2 ? 0 : 4) & 15];
+    text[digits] = 0;
     return 0;
 }
 
@@ -92,7 +104,8 @@ static int find_statement(struct store *store, const char *sql, sqlite3_stmt **o
     return 0;
 }
 
-static int bind(sqlite3_stmt *statement, const char *format, va_list arguments) {
+static int bind(sqlite3_stmt *statement, sqlite3_destructor_type life, const char *format,
+                va_list arguments) {
     int code = SQLITE_OK;
     for (int column = 1; !code && *format; format++, column++) {
         if (*format == 'i') {
@@ -101,21 +114,22 @@ static int bind(sqlite3_stmt *statement, const char *format, va_list arguments) 
             code = sqlite3_bind_double(statement, column, va_arg(arguments, double));
         } else if (*format == 't') {
             const char *text = va_arg(arguments, const char *);
-            code = sqlite3_bind_text(statement, column, text, -1, SQLITE_TRANSIENT);
+            code = sqlite3_bind_text(statement, column, text, -1, life);
         } else {
             const void *data = va_arg(arguments, const void *);
             size_t size = va_arg(arguments, size_t);
-            code = size ? sqlite3_bind_blob64(statement, column, data, size, SQLITE_TRANSIENT)
+            code = size ? sqlite3_bind_blob64(statement, column, data, size, life)
                         : sqlite3_bind_zeroblob(statement, column, 0);
         }
     }
     return code;
 }
 
-static int query(struct store *store, sqlite3_stmt **out, struct error *err, const char *sql,
-                 const char *format, va_list arguments) {
+/* life: SQLITE_TRANSIENT copies what is bound, SQLITE_STATIC does not. */
+static int query(struct store *store, sqlite3_stmt **out, sqlite3_destructor_type life,
+                 struct error *err, const char *sql, const char *format, va_list arguments) {
     int status = find_statement(store, sql, out, err);
-    if (!status && bind(*out, format, arguments))
+    if (!status && bind(*out, life, format, arguments))
         status = store_error(store, err);
     return status;
 }
@@ -124,7 +138,7 @@ int store_query(struct store *store, sqlite3_stmt **out, struct error *err, cons
                 const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    int status = query(store, out, err, sql, format, arguments);
+    int status = query(store, out, SQLITE_TRANSIENT, err, sql, format, arguments);
     va_end(arguments);
     return status;
 }
@@ -142,7 +156,7 @@ int store_run(struct store *store, struct error *err, const char *sql, const cha
     sqlite3_stmt *statement = NULL;
     va_list arguments;
     va_start(arguments, format);
-    int status = query(store, &statement, err, sql, format, arguments);
+    int status = query(store, &statement, SQLITE_STATIC, err, sql, format, arguments);
     va_end(arguments);
     if (!status)
         status = store_step(store, statement, err);
@@ -158,7 +172,7 @@ int store_integer(struct store *store, int64_t *out, struct error *err, const ch
     sqlite3_stmt *statement = NULL;
     va_list arguments;
     va_start(arguments, format);
-    int status = query(store, &statement, err, sql, format, arguments);
+    int status = query(store, &statement, SQLITE_STATIC, err, sql, format, arguments);
     va_end(arguments);
     if (!status)
         status = store_step(store, statement, err);
@@ -315,6 +329,28 @@ static void set_limits(sqlite3 *db) {
     sqlite3_busy_handler(db, wait_politely, NULL);
 }
 
+/* After a reboot the clock of the leases began anew: those given before run out at once. */
+static int void_old_leases(struct store *store, struct error *err) {
+    int64_t known = 0;
+    int status = store_integer(store, &known, err, "SELECT count(*) FROM boot WHERE id = ?", "t",
+                               store->boot);
+    if (status || known)
+        return status;
+    status = change_begin(store, err);
+    if (status)
+        return status;
+    /* another process may have come first, and given leases of this boot */
+    status = store_run(store, err,
+                       "UPDATE job SET lease_until = 0 WHERE state = 'running' AND NOT EXISTS "
+                       "(SELECT 1 FROM boot WHERE id = ?)",
+                       "t", store->boot);
+    if (!status)
+        status = store_run(store, err, "DELETE FROM boot", "");
+    if (!status)
+        status = store_run(store, err, "INSERT INTO boot (id) VALUES (?)", "t", store->boot);
+    return change_end(store, status, err);
+}
+
 static int configure(struct store *store, struct error *err) {
     set_limits(store->db);
     int status = check_version(store, false, err);
@@ -328,6 +364,8 @@ static int configure(struct store *store, struct error *err) {
                          "PRAGMA foreign_keys = ON; PRAGMA cache_size = -16384;"
                          "PRAGMA temp_store = MEMORY",
                          err);
+    if (!status && !store->options.read_only)
+        status = void_old_leases(store, err);
     return status;
 }
 

@@ -105,7 +105,15 @@ struct block_result {
     const unsigned char *data;
     size_t size;
     double seconds;
+    const struct block_text *text; /* NULL: store_complete makes it */
 };
+/* Names and scalars as they are stored. Whoever queues for the one writer makes them beforehand. */
+struct block_text {
+    char *names, *scalars; /* owned */
+};
+int block_text_create(struct block_text *out, const struct block_result *result, struct error *err);
+void block_text_clear(struct block_text *text);
+
 /* Stores the result once. Completing again with the same token is harmless (0, *first_time false);
  * a lost lease is ERROR_STATE and its result dropped. *case_done: no job of the case is left. */
 int store_complete(struct store *store, int64_t job, const char *token,

@@ -111,8 +111,10 @@ int store_results(struct store *store, const char *study, uint64_t case_number, 
     int status = study_row(store, study, &id, err);
     if (!status)
         status = store_query(store, &row, err,
-                             "SELECT first, count, names, scalars, data, seconds FROM result WHERE "
-                             "study_id = ? AND case_number = ? ORDER BY first",
+                             "SELECT job.first, job.count, scalar_names.names, result.scalars, "
+                             "result.data, job.seconds FROM job JOIN result ON result.job_id = "
+                             "job.id JOIN scalar_names ON scalar_names.id = result.names_id "
+                             "WHERE job.study_id = ? AND job.case_number = ? ORDER BY job.first",
                              "ii", id, (int64_t)case_number);
     if (status)
         return status;

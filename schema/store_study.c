@@ -19,8 +19,8 @@ int study_settle(struct store *store, int64_t study, struct error *err) {
         " state = CASE WHEN state IN ('cancelled', 'queued') OR jobs_waiting + "
         "jobs_running > 0 THEN state WHEN jobs_failed > 0 THEN 'failed' ELSE 'done' END,"
         " finished = CASE WHEN jobs_waiting + jobs_running > 0 THEN NULL"
-        " ELSE coalesce(finished, " UTC_NOW ") END WHERE id = ?",
-        "i", study);
+        " ELSE coalesce(finished, ?) END WHERE id = ?",
+        "ti", store_time(store), study);
 }
 
 /* --- submission --- */
@@ -59,14 +59,17 @@ static int insert_study(struct store *store, const struct study *study, const ch
         jobs += blocks_of(study, &study->cases[c]);
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
-    int status = store_run(
-        store, err,
-        "INSERT INTO study (public, name, kind, seed, realisations, source, "
-        "submit_key, state, cases, jobs, jobs_waiting, created) VALUES (?, ?, ?, ?, "
-        "?, ?, ?, 'queued', ?, ?, ?, " UTC_NOW ")",
-        "ttttittiii", id, study->name, study->kind->name, seed, (int64_t)study->realisations,
-        study->source, key, (int64_t)study->case_count, (int64_t)jobs, (int64_t)jobs);
+    int status = store_run(store, err,
+                           "INSERT INTO study (public, name, kind, seed, realisations, submit_key, "
+                           "state, cases, jobs, "
+                           "jobs_waiting, created) VALUES (?, ?, ?, ?, ?, ?, 'queued', ?, ?, ?, ?)",
+                           "ttttitiiit", id, study->name, study->kind->name, seed,
+                           (int64_t)study->realisations, key, (int64_t)study->case_count,
+                           (int64_t)jobs, (int64_t)jobs, store_time(store));
     int64_t row = sqlite3_last_insert_rowid(store->db);
+    if (!status)
+        status = store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",
+                           "it", row, study->source);
     for (size_t c = 0; !status && c < study->case_count; c++)
         status = insert_case(store, study, row, c, err);
     return status;
@@ -79,8 +82,9 @@ static int find_key(struct store *store, const struct study *study, const char *
         return 0;
     sqlite3_stmt *statement = NULL;
     int status = store_query(store, &statement, err,
-                             "SELECT public, source = ? FROM study WHERE submit_key = ?", "tt",
-                             study->source, key);
+                             "SELECT public, source = ? FROM study JOIN study_source ON "
+                             "study_id = study.id WHERE submit_key = ?",
+                             "tt", study->source, key);
     if (!status)
         status = store_step(store, statement, err);
     if (status <= 0)
@@ -264,9 +268,9 @@ int store_list(struct store *store, const char *after, size_t limit, struct stud
 
 static int cancel_jobs(struct store *store, int64_t row, struct error *err) {
     int status = store_run(store, err,
-                           "UPDATE job SET state = 'cancelled', ended = " UTC_NOW
-                           " WHERE study_id = ? AND state IN ('waiting', 'running')",
-                           "i", row);
+                           "UPDATE job SET state = 'cancelled', ended = ? WHERE study_id = ? AND "
+                           "state IN ('waiting', 'running')",
+                           "ti", store_time(store), row);
     if (!status)
         status = store_run(
             store, err,

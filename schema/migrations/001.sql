@@ -6,7 +6,6 @@ CREATE TABLE study (
     kind TEXT NOT NULL,
     seed TEXT NOT NULL,                    -- decimal: 64 unsigned bits
     realisations INTEGER NOT NULL,         -- of each case
-    source TEXT NOT NULL,                  -- the document as it was given
     submit_key TEXT UNIQUE,
     state TEXT NOT NULL CHECK (state IN ('queued', 'running', 'done', 'failed', 'cancelled')),
     cases INTEGER NOT NULL,
@@ -22,6 +21,12 @@ CREATE TABLE study (
     revision INTEGER NOT NULL DEFAULT 1,   -- rises with every change
     created TEXT NOT NULL,
     finished TEXT
+);
+CREATE INDEX study_open ON study(id) WHERE state IN ('queued', 'running');
+-- Apart, because the counters of a study change with every job.
+CREATE TABLE study_source (
+    study_id INTEGER PRIMARY KEY REFERENCES study(id) ON DELETE CASCADE,
+    source TEXT NOT NULL                   -- the document as it was given
 );
 
 CREATE TABLE study_case (
@@ -48,7 +53,6 @@ CREATE TABLE job (
     attempts INTEGER NOT NULL DEFAULT 0,   -- claims that counted
     token TEXT,                            -- fence of the last lease
     lease_until INTEGER,
-    lease_boot TEXT,                       -- a lease of another boot is void
     reported INTEGER NOT NULL DEFAULT 0,   -- realisations, by the last heartbeat
     worker TEXT,
     host TEXT,
@@ -60,19 +64,20 @@ CREATE TABLE job (
 CREATE INDEX job_waiting ON job(study_id, id) WHERE state = 'waiting';
 CREATE INDEX job_lease ON job(lease_until) WHERE state = 'running';
 CREATE INDEX job_case ON job(study_id, case_number, first);
+-- The boot on whose clock the leases run, one row: leases of another are void (lease_until 0).
+CREATE TABLE boot (id TEXT NOT NULL);
 
+-- Written once, and never with what changes: a job's state does not rewrite its result.
 CREATE TABLE result (
     job_id INTEGER PRIMARY KEY REFERENCES job(id) ON DELETE CASCADE,
-    study_id INTEGER NOT NULL,
-    case_number INTEGER NOT NULL,
-    first INTEGER NOT NULL,
-    count INTEGER NOT NULL,
-    names TEXT NOT NULL,                   -- ["skewness", ...]
+    names_id INTEGER NOT NULL,             -- of scalar_names
     scalars TEXT NOT NULL,                 -- [[...], ...], a row a realisation
-    data BLOB NOT NULL,                    -- the kind's accumulators
-    seconds REAL NOT NULL
+    data BLOB NOT NULL                     -- the kind's accumulators
 );
-CREATE INDEX result_case ON result(study_id, case_number, first);
+CREATE TABLE scalar_names (
+    id INTEGER PRIMARY KEY,
+    names TEXT NOT NULL UNIQUE             -- ["skewness", ...]
+);
 
 CREATE TABLE published (
     study_id INTEGER NOT NULL REFERENCES study(id) ON DELETE CASCADE,
@@ -123,10 +128,11 @@ CREATE VIEW curve_points AS
            p.x2, c.model, c.level
     FROM study s JOIN curve c ON c.study_id = s.id JOIN point p ON p.curve_id = c.id;
 CREATE VIEW realisation_scalars AS
-    SELECT s.public AS study, r.case_number AS "case", r.first + one.key AS realisation,
+    SELECT s.public AS study, j.case_number AS "case", j.first + one.key AS realisation,
            (SELECT json_group_object(n.value, one.value -> ('$[' || n.key || ']'))
-            FROM json_each(r.names) n) AS scalars
-    FROM study s JOIN result r ON r.study_id = s.id, json_each(r.scalars) one;
+            FROM json_each(names.names) n) AS scalars
+    FROM study s JOIN job j ON j.study_id = s.id JOIN result r ON r.job_id = j.id
+    JOIN scalar_names names ON names.id = r.names_id, json_each(r.scalars) one;
 CREATE VIEW job_log AS
     SELECT s.public AS study, j.case_number AS "case", j.id AS job, j.first, j.count, j.state, j.worker,
            j.host, j.attempts, j.seconds, j.error, j.claimed, j.ended

@@ -413,7 +413,7 @@ static void leases_of_another_boot_are_void(void **state) {
     int64_t first = job.id;
     claimed_job_clear(&job);
     store_close(&store);
-    execute("boot.db", "UPDATE job SET lease_boot = 'another'");
+    execute("boot.db", "UPDATE boot SET id = 'another'");
     store = open_store("boot.db");
     clock_ms = 10; /* the boot clock began anew */
     assert_int_equal(claim(store, "after", &job), 1);
