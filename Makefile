@@ -10,10 +10,10 @@ Q      = $(if $(V),,@)
 say    = $(if $(V),@:,@echo)
 
 PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl nettle cmocka
-APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev \
+APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev libsuitesparse-dev \
            libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev nettle-dev libcmocka-dev
 # those without a pkg-config file
-HEADERS  = /usr/include/Random123/philox.h
+HEADERS  = /usr/include/Random123/philox.h /usr/include/suitesparse/cholmod.h
 
 WARN   = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
 OPT    = -O3
@@ -36,6 +36,8 @@ LIBS_jobs   = -lcjson $(LIBS_core)
 LIBS_schema = -lsqlite3 $(LIBS_jobs)
 LIBS_worker = -lcurl $(LIBS_schema)
 LIBS_server = -lmicrohttpd -lnettle $(LIBS_worker)
+# what a ladder's tests need beyond their layer
+LIBS_validation_core = -lcholmod
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
 embedded = $(wildcard $(1)/migrations/*.sql $(1)/web/* $(1)/*.yaml)
@@ -81,7 +83,7 @@ define TESTS
 TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c))
 $$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(call archive,$(BELOW_$(2)))
 	$(say) LD $$@
-	$(Q)$(CC) $(LDFLAGS) -o $$@ $$^ -lcmocka $(LIBS_$(2))
+	$(Q)$(CC) $(LDFLAGS) -o $$@ $$^ -lcmocka $(LIBS_$(1)_$(2)) $(LIBS_$(2))
 $(1)-$(2): $$(TESTS_$(1)_$(2))
 	tests/run-tests $$^
 .PHONY: $(1)-$(2)

@@ -1,0 +1,261 @@
+/* Protects the compliance of the contact's linear models: the layered block against an assembled
+ * stiffness of the same mesh, factorised by CHOLMOD; against the half-space and the exact layer as
+ * the mesh is refined; the effect of growing layers; no locking near nu = 0.5.
+ *
+ * The assembly here shares nothing with core/contact: elements by Gauss quadrature from their
+ * strain-displacement matrices, node by node, one load at one node. */
+#include "core/contact/compliance.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+#include <string.h>
+#include <suitesparse/cholmod.h>
+
+enum { NODES = 8, FREEDOMS = 3 * NODES, STRAINS = 6 };
+
+/* --- one element, corners numbered by bits: x 1, y 2, z 4; two unknowns a node less in a profile
+ * --- */
+
+struct element {
+    double size[3]; /* dx, dy, h */
+    bool flat;      /* plane strain in x and z */
+    bool mean_dilatation;
+    double poisson;
+};
+
+static double side(size_t a, size_t axis) {
+    return a >> axis & 1 ? 1 : -1;
+}
+
+/* Gradients of the shape functions at a point of [-1, 1]^3; in plane strain nothing depends on y
+ * and the corners with y bit 0 stand for both. */
+static void gradients(const struct element *e, const double *at, double (*b)[3]) {
+    memset(b, 0, NODES * sizeof *b);
+    for (size_t a = 0; a < NODES; a++) {
+        if (e->flat && (a & 2))
+            continue;
+        double n[3], d[3];
+        for (size_t axis = 0; axis < 3; axis++) {
+            n[axis] = (1 + side(a, axis) * at[axis]) / 2;
+            d[axis] = side(a, axis) / e->size[axis];
+        }
+        if (e->flat) {
+            n[1] = 1;
+            d[1] = 0;
+        }
+        b[a][0] = d[0] * n[1] * n[2];
+        b[a][1] = n[0] * d[1] * n[2];
+        b[a][2] = n[0] * n[1] * d[2];
+    }
+}
+
+/* Rows xx, yy, zz, yz, xz, xy (engineering shear); columns 3 a + axis. Hughes (1980): a third of
+ * the mean dilatation takes the place of a third of the local one. */
+static void strain_matrix(double (*b)[3], double (*mean)[3], double (*strain)[FREEDOMS]) {
+    static const size_t SHEAR[3][2] = {{1, 2}, {0, 2}, {0, 1}};
+    memset(strain, 0, STRAINS * sizeof *strain);
+    for (size_t a = 0; a < NODES; a++)
+        for (size_t axis = 0; axis < 3; axis++) {
+            strain[axis][3 * a + axis] = b[a][axis];
+            for (size_t row = 0; mean && row < 3; row++)
+                strain[row][3 * a + axis] += (mean[a][axis] - b[a][axis]) / 3;
+            for (size_t shear = 0; shear < 3; shear++) {
+                if (SHEAR[shear][0] == axis)
+                    strain[3 + shear][3 * a + axis] = b[a][SHEAR[shear][1]];
+                if (SHEAR[shear][1] == axis)
+                    strain[3 + shear][3 * a + axis] = b[a][SHEAR[shear][0]];
+            }
+        }
+}
+
+static void element_stiffness(const struct element *e, double (*k)[FREEDOMS]) {
+    double modulus = 1 - e->poisson * e->poisson;
+    double lambda = modulus * e->poisson / ((1 + e->poisson) * (1 - 2 * e->poisson));
+    double mu = modulus / (2 * (1 + e->poisson));
+    double b[NODES][3], mean[NODES][3] = {{0}}, strain[STRAINS][FREEDOMS];
+    double weight = e->size[0] * (e->flat ? 1 : e->size[1]) * e->size[2] / 8;
+    for (size_t q = 0; q < 8; q++) {
+        double at[3] = {side(q, 0) / sqrt(3), side(q, 1) / sqrt(3), side(q, 2) / sqrt(3)};
+        gradients(e, at, b);
+        for (size_t i = 0; i < NODES * 3; i++)
+            mean[i / 3][i % 3] += b[i / 3][i % 3] / 8;
+    }
+    memset(k, 0, FREEDOMS * sizeof *k);
+    for (size_t q = 0; q < 8; q++) {
+        double at[3] = {side(q, 0) / sqrt(3), side(q, 1) / sqrt(3), side(q, 2) / sqrt(3)};
+        gradients(e, at, b);
+        strain_matrix(b, e->mean_dilatation ? mean : NULL, strain);
+        for (size_t i = 0; i < FREEDOMS; i++)
+            for (size_t j = 0; j < FREEDOMS; j++) {
+                double trace_i = strain[0][i] + strain[1][i] + strain[2][i];
+                double trace_j = strain[0][j] + strain[1][j] + strain[2][j];
+                double sum = lambda * trace_i * trace_j;
+                for (size_t s = 0; s < STRAINS; s++)
+                    sum += (s < 3 ? 2 : 1) * mu * strain[s][i] * strain[s][j];
+                k[i][j] += weight * sum;
+            }
+    }
+}
+
+/* --- the assembled block --- */
+
+struct model {
+    struct grid grid;
+    struct block block;
+    bool mean_dilatation;
+    size_t layers;
+    double thickness[LAYERS_MOST];
+    cholmod_common common;
+    cholmod_triplet *triplet;
+};
+
+/* Number of an unknown, or -1 where it is held: Z of the far side, X and Y of one of its nodes (no
+ * force acts on them), Y of a profile. */
+static int unknown(const struct model *model, size_t level, size_t j, size_t i, size_t axis) {
+    size_t nx = model->grid.nx, ny = model->grid.ny, node = (level * ny + j) * nx + i;
+    bool profile = grid_is_profile(&model->grid);
+    bool far_side = level == model->layers;
+    if ((profile && axis == 1) || (far_side && axis == 2) || (far_side && i + j == 0))
+        return -1;
+    return (int)(3 * node + axis);
+}
+
+static int element_unknown(const struct model *model, size_t k, size_t j, size_t i, size_t f) {
+    size_t a = f / 3;
+    if (grid_is_profile(&model->grid) && (a & 2))
+        return -1;
+    size_t right = (i + (a & 1)) % model->grid.nx, back = (j + (a >> 1 & 1)) % model->grid.ny;
+    return unknown(model, a & 4 ? k : k + 1, back, right, f % 3);
+}
+
+static void triplet_add(cholmod_triplet *t, int row, int column, double value) {
+    if (row < 0 || column < 0 || row < column)
+        return; /* held, or of the upper half */
+    assert_true(t->nnz < t->nzmax);
+    ((int *)t->i)[t->nnz] = row;
+    ((int *)t->j)[t->nnz] = column;
+    ((double *)t->x)[t->nnz++] = value;
+}
+
+static void assemble(struct model *model) {
+    size_t nx = model->grid.nx, ny = model->grid.ny, levels = model->layers + 1;
+    size_t unknowns = 3 * nx * ny * levels;
+    size_t most = nx * ny * model->layers * FREEDOMS * FREEDOMS + unknowns;
+    bool profile = grid_is_profile(&model->grid);
+    double k[FREEDOMS][FREEDOMS];
+    model->triplet =
+        cholmod_allocate_triplet(unknowns, unknowns, most, -1, CHOLMOD_REAL, &model->common);
+    assert_non_null(model->triplet);
+    for (size_t layer = 0; layer < model->layers; layer++) {
+        struct element element = {
+            {grid_dx(&model->grid), profile ? 1 : grid_dy(&model->grid), model->thickness[layer]},
+            profile,
+            model->mean_dilatation,
+            model->block.poisson};
+        element_stiffness(&element, k);
+        for (size_t j = 0; j < ny; j++)
+            for (size_t i = 0; i < nx; i++)
+                for (size_t e = 0; e < FREEDOMS * FREEDOMS; e++)
+                    triplet_add(model->triplet, element_unknown(model, layer, j, i, e / FREEDOMS),
+                                element_unknown(model, layer, j, i, e % FREEDOMS),
+                                k[e / FREEDOMS][e % FREEDOMS]);
+    }
+    for (size_t u = 0; u < unknowns; u++) /* a held unknown is a lone 1 */
+        if (unknown(model, u / (3 * nx * ny), u / (3 * nx) % ny, u / 3 % nx, u % 3) < 0)
+            triplet_add(model->triplet, (int)u, (int)u, 1);
+}
+
+/* Z of the face (ny rows of nx) under a unit force at its first node. */
+static void face_response(struct model *model, double *z) {
+    cholmod_common *common = &model->common;
+    assemble(model);
+    cholmod_sparse *matrix = cholmod_triplet_to_sparse(model->triplet, 0, common);
+    cholmod_factor *factor = cholmod_analyze(matrix, common);
+    assert_true(cholmod_factorize(matrix, factor, common));
+    assert_int_equal(common->status, CHOLMOD_OK);
+    cholmod_dense *load = cholmod_zeros(matrix->nrow, 1, CHOLMOD_REAL, common);
+    ((double *)load->x)[2] = 1;
+    cholmod_dense *solution = cholmod_solve(CHOLMOD_A, factor, load, common);
+    assert_non_null(solution);
+    for (size_t n = 0; n < grid_points(&model->grid); n++)
+        z[n] = ((double *)solution->x)[3 * n + 2];
+    cholmod_free_dense(&solution, common);
+    cholmod_free_dense(&load, common);
+    cholmod_free_factor(&factor, common);
+    cholmod_free_sparse(&matrix, common);
+    cholmod_free_triplet(&model->triplet, common);
+}
+
+/* S of all waves, in the layout of compliance.h: the force at one node holds all waves alike. */
+static double *assembled_lengths(const struct grid *grid, const struct block *block,
+                                 bool mean_dilatation) {
+    struct model *model = calloc(1, sizeof *model);
+    size_t nx = grid->nx, ny = grid->ny;
+    double *z = calloc(nx * ny, sizeof *z);
+    double *length = calloc((nx / 2 + 1) * ny, sizeof *length);
+    assert_true(model && z && length);
+    model->grid = *grid;
+    model->block = *block;
+    model->mean_dilatation = mean_dilatation;
+    model->layers = block_layers(grid, block, model->thickness);
+    cholmod_start(&model->common);
+    face_response(model, z);
+    cholmod_finish(&model->common);
+    double area = grid_dx(grid) * (ny == 1 ? 1 : grid_dy(grid));
+    for (size_t mx = 0; mx <= nx / 2; mx++)
+        for (size_t row = 0; row < ny; row++)
+            for (size_t n = 0; n < nx * ny; n++)
+                length[mx * ny + row] += area * z[n] *
+                                         cos(2 * M_PI *
+                                             ((double)(mx * (n % nx) % nx) / (double)nx +
+                                              (double)(row * (n / nx) % ny) / (double)ny));
+    free(z);
+    free(model);
+    return length;
+}
+
+static struct compliance *make(const struct grid *grid, const struct block *block) {
+    struct compliance *compliance = NULL;
+    struct error err = {0};
+    if (compliance_create(&compliance, grid, block, &err))
+        fail_msg("%s", err.text);
+    return compliance;
+}
+
+/* Conditioning of the assembled matrix, about (layers)^2 x lambda/mu (5000 at nu = 0.4999), times
+ * the rounding of a double leaves 1e-10 or so. */
+static void layered_is_the_assembled_block(void **state) {
+    (void)state;
+    static const struct grid GRIDS[] = {{32, 1, 1, 9}, {17, 1, 3, 9}, {2, 1, 1, 1},
+                                        {6, 6, 2, 2},  {5, 8, 1, 1},  {7, 5, 3, 1},
+                                        {4, 2, 1, 5},  {2, 2, 1, 1},  {3, 3, 1, 1}};
+    static const double POISSON[] = {0, 0.3, 0.49, 0.4999};
+    static const struct {
+        double height, growth;
+    } BLOCKS[] = {{0.02, 1}, {0.3, 1.2}, {1.5, 1.5}, {8, 2}};
+    double worst = 0;
+    for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++)
+        for (size_t c = 0; c < 16; c++) {
+            const struct grid *grid = &GRIDS[g];
+            struct block block = {.model = MODEL_LAYERED,
+                                  .poisson = POISSON[c % 4],
+                                  .height = BLOCKS[c / 4].height * grid->lx,
+                                  .layer_growth = BLOCKS[c / 4].growth};
+            double *expected = assembled_lengths(grid, &block, true);
+            struct compliance *compliance = make(grid, &block);
+            for (size_t k = 1; k < compliance->waves; k++) {
+                check_relative(compliance->length[k], expected[k], 1e-9);
+                worst = fmax(worst, fabs(compliance->length[k] / expected[k] - 1));
+            }
+            check_close(compliance->length[0], 0, 0);
+            compliance_destroy(&compliance);
+            free(expected);
+        }
+    print_message("layered against CHOLMOD: largest relative difference %.1e\n", worst);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layered_is_the_assembled_block),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
