@@ -13,15 +13,17 @@ enum { ROWS = 8 }; /* rows gathered together: a cache line of each column serves
 struct transform {
     size_t nx, ny, columns; /* columns = mode_x + 1 */
     size_t mode_y;
-    size_t half; /* nx/2 + 1: values of one row's half spectrum */
+    size_t half;  /* nx/2 + 1: values of one row's half spectrum */
+    size_t batch; /* rows transformed together: ROWS, or ny where that is less */
     double complex *spectrum;
-    double complex *rows; /* ROWS x half */
-    double *lines;        /* ROWS x nx */
+    double complex *rows; /* batch x half */
+    double *lines;        /* batch x nx */
     fftw_plan column_inverse, column_forward, row_inverse, row_forward;
+    fftw_plan one_inverse, one_forward; /* a single column */
 };
 
 static int plans_create(struct transform *t) {
-    int nx = (int)t->nx, ny = (int)t->ny, half = (int)t->half;
+    int nx = (int)t->nx, ny = (int)t->ny, half = (int)t->half, batch = (int)t->batch;
     pthread_mutex_lock(&planner);
     if (t->ny > 1) {
         int columns = (int)t->columns;
@@ -31,14 +33,19 @@ static int plans_create(struct transform *t) {
         t->column_forward =
             fftw_plan_many_dft(1, &ny, columns, t->spectrum, NULL, 1, ny, t->spectrum, NULL, 1, ny,
                                FFTW_FORWARD, FFTW_ESTIMATE);
+        t->one_inverse =
+            fftw_plan_dft_1d(ny, t->spectrum, t->spectrum, FFTW_BACKWARD, FFTW_ESTIMATE);
+        t->one_forward =
+            fftw_plan_dft_1d(ny, t->spectrum, t->spectrum, FFTW_FORWARD, FFTW_ESTIMATE);
     }
-    t->row_inverse = fftw_plan_many_dft_c2r(1, &nx, ROWS, t->rows, NULL, 1, half, t->lines, NULL, 1,
-                                            nx, FFTW_ESTIMATE);
-    t->row_forward = fftw_plan_many_dft_r2c(1, &nx, ROWS, t->lines, NULL, 1, nx, t->rows, NULL, 1,
+    t->row_inverse = fftw_plan_many_dft_c2r(1, &nx, batch, t->rows, NULL, 1, half, t->lines, NULL,
+                                            1, nx, FFTW_ESTIMATE);
+    t->row_forward = fftw_plan_many_dft_r2c(1, &nx, batch, t->lines, NULL, 1, nx, t->rows, NULL, 1,
                                             half, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
     pthread_mutex_unlock(&planner);
     return t->row_inverse && t->row_forward &&
-           (t->ny == 1 || (t->column_inverse && t->column_forward));
+           (t->ny == 1 ||
+            (t->column_inverse && t->column_forward && t->one_inverse && t->one_forward));
 }
 
 int transform_create(struct transform **out, const struct grid *grid, size_t mode_x, size_t mode_y,
@@ -62,11 +69,12 @@ int transform_create(struct transform **out, const struct grid *grid, size_t mod
     t->columns = mode_x + 1;
     t->mode_y = mode_y;
     t->half = grid->nx / 2 + 1;
+    t->batch = t->ny < ROWS ? t->ny : ROWS;
     t->spectrum = fftw_alloc_complex(t->columns * t->ny);
-    t->rows = fftw_alloc_complex(ROWS * t->half);
-    t->lines = fftw_alloc_real(ROWS * t->nx);
+    t->rows = fftw_alloc_complex(t->batch * t->half);
+    t->lines = fftw_alloc_real(t->batch * t->nx);
     if (!t->spectrum || !t->rows || !t->lines || !plans_create(t)) {
-        size_t bytes = (t->columns * t->ny + ROWS * t->half) * sizeof *t->spectrum;
+        size_t bytes = (t->columns * t->ny + t->batch * t->half) * sizeof *t->spectrum;
         transform_destroy(&t);
         return error_memory(err, bytes, "a transform");
     }
@@ -79,7 +87,8 @@ void transform_destroy(struct transform **transform) {
     if (!t)
         return;
     pthread_mutex_lock(&planner);
-    fftw_plan plans[] = {t->column_inverse, t->column_forward, t->row_inverse, t->row_forward};
+    fftw_plan plans[] = {t->column_inverse, t->column_forward, t->row_inverse,
+                         t->row_forward,    t->one_inverse,    t->one_forward};
     for (size_t p = 0; p < sizeof plans / sizeof *plans; p++)
         if (plans[p])
             fftw_destroy_plan(plans[p]);
@@ -103,7 +112,7 @@ void transform_inverse_columns(struct transform *t) {
 void transform_inverse_rows(struct transform *t, size_t first, size_t count, double *z) {
     for (size_t j = first; j < first + count; j += ROWS) {
         size_t rows = first + count - j < ROWS ? first + count - j : ROWS;
-        for (size_t row = 0; row < ROWS; row++)
+        for (size_t row = 0; row < t->batch; row++)
             memset(t->rows + row * t->half + t->columns, 0,
                    (t->half - t->columns) * sizeof *t->rows);
         for (size_t i = 0; i < t->columns; i++)
@@ -139,8 +148,7 @@ void transform_pad(struct transform *from, struct transform *to) {
     }
 }
 
-void transform_forward(struct transform *t, const double *z) {
-    double scale = 1 / ((double)t->nx * (double)t->ny);
+static void forward_rows(struct transform *t, const double *z, double scale) {
     for (size_t j = 0; j < t->ny; j += ROWS) {
         size_t rows = t->ny - j < ROWS ? t->ny - j : ROWS;
         memcpy(t->lines, z + j * t->nx, rows * t->nx * sizeof *z);
@@ -149,6 +157,25 @@ void transform_forward(struct transform *t, const double *z) {
             for (size_t row = 0; row < rows; row++)
                 t->spectrum[i * t->ny + j + row] = scale * t->rows[row * t->half + i];
     }
+}
+
+void transform_forward(struct transform *t, const double *z) {
+    forward_rows(t, z, 1 / ((double)t->nx * (double)t->ny));
     if (t->ny > 1)
         fftw_execute(t->column_forward);
+}
+
+void transform_filter(struct transform *t, const double *symbol, double factor, const double *in,
+                      double *out) {
+    forward_rows(t, in, factor / ((double)t->nx * (double)t->ny));
+    for (size_t i = 0; i < t->columns; i++) {
+        double complex *column = t->spectrum + i * t->ny;
+        if (t->ny > 1)
+            fftw_execute_dft(t->one_forward, column, column);
+        for (size_t row = 0; row < t->ny; row++)
+            column[row] *= symbol[i * t->ny + row];
+        if (t->ny > 1)
+            fftw_execute_dft(t->one_inverse, column, column);
+    }
+    transform_inverse_rows(t, 0, t->ny, out);
 }

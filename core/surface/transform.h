@@ -35,5 +35,10 @@ void transform_inverse_rows(struct transform *transform, size_t first, size_t co
 void transform_pad(struct transform *from, struct transform *to);
 /* The plan's spectrum (all of rows, columns up to mode_x) from z, which it keeps. */
 void transform_forward(struct transform *transform, const double *z);
+/* out = the real field whose spectrum is factor * symbol * that of in (symbol real and even, one
+ * value a wave of the half spectrum): forward, product and inverse with each column in cache.
+ * Needs the whole band in y; in and out may be the same. */
+void transform_filter(struct transform *transform, const double *symbol, double factor,
+                      const double *in, double *out);
 
 #endif

@@ -1,0 +1,213 @@
+#include "core/contact/contact.h"
+#include "core/contact/descent.h"
+#include "core/sum.h"
+#include <fftw3.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct contact_options CONTACT_DEFAULTS = {.tolerance = 1e-8, .max_iterations = 5000};
+
+/* Within, heights are in units of the surface's RMS height and pressures in RMS height over the
+ * largest compliance: all numbers are near 1 whatever the units of the user. */
+struct contact {
+    const struct compliance *compliance; /* borrowed */
+    struct contact_options options;
+    struct descent descent; /* its heights are weighted */
+    double *z;              /* heights, mean 0 */
+    double *pressure, *gap; /* what is told: the user's units */
+    double unit;            /* RMS height, the grid's length; 0 for a flat surface */
+    double full;            /* smallest mean pressure of full contact */
+    double mean;            /* of the descent's p: the load that it solves; 0 for none */
+};
+
+double contact_bytes(const struct grid *grid) {
+    return 3.0 * sizeof(double) * (double)grid_points(grid) + descent_bytes(grid);
+}
+
+int contact_create(struct contact **out, const struct compliance *compliance,
+                   const struct contact_options *options, struct error *err) {
+    if (!(options->tolerance > 0 && options->tolerance < 1))
+        return error_set(err, ERROR_INPUT, "contact tolerance = %g; allowed: above 0, below 1",
+                         options->tolerance);
+    struct contact *c = array_create(1, sizeof *c);
+    if (c == NULL)
+        return error_memory(err, sizeof *c, "a contact");
+    c->compliance = compliance;
+    c->options = *options;
+    int status = descent_create(&c->descent, compliance, err);
+    size_t n = c->descent.n;
+    double **const arrays[] = {&c->z, &c->pressure, &c->gap};
+    for (size_t a = 0; status == 0 && a < sizeof arrays / sizeof *arrays; a++) {
+        *arrays[a] = array_create(n, sizeof(double));
+        if (*arrays[a] == NULL)
+            status = error_memory(err, n * sizeof(double), "a contact");
+    }
+    if (status != 0)
+        contact_destroy(&c);
+    *out = c;
+    return status;
+}
+
+void contact_destroy(struct contact **contact) {
+    struct contact *c = *contact;
+    if (c == NULL)
+        return;
+    descent_clear(&c->descent);
+    free(c->z);
+    free(c->pressure);
+    free(c->gap);
+    free(c);
+    *contact = NULL;
+}
+
+/* Pressures are told in E*: this much a scaled one. */
+static double pressure_unit(const struct contact *c) {
+    return c->unit / c->descent.largest;
+}
+
+/* Fills z, mean 0 and RMS 1 (0 for a flat surface), and unit. */
+static int take_heights(struct contact *c, const double *z, struct error *err) {
+    size_t n = c->descent.n;
+    double most = 0;
+    struct sum sum = {0}, square = {0};
+    for (size_t i = 0; i < n; i++) {
+        if (!isfinite(z[i]))
+            return error_set(err, ERROR_INPUT, "height %zu of the surface = %g is not finite", i,
+                             z[i]);
+        most = fmax(most, fabs(z[i]));
+    }
+    /* Over the largest first: squares of huge or tiny heights would leave the range. */
+    for (size_t i = 0; i < n; i++)
+        sum_add(&sum, most > 0 ? z[i] / most : 0);
+    double mean = sum_value(&sum) / (double)n;
+    for (size_t i = 0; i < n; i++) {
+        c->z[i] = most > 0 ? z[i] / most - mean : 0;
+        sum_add(&square, c->z[i] * c->z[i]);
+    }
+    double rms = sqrt(sum_value(&square) / (double)n);
+    bool flat = !(rms > 1e-14);
+    c->unit = flat ? 0 : rms * most;
+    for (size_t i = 0; i < n; i++)
+        c->z[i] = flat ? 0 : c->z[i] / rms;
+    return 0;
+}
+
+int contact_begin(struct contact *c, const double *z, struct error *err) {
+    struct descent *d = &c->descent;
+    c->mean = 0;
+    int status = take_heights(c, z, err);
+    if (status != 0)
+        return status;
+    memcpy(d->z, c->z, d->n * sizeof *d->z);
+    if (c->compliance->weight != NULL)
+        transform_filter(d->transform, c->compliance->weight, 1, c->z, d->z);
+    transform_filter(d->transform, d->stiff, 1, d->z, d->w);
+    c->full = 0;
+    for (size_t i = 0; i < d->n; i++)
+        c->full = fmax(c->full, -d->w[i]);
+    return 0;
+}
+
+double contact_full_pressure(const struct contact *c) {
+    return c->full * pressure_unit(c);
+}
+
+/* Nothing touches, or one point without force: the block hangs on its highest point. */
+static void tell_open(struct contact *c, struct contact_state *out) {
+    const struct descent *d = &c->descent;
+    double highest = 0;
+    for (size_t i = 0; i < d->n; i++)
+        highest = fmax(highest, c->z[i]);
+    for (size_t i = 0; i < d->n; i++) {
+        c->pressure[i] = 0;
+        c->gap[i] = (highest - c->z[i]) * c->unit;
+    }
+    out->mean_gap = highest * c->unit;
+}
+
+/* The flat fills every valley: the pressures are those that flatten the surface (Johnson 1985). */
+static void tell_full(struct contact *c, double pressure, struct contact_state *out) {
+    struct descent *d = &c->descent;
+    transform_filter(d->transform, d->stiff, pressure_unit(c), d->z, c->pressure);
+    for (size_t i = 0; i < d->n; i++) {
+        c->pressure[i] = fmax(0, c->pressure[i] + pressure);
+        c->gap[i] = 0;
+    }
+    out->stiffness = INFINITY;
+    out->nodes = d->n;
+    out->work = 2 * (double)d->n;
+}
+
+static void tell_partial(struct contact *c, const struct descent_end *end,
+                         struct contact_state *out) {
+    struct descent *d = &c->descent;
+    struct sum gap = {0};
+    if (c->compliance->weight != NULL)
+        transform_filter(d->transform, c->compliance->length, 1 / d->largest, d->p, d->u);
+    for (size_t i = 0; i < d->n; i++) {
+        double g = d->u[i] - c->z[i] + end->approach;
+        sum_add(&gap, g);
+        c->gap[i] = g * c->unit;
+        c->pressure[i] = d->p[i] * pressure_unit(c);
+        out->nodes += d->p[i] > 0;
+    }
+    out->mean_gap = sum_value(&gap) / (double)d->n * c->unit;
+    out->iterations = end->iterations;
+    out->violation = fmax(end->inside, end->penetration);
+    out->penetration = end->penetration;
+    out->stiffness = 1 / (descent_tangent(d) * d->largest);
+}
+
+/* The pressures of the last load, moved along their tangent to a mean; uniform before the first. */
+static void predict(struct contact *c, double mean) {
+    struct descent *d = &c->descent;
+    double sum = 0;
+    for (size_t i = 0; i < d->n; i++) {
+        double p = c->mean > 0 ? d->p[i] + (mean - c->mean) * d->q[i] : mean;
+        d->p[i] = fmax(0, p);
+        sum += d->p[i];
+    }
+    for (size_t i = 0; i < d->n; i++)
+        d->p[i] *= mean * (double)d->n / sum;
+}
+
+static int press_partial(struct contact *c, double pressure, struct contact_state *out,
+                         struct error *err) {
+    struct descent *d = &c->descent;
+    struct descent_end end;
+    double mean = pressure / pressure_unit(c);
+    d->transforms = 0;
+    predict(c, mean);
+    descent_run(d, mean, c->options.tolerance, c->options.max_iterations, &end);
+    if (!end.converged) {
+        c->mean = 0;
+        return error_set(err, ERROR_NUMERIC,
+                         "contact under a mean pressure of %g E* did not converge: %zu iterations "
+                         "left gaps of %.2g and penetrations of %.2g RMS heights",
+                         pressure, end.iterations, end.inside, end.penetration);
+    }
+    c->mean = mean;
+    tell_partial(c, &end, out);
+    out->work = d->transforms * (double)d->n;
+    return 0;
+}
+
+int contact_press(struct contact *c, double pressure, struct contact_state *out,
+                  struct error *err) {
+    if (!(pressure >= 0 && isfinite(pressure)))
+        return error_set(err, ERROR_INPUT, "mean pressure = %g; allowed: 0 or more, finite",
+                         pressure);
+    struct contact_state state = {.pressure = pressure, .p = c->pressure, .gap = c->gap};
+    if (pressure == 0)
+        tell_open(c, &state);
+    else if (pressure >= contact_full_pressure(c))
+        tell_full(c, pressure, &state);
+    else {
+        int status = press_partial(c, pressure, &state, err);
+        if (status != 0)
+            return status;
+    }
+    *out = state;
+    return 0;
+}

@@ -1,0 +1,394 @@
+/* Conjugate gradients in the set of nodes in contact (Polonsky & Keer 1999), preconditioned by the
+ * inverse compliance restricted to the set: transform the gap there, multiply, transform back, drop
+ * what lies outside, remove the mean so that the load stays. Two things differ from the textbook.
+ * The direction is kept when the set changes, with Polak and Ribiere's factor: a restart at every
+ * node that opens or closes takes half as many iterations again. And when no progress is made,
+ * careful steps follow: they stay feasible and the energy falls in each of them, so that no set of
+ * nodes can come back. */
+#include "core/contact/descent.h"
+#include "core/vectors.h"
+#include <fftw3.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    LANES = 8,    /* independent partial sums, so that reductions vectorise */
+    STALL = 60,   /* iterations without halving the violation: steps become careful */
+    REFRESH = 50, /* iterations after which u is computed anew from p */
+    TANGENT_MOST = 300,
+};
+static const double TANGENT_TOLERANCE = 1e-2; /* of the slope; measured: its error is below 1e-5 */
+/* Violations that rounding of the highest points can make. */
+static const double ROUNDING = 64 * DBL_EPSILON;
+
+/* Never in contact, whatever the approach. */
+static const double FAR = 1e30;
+
+static size_t padded(size_t n) {
+    return (n + LANES - 1) / LANES * LANES;
+}
+
+enum { ARRAYS = 8 };
+
+double descent_bytes(const struct grid *grid) {
+    double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
+    return sizeof(double) * (ARRAYS * (double)padded(grid_points(grid)) + 4 * waves);
+}
+
+static int arrays_create(struct descent *d, struct error *err) {
+    double **const arrays[ARRAYS] = {&d->z, &d->p, &d->u, &d->q, &d->r, &d->old, &d->t, &d->w};
+    for (size_t a = 0; a < ARRAYS; a++) {
+        *arrays[a] = fftw_alloc_real(d->padded);
+        if (*arrays[a] == NULL)
+            return error_memory(err, d->padded * sizeof(double), "a contact");
+        memset(*arrays[a], 0, d->padded * sizeof(double));
+    }
+    for (size_t i = d->n; i < d->padded; i++)
+        d->z[i] = -FAR;
+    return 0;
+}
+
+static int symbols_create(struct descent *d, const struct compliance *compliance,
+                          struct error *err) {
+    d->soft = array_create(compliance->waves, sizeof *d->soft);
+    d->stiff = array_create(compliance->waves, sizeof *d->stiff);
+    if (d->soft == NULL || d->stiff == NULL)
+        return error_memory(err, compliance->waves * sizeof(double), "a contact");
+    for (size_t k = 0; k < compliance->waves; k++)
+        d->largest = fmax(d->largest, compliance->length[k]);
+    for (size_t k = 0; k < compliance->waves; k++) {
+        double weight = compliance->weight != NULL ? compliance->weight[k] : 1;
+        d->soft[k] = compliance->length[k] / d->largest * weight;
+        d->stiff[k] = d->soft[k] > 0 ? 1 / d->soft[k] : 0;
+    }
+    return 0;
+}
+
+int descent_create(struct descent *out, const struct compliance *compliance, struct error *err) {
+    const struct grid *grid = &compliance->grid;
+    *out = (struct descent){.n = grid_points(grid), .padded = padded(grid_points(grid))};
+    int status = transform_create(&out->transform, grid, grid->nx / 2, grid->ny / 2, err);
+    if (status == 0)
+        status = arrays_create(out, err);
+    if (status == 0)
+        status = symbols_create(out, compliance, err);
+    if (status != 0)
+        descent_clear(out);
+    return status;
+}
+
+void descent_clear(struct descent *d) {
+    double *const arrays[ARRAYS] = {d->z, d->p, d->u, d->q, d->r, d->old, d->t, d->w};
+    for (size_t a = 0; a < ARRAYS; a++)
+        fftw_free(arrays[a]);
+    free(d->soft);
+    free(d->stiff);
+    transform_destroy(&d->transform);
+    *d = (struct descent){0};
+}
+
+static void filter(struct descent *d, const double *symbol, const double *in, double *out) {
+    transform_filter(d->transform, symbol, 1, in, out);
+    d->transforms += 2;
+}
+
+static double lanes_sum(const double *lanes) {
+    double total = 0;
+    for (size_t a = 0; a < LANES; a++)
+        total += lanes[a];
+    return total;
+}
+
+static double lanes_most(const double *lanes) {
+    double most = 0;
+    for (size_t a = 0; a < LANES; a++)
+        most = fmax(most, lanes[a]);
+    return most;
+}
+
+/* Minus the mean of u - z over nodes under pressure: the approach at which they touch on average.
+ */
+WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double *u,
+                                         const double *z) {
+    double sum[LANES] = {0}, count[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double in = p[i + a] > 0 ? 1 : 0;
+            sum[a] += in * (u[i + a] - z[i + a]);
+            count[a] += in;
+        }
+    return -lanes_sum(sum) / lanes_sum(count);
+}
+
+/* r = gap in the set {p > 0, or gap < 0 where released}, never 0 there and exactly 0 outside, so
+ * that r != 0 is the set. Returns its size; fills end but for its approach, which it takes. */
+WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, const double *z,
+                                    double released, double *r, struct descent_end *end) {
+    double inside[LANES] = {0}, outside[LANES] = {0}, deep[LANES] = {0}, members[LANES] = {0};
+    double approach = end->approach;
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double gap = u[i + a] - z[i + a] + approach;
+            double in = p[i + a] > 0 ? 1 : 0;
+            double within = in * fabs(gap), depth = fabs(u[i + a]);
+            double through = gap < 0 ? (in - 1) * gap : 0;
+            double member = in + through * released > 0 ? 1 : 0;
+            inside[a] = within > inside[a] ? within : inside[a];
+            outside[a] = through > outside[a] ? through : outside[a];
+            deep[a] = depth > deep[a] ? depth : deep[a];
+            members[a] += member;
+            r[i + a] = member * (gap == 0 ? DBL_MIN : gap);
+        }
+    end->inside = lanes_most(inside);
+    end->penetration = lanes_most(outside);
+    end->deepest = lanes_most(deep);
+    return lanes_sum(members);
+}
+
+/* The same for the tangent: r = u + approach in the set p > 0. Returns its largest size. */
+WIDE_VECTORS static double tangent_residual(size_t n, const double *p, const double *u,
+                                            double approach, double *r) {
+    double most[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double slope = u[i + a] + approach;
+            slope = p[i + a] > 0 ? (slope == 0 ? DBL_MIN : slope) : 0;
+            most[a] = fabs(slope) > most[a] ? fabs(slope) : most[a];
+            r[i + a] = slope;
+        }
+    return lanes_most(most);
+}
+
+/* Sums over the set r != 0. */
+struct products {
+    double members, w, r, old, t, w_r, w_old;
+};
+
+WIDE_VECTORS static struct products multiply(size_t n, const double *r, const double *w,
+                                             const double *old, const double *t) {
+    double m[LANES] = {0}, sw[LANES] = {0}, sr[LANES] = {0}, so[LANES] = {0}, st[LANES] = {0};
+    double wr[LANES] = {0}, wo[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double in = r[i + a] != 0 ? 1 : 0, v = in * w[i + a];
+            m[a] += in;
+            sw[a] += v;
+            sr[a] += r[i + a];
+            so[a] += in * old[i + a];
+            st[a] += in * t[i + a];
+            wr[a] += v * r[i + a];
+            wo[a] += v * old[i + a];
+        }
+    return (struct products){.members = lanes_sum(m),
+                             .w = lanes_sum(sw),
+                             .r = lanes_sum(sr),
+                             .old = lanes_sum(so),
+                             .t = lanes_sum(st),
+                             .w_r = lanes_sum(wr),
+                             .w_old = lanes_sum(wo)};
+}
+
+/* t = w - w_mean + beta (t - t_mean) in the set, 0 outside. */
+WIDE_VECTORS static void redirect(size_t n, const double *r, const double *w, double w_mean,
+                                  double beta, double t_mean, double *t) {
+    for (size_t i = 0; i < n; i++) {
+        double direction = w[i] - w_mean + beta * (t[i] - t_mean);
+        t[i] = r[i] != 0 ? direction : 0;
+    }
+}
+
+/* r.t/t.w with w = S t: the step to the least energy along t. */
+WIDE_VECTORS static double step_length(size_t n, const double *r, const double *t,
+                                       const double *w) {
+    double above[LANES] = {0}, below[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            above[a] += r[i + a] * t[i + a];
+            below[a] += t[i + a] * w[i + a];
+        }
+    double curvature = lanes_sum(below);
+    return curvature > 0 ? lanes_sum(above) / curvature : 0;
+}
+
+/* p -= step t, cut at 0, and u -= step w. Returns the sum of p; *cut: whether any was. */
+WIDE_VECTORS static double advance(size_t n, double step, const double *t, const double *w,
+                                   double *p, double *u, bool *cut) {
+    double sum[LANES] = {0}, below[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double next = p[i + a] - step * t[i + a];
+            below[a] += next < 0 ? 1 : 0;
+            next = next < 0 ? 0 : next;
+            p[i + a] = next;
+            u[i + a] -= step * w[i + a];
+            sum[a] += next;
+        }
+    *cut = lanes_sum(below) > 0;
+    return lanes_sum(sum);
+}
+
+WIDE_VECTORS static void advance_tangent(size_t n, double step, const double *t, const double *w,
+                                         double *q, double *u) {
+    for (size_t i = 0; i < n; i++) {
+        q[i] -= step * t[i];
+        u[i] -= step * w[i];
+    }
+}
+
+static void scale(size_t n, double factor, double *x) {
+    for (size_t i = 0; i < n; i++)
+        x[i] *= factor;
+}
+
+/* What one step leaves to the next. */
+struct memory {
+    double energy; /* w.r of the last direction; 0: start anew */
+};
+
+/* The next direction into t, and S of it into w. */
+static void direct(struct descent *d, struct memory *memory) {
+    filter(d, d->stiff, d->r, d->w);
+    struct products s = multiply(d->padded, d->r, d->w, d->old, d->t);
+    double mean = s.w / s.members;
+    double energy = s.w_r - mean * s.r, change = energy - (s.w_old - mean * s.old);
+    double beta = memory->energy > 0 ? fmax(0, change / memory->energy) : 0;
+    redirect(d->padded, d->r, d->w, mean, beta, s.t / s.members, d->t);
+    memory->energy = energy;
+    double *last = d->old;
+    d->old = d->r;
+    d->r = last;
+    filter(d, d->soft, d->t, d->w);
+}
+
+/* In place of direct, where nodes without pressure penetrate: raise these by their depth, and lower
+ * the others alike, so that every pressure can follow. */
+static void direct_release(struct descent *d, double under_pressure) {
+    double raised = 0;
+    for (size_t i = 0; i < d->n; i++) {
+        bool released = d->r[i] != 0 && !(d->p[i] > 0);
+        d->t[i] = released ? d->r[i] : 0;
+        raised += d->t[i];
+    }
+    for (size_t i = 0; i < d->n; i++)
+        if (d->p[i] > 0)
+            d->t[i] = -raised / under_pressure;
+    double *last = d->old;
+    d->old = d->r;
+    d->r = last;
+    filter(d, d->soft, d->t, d->w);
+}
+
+/* The longest step along t that leaves no pressure negative. */
+static double feasible_step(const struct descent *d, double step) {
+    for (size_t i = 0; i < d->n; i++)
+        if (d->t[i] > 0 && d->p[i] > 0 && d->p[i] < step * d->t[i])
+            step = d->p[i] / d->t[i];
+    return step;
+}
+
+static size_t under_pressure(const struct descent *d) {
+    size_t count = 0;
+    for (size_t i = 0; i < d->n; i++)
+        count += d->p[i] > 0;
+    return count;
+}
+
+/* Whether the violation has not halved for STALL iterations. */
+struct progress {
+    double best;
+    size_t since;
+};
+static bool stalled(struct progress *progress, double violation) {
+    if (violation < 0.5 * progress->best)
+        *progress = (struct progress){violation, 0};
+    else
+        progress->since++;
+    return progress->since > STALL;
+}
+
+/* One iteration from r; true when u has to be computed anew. */
+static bool iterate(struct descent *d, double mean, bool careful, bool release,
+                    struct memory *memory) {
+    if (careful && release) {
+        direct_release(d, (double)under_pressure(d));
+        memory->energy = 0;
+    } else {
+        direct(d, memory);
+    }
+    double step = step_length(d->padded, d->old, d->t, d->w);
+    bool cut, shortened = false;
+    if (careful) {
+        double longest = feasible_step(d, step);
+        shortened = longest < step;
+        step = shortened ? longest * (1 + 4 * DBL_EPSILON) : step; /* that node's pressure: 0 */
+    }
+    double sum = advance(d->padded, step, d->t, d->w, d->p, d->u, &cut);
+    if (cut)
+        scale(d->n, mean * (double)d->n / sum, d->p);
+    if (careful && shortened)
+        memory->energy = 0;
+    return cut;
+}
+
+void descent_run(struct descent *d, double mean, double tolerance, size_t max_iterations,
+                 struct descent_end *end) {
+    struct memory memory = {0};
+    struct progress progress = {.best = INFINITY};
+    bool careful = false, stale = true;
+    *end = (struct descent_end){0};
+    for (size_t i = 0; i < d->padded; i++)
+        d->t[i] = d->old[i] = 0;
+    double highest = 0;
+    for (size_t i = 0; i < d->n; i++)
+        highest = fmax(highest, fabs(d->z[i]));
+    for (;; end->iterations++) {
+        if (stale || end->iterations % REFRESH == 0)
+            filter(d, d->soft, d->p, d->u);
+        end->approach = mean_approach(d->padded, d->p, d->u, d->z);
+        bool release = !careful || end->penetration >= end->inside;
+        residual(d->padded, d->p, d->u, d->z, release ? 1 : 0, d->r, end);
+        double violation = fmax(end->inside, end->penetration);
+        end->converged = violation <= fmax(tolerance * end->deepest, ROUNDING * highest);
+        if (end->converged || end->iterations == max_iterations)
+            return;
+        if (!careful && stalled(&progress, violation)) {
+            careful = true;
+            memory.energy = 0;
+        }
+        stale = iterate(d, mean, careful, release && end->penetration > 0, &memory);
+    }
+}
+
+double descent_tangent(struct descent *d) {
+    struct memory memory = {0};
+    double sum = 0, slope = 0;
+    for (size_t i = 0; i < d->padded; i++) {
+        d->q[i] = d->p[i] > 0 ? d->q[i] : 0;
+        d->t[i] = d->old[i] = 0;
+        sum += d->q[i];
+    }
+    if (!(sum > 0)) {
+        for (size_t i = 0; i < d->padded; i++)
+            sum += d->q[i] = d->p[i];
+    }
+    scale(d->n, (double)d->n / sum, d->q);
+    filter(d, d->soft, d->q, d->u);
+    for (size_t iteration = 0;; iteration++) {
+        double approach = 0, energy = 0;
+        size_t members = under_pressure(d);
+        for (size_t i = 0; i < d->n; i++) {
+            approach -= d->p[i] > 0 ? d->u[i] : 0;
+            energy += d->q[i] * d->u[i];
+        }
+        approach /= (double)members;
+        slope = energy / (double)d->n;
+        double most = tangent_residual(d->padded, d->p, d->u, approach, d->r);
+        if (most <= TANGENT_TOLERANCE * fabs(approach) || iteration == TANGENT_MOST)
+            return slope;
+        direct(d, &memory);
+        advance_tangent(d->padded, step_length(d->padded, d->old, d->t, d->w), d->t, d->w, d->q,
+                        d->u);
+    }
+}

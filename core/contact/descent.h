@@ -1,0 +1,47 @@
+/* The quadratic programme of contact: the pressures p >= 0 of a given mean whose energy
+ * p.Sp/2 - p.z is least, and the tangent of that solution over the load. Private to core/contact.
+ *
+ * Heights and pressures should be near 1: the caller scales. */
+#ifndef RUGO_CORE_CONTACT_DESCENT_H
+#define RUGO_CORE_CONTACT_DESCENT_H
+
+#include "core/contact/compliance.h"
+#include "core/surface/transform.h"
+
+/* Arrays of the grid are `padded` long: entries from n on stand for nodes that never touch, z far
+ * below and all else 0. */
+struct descent {
+    struct transform *transform; /* owned, as all below */
+    size_t n, padded;
+    double largest;          /* compliance: unit of the symbols, the grid's length */
+    double *soft, *stiff;    /* weighted compliance over largest, a value a wave, and its inverse; 0
+                                for the mean */
+    double *z;               /* heights, mean 0: the caller's to fill */
+    double *p, *u;           /* pressures, and their displacements */
+    double *q;               /* tangent dp/d(mean p): mean 1, 0 outside of the contact */
+    double *r, *old, *t, *w; /* scratch */
+    double transforms;       /* made so far, both ways */
+};
+
+int descent_create(struct descent *out, const struct compliance *compliance, struct error *err);
+void descent_clear(struct descent *descent);
+double descent_bytes(const struct grid *grid);
+
+struct descent_end {
+    bool converged;
+    size_t iterations;
+    double approach;    /* D: the gap is D + u - z */
+    double inside;      /* largest |gap| under pressure */
+    double penetration; /* largest -gap elsewhere */
+    double deepest;     /* largest |u|, to which the tolerance refers */
+};
+
+/* From the p given (mean p = mean > 0), until no violation is larger than tolerance * deepest (or
+ * than rounding allows). p has the mean whether converged or not. */
+void descent_run(struct descent *descent, double mean, double tolerance, size_t max_iterations,
+                 struct descent_end *end);
+/* From the q given: solves for q in the set p > 0, and returns -d(approach)/d(mean p) > 0: minus
+ * the slope of the mean gap. It is an energy, so that its error is the square of q's. */
+double descent_tangent(struct descent *descent);
+
+#endif
