@@ -9,8 +9,8 @@
 
 /* Persson (2001): contact fraction erf(sqrt(2) load), load >= 0. */
 double persson_area(double load);
-/* Density of the pressure x = p/(E* h') over the nominal area, x > 0 (its integral is the contact
- * fraction). */
+/* Density of the pressure x = p/(E* h') over the nominal area, x >= 0 (its integral over x > 0 is
+ * the contact fraction). */
 double persson_pressure_pdf(double x, double load);
 
 /* Slope kappa of the fraction over the load, as it tends to 0. */
@@ -18,23 +18,25 @@ double persson_light_load(void); /* sqrt(8/pi) */
 double bgt_light_load(void);     /* sqrt(2 pi); Bush, Gibson & Thomas (1975) */
 
 /* Whole curves for a Gaussian isotropic surface with Nayak parameter alpha > 3/2: at each of n
- * separations s (in sqrt(m0), from the mean plane; any values), the load and the fraction.
- * bgt: Bush, Gibson & Thomas (1975), elliptic asperities with Nayak's joint density, in the form of
- *   Carbone & Bottiglione (2008).
+ * separations s (in sqrt(m0), from the mean plane; finite), the load and the fraction, to 1e-11
+ * relative. Summits are pressed alone, without regard for their neighbours: at light load this
+ * holds; at high load the fraction exceeds 1, unchecked. bgt: Bush, Gibson & Thomas (1975),
+ * elliptic asperities with Nayak's joint density, in the form of Carbone & Bottiglione (2008).
  * gw_mccool: Greenwood & Williamson (1966) with McCool's (1986) parameters from the moments: equal
  *   spherical asperities, Gaussian heights of summits. */
 void bgt_curve(double alpha, size_t n, const double *separation, double *load, double *area);
 void gw_mccool_curve(double alpha, size_t n, const double *separation, double *load, double *area);
-/* The fraction at a given load > 0, by inversion of the above. */
+/* The fraction at a given load from 1e-250 to 1e6, by inversion of the above to 1e-11 relative; a
+ * rising function of the load. NaN also when a few hundred bytes cannot be allocated. */
 double bgt_area(double load, double alpha);
 double gw_mccool_area(double load, double alpha);
 
 /* Westergaard (1939): one wave z = amplitude cos(2 pi x/wavelength), ratio = p/p* in [0, 1],
  * p* = pi E* amplitude/wavelength. */
 double westergaard_area(double ratio);
-/* p/p at position x/wavelength from a crest: local over mean pressure. */
+/* Local over mean pressure at the position x, in wavelengths from a crest; ratio > 0. */
 double westergaard_pressure(double x, double ratio);
-/* Mean gap over the amplitude. */
+/* Mean gap over the amplitude: 1 - ratio + ratio ln(ratio). */
 double westergaard_gap(double ratio);
 
 /* Hertz: half-width of a line contact, load per length P over E* and radius R; radius of a circle,

@@ -22,3 +22,13 @@ double quadrature(integrand *f, const void *context, double low, double high, si
     }
     return total;
 }
+
+void quadrature_panel(double low, double high, double node[QUADRATURE_NODES],
+                      double weight[QUADRATURE_NODES]) {
+    double centre = (low + high) / 2, half = (high - low) / 2;
+    for (size_t n = 0; n < 8; n++) {
+        node[7 - n] = centre - half * NODES[n];
+        node[8 + n] = centre + half * NODES[n];
+        weight[7 - n] = weight[8 + n] = half * WEIGHTS[n];
+    }
+}

@@ -1,0 +1,285 @@
+/* Asperity theories: every summit above the separation d is pressed alone, as in Hertz, by its
+ * height over d. Lengths in sqrt(m0); s = kappa_m sqrt(3/m4) is the mean curvature of a summit,
+ * rho = (kappa_1 - kappa_2)/(kappa_1 + kappa_2) in [0, 1) its elongation. */
+#include "core/theory/contact.h"
+#include "core/theory/nayak.h"
+#include "core/theory/quadrature.h"
+#include <float.h>
+#include <gsl/gsl_roots.h>
+#include <gsl/gsl_sf_ellint.h>
+#include <gsl/gsl_sf_erf.h>
+#include <math.h>
+#include <stdbool.h>
+
+struct contact {
+    double load, area;
+};
+
+/* Beyond this many factors of e below its peak an integrand is nothing to a double. */
+static const double DEPTH = 42;
+
+/* E[max(0, t - x)], t standard normal. */
+static double first_moment(double x) {
+    double density = M_SQRT1_2 / sqrt(M_PI) * exp(-x * x / 2);
+    if (x < 5)
+        return density - x * erfc(x * M_SQRT1_2) / 2;
+    return density > 0 ? density * (1 - x / gsl_sf_hazard(x)) : 0;
+}
+
+/* E[max(0, t - x)^(3/2)], t standard normal. With t - x = u^2 it is the integral over all u of
+ * u^4 exp(-(u^2 + x)^2/2)/sqrt(2 pi): entire, so the trapezoidal rule converges geometrically. */
+static double three_halves_moment(double x) {
+    double reach = sqrt(2 * DEPTH), step = 0.35 / sqrt(5 + fabs(x));
+    double highest = x > 0 ? 2 * DEPTH / (sqrt(x * x + 2 * DEPTH) + x) : reach - x;
+    double lowest = fmax(0, -x - reach), sum = 0;
+    for (double n = fmax(1, floor(sqrt(lowest) / step)); n * step < sqrt(highest); n++) {
+        double square = n * step * n * step;
+        sum += square * square * exp(-(square + x) * (square + x) / 2);
+    }
+    return M_SQRT2 / sqrt(M_PI) * step * sum; /* both signs of u */
+}
+
+/* Greenwood & Williamson (1966), McCool (1986). */
+
+struct spheres {
+    double mean, deviation; /* of summit heights */
+    double load, area;      /* factors of the moments */
+};
+
+static struct spheres spheres_of(double alpha) {
+    double deviation = sqrt(nayak_summit_variance(alpha));
+    double force = 4 / (18 * M_PI * sqrt(3)) * sqrt(3 * sqrt(M_PI) / 16);
+    return (struct spheres){.mean = nayak_summit_mean(alpha),
+                            .deviation = deviation,
+                            .load = force * pow(alpha * deviation * deviation, 0.75),
+                            .area = sqrt(3 * M_PI * alpha) / 48 * deviation};
+}
+
+static struct contact spheres_contact(const void *theory, double separation) {
+    const struct spheres *t = theory;
+    double x = (separation - t->mean) / t->deviation;
+    return (struct contact){t->load * three_halves_moment(x), t->area * first_moment(x)};
+}
+
+/* Bush, Gibson & Thomas (1975). A summit of compression w and curvatures (s, rho) has the area
+ * pi w/kappa_m f(rho) and the force (4/3) E* w^(3/2) kappa_m^(-1/2) g(rho). With the semi-axes'
+ * lambda = (a - b)/(a + b), m = lambda^2, and the complete elliptic integrals B(m), D(m)
+ * (K = B + D, E = B + (1 - m) D), Hertz's solution (Johnson 1985, ch. 4) becomes by Landen's
+ * transformation, free of cancellation,
+ *   rho = lambda (2 B + (1 - m) D)/N,  N = (1 + m) B + (1 - m) D,
+ *   f = N/((1 - m) K),                 g = (pi/2) sqrt(N/K)/((1 - m) K).
+ * Their densities, (1 - rho^2) rho exp(-s^2 rho^2/2) s^4 drho, are those of Longuet-Higgins (1957):
+ * kappa_1 - kappa_2 is independent of height and mean curvature but for the factor
+ * kappa_1 kappa_2. */
+
+enum { SHAPE_PANELS = 5, SHAPES = SHAPE_PANELS * QUADRATURE_NODES };
+struct shapes { /* a rule over rho, rising; weights with (1 - rho^2) rho f or g */
+    double square[SHAPES], area[SHAPES], load[SHAPES];
+};
+
+static void shape_at(double theta, double weight, double *square, double *area, double *load) {
+    double lambda = tanh(theta / 2), less = 2 / (1 + exp(theta)); /* 1 - lambda */
+    double m = lambda * lambda, rest = less * (1 + lambda);       /* 1 - m */
+    double b = rest * gsl_sf_ellint_RD(0, 1, rest, GSL_PREC_DOUBLE) / 3;
+    double d = rest * gsl_sf_ellint_RD(0, rest, 1, GSL_PREC_DOUBLE) / 3; /* (1 - m) D */
+    double n = (1 + m) * b + d, first = rest * b + d;                    /* first = (1 - m) K */
+    double rho = lambda * (2 * b + d) / n, less_rho = less * (less * b + d) / n;
+    double slope = (rest * b * b + (3 + m) * b * d + 2 * d * d) / (n * n); /* drho/dlambda */
+    double measure = weight * rest / 2 * slope * less_rho * (1 + rho) * rho;
+    *square = rho * rho;
+    *area = measure * n / first;
+    *load = measure * M_PI_2 * sqrt(n * rest / first) / first;
+}
+
+static void shapes_fill(struct shapes *shapes) {
+    /* b/a = exp(-theta): in theta the logarithms of thin ellipses are straight. Panels grow from
+     * the round shapes, all that is left at high curvature; exp(-3 theta) is nothing at the end. */
+    static const double ENDS[SHAPE_PANELS + 1] = {0, 0.06, 0.3, 1.2, 4, 12.5};
+    for (size_t panel = 0; panel < SHAPE_PANELS; panel++) {
+        double theta[QUADRATURE_NODES], weight[QUADRATURE_NODES];
+        quadrature_panel(ENDS[panel], ENDS[panel + 1], theta, weight);
+        for (size_t node = 0; node < QUADRATURE_NODES; node++) {
+            size_t n = panel * QUADRATURE_NODES + node;
+            shape_at(theta[node], weight[node], &shapes->square[n], &shapes->area[n],
+                     &shapes->load[n]);
+        }
+    }
+}
+
+/* Given s, heights are normal about rise s with the deviation below; s itself has the density
+ * sqrt(3/pi)/2 exp(-s^2/4) times its shapes' (nayak.c). */
+struct ellipses {
+    struct shapes shapes;
+    double c1, rise, deviation;
+    double load, area; /* factors of the integrals over s */
+};
+
+static void ellipses_fill(struct ellipses *t, double alpha) {
+    shapes_fill(&t->shapes);
+    t->c1 = alpha / (2 * alpha - 3);
+    t->rise = sqrt(3 / (4 * alpha));
+    t->deviation = sqrt(0.5 / t->c1);
+    double density = sqrt(3 / M_PI) / 2;
+    double force = 4 * sqrt(sqrt(3)) / (18 * M_PI * sqrt(6));
+    t->load = density * force * pow(alpha * t->deviation * t->deviation, 0.75);
+    t->area = density * sqrt(alpha) / 6 * t->deviation;
+}
+
+/* Both integrands over s, over heights and shapes already integrated. */
+static struct contact ellipses_of_curvature(const struct ellipses *t, double separation, double s) {
+    double area = 0, load = 0;
+    for (size_t n = 0; n < SHAPES; n++) {
+        double exponent = s * s / 2 * t->shapes.square[n];
+        if (exponent > DEPTH)
+            break;
+        double share = exp(-exponent);
+        area += t->shapes.area[n] * share;
+        load += t->shapes.load[n] * share;
+    }
+    double x = (separation - t->rise * s) / t->deviation;
+    double common = s * s * s * exp(-s * s / 4);
+    return (struct contact){load * common * sqrt(s) * three_halves_moment(x),
+                            area * common * first_moment(x)};
+}
+
+/* Adds the integrals between the curvatures from and to. They turn around the curvature
+ * `turn` whose mean height is the separation, over a width small for alpha near 3/2: panels grow
+ * away from it, from width to longest. Their variable is sqrt(s), for the load starts as
+ * s^(7/2). */
+struct stretch {
+    double from, to, turn, width, longest;
+};
+static void ellipses_add(const struct ellipses *t, double separation, struct stretch stretch,
+                         struct contact *sum) {
+    double sign = stretch.to > stretch.from ? 1 : -1, at = stretch.from;
+    while (sign * (stretch.to - at) > 0) {
+        double length = fmin(stretch.longest, stretch.width + fabs(at - stretch.turn));
+        double next = sign * fmin(sign * stretch.to, sign * at + length);
+        double root[QUADRATURE_NODES], weight[QUADRATURE_NODES];
+        quadrature_panel(sqrt(fmin(at, next)), sqrt(fmax(at, next)), root, weight);
+        for (size_t node = 0; node < QUADRATURE_NODES; node++) {
+            struct contact part = ellipses_of_curvature(t, separation, root[node] * root[node]);
+            sum->load += 2 * root[node] * weight[node] * part.load;
+            sum->area += 2 * root[node] * weight[node] * part.area;
+        }
+        at = next;
+    }
+}
+
+static struct contact ellipses_contact(const void *theory, double separation) {
+    const struct ellipses *t = theory;
+    /* The integrand's exponent is -s^2/4 - C1 max(0, d - rise s)^2: for d > 0 it is -d^2/2 at its
+     * peak s = 2 rise d, with the second derivative -C1 as far as the turn. */
+    double turn = separation / t->rise, above = fmax(separation, 0);
+    double peak = 2 * t->rise * above, reach = sqrt(2 * DEPTH / t->c1);
+    double low = separation > 0 ? fmax(0, peak - reach) : 0;
+    double high =
+        separation > 0 && peak + reach < turn ? peak + reach : 2 * sqrt(above * above / 2 + DEPTH);
+    double start = fmin(fmax(turn, low), high), width = 2 * t->deviation / t->rise;
+    struct contact sum = {0, 0};
+    ellipses_add(t, separation, (struct stretch){start, high, turn, width, 3.5}, &sum);
+    ellipses_add(t, separation, (struct stretch){start, low, turn, width, 2.5 / sqrt(t->c1)}, &sum);
+    return (struct contact){t->load * sum.load, t->area * sum.area};
+}
+
+/* Curves and their inversion, for both. */
+
+typedef struct contact contact_at(const void *theory, double separation);
+
+static bool in_domain(double alpha) {
+    return alpha > 1.5 && isfinite(alpha);
+}
+
+static void curve(contact_at *at, const void *theory, size_t n, const double *separation,
+                  double *load, double *area) {
+    for (size_t i = 0; i < n; i++) {
+        struct contact contact = {NAN, NAN};
+        if (theory && isfinite(separation[i]))
+            contact = at(theory, separation[i]);
+        load[i] = contact.load;
+        area[i] = contact.area;
+    }
+}
+
+void bgt_curve(double alpha, size_t n, const double *separation, double *load, double *area) {
+    struct ellipses ellipses;
+    if (in_domain(alpha))
+        ellipses_fill(&ellipses, alpha);
+    curve(ellipses_contact, in_domain(alpha) ? &ellipses : NULL, n, separation, load, area);
+}
+
+void gw_mccool_curve(double alpha, size_t n, const double *separation, double *load, double *area) {
+    struct spheres spheres = spheres_of(alpha);
+    curve(spheres_contact, in_domain(alpha) ? &spheres : NULL, n, separation, load, area);
+}
+
+struct inversion {
+    contact_at *at;
+    const void *theory;
+    double load;          /* wanted */
+    double closest, area; /* smallest |logarithm of the load over it| so far, the area there */
+};
+
+static double excess(double separation, void *context) {
+    struct inversion *inversion = context;
+    struct contact contact = inversion->at(inversion->theory, separation);
+    /* Loads underflow at separations near 38. */
+    double logarithm = log(fmax(contact.load, DBL_MIN) / inversion->load);
+    if (fabs(logarithm) < inversion->closest) {
+        inversion->closest = fabs(logarithm);
+        inversion->area = contact.area;
+    }
+    return logarithm;
+}
+
+/* The fraction changes no faster than the load, so that this much in the logarithm of the load is
+ * no more in the fraction's. */
+static const double CLOSE = 1e-12;
+
+/* Brings the load between two separations, at or above it and at or below it. */
+static void approach(struct inversion *inversion, double low, double high) {
+    gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
+    if (!solver)
+        return;
+    gsl_function function = {excess, inversion};
+    int status = gsl_root_fsolver_set(solver, &function, low, high);
+    for (int step = 0; status == 0 && inversion->closest > CLOSE && step < 100; step++)
+        status = gsl_root_fsolver_iterate(solver);
+    gsl_root_fsolver_free(solver);
+}
+
+/* Loads whose separation is far from under- and overflow. */
+static const double LEAST_LOAD = 1e-250, GREATEST_LOAD = 1e6;
+
+static double area_at_load(contact_at *at, const void *theory, double load) {
+    if (!(load >= LEAST_LOAD && load <= GREATEST_LOAD))
+        return NAN;
+    struct inversion inversion = {at, theory, load, INFINITY, NAN};
+    double low = 0, high = 0;
+    while (excess(high, &inversion) > 0) {
+        low = high;
+        high += 1;
+    }
+    while (excess(low, &inversion) < 0) {
+        high = low;
+        low = 2 * low - 1;
+    }
+    if (inversion.closest > CLOSE)
+        approach(&inversion, low, high);
+    return inversion.closest <= CLOSE ? inversion.area : NAN;
+}
+
+double bgt_area(double load, double alpha) {
+    if (!in_domain(alpha))
+        return NAN;
+    struct ellipses ellipses;
+    ellipses_fill(&ellipses, alpha);
+    return area_at_load(ellipses_contact, &ellipses, load);
+}
+
+double gw_mccool_area(double load, double alpha) {
+    if (!in_domain(alpha))
+        return NAN;
+    struct spheres spheres = spheres_of(alpha);
+    return area_at_load(spheres_contact, &spheres, load);
+}
