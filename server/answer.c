@@ -1,5 +1,6 @@
 /* Answers of the routes: documents, texts, problems. */
 #include "server/http.h"
+#include "worker/log.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,10 +32,31 @@ void answer_text(struct exchange *exchange, unsigned status, const char *type, c
            MHD_create_response_from_buffer(strlen(text), text, MHD_RESPMEM_MUST_FREE));
 }
 
+/* Bytes of a well-formed UTF-8 sequence (RFC 3629); 0 if it is none. Reads no further than a NUL.
+ */
+static size_t character_length(const unsigned char *s) {
+    static const unsigned char LEAST_SECOND[5] = {[3] = 0xa0, [4] = 0x90};
+    size_t length = s[0] < 0x80 ? 1 : s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
+    for (size_t i = 1; i < length; i++)
+        if ((s[i] & 0xc0) != 0x80)
+            return 0;
+    bool overlong = (s[0] == 0xe0 || s[0] == 0xf0) && s[1] < LEAST_SECOND[length];
+    bool beyond = s[0] > 0xf4 || (s[0] == 0xf4 && s[1] > 0x8f) || (s[0] == 0xed && s[1] > 0x9f);
+    return overlong || beyond ? 0 : length;
+}
+
+/* What a peer sent is quoted in details as it came, or cut within a character; JSON is UTF-8. */
+static void mend_characters(char *text) {
+    for (size_t length; text && *text; text += length ? length : 1)
+        if ((length = character_length((unsigned char *)text)) == 0)
+            *text = '?';
+}
+
 static void answer_document(struct exchange *exchange, unsigned status, const char *type,
                             cJSON *document) {
     char *text = document ? json_print(document) : NULL;
     cJSON_Delete(document);
+    mend_characters(text);
     answer_text(exchange, status, type, text);
 }
 
@@ -45,6 +67,16 @@ void answer_json(struct exchange *exchange, unsigned status, cJSON *document) {
 void answer_static(struct exchange *exchange, const char *type, const char *data, size_t size) {
     finish(exchange, 200, type,
            MHD_create_response_from_buffer(size, (void *)data, MHD_RESPMEM_PERSISTENT));
+}
+
+void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
+                   MHD_ContentReaderCallback read, void *context,
+                   MHD_ContentReaderFreeCallback free_context) {
+    enum { PART = 32768 };
+    finish(exchange, 200, type,
+           MHD_create_response_from_callback(size, PART, read, context, free_context));
+    if (!exchange->response)
+        free_context(context);
 }
 
 void answer_empty(struct exchange *exchange, unsigned status) {
@@ -124,5 +156,9 @@ void answer_error(struct exchange *exchange, const struct error *err) {
         status = 409;
     else if (err->code == ERROR_SYSTEM || err->code == ERROR_MEMORY)
         status = 503;
+    if (status >= 500) { /* the server's trouble: its keeper must see why */
+        struct log_about about = {.request = exchange->path, .status = (long)status};
+        log_line(LEVEL_ERROR, &about, "%s", err->text);
+    }
     answer_problem(exchange, status, err->text, NULL);
 }

@@ -11,6 +11,7 @@ enum { STREAMS_MOST = 64, LOOK_MS = 300, ALIVE_MS = 15000 };
 
 /* One stream; the library calls next_event on the connection's own thread, which may wait. */
 struct stream {
+    struct exchange *exchange; /* lives as long as the library calls next_event */
     struct service *service;
     char id[SEGMENT_SIZE];
     double revision; /* told last; -1 at first */
@@ -60,6 +61,7 @@ static ssize_t next_event(void *context, uint64_t position, char *buffer, size_t
     struct stream *stream = context;
     (void)position;
     while (!stream->pending) {
+        exchange_renew(stream->exchange);
         if (stream->ended || atomic_load(&stream->service->stopping))
             return MHD_CONTENT_READER_END_OF_STREAM;
         stream->pending = look(stream);
@@ -69,6 +71,7 @@ static ssize_t next_event(void *context, uint64_t position, char *buffer, size_t
         if (!stream->pending && !stream->ended)
             pause_ms(LOOK_MS);
     }
+    exchange_renew(stream->exchange); /* who takes nothing for a whole deadline is cut */
     size_t left = strlen(stream->pending) - stream->sent, part = left < room ? left : room;
     memcpy(buffer, stream->pending + stream->sent, part);
     stream->sent += part;
@@ -103,6 +106,7 @@ void handle_events(struct exchange *exchange, const char *id) {
         answer_error(exchange, &err);
         return;
     }
+    stream->exchange = exchange;
     stream->service = exchange->service;
     stream->revision = -1;
     snprintf(stream->id, sizeof stream->id, "%s", id);
@@ -111,10 +115,11 @@ void handle_events(struct exchange *exchange, const char *id) {
         answer_problem(exchange, 503, "too many streams of events are open", NULL);
         return;
     }
-    exchange_unbound(exchange);
-    exchange->status = 200;
-    exchange->response =
-        MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 8192, next_event, stream, stream_free);
-    answer_header(exchange, "Content-Type", "text/event-stream");
+    if (strcmp(exchange->method, "HEAD") == 0) { /* the library would send an end of chunks */
+        stream_free(stream);
+        answer_static(exchange, "text/event-stream", "", 0);
+        return;
+    }
+    answer_stream(exchange, "text/event-stream", MHD_SIZE_UNKNOWN, next_event, stream, stream_free);
     answer_header(exchange, "Cache-Control", "no-store");
 }

@@ -5,12 +5,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
 
 enum {
     BODY_MOST = 16 << 20,
+    BODY_SMALL = 64 << 10,   /* always taken: heartbeats must not wait for large bodies */
+    BODIES_MOST = 256 << 20, /* of all larger ones at a time */
     HEADERS_MOST = 32 << 10, /* the library's memory a connection */
     IDLE_MS = 60000,         /* between two requests of a connection */
     END_MS = 10000,          /* for running requests when the server ends */
@@ -35,6 +38,7 @@ struct http {
     struct connection *connections;
     unsigned requests; /* being answered */
     bool ending;
+    atomic_size_t bodies; /* bytes that running requests with larger bodies may bring */
 };
 
 static int64_t now_ns(void) {
@@ -94,8 +98,9 @@ static void set_deadline(struct http *http, struct MHD_Connection *connection,
     pthread_mutex_unlock(&http->mutex);
 }
 
-void exchange_unbound(struct exchange *exchange) {
-    set_deadline(exchange->http, exchange->connection, INT64_MAX);
+void exchange_renew(struct exchange *exchange) {
+    int64_t time = 1000 * (int64_t)exchange->http->options.deadline_s;
+    set_deadline(exchange->http, exchange->connection, clock_ms() + time);
 }
 
 static void *watchdog_thread(void *context) {
@@ -134,35 +139,38 @@ static struct exchange *exchange_create(struct http *http, struct MHD_Connection
     exchange->method = method;
     exchange->path = path;
     exchange->start_ns = now_ns();
-    set_deadline(http, connection, clock_ms() + 1000 * (int64_t)http->options.deadline_s);
+    exchange_renew(exchange);
     count_request(http, 1);
     return exchange;
 }
 
-static void log_exchange(const struct exchange *exchange, int64_t nanoseconds) {
+static void log_exchange(const struct exchange *exchange, bool whole) {
     char request[160];
     snprintf(request, sizeof request, "%.16s %.120s", exchange->method, exchange->path);
     struct log_about about = {.request = request,
                               .status = (long)exchange->status,
-                              .seconds = 1e-9 * (double)nanoseconds};
-    log_line(exchange->status >= 500 ? LEVEL_ERROR : LEVEL_INFO, &about, "answered");
+                              .seconds = 1e-9 * (double)(now_ns() - exchange->start_ns)};
+    log_line(exchange->status >= 500 ? LEVEL_ERROR : LEVEL_INFO, &about,
+             whole ? "answered" : "cut off");
+}
+
+static size_t bytes_counted(const struct exchange *exchange) {
+    return exchange->body_room > BODY_SMALL ? exchange->body_room : 0;
 }
 
 static void on_completed(void *context, struct MHD_Connection *connection, void **slot,
                          enum MHD_RequestTerminationCode code) {
     struct http *http = context;
     struct exchange *exchange = *slot;
-    (void)code;
     if (!exchange)
         return;
-    int64_t nanoseconds = now_ns() - exchange->start_ns;
     unsigned hundred = exchange->status / 100;
     if (hundred < STATUS_CLASSES)
         atomic_fetch_add(&http->service->answers[hundred], 1);
-    atomic_fetch_add(&http->service->nanoseconds, (uint_fast64_t)nanoseconds);
-    log_exchange(exchange, nanoseconds);
+    log_exchange(exchange, code == MHD_REQUEST_TERMINATED_COMPLETED_OK);
     if (exchange->response)
         MHD_destroy_response(exchange->response);
+    atomic_fetch_sub(&http->bodies, bytes_counted(exchange));
     free(exchange->body);
     free(exchange);
     *slot = NULL;
@@ -173,6 +181,8 @@ static void on_completed(void *context, struct MHD_Connection *connection, void 
 static enum MHD_Result send_answer(struct exchange *exchange) {
     if (!exchange->response)
         return MHD_NO; /* out of memory for any answer: the connection is closed */
+    if (atomic_load(&exchange->service->stopping))
+        answer_header(exchange, "Connection", "close");
     enum MHD_Result queued =
         MHD_queue_response(exchange->connection, exchange->status, exchange->response);
     MHD_destroy_response(exchange->response);
@@ -180,22 +190,31 @@ static enum MHD_Result send_answer(struct exchange *exchange) {
     return queued;
 }
 
-/* Keeps what came of the body; past the cap the rest is read and dropped by a refusal. */
-static bool keep_body(struct exchange *exchange, const char *data, size_t size) {
-    size_t wanted = exchange->body_size + size;
-    if (wanted > BODY_MOST)
-        return false;
-    if (wanted + 1 > exchange->body_room) {
-        size_t room = 2 * wanted + 1024;
-        char *larger = realloc(exchange->body, room);
-        if (!larger)
-            return false;
-        exchange->body = larger;
-        exchange->body_room = room;
+/* Room for the body that is announced, or for the largest one where chunks come without a length.
+ */
+static void reserve_body(struct exchange *exchange) {
+    const char *length = exchange_header(exchange, "Content-Length");
+    unsigned long long room = length ? strtoull(length, NULL, 10) : 0;
+    if (!length && exchange_header(exchange, "Transfer-Encoding"))
+        room = BODY_MOST;
+    if (room > BODY_MOST) {
+        answer_problem(exchange, 413, "a body may have up to 16 MiB", NULL);
+        return;
     }
+    exchange->body_room = (size_t)room;
+    size_t bytes = bytes_counted(exchange); /* given back by on_completed */
+    if (atomic_fetch_add(&exchange->http->bodies, bytes) + bytes > BODIES_MOST && bytes)
+        answer_problem(exchange, 503, "too many large bodies at a time", NULL);
+}
+
+static bool keep_body(struct exchange *exchange, const char *data, size_t size) {
+    if (size > exchange->body_room - exchange->body_size)
+        return false;
+    if (!exchange->body && !(exchange->body = malloc(exchange->body_room + 1)))
+        return false;
     memcpy(exchange->body + exchange->body_size, data, size);
-    exchange->body_size = wanted;
-    exchange->body[wanted] = 0;
+    exchange->body_size += size;
+    exchange->body[exchange->body_size] = 0;
     return true;
 }
 
@@ -205,11 +224,9 @@ static enum MHD_Result begin(struct http *http, struct MHD_Connection *connectio
     *slot = exchange;
     if (!exchange)
         return MHD_NO;
-    const char *length = exchange_header(exchange, "Content-Length");
-    if (length && strtoull(length, NULL, 10) > BODY_MOST)
-        answer_problem(exchange, 413, "a body may have up to 16 MiB", NULL);
-    else
-        route_refuse_early(exchange);
+    route_refuse_early(exchange);
+    if (!exchange->status)
+        reserve_body(exchange);
     /* An answer before the body closes the connection: what an early refusal wants. */
     return exchange->status ? send_answer(exchange) : MHD_YES;
 }
@@ -227,7 +244,11 @@ static enum MHD_Result on_request(void *context, struct MHD_Connection *connecti
         *size = 0;
         return kept ? MHD_YES : MHD_NO;
     }
+    int64_t start_ns = now_ns();
+    set_deadline(exchange->http, connection, INT64_MAX); /* the work is ours, not the peer's */
     route_answer(exchange);
+    exchange_renew(exchange);
+    atomic_fetch_add(&exchange->service->nanoseconds, (uint_fast64_t)(now_ns() - start_ns));
     return send_answer(exchange);
 }
 
@@ -252,11 +273,11 @@ bool http_host_allowed(const struct http *http, const char *host) {
     char name[256];
     host_name(host, name, sizeof name);
     /* An address is no name that somebody else's DNS could have pointed here. */
-    if (strcmp(name, "localhost") == 0 || inet_pton(AF_INET, name, address) == 1 ||
+    if (strcasecmp(name, "localhost") == 0 || inet_pton(AF_INET, name, address) == 1 ||
         inet_pton(AF_INET6, name, address) == 1)
         return true;
     for (const char *const *allowed = http->options.hosts; allowed && *allowed; allowed++)
-        if (strcmp(*allowed, name) == 0)
+        if (strcasecmp(*allowed, name) == 0)
             return true;
     return false;
 }
@@ -276,6 +297,13 @@ static bool socket_address(const struct http_options *options, struct sockaddr_s
         return true;
     }
     return false;
+}
+
+/* An escaped NUL would cut the text short and make one path another's: it stays as it is. */
+static size_t unescape(void *context, struct MHD_Connection *connection, char *text) {
+    (void)context;
+    (void)connection;
+    return strstr(text, "%00") ? strlen(text) : MHD_http_unescape(text);
 }
 
 static void no_library_log(void *context, const char *format, va_list arguments) {
@@ -298,8 +326,8 @@ static int start_daemon(struct http *http, struct error *err) {
         MHD_OPTION_CONNECTION_LIMIT, http->options.connections, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
         http->options.per_address, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MOST,
         MHD_OPTION_NOTIFY_CONNECTION, on_connection, http, MHD_OPTION_NOTIFY_COMPLETED,
-        on_completed, http, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_LISTENING_ADDRESS_REUSE, 1u,
-        MHD_OPTION_LISTEN_BACKLOG_SIZE, 128u, MHD_OPTION_END);
+        on_completed, http, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_UNESCAPE_CALLBACK, unescape,
+        NULL, MHD_OPTION_LISTEN_BACKLOG_SIZE, 128u, MHD_OPTION_END);
     if (!http->daemon)
         return error_set(err, ERROR_SYSTEM, "cannot listen on %s port %u (in use?)",
                          http->options.address, http->options.port);

@@ -31,8 +31,8 @@ struct exchange {
     struct http *http;
     struct MHD_Connection *connection;
     const char *method, *path;
-    char *body; /* NUL-terminated, NULL without one */
-    size_t body_size, body_room;
+    char *body;                  /* NUL-terminated, NULL without one */
+    size_t body_size, body_room; /* room without the NUL */
     int64_t start_ns;
 
     unsigned status;               /* 0 until answered */
@@ -56,8 +56,13 @@ void answer_problem(struct exchange *exchange, unsigned status, const char *deta
                     const struct fault_list *faults);
 /* The status that an error code stands for, and its text. */
 void answer_error(struct exchange *exchange, const struct error *err);
-/* This exchange has no deadline any more (streams). */
-void exchange_unbound(struct exchange *exchange);
+/* Gives the peer the whole deadline again; for streams, each time that it takes a part. */
+void exchange_renew(struct exchange *exchange);
+/* An answer whose parts read gives as the peer takes them; size may be MHD_SIZE_UNKNOWN. Takes
+ * context, to be released by free_context. */
+void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
+                   MHD_ContentReaderCallback read, void *context,
+                   MHD_ContentReaderFreeCallback free_context);
 
 /* route.c: checks who asks for what and answers. Called once before the body comes (body_known
  * false): may refuse; and once with it. */

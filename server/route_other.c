@@ -77,23 +77,48 @@ void handle_metrics(struct exchange *exchange, const char *id) {
 
 /* --- snapshot --- */
 
+enum { SNAPSHOTS_MOST = 4 }; /* at a time: each is a copy of the whole database */
+
+/* A copy on its way. */
+struct download {
+    struct exchange *exchange; /* lives as long as the library calls read_download */
+    struct service *service;
+    int file; /* -1 until opened */
+};
+
+static ssize_t read_download(void *context, uint64_t position, char *buffer, size_t room) {
+    struct download *download = context;
+    ssize_t got = pread(download->file, buffer, room, (off_t)position);
+    exchange_renew(download->exchange); /* who takes nothing for a whole deadline is cut */
+    return got > 0 ? got : MHD_CONTENT_READER_END_WITH_ERROR;
+}
+
+static void download_free(void *context) {
+    struct download *download = context;
+    atomic_fetch_sub(&download->service->snapshots, 1);
+    if (download->file >= 0)
+        close(download->file);
+    free(download);
+}
+
 /* Copies beside the database, where there is room of the same kind, and opens the copy without a
  * name: it is gone with the connection, whatever ends it. */
-static int snapshot_file(struct exchange *exchange, int *file, uint64_t *size, struct error *err) {
+static int snapshot_file(struct download *download, uint64_t *size, struct error *err) {
+    struct service *service = download->service;
     struct store *reader;
     char path[4200];
     struct stat info;
-    snprintf(path, sizeof path, "%s.snapshot-%d-%p", exchange->service->database, (int)getpid(),
-             (void *)exchange);
-    int status = service_reader(exchange->service, &reader, err);
+    snprintf(path, sizeof path, "%s.snapshot-%d-%p", service->database, (int)getpid(),
+             (void *)download);
+    int status = service_reader(service, &reader, err);
     if (!status)
         status = store_snapshot(reader, path, err);
-    service_give_back(exchange->service, reader);
+    service_give_back(service, reader);
     if (status)
         return status;
-    *file = open(path, O_RDONLY | O_CLOEXEC);
+    download->file = open(path, O_RDONLY | O_CLOEXEC);
     unlink(path);
-    if (*file < 0 || fstat(*file, &info))
+    if (download->file < 0 || fstat(download->file, &info))
         return error_set(err, ERROR_SYSTEM, "the snapshot cannot be read: %s", strerror(errno));
     *size = (uint64_t)info.st_size;
     return 0;
@@ -102,17 +127,22 @@ static int snapshot_file(struct exchange *exchange, int *file, uint64_t *size, s
 void handle_snapshot(struct exchange *exchange, const char *id) {
     (void)id;
     struct error err = {0};
-    int file = -1;
-    uint64_t size = 0;
-    if (snapshot_file(exchange, &file, &size, &err)) {
-        if (file >= 0)
-            close(file);
-        answer_error(exchange, &err);
+    uint64_t size;
+    struct download *download = array_create(1, sizeof *download);
+    if (!download) {
+        answer_problem(exchange, 503, "no memory for a snapshot", NULL);
         return;
     }
-    exchange_unbound(exchange);
-    exchange->status = 200;
-    exchange->response = MHD_create_response_from_fd64(size, file);
-    answer_header(exchange, "Content-Type", "application/vnd.sqlite3");
-    answer_header(exchange, "Content-Disposition", "attachment; filename=\"rugo.db\"");
+    *download = (struct download){exchange, exchange->service, -1};
+    if (atomic_fetch_add(&exchange->service->snapshots, 1) >= SNAPSHOTS_MOST) {
+        download_free(download);
+        answer_problem(exchange, 503, "too many snapshots are being sent", NULL);
+    } else if (snapshot_file(download, &size, &err)) {
+        download_free(download);
+        answer_error(exchange, &err);
+    } else {
+        answer_stream(exchange, "application/vnd.sqlite3", size, read_download, download,
+                      download_free);
+        answer_header(exchange, "Content-Disposition", "attachment; filename=\"rugo.db\"");
+    }
 }

@@ -16,8 +16,8 @@ struct service {
     struct writer *writer;
     struct publisher *publisher;
     struct checker *checker; /* of results that come in */
-    struct tokens *tokens; /* NULL: everyone may do everything (loopback only) */
-    int64_t started_ms;    /* clock_ms */
+    struct tokens *tokens;   /* NULL: everyone may do everything (loopback only) */
+    int64_t started_ms;      /* clock_ms */
     atomic_bool stopping;
 
     pthread_mutex_t mutex; /* guards the readers kept */
@@ -28,6 +28,7 @@ struct service {
     atomic_uint_fast64_t answers[STATUS_CLASSES]; /* by hundreds of the status */
     atomic_uint_fast64_t nanoseconds;             /* spent on answers */
     atomic_int_fast64_t connections, streams;     /* open now */
+    atomic_int_fast64_t snapshots;                /* being sent */
 };
 
 int service_open(struct service *service, const char *database, int64_t lease_ms,
