@@ -9,28 +9,29 @@ static const struct route {
     const char *method, *pattern; /* * stands for one segment */
     unsigned roles;               /* any of these; ROLE_NONE: open to all */
     route_handler *handler;
+    const char *queries[QUERY_NAMES_MOST]; /* below /v1, what a query may hold */
 } ROUTES[] = {
-    {"POST", "/v1/studies", ROLE_SUBMIT, handle_study_create},
-    {"GET", "/v1/studies", ROLE_READ, handle_study_list},
-    {"GET", "/v1/studies/*", ROLE_READ, handle_study},
-    {"DELETE", "/v1/studies/*", ROLE_SUBMIT, handle_study_cancel},
-    {"POST", "/v1/studies/*/retry", ROLE_SUBMIT, handle_study_retry},
-    {"GET", "/v1/studies/*/curves", ROLE_READ, handle_curves},
-    {"GET", "/v1/studies/*/report", ROLE_READ, handle_report},
-    {"GET", "/v1/studies/*/events", ROLE_READ, handle_events},
-    {"POST", "/v1/jobs/claim", ROLE_WORK, handle_claim},
-    {"POST", "/v1/jobs/*/heartbeat", ROLE_WORK, handle_heartbeat},
-    {"POST", "/v1/jobs/*/complete", ROLE_WORK, handle_complete},
-    {"POST", "/v1/jobs/*/fail", ROLE_WORK, handle_fail},
-    {"POST", "/v1/jobs/*/release", ROLE_WORK, handle_release},
-    {"GET", "/v1/snapshot", ROLE_READ, handle_snapshot},
-    {"GET", "/v1/openapi.yaml", ROLE_NONE, handle_openapi},
-    {"GET", "/v1/study.schema.json", ROLE_NONE, handle_schema},
-    {"GET", "/metrics", ROLE_READ, handle_metrics},
-    {"GET", "/healthz", ROLE_NONE, handle_health},
-    {"GET", "/", ROLE_NONE, handle_page},
-    {"GET", "/app.js", ROLE_NONE, handle_script},
-    {"GET", "/style.css", ROLE_NONE, handle_style},
+    {"POST", "/v1/studies", ROLE_SUBMIT, handle_study_create, {NULL}},
+    {"GET", "/v1/studies", ROLE_READ, handle_study_list, {"limit", "after"}},
+    {"GET", "/v1/studies/*", ROLE_READ, handle_study, {NULL}},
+    {"DELETE", "/v1/studies/*", ROLE_SUBMIT, handle_study_cancel, {NULL}},
+    {"POST", "/v1/studies/*/retry", ROLE_SUBMIT, handle_study_retry, {NULL}},
+    {"GET", "/v1/studies/*/curves", ROLE_READ, handle_curves, {"case", "quantity"}},
+    {"GET", "/v1/studies/*/report", ROLE_READ, handle_report, {NULL}},
+    {"GET", "/v1/studies/*/events", ROLE_READ, handle_events, {NULL}},
+    {"POST", "/v1/jobs/claim", ROLE_WORK, handle_claim, {NULL}},
+    {"POST", "/v1/jobs/*/heartbeat", ROLE_WORK, handle_heartbeat, {NULL}},
+    {"POST", "/v1/jobs/*/complete", ROLE_WORK, handle_complete, {NULL}},
+    {"POST", "/v1/jobs/*/fail", ROLE_WORK, handle_fail, {NULL}},
+    {"POST", "/v1/jobs/*/release", ROLE_WORK, handle_release, {NULL}},
+    {"GET", "/v1/snapshot", ROLE_READ, handle_snapshot, {NULL}},
+    {"GET", "/v1/openapi.yaml", ROLE_NONE, handle_openapi, {NULL}},
+    {"GET", "/v1/study.schema.json", ROLE_NONE, handle_schema, {NULL}},
+    {"GET", "/metrics", ROLE_READ, handle_metrics, {NULL}},
+    {"GET", "/healthz", ROLE_NONE, handle_health, {NULL}},
+    {"GET", "/", ROLE_NONE, handle_page, {NULL}},
+    {"GET", "/app.js", ROLE_NONE, handle_script, {NULL}},
+    {"GET", "/style.css", ROLE_NONE, handle_style, {NULL}},
 };
 enum { ROUTE_COUNT = sizeof ROUTES / sizeof *ROUTES };
 
@@ -96,7 +97,7 @@ static void refuse_route(struct exchange *exchange) {
 /* --- what the headers must be --- */
 
 struct header_counts {
-    unsigned lengths, hosts, encodings;
+    unsigned lengths, hosts, encodings, keys;
 };
 
 static enum MHD_Result count_header(void *context, enum MHD_ValueKind kind, const char *name,
@@ -106,6 +107,7 @@ static enum MHD_Result count_header(void *context, enum MHD_ValueKind kind, cons
     (void)value;
     counts->lengths += strcasecmp(name, "Content-Length") == 0;
     counts->encodings += strcasecmp(name, "Transfer-Encoding") == 0;
+    counts->keys += strcasecmp(name, "Idempotency-Key") == 0;
     counts->hosts += strcasecmp(name, "Host") == 0;
     return MHD_YES;
 }
@@ -115,13 +117,18 @@ static enum MHD_Result count_header(void *context, enum MHD_ValueKind kind, cons
 static bool check_headers(struct exchange *exchange) {
     struct header_counts counts = {0};
     MHD_get_connection_values(exchange->connection, MHD_HEADER_KIND, count_header, &counts);
-    const char *detail = NULL;
+    const char *encoding = exchange_header(exchange, "Transfer-Encoding"), *detail = NULL;
     if (counts.lengths > 1)
         detail = "more than one Content-Length";
     else if (counts.lengths && counts.encodings)
         detail = "Content-Length beside Transfer-Encoding";
     else if (counts.hosts > 1)
         detail = "more than one Host";
+    else if (counts.keys > 1)
+        detail = "more than one Idempotency-Key";
+    else if (counts.encodings > 1 ||
+             (encoding && strcasecmp(encoding, "chunked") != 0)) /* the library knows no other */
+        detail = "a Transfer-Encoding other than chunked";
     if (detail)
         answer_problem(exchange, 400, detail, NULL);
     return !detail;
@@ -167,7 +174,8 @@ static bool has_body(const struct exchange *exchange) {
 
 static bool check_media(struct exchange *exchange) {
     const char *type = exchange_header(exchange, "Content-Type");
-    if (!has_body(exchange) || (type && strncasecmp(type, "application/json", 16) == 0))
+    size_t length = type ? strcspn(type, "; \t") : 0;
+    if (!has_body(exchange) || (length == 16 && strncasecmp(type, "application/json", 16) == 0))
         return true;
     answer_problem(exchange, 415, "a body must be application/json", NULL);
     return false;
@@ -180,8 +188,9 @@ void route_refuse_early(struct exchange *exchange) {
     const struct route *route = find_route(exchange, id);
     if (!route)
         refuse_route(exchange);
-    else if (check_token(exchange, route->roles))
-        check_media(exchange);
+    else if (check_token(exchange, route->roles) && check_media(exchange) &&
+             strncmp(exchange->path, "/v1/", 4) == 0)
+        query_check(exchange, route->queries);
 }
 
 void route_answer(struct exchange *exchange) {
@@ -189,13 +198,17 @@ void route_answer(struct exchange *exchange) {
     find_route(exchange, id)->handler(exchange, id);
 }
 
+bool check_body(struct exchange *exchange) {
+    if (!exchange->body)
+        answer_problem(exchange, 400, "a JSON body is needed", NULL);
+    return exchange->body != NULL;
+}
+
 cJSON *body_json(struct exchange *exchange) {
     struct error err = {0};
     cJSON *document = NULL;
-    if (!exchange->body) {
-        answer_problem(exchange, 400, "a JSON body is needed", NULL);
+    if (!check_body(exchange))
         return NULL;
-    }
     if (json_parse(exchange->body, exchange->body_size, NULL, &document, &err)) {
         unsigned status = err.code == ERROR_INPUT ? 400 : 503;
         answer_problem(exchange, status, err.text, NULL);

@@ -1,14 +1,16 @@
 /* Studies over HTTP: submission, progress, curves, reports. */
+#include "server/accept.h"
 #include "server/api.h"
 #include "server/route.h"
 #include "worker/aggregate.h"
 #include "worker/kinds.h"
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* --- changes, through the writer --- */
+
+enum { KEY_MOST = 200 };
 
 struct submission {
     const struct study *study;
@@ -39,20 +41,33 @@ static void submit(struct exchange *exchange, const struct study *study) {
     answer_header(exchange, "Location", location);
 }
 
+/* A key that can be told again in an answer. */
+static bool check_key(struct exchange *exchange) {
+    const char *key = exchange_header(exchange, "Idempotency-Key");
+    size_t length = 0;
+    while (key && key[length] > ' ' && key[length] < 0x7f)
+        length++;
+    if (!key || (length && length <= KEY_MOST && !key[length]))
+        return true;
+    answer_problem(exchange, 400, "an Idempotency-Key has 1 to 200 visible ASCII characters", NULL);
+    return false;
+}
+
 /* Checks on the connection's thread: ten thousand cases must not hold up the writer. */
 void handle_study_create(struct exchange *exchange, const char *id) {
     (void)id;
     struct fault_list faults = {0};
     struct study *study = NULL;
     struct error err = {0};
-    cJSON *parsed = body_json(exchange); /* 400 for what is no JSON, 422 for what is no study */
-    if (!parsed)
+    if (!check_key(exchange) || !check_body(exchange))
         return;
-    cJSON_Delete(parsed);
-    if (!kinds_read_study(&study, exchange->body, exchange->body_size, NULL, &faults, &err))
+    int status = kinds_read_study(&study, exchange->body, exchange->body_size, NULL, &faults, &err);
+    if (!status)
         submit(exchange, study);
     else if (faults.count)
         answer_problem(exchange, 422, "the study is not valid", &faults);
+    else if (status == ERROR_INPUT) /* no JSON */
+        answer_problem(exchange, 400, err.text, NULL);
     else
         answer_error(exchange, &err);
     study_destroy(&study);
@@ -89,29 +104,6 @@ void handle_study_retry(struct exchange *exchange, const char *id) {
 }
 
 /* --- questions, to a reader --- */
-
-/* A whole number in the query: its value, or fallback when it is not there. False after a 422. */
-static bool query_number(struct exchange *exchange, const char *name, int64_t least, int64_t most,
-                         int64_t *value) {
-    const char *text = exchange_query(exchange, name);
-    char *end;
-    if (!text)
-        return true;
-    errno = 0;
-    long long number = strtoll(text, &end, 10);
-    if (!errno && end != text && !*end && number >= least && number <= most) {
-        *value = number;
-        return true;
-    }
-    struct fault_list faults = {0};
-    char pointer[32];
-    snprintf(pointer, sizeof pointer, "?%.20s", name);
-    fault_add(&faults, pointer, "%.40s is not in [%lld, %lld]", text, (long long)least,
-              (long long)most);
-    answer_problem(exchange, 422, "the query is not valid", &faults);
-    fault_list_clear(&faults);
-    return false;
-}
 
 void handle_study_list(struct exchange *exchange, const char *id) {
     (void)id;
@@ -164,7 +156,7 @@ void handle_report(struct exchange *exchange, const char *id) {
 
 static bool wants_csv(const struct exchange *exchange) {
     const char *accept = exchange_header(exchange, "Accept");
-    return accept && strstr(accept, "text/csv");
+    return accept_quality(accept, "text/csv") > accept_quality(accept, "application/json");
 }
 
 /* Every change of a study's results raises its revision: that, and the form, is the answer's
