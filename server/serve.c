@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <time.h>
 
 struct serve {
@@ -100,11 +101,7 @@ static int crew_token(struct crew *crew, struct error *err) {
     unsigned char bytes[(TOKEN_SIZE - 1) / 2];
     if (!tokens || !crew->serve->workers)
         return 0;
-    FILE *random = fopen("/dev/urandom", "rb");
-    bool good = random && fread(bytes, sizeof bytes, 1, random) == 1;
-    if (random)
-        fclose(random);
-    if (!good)
+    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
         return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
     for (size_t i = 0; i < sizeof bytes; i++)
         snprintf(crew->token + 2 * i, 3, "%02x", bytes[i]);
