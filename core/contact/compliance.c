@@ -40,10 +40,11 @@ size_t block_layers(const struct grid *grid, const struct block *block, double *
     /* In units of the first layer; a rounding error of the height adds no layer. */
     double height = block->height / first * (1 - 1e-12), total = 0, layer = 1;
     size_t count = 0;
-    for (; total < height && count < LAYERS_MOST; layer *= block->layer_growth) {
+    do {
         thickness[count++] = layer;
         total += layer;
-    }
+        layer *= block->layer_growth;
+    } while (total < height && count < LAYERS_MOST);
     if (!(total >= height && isfinite(total)))
         return 0;
     for (size_t k = 0; k < count; k++)
@@ -166,6 +167,7 @@ void compliance_destroy(struct compliance **compliance) {
 }
 
 double compliance_bytes(const struct grid *grid, const struct block *block) {
-    double waves = ((double)(grid->nx / 2) + 1) * (double)grid->ny;
+    size_t columns = grid->nx / 2 + 1; /* the product may not fit a size_t yet */
+    double waves = (double)columns * (double)grid->ny;
     return sizeof(struct compliance) + waves * sizeof(double) * (has_weight(block) ? 2 : 1);
 }
