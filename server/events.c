@@ -2,10 +2,10 @@
 #include "server/api.h"
 #include "server/route.h"
 #include "worker/clock.h"
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { STREAMS_MOST = 64, LOOK_MS = 300, ALIVE_MS = 15000 };
 
@@ -13,6 +13,7 @@ enum { STREAMS_MOST = 64, LOOK_MS = 300, ALIVE_MS = 15000 };
 struct stream {
     struct exchange *exchange; /* lives as long as the library calls next_event */
     struct service *service;
+    int socket; /* the library's */
     char id[SEGMENT_SIZE];
     double revision; /* told last; -1 at first */
     int64_t told_ms;
@@ -21,9 +22,11 @@ struct stream {
     size_t sent;
 };
 
-static void pause_ms(long milliseconds) {
-    struct timespec pause = {milliseconds / 1000, milliseconds % 1000 * 1000000};
-    nanosleep(&pause, NULL);
+/* Waits a little; true when the peer has left, which a stream that writes nothing would not notice.
+ */
+static bool peer_leaves(const struct stream *stream) {
+    struct pollfd peer = {.fd = stream->socket, .events = POLLRDHUP};
+    return poll(&peer, 1, LOOK_MS) > 0;
 }
 
 static bool has_ended(const cJSON *status) {
@@ -69,7 +72,7 @@ static ssize_t next_event(void *context, uint64_t position, char *buffer, size_t
         if (!stream->pending && clock_ms() - stream->told_ms > ALIVE_MS)
             stream->pending = strdup(": alive\n\n");
         if (!stream->pending && !stream->ended)
-            pause_ms(LOOK_MS);
+            stream->ended = peer_leaves(stream);
     }
     exchange_renew(stream->exchange); /* who takes nothing for a whole deadline is cut */
     size_t left = strlen(stream->pending) - stream->sent, part = left < room ? left : room;
@@ -109,6 +112,7 @@ void handle_events(struct exchange *exchange, const char *id) {
     stream->exchange = exchange;
     stream->service = exchange->service;
     stream->revision = -1;
+    stream->socket = exchange_socket(exchange);
     snprintf(stream->id, sizeof stream->id, "%s", id);
     if (atomic_fetch_add(&exchange->service->streams, 1) >= STREAMS_MOST) {
         stream_free(stream);

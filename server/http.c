@@ -49,6 +49,12 @@ static int64_t now_ns(void) {
 
 /* --- connections --- */
 
+static int socket_of(struct MHD_Connection *connection) {
+    const union MHD_ConnectionInfo *info =
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    return info ? info->connect_fd : -1;
+}
+
 static void on_connection(void *context, struct MHD_Connection *connection, void **slot,
                           enum MHD_ConnectionNotificationCode code) {
     struct http *http = context;
@@ -66,14 +72,13 @@ static void on_connection(void *context, struct MHD_Connection *connection, void
         *slot = NULL;
         return;
     }
-    const union MHD_ConnectionInfo *info =
-        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    int socket = socket_of(connection);
     entry = calloc(1, sizeof *entry);
-    if (!info || !entry) {
-        free(entry);
-        return; /* the handler closes a connection without an entry */
+    if (!entry) {
+        shutdown(socket, SHUT_RDWR); /* it would have no deadline */
+        return;
     }
-    entry->socket = info->connect_fd;
+    entry->socket = socket;
     entry->deadline_ms = clock_ms() + 1000 * (int64_t)http->options.deadline_s;
     pthread_mutex_lock(&http->mutex);
     entry->next = http->connections;
@@ -258,6 +263,10 @@ const char *exchange_query(const struct exchange *exchange, const char *name) {
 
 const char *exchange_header(const struct exchange *exchange, const char *name) {
     return MHD_lookup_connection_value(exchange->connection, MHD_HEADER_KIND, name);
+}
+
+int exchange_socket(const struct exchange *exchange) {
+    return socket_of(exchange->connection);
 }
 
 /* --- start and stop --- */

@@ -42,6 +42,8 @@ struct exchange {
 const char *exchange_query(const struct exchange *exchange, const char *name); /* NULL if absent */
 const char *exchange_header(const struct exchange *exchange, const char *name);
 
+int exchange_socket(const struct exchange *exchange);
+
 /* Takes the document. */
 void answer_json(struct exchange *exchange, unsigned status, cJSON *document);
 /* Takes text (malloc). */

@@ -290,6 +290,27 @@ static void head_of_a_stream_has_no_body(void **state) {
     free(reply);
 }
 
+/* A study that rests writes nothing: that its watcher has left is seen all the same, and soon. */
+static void streams_left_alone_end(void **state) {
+    (void)state;
+    char id[17], request[200], *metrics = NULL;
+    bool none = false;
+    submit(id);
+    snprintf(request, sizeof request,
+             "GET /v1/studies/%s/events HTTP/1.1\r\nHost: localhost\r\n\r\n", id);
+    int connection = http_connect(port);
+    say(connection, request);
+    assert_true(hear(connection, "queued"));
+    close(connection);
+    for (int tries = 0; !none && tries < 30; tries++) {
+        sleep_ms(100);
+        assert_int_equal(http_exchange(port, "GET", "/metrics", NULL, NULL, &metrics), 200);
+        none = strstr(metrics, "\nrugo_event_streams 0\n") != NULL;
+        free(metrics);
+    }
+    assert_true(none);
+}
+
 /* --- the whole server --- */
 
 static void a_taken_port_is_refused(void **state) {
@@ -338,6 +359,7 @@ int main(void) {
         cmocka_unit_test(downloads_that_are_not_read_are_cut),
         cmocka_unit_test(a_stream_outlives_the_deadline),
         cmocka_unit_test(head_of_a_stream_has_no_body),
+        cmocka_unit_test(streams_left_alone_end),
         cmocka_unit_test(a_taken_port_is_refused),
     };
     return cmocka_run_group_tests(tests, start, stop);

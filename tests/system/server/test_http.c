@@ -190,6 +190,39 @@ static void descriptions_and_page(void **state) {
     free(answer);
 }
 
+/* Every path of the description has just the methods that it describes: 405 tells them. */
+static void description_and_routes_agree(void **state) {
+    (void)state;
+    char *text, *allowed, *rest = NULL, path[80] = "", methods[80] = "";
+    size_t paths = 0;
+    assert_int_equal(ask("GET", "/v1/openapi.yaml", NULL, &text), 200);
+    for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        bool next = strncmp(line, "  /", 3) == 0 || strncmp(line, "components:", 11) == 0;
+        if (next && *path) {
+            assert_int_equal(ask("BREW", path, NULL, &allowed), 405);
+            char *listed = strstr(allowed, "allowed: ");
+            assert_non_null(listed);
+            listed[strcspn(listed, "\"")] = 0;
+            assert_string_equal(listed + 9, methods);
+            free(allowed);
+            paths++;
+        }
+        if (next) {
+            snprintf(path, sizeof path, "%.*s", (int)strcspn(line + 2, ":"), line + 2);
+            *methods = 0;
+        }
+        const char *method = strncmp(line, "    get:", 8) == 0       ? "GET, HEAD"
+                             : strncmp(line, "    post:", 9) == 0    ? "POST"
+                             : strncmp(line, "    delete:", 11) == 0 ? "DELETE"
+                                                                     : NULL;
+        size_t used = strlen(methods);
+        if (method)
+            snprintf(methods + used, sizeof methods - used, "%s%s", used ? ", " : "", method);
+    }
+    assert_true(paths > 10);
+    free(text);
+}
+
 /* --- tokens --- */
 
 static void roles_bound_what_a_token_may_do(void **state) {
@@ -257,6 +290,7 @@ int main(void) {
         cmocka_unit_test(a_key_makes_submission_safe_to_repeat),
         cmocka_unit_test(a_lease_is_needed_to_report),
         cmocka_unit_test(descriptions_and_page),
+        cmocka_unit_test(description_and_routes_agree),
         cmocka_unit_test(roles_bound_what_a_token_may_do),
         cmocka_unit_test(beyond_loopback_tokens_are_needed),
     };
