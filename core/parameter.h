@@ -9,8 +9,10 @@
 enum parameter_type {
     PARAMETER_NUMBER,
     PARAMETER_INTEGER,
-    PARAMETER_CHOICE, /* a string out of choices */
-    PARAMETER_NUMBERS /* an array of items_low..items_high numbers: one value, e.g. bins */
+    PARAMETER_CHOICE,  /* a string out of choices */
+    PARAMETER_NUMBERS, /* an array of items_low..items_high numbers: one value, e.g. bins */
+    PARAMETER_CHOICES, /* an array of different strings out of choices, or one alone: one value */
+    PARAMETER_MEASURE  /* a string out of choices, or a number with its unit: {"lengths": 1.5} */
 };
 
 struct parameter {
@@ -18,6 +20,7 @@ struct parameter {
     const char *help;             /* one line; unit or normalisation in it */
     const char *default_json;     /* NULL: absent unless given */
     const char *const *choices;   /* NULL-terminated */
+    const char *const *units;     /* PARAMETER_MEASURE; NULL-terminated */
     double minimum, maximum;      /* of each number; ignored for choices */
     size_t items_low, items_high; /* PARAMETER_NUMBERS */
     enum parameter_type type;

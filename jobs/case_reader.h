@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/parameter.h"
+#include "core/statistics/histogram.h"
 #include <cjson/cJSON.h>
 #include <stdint.h>
 
@@ -19,6 +20,16 @@ struct case_reader {
 double case_number(const struct case_reader *reader, const char *path);
 /* Position among the row's choices; 0 where it does not fit (a fault then). */
 size_t case_choice(const struct case_reader *reader, const char *path);
+/* Positions among the row's choices, in the order given, into out (room for all of them); how many,
+ * 0 where the value is absent or does not fit (a fault then). */
+size_t case_choices(const struct case_reader *reader, const char *path, size_t *out);
+/* A measure's number, and *unit its position among the row's units; INFINITY for a choice (whose
+ * position is then *unit), NaN where absent or unfit (a fault then). */
+double case_measure(const struct case_reader *reader, const char *path, size_t *unit);
+/* [low, high, count]: at most `most` bins. *out is left alone where the value does not fit (a fault
+ * then). Fails only with ERROR_MEMORY. */
+int case_bins(const struct case_reader *reader, const char *path, size_t most, struct bins *out,
+              struct error *err);
 /* The array's values into *out (owned by the caller, NULL where absent or at fault) and *n.
  * Fails only with ERROR_MEMORY. */
 int case_numbers(const struct case_reader *reader, const char *path, double **out, size_t *n,

@@ -1,6 +1,7 @@
 #include "jobs/kind.h"
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /* One line a kind; each is defined in the file of its name. */
 #define KINDS(KIND) KIND(STATISTICS_KIND)
@@ -23,4 +24,10 @@ void job_result_clear(struct job_result *result) {
     free(result->scalars);
     free(result->data);
     *result = (struct job_result){0};
+}
+
+double job_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }

@@ -2,7 +2,8 @@
  * result, merges partial results and turns them into curves. A new kind is one file that fills a
  * struct job_kind, and one line in the table of kind.c.
  *
- * Life of a job: check -> runner_create -> run (blocks, one thread a runner) -> runner_destroy;
+ * Life of a job: check -> shared_create (once a case and process) -> runner_create -> run (blocks,
+ * one thread a runner) -> runner_destroy -> shared_destroy;
  * of a curve: merger_create -> add (in any order: the same bits) -> curves -> merger_destroy. */
 #ifndef RUGO_JOBS_KIND_H
 #define RUGO_JOBS_KIND_H
@@ -37,6 +38,7 @@ struct job_control {
     void *context;
 };
 
+struct job_shared;
 struct job_runner;
 struct job_merger;
 
@@ -52,8 +54,15 @@ struct job_kind {
      * cost. */
     int (*check)(const cJSON *parameters, struct fault_list *faults, struct job_estimate *estimate,
                  struct error *err);
-    int (*runner_create)(struct job_runner **out, const cJSON *parameters, uint64_t seed,
-                         uint64_t case_number, struct error *err);
+    /* What all runners of a case can share, such as a factorised matrix: immutable once made, read
+     * by many threads. Both NULL for kinds that share nothing. */
+    int (*shared_create)(struct job_shared **out, const cJSON *parameters, struct error *err);
+    void (*shared_destroy)(struct job_shared **shared);
+    /* Borrows shared, of the same parameters, as long as it lives; NULL where the kind shares
+     * nothing, or for the runner to make its own. */
+    int (*runner_create)(struct job_runner **out, const cJSON *parameters,
+                         const struct job_shared *shared, uint64_t seed, uint64_t case_number,
+                         struct error *err);
     void (*runner_destroy)(struct job_runner **runner);
     /* Runs realisations first .. first + count - 1 into out (untouched on failure). */
     int (*run)(struct job_runner *runner, uint64_t first, uint64_t count,
@@ -70,6 +79,9 @@ struct job_kind {
     /* {"realisations": n, "scalars": {...}, "curves": [...]} of interface.md; caller deletes. */
     int (*curves)(struct job_merger *merger, cJSON **out, struct error *err);
 };
+
+/* Seconds on a clock that never steps: for job_result.seconds. */
+double job_clock(void);
 
 /* All kinds, in a fixed order; kind_find gives NULL for an unknown name. */
 extern const struct job_kind *const JOB_KINDS[];

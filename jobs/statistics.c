@@ -1,11 +1,10 @@
 /* The kind "statistics": summit statistics, spectra and roughness of random surfaces. */
+#include "jobs/case_document.h"
 #include "jobs/kind.h"
 #include "jobs/statistics_curves.h"
 #include "jobs/statistics_scalars.h"
 #include "jobs/statistics_spectra.h"
-#include "jobs/value.h"
 #include <stdlib.h>
-#include <time.h>
 
 static int check(const cJSON *parameters, struct fault_list *faults, struct job_estimate *estimate,
                  struct error *err) {
@@ -70,8 +69,10 @@ static int runner_fill(struct job_runner *runner, const cJSON *parameters, struc
                : error_memory(err, grid_points(grid) * sizeof *runner->z, "a surface");
 }
 
-static int runner_create(struct job_runner **out, const cJSON *parameters, uint64_t seed,
-                         uint64_t case_number, struct error *err) {
+static int runner_create(struct job_runner **out, const cJSON *parameters,
+                         const struct job_shared *shared, uint64_t seed, uint64_t case_number,
+                         struct error *err) {
+    (void)shared;
     struct job_runner *runner = array_create(1, sizeof *runner);
     if (runner == NULL)
         return error_memory(err, sizeof *runner, "a runner");
@@ -127,15 +128,9 @@ static int run_all(struct job_runner *runner, const struct job_control *control,
     return statistics_tally_encode(tally, &result->data, &result->size, err);
 }
 
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static int run(struct job_runner *runner, uint64_t first, uint64_t count,
                const struct job_control *control, struct job_result *out, struct error *err) {
-    double start = seconds_now();
+    double start = job_clock();
     struct job_result result = {.first = first, .count = count, .scalar_count = SCALAR_COUNT};
     struct statistics_tally tally;
     if (count == 0 || count > UINT64_MAX - first)
@@ -154,7 +149,7 @@ static int run(struct job_runner *runner, uint64_t first, uint64_t count,
         job_result_clear(&result);
         return status;
     }
-    result.seconds = seconds_now() - start;
+    result.seconds = job_clock() - start;
     *out = result;
     return 0;
 }
@@ -249,24 +244,17 @@ static int merge(struct job_merger *merger, const struct job_result *result, str
 }
 
 static int curves(struct job_merger *merger, cJSON **out, struct error *err) {
-    cJSON *scalars = NULL, *list = NULL, *document = cJSON_CreateObject();
+    cJSON *scalars = NULL, *list = NULL;
     int status = statistics_scalars_json(&merger->study, &merger->moments, &merger->realisations,
                                          &scalars, err);
     if (status == 0)
         status = statistics_curves(&merger->study, merger->modes, &merger->moments, &merger->tally,
                                    &list, err);
-    bool put =
-        value_put(document, "realisations", value_number((double)merger->realisations.count));
-    put = value_put(document, "scalars", scalars) && put; /* each takes its item in any case */
-    put = value_put(document, "curves", list) && put;
-    if (status == 0 && !put)
-        status = error_memory(err, sizeof(cJSON), "curves");
     if (status != 0) {
-        cJSON_Delete(document);
+        cJSON_Delete(scalars);
         return status;
     }
-    *out = document;
-    return 0;
+    return case_document(merger->realisations.count, scalars, list, out, err);
 }
 
 const struct job_kind STATISTICS_KIND = {

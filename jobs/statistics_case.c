@@ -45,31 +45,13 @@ _Static_assert(sizeof STATISTICS_PARAMETERS / sizeof *STATISTICS_PARAMETERS ==
                    STATISTICS_PARAMETER_COUNT,
                "the count in statistics_case.h");
 
-static int read_bins(const struct case_reader *reader, const char *path, struct bins *out,
-                     struct error *err) {
-    double *numbers;
-    size_t n;
-    int status = case_numbers(reader, path, &numbers, &n, err);
-    if (status != 0 || numbers == NULL)
-        return status;
-    if (!(numbers[0] < numbers[1]))
-        fault_add(reader->faults, path, "low, %g, must be below high, %g", numbers[0], numbers[1]);
-    else if (!(numbers[2] >= 1 && numbers[2] <= BINS_MOST && numbers[2] == floor(numbers[2])))
-        fault_add(reader->faults, path, "the count, %g, must be an integer in [1, %d]", numbers[2],
-                  BINS_MOST);
-    else
-        *out = (struct bins){numbers[0], numbers[1], (size_t)numbers[2]};
-    free(numbers);
-    return 0;
-}
-
 static int read_statistics(struct statistics_case *out, const struct case_reader *reader,
                            struct error *err) {
     out->stencil = (enum summit_stencil)case_choice(reader, "/statistics/summits");
     out->curvature = (enum summit_curvature)case_choice(reader, "/statistics/curvature");
-    int status = read_bins(reader, "/statistics/bins/height", &out->height, err);
+    int status = case_bins(reader, "/statistics/bins/height", BINS_MOST, &out->height, err);
     if (status == 0)
-        status = read_bins(reader, "/statistics/bins/curvature", &out->equivalent, err);
+        status = case_bins(reader, "/statistics/bins/curvature", BINS_MOST, &out->equivalent, err);
     if (status == 0 && out->height.count * out->equivalent.count > JOINT_MOST)
         fault_add(reader->faults, "/statistics/bins/curvature",
                   "%zu by %zu bins are too many for the joint density: at most %d in all",

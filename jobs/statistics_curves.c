@@ -70,8 +70,7 @@ static bool density(struct workshop *shop, const char *quantity, const char *x_l
                                         .x = shop->x,
                                         .y = shop->y,
                                         .standard_error = shop->standard_error,
-                                        .theory_name = theory_name,
-                                        .theory = shop->pdf,
+                                        .theories = {{theory_name, shop->pdf}},
                                         .counted = true,
                                         .underflow = (double)cells->count[0],
                                         .overflow = (double)cells->count[bins->count + 1]});
@@ -94,8 +93,7 @@ static bool cumulative(struct workshop *shop, const char *quantity, const struct
                                                       .x = shop->x,
                                                       .y = shop->y,
                                                       .standard_error = shop->standard_error,
-                                                      .theory_name = theory_name,
-                                                      .theory = shop->cdf});
+                                                      .theories = {{theory_name, shop->cdf}}});
 }
 
 static bool curvature(struct workshop *shop) {
@@ -108,17 +106,17 @@ static bool curvature(struct workshop *shop) {
         shop->y[b] = mean.value;
         shop->standard_error[b] = mean.standard_error;
     }
-    return curve_append(shop->curves, &(struct curve){.quantity = "summit_mean_curvature",
-                                                      .x_label = height_label(),
-                                                      .y_label = shop->study->surface.dimension == 2
-                                                                     ? "kappa_m/sqrt(m4)"
-                                                                     : "-z''/sqrt(m4)",
-                                                      .n = bins->count,
-                                                      .x = shop->x,
-                                                      .y = shop->y,
-                                                      .standard_error = shop->standard_error,
-                                                      .theory_name = shop->theory_name,
-                                                      .theory = shop->curvature});
+    return curve_append(shop->curves,
+                        &(struct curve){.quantity = "summit_mean_curvature",
+                                        .x_label = height_label(),
+                                        .y_label = shop->study->surface.dimension == 2
+                                                       ? "kappa_m/sqrt(m4)"
+                                                       : "-z''/sqrt(m4)",
+                                        .n = bins->count,
+                                        .x = shop->x,
+                                        .y = shop->y,
+                                        .standard_error = shop->standard_error,
+                                        .theories = {{shop->theory_name, shop->curvature}}});
 }
 
 static bool joint(struct workshop *shop) {
@@ -148,8 +146,7 @@ static bool joint(struct workshop *shop) {
                                         .x2_label = equivalent_label(shop),
                                         .y = shop->y,
                                         .standard_error = shop->standard_error,
-                                        .theory_name = shop->theory_name,
-                                        .theory = shop->pdf,
+                                        .theories = {{shop->theory_name, shop->pdf}},
                                         .counted = true,
                                         .underflow = 0,
                                         .overflow = (double)shop->tally->summits.sum - inside});

@@ -2,8 +2,8 @@
 #include "core/sum.h"
 #include "core/theory/nayak.h"
 #include "jobs/estimate.h"
+#include "jobs/scalar.h"
 #include "jobs/statistics_theory.h"
-#include "jobs/value.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -116,17 +116,6 @@ static struct estimate summit_estimate(const struct columns *columns,
     return estimate_weighted(columns->n, variance, number);
 }
 
-static bool put_scalar(cJSON *scalars, const char *name, struct estimate estimate, double theory) {
-    cJSON *scalar = cJSON_CreateObject();
-    bool done = value_put(scalar, "value", value_number(estimate.value)) &&
-                value_put(scalar, "standard_error", value_number(estimate.standard_error)) &&
-                (isnan(theory) || value_put(scalar, "theory", value_number(theory)));
-    if (done)
-        return value_put(scalars, name, scalar);
-    cJSON_Delete(scalar);
-    return false;
-}
-
 static bool put_scalars(cJSON *scalars, const struct statistics_case *study,
                         const struct moments *moments, struct columns *columns) {
     double theory[SCALAR_COUNT];
@@ -141,10 +130,10 @@ static bool put_scalars(cJSON *scalars, const struct statistics_case *study,
             estimate = summit_estimate(columns, a);
         else
             estimate = estimate_mean(columns->n, column(columns, a));
-        done = put_scalar(scalars, STATISTICS_SCALARS[a], estimate, theory[a]);
+        done = scalar_put(scalars, STATISTICS_SCALARS[a], estimate, theory[a]);
     }
     /* as given, or as solved for nayak_alpha */
-    return done && put_scalar(scalars, "wavelength_ratio",
+    return done && scalar_put(scalars, "wavelength_ratio",
                               (struct estimate){study->surface.wavelength_ratio, 0}, NAN);
 }
 

@@ -128,8 +128,7 @@ static int density_curve(const struct statistics_case *study, const struct modes
                                     .x = series.x + 1,
                                     .y = series.y + 1,
                                     .standard_error = series.standard_error + 1,
-                                    .theory_name = exact ? NULL : "prescribed",
-                                    .theory = series.theory + 1},
+                                    .theories = {{exact ? NULL : "prescribed", series.theory + 1}}},
                     err);
     free(reference.x);
     free(series.x);
@@ -191,8 +190,7 @@ static int correlation_curve(const struct statistics_case *study, const struct m
                                     .x = series.x,
                                     .y = series.y,
                                     .standard_error = series.standard_error,
-                                    .theory_name = exact ? NULL : "prescribed",
-                                    .theory = series.theory},
+                                    .theories = {{exact ? NULL : "prescribed", series.theory}}},
                     err);
     free(series.x);
     return status;

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #define TWO_PI 6.283185307179586
-static const double POINTS_MOST = 2147483648.0; /* of a grid: 2^31 */
-static const double ROUNDING = 1e-9;            /* relative: guards integers behind divisions */
+static const double ROUNDING = 1e-9; /* relative: guards integers behind divisions */
 
 const struct parameter SURFACE_PARAMETERS[] = {
 #include "jobs/surface_parameters.inc"
@@ -197,8 +196,7 @@ static bool is_smooth(size_t n) {
     return n == 1;
 }
 
-/* At least `points` a side; see the help of points_per_wavelength. */
-static size_t grid_side(double points) {
+size_t surface_case_side(double points) {
     double nearest = round(points);
     if (fabs(points - nearest) <= ROUNDING * points)
         return (size_t)nearest;
@@ -215,13 +213,13 @@ static void read_grid(struct surface_case *out, const struct case_reader *reader
     if (isnan(points))
         return; /* at fault already */
     double total = out->dimension == 1 ? points : points * points;
-    if (total > POINTS_MOST * (1 + ROUNDING)) {
+    if (total > SURFACE_POINTS_MOST * (1 + ROUNDING)) {
         fault_add(reader->faults, "/surface/points_per_wavelength",
                   "a grid of %.0f points a side is too large: at most %.0f", points,
-                  out->dimension == 1 ? POINTS_MOST : floor(sqrt(POINTS_MOST)));
+                  out->dimension == 1 ? SURFACE_POINTS_MOST : floor(sqrt(SURFACE_POINTS_MOST)));
         return;
     }
-    size_t side = grid_side(points);
+    size_t side = surface_case_side(points);
     out->grid = (struct grid){side, out->dimension == 1 ? 1 : side, length, length};
 }
 

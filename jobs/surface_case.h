@@ -35,4 +35,10 @@ static inline bool surface_case_exact(const struct surface_case *surface) {
 /* Highest wave number that the spectrum can have on the grid, in x as in y: at most nx/2. */
 size_t surface_case_band(const struct surface_case *surface);
 
+/* Points a side of a cell that asks for `points`, at least that: where it is no integer, rounded up
+ * to an even number without prime factors above 7. */
+size_t surface_case_side(double points);
+/* Most points of a grid: 2^31. */
+#define SURFACE_POINTS_MOST 2147483648.0
+
 #endif

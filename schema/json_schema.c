@@ -41,28 +41,75 @@ static cJSON *number_schema(const struct parameter *parameter) {
                                put_bounds(schema, parameter));
 }
 
+static cJSON *choice_schema(const struct parameter *parameter) {
+    cJSON *schema = cJSON_CreateObject();
+    int count = 0;
+    while (parameter->choices[count])
+        count++;
+    return checked(schema, put(schema, "enum", cJSON_CreateStringArray(parameter->choices, count)));
+}
+
+/* {"anyOf": [first, second]}; takes both. */
+static cJSON *either(cJSON *first, cJSON *second) {
+    cJSON *schema = cJSON_CreateObject();
+    cJSON *forms = schema ? cJSON_AddArrayToObject(schema, "anyOf") : NULL;
+    bool complete = forms && first && cJSON_AddItemToArray(forms, first);
+    if (!complete)
+        cJSON_Delete(first);
+    if (!complete || !second || !cJSON_AddItemToArray(forms, second)) {
+        cJSON_Delete(second);
+        complete = false;
+    }
+    return checked(schema, complete);
+}
+
+/* One choice alone, or an array of different ones. */
+static cJSON *choices_schema(const struct parameter *parameter) {
+    cJSON *list = cJSON_CreateObject();
+    bool complete = put_text(list, "type", "array") &&
+                    put(list, "items", choice_schema(parameter)) &&
+                    put(list, "minItems", cJSON_CreateNumber(1)) &&
+                    put(list, "uniqueItems", cJSON_CreateTrue());
+    return either(choice_schema(parameter), checked(list, complete));
+}
+
+/* A choice, or an object of one number named by its unit. */
+static cJSON *measure_schema(const struct parameter *parameter) {
+    cJSON *object = cJSON_CreateObject(), *units = cJSON_CreateObject();
+    bool complete = units != NULL;
+    for (const char *const *unit = parameter->units; complete && *unit; unit++)
+        complete = put(units, *unit, number_schema(parameter));
+    units = checked(units, complete);
+    complete = put(object, "properties", units) && put_text(object, "type", "object") &&
+               put(object, "additionalProperties", cJSON_CreateFalse()) &&
+               put(object, "minProperties", cJSON_CreateNumber(1)) &&
+               put(object, "maxProperties", cJSON_CreateNumber(1));
+    return either(choice_schema(parameter), checked(object, complete));
+}
+
+static cJSON *numbers_schema(const struct parameter *parameter) {
+    cJSON *schema = cJSON_CreateObject();
+    return checked(schema,
+                   put_text(schema, "type", "array") &&
+                       put(schema, "items", number_schema(parameter)) &&
+                       put(schema, "minItems", cJSON_CreateNumber((double)parameter->items_low)) &&
+                       put(schema, "maxItems", cJSON_CreateNumber((double)parameter->items_high)));
+}
+
 /* Schema of one value, without sweeps. */
 static cJSON *value_schema(const struct parameter *parameter) {
-    cJSON *schema;
     switch (parameter->type) {
     case PARAMETER_NUMBER:
     case PARAMETER_INTEGER:
         return number_schema(parameter);
-    case PARAMETER_CHOICE: {
-        int count = 0;
-        while (parameter->choices[count])
-            count++;
-        schema = cJSON_CreateObject();
-        return checked(schema,
-                       put(schema, "enum", cJSON_CreateStringArray(parameter->choices, count)));
-    }
+    case PARAMETER_CHOICE:
+        return choice_schema(parameter);
     case PARAMETER_NUMBERS:
-        schema = cJSON_CreateObject();
-        return checked(
-            schema, put_text(schema, "type", "array") &&
-                        put(schema, "items", number_schema(parameter)) &&
-                        put(schema, "minItems", cJSON_CreateNumber((double)parameter->items_low)) &&
-                        put(schema, "maxItems", cJSON_CreateNumber((double)parameter->items_high)));
+        return numbers_schema(parameter);
+    case PARAMETER_CHOICES:
+        return choices_schema(parameter);
+    case PARAMETER_MEASURE:
+        return measure_schema(parameter);
     }
     return NULL;
 }

@@ -57,20 +57,68 @@ static bool number_check(const struct parameter *parameter, const cJSON *value, 
     return true;
 }
 
+static bool is_one_of(const char *const *names, const char *name) {
+    for (; name && *names; names++)
+        if (strcmp(*names, name) == 0)
+            return true;
+    return false;
+}
+
+/* "first", "second" */
+static void names_print(const char *const *names, char *text, size_t size) {
+    size_t used = 0;
+    for (*text = 0; *names && used < size - 1; names++)
+        used += (size_t)snprintf(text + used, size - used, "%s\"%s\"", used ? ", " : "", *names);
+}
+
 static bool choice_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
                          struct fault_list *faults) {
-    const char *const *choice = parameter->choices;
-    if (cJSON_IsString(value))
-        for (; *choice; choice++)
-            if (strcmp(*choice, value->valuestring) == 0)
-                return true;
-    char text[48], allowed[256] = "";
-    size_t used = 0;
+    if (is_one_of(parameter->choices, cJSON_GetStringValue(value)))
+        return true;
+    char text[48], allowed[256];
     value_describe(value, text, sizeof text);
-    for (choice = parameter->choices; *choice && used < sizeof allowed - 1; choice++)
-        used += (size_t)snprintf(allowed + used, sizeof allowed - used, "%s\"%s\"",
-                                 used ? ", " : "", *choice);
+    names_print(parameter->choices, allowed, sizeof allowed);
     fault_add(faults, pointer, "%s is not one of %s", text, allowed);
+    return false;
+}
+
+static bool choices_check(const struct parameter *parameter, const cJSON *value,
+                          const char *pointer, struct fault_list *faults) {
+    if (!cJSON_IsArray(value))
+        return choice_check(parameter, value, pointer, faults);
+    bool good = value->child;
+    if (!good)
+        fault_add(faults, pointer, "an empty list; give at least one value");
+    size_t i = 0;
+    for (const cJSON *item = value->child; item; item = item->next, i++) {
+        char at[POINTER_SIZE];
+        snprintf(at, sizeof at, "%s/%zu", pointer, i);
+        bool fits = choice_check(parameter, item, at, faults), twice = false;
+        for (const cJSON *other = value->child; fits && other != item; other = other->next)
+            twice = twice || cJSON_Compare(other, item, true);
+        if (twice)
+            fault_add(faults, at, "\"%s\" is there already", item->valuestring);
+        good = good && fits && !twice;
+    }
+    return good;
+}
+
+static bool measure_check(const struct parameter *parameter, const cJSON *value,
+                          const char *pointer, struct fault_list *faults) {
+    if (is_one_of(parameter->choices, cJSON_GetStringValue(value)))
+        return true;
+    const cJSON *number = cJSON_IsObject(value) ? value->child : NULL;
+    if (number && !number->next && is_one_of(parameter->units, number->string)) {
+        char at[POINTER_SIZE];
+        snprintf(at, sizeof at, "%s/%s", pointer, number->string);
+        return number_check(parameter, number, at, faults);
+    }
+    char text[48], allowed[128], units[128];
+    value_describe(value, text, sizeof text);
+    names_print(parameter->choices, allowed, sizeof allowed);
+    names_print(parameter->units, units, sizeof units);
+    fault_add(faults, pointer, "%s is not one of %s, nor an object of one number named %s", text,
+              allowed, units);
     return false;
 }
 
@@ -109,6 +157,10 @@ bool value_check(const struct parameter *parameter, const cJSON *value, const ch
         return choice_check(parameter, value, pointer, faults);
     case PARAMETER_NUMBERS:
         return numbers_check(parameter, value, pointer, faults);
+    case PARAMETER_CHOICES:
+        return choices_check(parameter, value, pointer, faults);
+    case PARAMETER_MEASURE:
+        return measure_check(parameter, value, pointer, faults);
     }
     return false;
 }
@@ -116,5 +168,6 @@ bool value_check(const struct parameter *parameter, const cJSON *value, const ch
 bool value_is_list(const struct parameter *parameter, const cJSON *value) {
     if (!cJSON_IsArray(value))
         return false;
-    return parameter->type != PARAMETER_NUMBERS || cJSON_IsArray(value->child);
+    bool one = parameter->type == PARAMETER_NUMBERS || parameter->type == PARAMETER_CHOICES;
+    return !one || cJSON_IsArray(value->child);
 }

@@ -3,6 +3,7 @@
 #define RUGO_WORKER_CREW_H
 
 #include "worker/keeper.h"
+#include "worker/shared_parts.h"
 #include "worker/worker.h"
 #include <pthread.h>
 #include <stdatomic.h>
@@ -13,6 +14,7 @@ struct crew {
     const struct worker_options *options;
     char name[NAME_MOST]; /* of the process */
     struct keeper *keeper;
+    struct shared_parts parts; /* what the runners of a case share; has a lock of its own */
     pthread_mutex_t lock;
     pthread_cond_t changed; /* ending, or a thread ended */
     atomic_bool ending;     /* set under the lock, read anywhere */

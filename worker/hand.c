@@ -53,6 +53,7 @@ static void runner_drop(struct hand *hand) {
         hand->kind->runner_destroy(&hand->runner);
         hand->runner = NULL;
     }
+    shared_parts_let_go(&hand->crew->parts, &hand->part);
 }
 
 /* Makes hand->runner the one of this job's case. */
@@ -66,10 +67,17 @@ static int runner_prepare(struct hand *hand, const struct claimed_job *job,
     cJSON *parameters = NULL;
     int status = json_parse(job->parameters, strlen(job->parameters), NULL, &parameters, err);
     if (!status) {
-        status = kind->runner_create(&hand->runner, parameters, job->seed, job->case_number, err);
+        status = shared_parts_take(&hand->crew->parts, kind, job->study, job->case_number,
+                                   parameters, &hand->part, err);
+    }
+    if (!status) {
+        status = kind->runner_create(&hand->runner, parameters, shared_part_content(hand->part),
+                                     job->seed, job->case_number, err);
     }
     cJSON_Delete(parameters);
-    if (!status) {
+    if (status) {
+        runner_drop(hand);
+    } else {
         hand->kind = kind;
         hand->case_number = job->case_number;
         memcpy(hand->study, job->study, sizeof hand->study);

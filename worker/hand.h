@@ -21,6 +21,7 @@ struct hand {
     /* The runner of the last job, good for all jobs of the same case: transforms are planned and
      * matrices factored once a case. NULL: none. */
     struct job_runner *runner;
+    struct shared_part *part; /* what it borrows; NULL: nothing */
     const struct job_kind *kind;
     char study[STUDY_ID_SIZE];
     uint64_t case_number;

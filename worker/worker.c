@@ -154,9 +154,13 @@ int workers_run(const struct worker_options *options, struct error *err) {
         free(hands);
         return error_set(err, ERROR_SYSTEM, "cannot make a condition");
     }
-    int status = keeper_create(&crew.keeper, &own.source, own.threads, err);
-    status = status ? status : crew_work(&crew, hands, err);
-    keeper_destroy(&crew.keeper);
+    int status = shared_parts_init(&crew.parts, err);
+    if (!status) {
+        status = keeper_create(&crew.keeper, &own.source, own.threads, err);
+        status = status ? status : crew_work(&crew, hands, err);
+        keeper_destroy(&crew.keeper);
+        shared_parts_destroy(&crew.parts);
+    }
     free(hands);
     pthread_cond_destroy(&crew.changed);
     return status;

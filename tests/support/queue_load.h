@@ -71,8 +71,8 @@ static inline int queue_compute(struct job_result *result, struct error *err) {
     struct job_runner *runner = NULL;
     const struct job_kind *kind = kind_find("statistics");
     struct study *study = queue_study(1, err);
-    int status =
-        study ? kind->runner_create(&runner, study->cases[0].parameters, 1, 0, err) : err->code;
+    int status = study ? kind->runner_create(&runner, study->cases[0].parameters, NULL, 1, 0, err)
+                       : err->code;
     if (!status)
         status = kind->run(runner, 0, 1, NULL, result, err);
     if (runner)

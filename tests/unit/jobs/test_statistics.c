@@ -52,7 +52,7 @@ static struct job_runner *runner_of(const char *study) {
     struct job_runner *runner = NULL;
     struct error err = {0};
     cJSON *parameters = parse(study);
-    if (kind()->runner_create(&runner, parameters, SEED, CASE, &err) != 0)
+    if (kind()->runner_create(&runner, parameters, NULL, SEED, CASE, &err) != 0)
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
     return runner;

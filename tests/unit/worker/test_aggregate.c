@@ -50,7 +50,8 @@ static void run_one(struct fixture *fixture) {
     assert_int_equal(found, 1);
     const struct job_kind *kind = kind_find(job.kind);
     cJSON *parameters = cJSON_Parse(job.parameters);
-    assert_int_equal(kind->runner_create(&runner, parameters, job.seed, job.case_number, &err), 0);
+    assert_int_equal(
+        kind->runner_create(&runner, parameters, NULL, job.seed, job.case_number, &err), 0);
     assert_int_equal(kind->run(runner, job.first, job.count, NULL, &result, &err), 0);
     assert_int_equal(source_complete(source, &job, kind, &result, &err), 0);
     kind->runner_destroy(&runner);

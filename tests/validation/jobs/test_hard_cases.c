@@ -144,7 +144,7 @@ static void run_case(const struct hard_case *hard) {
         fail_msg("%s: %s: %s", hard->name, faults.faults[0].pointer, faults.faults[0].detail);
     assert_true(estimate.seconds > 0 && estimate.memory_bytes > 0 && estimate.relative_error > 0 &&
                 isfinite(estimate.relative_error));
-    if (kind->runner_create(&runner, parameters, 7, 0, &err) != 0 ||
+    if (kind->runner_create(&runner, parameters, NULL, 7, 0, &err) != 0 ||
         kind->run(runner, 0, 3, NULL, &result, &err) != 0 ||
         kind->merger_create(&merger, parameters, &err) != 0 ||
         kind->merge(merger, &result, &err) != 0 || kind->curves(merger, &document, &err) != 0)
@@ -168,7 +168,7 @@ static double scalar_of(const char *scale, const char *name) {
     char text[200];
     snprintf(text, sizeof text, "{'surface': {'hurst': 0.6, 'wavelength_ratio': 8, %s}}", scale);
     cJSON *parameters = parameters_of(&(struct hard_case){"units", text, NULL});
-    if (kind->runner_create(&runner, parameters, 7, 0, &err) != 0 ||
+    if (kind->runner_create(&runner, parameters, NULL, 7, 0, &err) != 0 ||
         kind->run(runner, 0, 1, NULL, &result, &err) != 0)
         fail_msg("%s: %s", scale, err.text);
     size_t at = 0;

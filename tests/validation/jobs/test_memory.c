@@ -25,7 +25,7 @@ static const struct {
 static int run_one(const struct job_kind *kind, const cJSON *parameters) {
     struct job_runner *runner = NULL;
     struct job_result result = {0};
-    int status = kind->runner_create(&runner, parameters, 1, 0, NULL);
+    int status = kind->runner_create(&runner, parameters, NULL, 1, 0, NULL);
     if (status == 0)
         status = kind->run(runner, 0, 1, NULL, &result, NULL);
     job_result_clear(&result);

@@ -31,7 +31,7 @@ __attribute__((format(printf, 2, 3))) static cJSON *study(uint64_t count, const 
             *at = '"';
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
-    if (kind->runner_create(&runner, parameters, 31, 0, &err) != 0 ||
+    if (kind->runner_create(&runner, parameters, NULL, 31, 0, &err) != 0 ||
         kind->run(runner, 0, count, NULL, &result, &err) != 0 ||
         kind->merger_create(&merger, parameters, &err) != 0 ||
         kind->merge(merger, &result, &err) != 0 || kind->curves(merger, &curves, &err) != 0)

@@ -1,0 +1,198 @@
+#include "jobs/contact_scene.h"
+#include "core/contact/area.h"
+#include "core/contact/patches.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Stiffness beyond this, in units of E* h'/sqrt(m0), is that of full contact but for rounding; its
+ * square must fit into exact sums. */
+static const double STIFFNESS_MOST = 1e6;
+
+struct contact_scene {
+    const struct contact_case *study;
+    double rms_slope, rms_height; /* of the prescribed spectrum */
+    struct contact *solvers[CONTACT_MODELS][CONTACT_LEVELS_MOST];
+    struct area_workspace *areas[CONTACT_LEVELS_MOST];
+    struct patch_finder *finders[CONTACT_LEVELS_MOST];
+    double *z; /* a level's sampling; room for the finest */
+};
+
+int contact_compliances_create(struct contact_compliances *out, const struct contact_case *study,
+                               struct error *err) {
+    int status = 0;
+    *out = (struct contact_compliances){0};
+    for (size_t m = 0; m < study->model_count && status == 0; m++)
+        for (size_t l = 0; l < study->level_count && status == 0; l++)
+            status =
+                compliance_create(&out->of[m][l], &study->levels[l].grid, &study->blocks[m], err);
+    if (status != 0)
+        contact_compliances_clear(out);
+    return status;
+}
+
+void contact_compliances_clear(struct contact_compliances *compliances) {
+    for (size_t m = 0; m < CONTACT_MODELS; m++)
+        for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++)
+            compliance_destroy(&compliances->of[m][l]);
+}
+
+static int scene_fill(struct contact_scene *scene, const struct contact_compliances *compliances,
+                      struct error *err) {
+    const struct contact_case *study = scene->study;
+    struct contact_options options = CONTACT_DEFAULTS;
+    options.tolerance = study->tolerance;
+    int status = 0;
+    for (size_t l = 0; l < study->level_count && status == 0; l++) {
+        const struct grid *grid = &study->levels[l].grid;
+        status = area_workspace_create(&scene->areas[l], grid, err);
+        if (status == 0)
+            status = patch_finder_create(&scene->finders[l], grid, err);
+        for (size_t m = 0; m < study->model_count && status == 0; m++)
+            status = contact_create(&scene->solvers[m][l], compliances->of[m][l], &options, err);
+    }
+    if (status != 0)
+        return status;
+    size_t points = grid_points(&contact_case_finest(study)->grid);
+    scene->z = array_create(points, sizeof *scene->z);
+    return scene->z != NULL ? 0 : error_memory(err, points * sizeof *scene->z, "a surface");
+}
+
+int contact_scene_create(struct contact_scene **out, const struct contact_case *study,
+                         const struct moments *moments,
+                         const struct contact_compliances *compliances, struct error *err) {
+    struct contact_scene *scene = array_create(1, sizeof *scene);
+    if (scene == NULL)
+        return error_memory(err, sizeof *scene, "a contact scene");
+    scene->study = study;
+    scene->rms_slope = moments->rms_slope;
+    scene->rms_height = moments->rms_height;
+    int status = scene_fill(scene, compliances, err);
+    if (status != 0)
+        contact_scene_destroy(&scene);
+    *out = scene;
+    return status;
+}
+
+void contact_scene_destroy(struct contact_scene **out) {
+    struct contact_scene *scene = *out;
+    if (scene == NULL)
+        return;
+    for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++) {
+        area_workspace_destroy(&scene->areas[l]);
+        patch_finder_destroy(&scene->finders[l]);
+        for (size_t m = 0; m < CONTACT_MODELS; m++)
+            contact_destroy(&scene->solvers[m][l]);
+    }
+    free(scene->z);
+    free(scene);
+    *out = NULL;
+}
+
+double contact_scene_bytes(const struct contact_case *study) {
+    double bytes = 8.0 * (double)grid_points(&contact_case_finest(study)->grid);
+    for (size_t l = 0; l < study->level_count; l++) {
+        const struct grid *grid = &study->levels[l].grid;
+        bytes += 40.0 * (double)grid_points(grid); /* areas and patches */
+        for (size_t m = 0; m < study->model_count; m++)
+            bytes += contact_bytes(grid) + compliance_bytes(grid, &study->blocks[m]);
+    }
+    return bytes;
+}
+
+/* The realisation on a level's grid. */
+static int sample(const struct contact_scene *scene, const struct contact_level *level,
+                  const double *z, struct error *err) {
+    const struct grid *own = &scene->study->surface.grid, *grid = &level->grid;
+    size_t band = scene->study->band;
+    if (level->stride == 0)
+        return surface_resample(own, z, grid, scene->z, band, grid_is_profile(own) ? 0 : band, err);
+    for (size_t j = 0; j < grid->ny; j++) {
+        const double *row = z + j * level->stride * own->nx;
+        for (size_t i = 0; i < grid->nx; i++)
+            scene->z[j * grid->nx + i] = row[i * level->stride];
+    }
+    return 0;
+}
+
+/* Measures of a solved load into a cell. */
+static void measure(struct contact_scene *scene, size_t level, const struct contact_state *state,
+                    struct contact_tally *tally, size_t cell) {
+    double points = (double)grid_points(&scene->study->levels[level].grid);
+    double stiffness = state->stiffness * scene->rms_height / scene->rms_slope;
+    struct contact_area area;
+    struct patches patches;
+    contact_area(scene->areas[level], state->p, state->gap, &area);
+    patches_find(scene->finders[level], state->p, &patches, NULL);
+    const double values[MEASURE_COUNT] = {
+        [MEASURE_NODES] = area.nodes,
+        [MEASURE_EDGES] = area.edges,
+        [MEASURE_PERIMETER] = area.perimeter,
+        [MEASURE_GAP] = state->mean_gap / scene->rms_height,
+        [MEASURE_NODES_LOWER] = area.lower,
+        [MEASURE_NODES_UPPER] = area.upper,
+        [MEASURE_STIFFNESS] = stiffness < STIFFNESS_MOST ? stiffness : NAN,
+        [MEASURE_PATCHES] = (double)patches.count,
+        [MEASURE_PATCH_MEAN] = patches.mean / points,
+        [MEASURE_PATCH_LARGEST] = (double)patches.largest / points,
+        [MEASURE_ITERATIONS] = (double)state->iterations,
+        [MEASURE_WORK] = state->work / points,
+        [MEASURE_VIOLATION] = state->violation,
+    };
+    for (size_t a = 0; a < MEASURE_COUNT; a++)
+        contact_tally_values(tally, (enum contact_measure)a)[cell] = values[a];
+}
+
+static void count_pressures(const struct contact_scene *scene, size_t model, size_t load,
+                            const double *p, struct contact_tally *tally) {
+    const struct contact_case *study = scene->study;
+    for (size_t a = 0; a < study->pdf_count; a++)
+        if (study->pdf_loads[a] == load)
+            contact_tally_pressures(tally, model, a, grid_points(&contact_case_finest(study)->grid),
+                                    p, 1 / scene->rms_slope);
+}
+
+struct stopper {
+    int (*stop)(void *context);
+    void *context;
+};
+
+/* All loads of one model and level, rising, each from the last. */
+static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
+                       struct contact_tally *tally, const struct stopper *stopper,
+                       struct error *err) {
+    const struct contact_case *study = scene->study;
+    struct contact *solver = scene->solvers[model][level];
+    struct contact_state state;
+    int status = contact_begin(solver, scene->z, err);
+    for (size_t k = 0; k < study->load_count && status == 0; k++) {
+        if (stopper->stop(stopper->context) != 0)
+            return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
+                             study->load_count);
+        status = contact_press(solver, study->loads[k] * scene->rms_slope, &state, err);
+        if (status != 0)
+            error_context(err, "load %g", study->loads[k]);
+        else
+            measure(scene, level, &state, tally, contact_case_cell(study, model, level, k));
+        if (status == 0 && level + 1 == study->level_count)
+            count_pressures(scene, model, k, state.p, tally);
+    }
+    return status;
+}
+
+int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
+                        int (*stop)(void *context), void *context, struct error *err) {
+    const struct contact_case *study = scene->study;
+    const struct stopper stopper = {stop, context};
+    int status = 0;
+    for (size_t l = 0; l < study->level_count && status == 0; l++) {
+        status = sample(scene, &study->levels[l], z, err);
+        for (size_t m = 0; m < study->model_count && status == 0; m++) {
+            status = solve_loads(scene, m, l, tally, &stopper, err);
+            if (status != 0 && status != ERROR_STOPPED)
+                error_context(err, "model %s, level %g",
+                              CONTACT_MODEL_NAMES[study->blocks[m].model], study->levels[l].points);
+        }
+    }
+    return status;
+}

@@ -1,0 +1,281 @@
+#include "jobs/contact_tally.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { FORMAT_KIND = 0x434f, FORMAT_VERSION = 1 }; /* "CO" */
+enum { SCALE_BITS_MOST = 16 };
+
+static size_t bins_of(const struct contact_case *study) {
+    return study->pressure.count + 2;
+}
+
+/* Exact sums resolve 2^-60. What falls with the load is summed over a power of two near it, which
+ * costs no digits, so that light loads keep theirs. */
+static double scale_of(const struct contact_case *study, enum contact_measure measure,
+                       size_t load) {
+    bool falls =
+        measure != MEASURE_GAP && (measure <= MEASURE_STIFFNESS || measure == MEASURE_PATCH_MEAN ||
+                                   measure == MEASURE_PATCH_LARGEST);
+    int exponent;
+    (void)frexp(fmin(study->loads[load], 1), &exponent);
+    return falls ? ldexp(1, exponent < -SCALE_BITS_MOST ? SCALE_BITS_MOST : -exponent) : 1;
+}
+
+static int sums_create(struct contact_sums *out, size_t size, struct error *err) {
+    int status = tally_sums_create(&out->sums, size, err);
+    return status != 0 ? status : tally_create(&out->counts, size, err);
+}
+
+static void sums_clear(struct contact_sums *sums) {
+    tally_sums_clear(&sums->sums);
+    tally_clear(&sums->counts);
+}
+
+/* A realisation's value, if it has one. */
+static void sums_add(struct contact_sums *sums, size_t cell, double value) {
+    if (isnan(value))
+        return;
+    tally_sums_add(&sums->sums, cell, value, 1);
+    tally_add(&sums->counts, cell, 1, 1);
+}
+
+static struct estimate sums_mean(const struct contact_sums *sums, size_t cell,
+                                 uint64_t realisations, double scale) {
+    struct estimate mean = tally_sums_ratio(&sums->sums, &sums->counts, cell, realisations);
+    return (struct estimate){mean.value / scale, mean.standard_error / scale};
+}
+
+static void values_begin(struct contact_tally *tally) {
+    size_t n = MEASURE_COUNT * contact_case_cells(tally->study);
+    for (size_t a = 0; a < n; a++)
+        tally->values[a] = NAN;
+}
+
+int contact_tally_create(struct contact_tally *out, const struct contact_case *study,
+                         struct error *err) {
+    size_t cells = contact_case_cells(study), bins = bins_of(study);
+    *out = (struct contact_tally){.study = study,
+                                  .values = array_create(cells, MEASURE_COUNT * sizeof(double)),
+                                  .bin = array_create(bins, sizeof *out->bin)};
+    int status = 0;
+    if (out->values == NULL || out->bin == NULL)
+        status = error_memory(err, cells * MEASURE_COUNT * sizeof(double), "a tally");
+    for (size_t a = 0; a < MEASURE_COUNT && status == 0; a++)
+        status = sums_create(&out->sums[a], cells, err);
+    for (size_t a = 0; a < MEASURE_PAIRED && status == 0; a++) {
+        size_t pairs = study->level_count > 1 ? study->model_count * study->load_count : 0;
+        status = sums_create(&out->sums[SUMS_LEVELS + a], pairs, err);
+        if (status == 0)
+            status = sums_create(&out->sums[SUMS_MODELS + a],
+                                 study->model_count > 1 ? study->load_count : 0, err);
+    }
+    if (status == 0)
+        status = tally_create(&out->pressures, study->model_count * study->pdf_count * bins, err);
+    if (status == 0)
+        values_begin(out);
+    else
+        contact_tally_clear(out);
+    return status;
+}
+
+void contact_tally_clear(struct contact_tally *tally) {
+    for (size_t a = 0; a < CONTACT_SUMS; a++)
+        sums_clear(&tally->sums[a]);
+    tally_clear(&tally->pressures);
+    free(tally->values);
+    free(tally->bin);
+    *tally = (struct contact_tally){0};
+}
+
+double contact_tally_bytes(const struct contact_case *study) {
+    size_t cells = contact_case_cells(study), bins = bins_of(study);
+    size_t pairs = (study->model_count + 1) * study->load_count;
+    double a_cell = tally_sums_bytes(1) + tally_bytes(1);
+    return MEASURE_COUNT * (double)cells * (a_cell + sizeof(double)) +
+           MEASURE_PAIRED * (double)pairs * a_cell +
+           tally_bytes(study->model_count * study->pdf_count * bins);
+}
+
+void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, size_t n,
+                             const double *p, double scale) {
+    const struct contact_case *study = tally->study;
+    size_t first = contact_tally_pressure_cell(tally, model, at);
+    for (size_t j = 0; j < n; j++)
+        if (p[j] > 0)
+            tally->bin[bins_find(&study->pressure, scale * p[j])]++;
+    for (size_t b = 0; b < bins_of(study); b++) {
+        if (tally->bin[b] > 0)
+            tally_add(&tally->pressures, first + b, tally->bin[b], n);
+        tally->bin[b] = 0;
+    }
+}
+
+static void add_level_pairs(struct contact_tally *tally, enum contact_measure measure) {
+    const struct contact_case *study = tally->study;
+    const double *values = contact_tally_values(tally, measure);
+    size_t finest = study->level_count - 1;
+    for (size_t m = 0; m < study->model_count; m++)
+        for (size_t k = 0; k < study->load_count; k++)
+            sums_add(&tally->sums[SUMS_LEVELS + measure], m * study->load_count + k,
+                     (values[contact_case_cell(study, m, finest, k)] -
+                      values[contact_case_cell(study, m, finest - 1, k)]) *
+                         scale_of(study, measure, k));
+}
+
+static void add_model_pairs(struct contact_tally *tally, enum contact_measure measure) {
+    const struct contact_case *study = tally->study;
+    const double *values = contact_tally_values(tally, measure);
+    size_t finest = study->level_count - 1, complete = contact_case_complete(study);
+    for (size_t k = 0; k < study->load_count; k++)
+        sums_add(&tally->sums[SUMS_MODELS + measure], k,
+                 (values[contact_case_cell(study, 1 - complete, finest, k)] -
+                  values[contact_case_cell(study, complete, finest, k)]) *
+                     scale_of(study, measure, k));
+}
+
+void contact_tally_add(struct contact_tally *tally) {
+    const struct contact_case *study = tally->study;
+    size_t cells = contact_case_cells(study);
+    for (size_t a = 0; a < MEASURE_COUNT; a++) {
+        const double *values = contact_tally_values(tally, (enum contact_measure)a);
+        for (size_t cell = 0; cell < cells; cell++)
+            sums_add(&tally->sums[a], cell,
+                     values[cell] *
+                         scale_of(study, (enum contact_measure)a, cell % study->load_count));
+    }
+    for (size_t a = 0; a < MEASURE_PAIRED; a++) {
+        if (study->level_count > 1)
+            add_level_pairs(tally, (enum contact_measure)a);
+        if (study->model_count > 1)
+            add_model_pairs(tally, (enum contact_measure)a);
+    }
+    tally_total_add(&tally->points, grid_points(&contact_case_finest(study)->grid));
+    tally->realisations++;
+    values_begin(tally);
+}
+
+struct estimate contact_tally_mean(const struct contact_tally *tally, enum contact_measure measure,
+                                   size_t cell) {
+    double scale = scale_of(tally->study, measure, cell % tally->study->load_count);
+    return sums_mean(&tally->sums[measure], cell, tally->realisations, scale);
+}
+
+double contact_tally_total(const struct contact_tally *tally, enum contact_measure measure,
+                           size_t cell) {
+    double scale = scale_of(tally->study, measure, cell % tally->study->load_count);
+    return exact_sum_value(&tally->sums[measure].sums.sum[cell]) / scale;
+}
+
+uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact_measure measure,
+                                 size_t cell) {
+    return tally->realisations - tally->sums[measure].counts.count[cell];
+}
+
+struct estimate contact_tally_level(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t load) {
+    if (tally->study->level_count < 2)
+        return (struct estimate){NAN, NAN};
+    return sums_mean(&tally->sums[SUMS_LEVELS + measure], model * tally->study->load_count + load,
+                     tally->realisations, scale_of(tally->study, measure, load));
+}
+
+struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t load) {
+    if (tally->study->model_count < 2)
+        return (struct estimate){NAN, NAN};
+    return sums_mean(&tally->sums[SUMS_MODELS + measure], load, tally->realisations,
+                     scale_of(tally->study, measure, load));
+}
+
+size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at) {
+    return (model * tally->study->pdf_count + at) * bins_of(tally->study);
+}
+
+struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
+                                       size_t bin) {
+    return tally_share(&tally->pressures, contact_tally_pressure_cell(tally, model, at) + bin,
+                       &tally->points);
+}
+
+int contact_tally_encode(const struct contact_tally *tally, unsigned char **data, size_t *size,
+                         struct error *err) {
+    struct bytes bytes = {0};
+    bytes_put_unsigned(&bytes, FORMAT_KIND);
+    bytes_put_unsigned(&bytes, FORMAT_VERSION);
+    bytes_put_unsigned(&bytes, tally->study->fingerprint);
+    bytes_put_unsigned(&bytes, tally->realisations);
+    for (size_t a = 0; a < CONTACT_SUMS; a++) {
+        tally_sums_put(&bytes, &tally->sums[a].sums);
+        tally_put(&bytes, &tally->sums[a].counts);
+    }
+    tally_total_put(&bytes, &tally->points);
+    tally_put(&bytes, &tally->pressures);
+    bytes_seal(&bytes);
+    if (bytes.failed) {
+        bytes_clear(&bytes);
+        return error_memory(err, bytes.capacity, "a partial result");
+    }
+    *data = bytes.data;
+    *size = bytes.size;
+    return 0;
+}
+
+static int refuse(struct error *err, const char *reason) {
+    return error_set(err, ERROR_INPUT, "the partial result %s", reason);
+}
+
+/* Whether no cell has more values than there are realisations, and all have one where every
+ * realisation gives one; and no load more points than there are. */
+static bool adds_up(const struct contact_tally *tally) {
+    size_t bins = bins_of(tally->study);
+    for (size_t a = 0; a < CONTACT_SUMS; a++) {
+        const struct tally *counts = &tally->sums[a].counts;
+        bool always =
+            a == MEASURE_NODES || a == MEASURE_EDGES || a == MEASURE_GAP || a == MEASURE_ITERATIONS;
+        for (size_t cell = 0; cell < counts->size; cell++)
+            if (counts->count[cell] > tally->realisations ||
+                (always && counts->count[cell] != tally->realisations))
+                return false;
+    }
+    for (size_t first = 0; first < tally->pressures.size; first += bins) {
+        fixed_point sum = 0;
+        for (size_t b = 0; b < bins; b++)
+            sum += tally->pressures.count[first + b];
+        if (sum > tally->points.sum)
+            return false;
+    }
+    return tally->points.realisations == tally->realisations;
+}
+
+int contact_tally_decode(struct contact_tally *tally, const unsigned char *data, size_t size,
+                         struct error *err) {
+    struct byte_reader reader = bytes_open(data, size);
+    if (reader.failed)
+        return refuse(err, "is cut short or damaged: its seal does not match");
+    if (bytes_get_unsigned(&reader) != FORMAT_KIND)
+        return refuse(err, "is not one of contact");
+    if (bytes_get_unsigned(&reader) != FORMAT_VERSION)
+        return refuse(err, "is of another version of its format");
+    if (bytes_get_unsigned(&reader) != tally->study->fingerprint)
+        return refuse(err, "is of a case with other parameters");
+    tally->realisations = bytes_get_unsigned(&reader);
+    for (size_t a = 0; a < CONTACT_SUMS; a++) {
+        tally_sums_get(&reader, &tally->sums[a].sums);
+        tally_get(&reader, &tally->sums[a].counts);
+    }
+    tally_total_get(&reader, &tally->points);
+    tally_get(&reader, &tally->pressures);
+    if (reader.failed || reader.at != reader.end)
+        return refuse(err, "is malformed");
+    return adds_up(tally) ? 0 : refuse(err, "does not add up");
+}
+
+void contact_tally_merge(struct contact_tally *into, const struct contact_tally *from) {
+    into->realisations += from->realisations;
+    for (size_t a = 0; a < CONTACT_SUMS; a++) {
+        tally_sums_merge(&into->sums[a].sums, &from->sums[a].sums);
+        tally_merge(&into->sums[a].counts, &from->sums[a].counts);
+    }
+    tally_total_merge(&into->points, &from->points);
+    tally_merge(&into->pressures, &from->pressures);
+}
