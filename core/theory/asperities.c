@@ -26,13 +26,21 @@ static double first_moment(double x) {
     return density > 0 ? density * (1 - x / gsl_sf_hazard(x)) : 0;
 }
 
-/* E[max(0, t - x)^(3/2)], t standard normal. With t - x = u^2 it is the integral over all u of
- * u^4 exp(-(u^2 + x)^2/2)/sqrt(2 pi): entire, so the trapezoidal rule converges geometrically. */
+/* E[max(0, t - x)^(3/2)], t standard normal, by the trapezoidal rule, which converges geometrically
+ * for entire integrands. Where next to no t lies below x that is the mean over t itself; elsewhere,
+ * with t - x = u^2, the integral over all u of u^4 exp(-(u^2 + x)^2/2)/sqrt(2 pi). */
 static double three_halves_moment(double x) {
-    double reach = sqrt(2 * DEPTH), step = 0.35 / sqrt(5 + fabs(x));
+    double reach = sqrt(2 * DEPTH), sum = 0;
+    if (x < -12) {
+        double step = reach / 14;
+        for (int n = -14; n <= 14; n++)
+            sum += pow(n * step - x, 1.5) * exp(-n * step * n * step / 2);
+        return M_SQRT1_2 / sqrt(M_PI) * step * sum;
+    }
+    double step = 0.35 / sqrt(5 + fabs(x));
     double highest = x > 0 ? 2 * DEPTH / (sqrt(x * x + 2 * DEPTH) + x) : reach - x;
-    double lowest = fmax(0, -x - reach), sum = 0;
-    for (double n = fmax(1, floor(sqrt(lowest) / step)); n * step < sqrt(highest); n++) {
+    int nodes = (int)(sqrt(highest) / step);
+    for (int n = 1; n <= nodes; n++) {
         double square = n * step * n * step;
         sum += square * square * exp(-(square + x) * (square + x) / 2);
     }
@@ -168,6 +176,8 @@ static void ellipses_add(const struct ellipses *t, double separation, struct str
 
 static struct contact ellipses_contact(const void *theory, double separation) {
     const struct ellipses *t = theory;
+    if (separation > 40) /* exp(-d^2/2) underflows; far out, panels would vanish in rounding */
+        return (struct contact){0, 0};
     /* The integrand's exponent is -s^2/4 - C1 max(0, d - rise s)^2: for d > 0 it is -d^2/2 at its
      * peak s = 2 rise d, with the second derivative -C1 as far as the turn. */
     double turn = separation / t->rise, above = fmax(separation, 0);
@@ -248,7 +258,7 @@ static void approach(struct inversion *inversion, double low, double high) {
     gsl_root_fsolver_free(solver);
 }
 
-/* Loads whose separation is far from under- and overflow. */
+/* Loads whose separation is far from where loads underflow or overflow. */
 static const double LEAST_LOAD = 1e-250, GREATEST_LOAD = 1e6;
 
 static double area_at_load(contact_at *at, const void *theory, double load) {

@@ -38,7 +38,7 @@ double westergaard_gap(double ratio) {
         return NAN;
     /* The block sinks under its mean pressure as an array of flat punches of the contact's width
      * would, d(gap)/d(ratio) = ln(ratio) (Johnson 1985); its integral, zero at full contact. */
-    return ratio > 0 ? (1 - ratio) + ratio * log1p(ratio - 1) : 1;
+    return ratio > 0 ? (1 - ratio) + ratio * log(ratio) : 1;
 }
 
 double hertz_line_half_width(double load_over_modulus, double radius) {
