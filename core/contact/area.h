@@ -8,10 +8,7 @@ struct contact_area {
     double nodes; /* share of nodes in contact, each with the cell around it: an upper value */
     double lower; /* segments (profiles) or cells with all corners in contact ... */
     double upper; /* ... and with any */
-    /* Each edge found below the grid from the pressure inside and the gap outside of it
-     * (p = c sqrt(d), gap = 4c/(3E*) d^(3/2): Johnson 1985, section 5.1; theory.md); in surfaces
-     * the mean over all grid lines. */
-    double edges;
+    double edges; /* every edge found below the grid; in surfaces the mean over all grid lines */
     /* Surfaces: nodes less 0.1181 x perimeter x dx (Yastrebov, Anciaux & Molinari 2017); profiles:
      * NaN. */
     double perimeter;
