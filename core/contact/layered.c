@@ -40,7 +40,10 @@ struct material {
 
 static struct material material_of(double poisson) {
     double mu = (1 - poisson) / 2;
-    return (struct material){mu, 2 * mu * (1 + poisson) / (3 * (1 - 2 * poisson))};
+    /* Rounding errors grow as kappa/mu. Beyond this one the compliance moves by less than they do.
+     */
+    double compressible = fmax(1 - 2 * poisson, 1e-8);
+    return (struct material){mu, 2 * mu * (1 + poisson) / (3 * compressible)};
 }
 
 /* A direction's symbols for one wave. */

@@ -274,6 +274,21 @@ static void long_waves_on_thin_blocks_keep_their_digits(void **state) {
     }
 }
 
+/* S moves in proportion to 1 - 2 nu near nu = 0.5, and by no rounding error that grows as 1/(1 - 2
+ * nu). */
+static void the_last_poisson_ratio_is_no_different(void **state) {
+    (void)state;
+    static const struct grid GRIDS[] = {{1024, 1, 1, 1}, {32, 24, 1, 1}};
+    for (size_t g = 0; g < 2; g++) {
+        struct block near = with_poisson(0.5 - 0.5e-6), last = with_poisson(nextafter(0.5, 0));
+        struct compliance *a = make(&GRIDS[g], &near), *b = make(&GRIDS[g], &last);
+        for (size_t k = 1; k < a->waves; k++)
+            check_relative(b->length[k], a->length[k], 1e-5);
+        compliance_destroy(&a);
+        compliance_destroy(&b);
+    }
+}
+
 static void destroy_accepts_nothing(void **state) {
     (void)state;
     struct compliance *compliance = NULL;
@@ -307,6 +322,7 @@ int main(void) {
         cmocka_unit_test(standard_weights_average_neighbours),
         cmocka_unit_test(units_do_not_show),
         cmocka_unit_test(long_waves_on_thin_blocks_keep_their_digits),
+        cmocka_unit_test(the_last_poisson_ratio_is_no_different),
         cmocka_unit_test(destroy_accepts_nothing),
         cmocka_unit_test(bytes_count_the_arrays),
     };
