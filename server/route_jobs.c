@@ -139,10 +139,15 @@ static int check_against_job(struct exchange *exchange, int64_t id, const struct
 
 static void complete(struct exchange *exchange, int64_t job, const struct wire_result *wire) {
     struct completing completing = {.block = wire_block(wire), .token = wire->token, .job = job};
+    struct block_text text = {0};
     struct error err = {0};
     int status = check_against_job(exchange, job, wire, &err);
     if (!status)
+        status = block_text_create(&text, &completing.block, &err);
+    completing.block.text = &text;
+    if (!status)
         status = writer_do(exchange->service->writer, complete_change, &completing, &err);
+    block_text_clear(&text);
     if (status == ERROR_INPUT) {
         refuse_message(exchange, &err);
         return;

@@ -1,15 +1,18 @@
 #include "server/writer.h"
+#include <errno.h>
 #include <pthread.h>
+#include <sched.h>
+#include <semaphore.h>
 #include <stdlib.h>
 
-/* A posted change lives on its poster's stack. */
+/* A posted change lives on its poster's stack. Each has its semaphore: whoever is woken need not
+ * queue for the mutex, which the writer holds just then. */
 struct post {
     store_change *change;
     void *context;
     struct error error;
     int status;
-    bool done;
-    pthread_cond_t ended;
+    sem_t ended;
     struct post *next;
 };
 
@@ -56,18 +59,21 @@ static void *writer_thread(void *context) {
     for (;;) {
         while (!writer->first && !writer->stopping)
             pthread_cond_wait(&writer->posted, &writer->mutex);
+        /* Those who were just answered come back with the next: let them, and commit more at once.
+         */
+        pthread_mutex_unlock(&writer->mutex);
+        sched_yield();
+        pthread_mutex_lock(&writer->mutex);
         size_t count = take_batch(writer, batch);
         if (count == 0)
             break;
         pthread_mutex_unlock(&writer->mutex);
         run_batch(writer->store, batch, count);
+        for (size_t i = 0; i < count; i++)
+            sem_post(&batch[i]->ended);
         pthread_mutex_lock(&writer->mutex);
         writer->figures.changes += count;
         writer->figures.commits++;
-        for (size_t i = 0; i < count; i++) {
-            batch[i]->done = true;
-            pthread_cond_signal(&batch[i]->ended);
-        }
     }
     pthread_mutex_unlock(&writer->mutex);
     return NULL;
@@ -106,19 +112,22 @@ void writer_destroy(struct writer **writer) {
 
 int writer_do(struct writer *writer, store_change *change, void *context, struct error *err) {
     struct post post = {.change = change, .context = context};
-    pthread_cond_init(&post.ended, NULL);
+    sem_init(&post.ended, 0, 0);
     pthread_mutex_lock(&writer->mutex);
-    if (writer->stopping) {
-        post.status = error_set(&post.error, ERROR_SYSTEM, "the server is ending");
-    } else {
+    bool taken = !writer->stopping;
+    if (taken) {
         *writer->last = &post;
         writer->last = &post.next;
         pthread_cond_signal(&writer->posted);
-        while (!post.done)
-            pthread_cond_wait(&post.ended, &writer->mutex);
     }
     pthread_mutex_unlock(&writer->mutex);
-    pthread_cond_destroy(&post.ended);
+    if (taken) {
+        while (sem_wait(&post.ended) && errno == EINTR)
+            continue;
+    } else {
+        post.status = error_set(&post.error, ERROR_SYSTEM, "the server is ending");
+    }
+    sem_destroy(&post.ended);
     if (post.status && err)
         *err = post.error;
     return post.status;
