@@ -27,9 +27,15 @@ int base64_encode(const unsigned char *data, size_t size, char **out, struct err
     return 0;
 }
 
+/* -1 for what is no digit. */
 static int digit_value(char c) {
-    const char *digit = c ? strchr(DIGITS, c) : NULL;
-    return digit ? (int)(digit - DIGITS) : -1;
+    if (c >= 'A' && c <= 'Z')
+        return c - 'A';
+    if (c >= 'a' && c <= 'z')
+        return c - 'a' + 26;
+    if (c >= '0' && c <= '9')
+        return c - '0' + 52;
+    return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
 /* Four characters to 1..3 bytes; 0 when they are no base64. Only the last group may be padded. */

@@ -102,6 +102,10 @@ static bool scan_string(struct gate *gate) {
                 return false;
             continue;
         }
+        if (c < 0x80) { /* most bytes by far: results are base64 */
+            gate->at++;
+            continue;
+        }
         size_t length =
             utf8_length((const unsigned char *)gate->at, (size_t)(gate->end - gate->at));
         if (length == 0)
