@@ -1,27 +1,25 @@
 /* Finite elements on equal columns, wave by wave.
  *
  * A displacement (i X, i Y, Z) exp(i k.r) at the nodes, X, Y and Z real functions of depth, linear
- * in each layer. Sideways the products of shape functions and their derivatives become symbols: for
- * one direction with node distance d and s = sin(k d/2), c = cos(k d/2),
+ * in each layer. Sideways the products of shape functions N and their derivatives, averaged over an
+ * element, become symbols: in a direction with node distance d, s = sin(k d/2), c = cos(k d/2) and
+ * the phase of the element's middle,
  *
- *   <N, N> = 1 - 2 s^2/3   <N', N'> = 4 s^2/d^2   <N, N'> = 2 i s c/d   mean N = c   mean N' = 2 i
- * s/d
+ *   <N, N> = 1 - 2 s^2/3   <N', N'> = 4 s^2/d^2   <N, N'> = 2 i s c/d   <N> = c   <N'> = 2 i s/d
  *
- * (over d, the phase taken at the middle of the element). They hold no difference of like numbers,
- * however long the wave. In depth the displacement of a layer of thickness h is v + zeta w: v at
- * its far face, v + w at its near face, 0 <= zeta <= 1. With phi the functions (1, zeta) the energy
- * over area is
+ * exactly, as by Gauss quadrature. None is a difference of like numbers, however long the wave.
  *
- *   (1/2) integral of [u phi; u phi']^T [[A, C], [C^T, F]] [u phi; u phi'] dz
+ * In depth the displacement in a layer of thickness h is v + zeta w: v at its far face, v + w at
+ * its near face, 0 <= zeta <= 1. With phi its functions 1 and zeta, twice the energy over area is
+ *
+ *   the integral of [u phi; u phi']^T [A C; C^T F] [u phi; u phi'] dz
  *
  * from 2 mu (e:e - (div u)^2/3) + kappa (mean div u)^2, the mean over the element (B-bar; Hughes
- * 1980): 2 mu/3 and kappa meet different functions of div u, so that a large kappa binds one
- * dilatation an element alone.
+ * 1980): however large kappa, it binds one dilatation an element and leaves it free to deform.
  *
- * From the far side up, the stiffness M (3 by 3, over area) that the layers below oppose to v at
- * the far face of a layer becomes that at its near face by eliminating w. Relative displacements
- * keep what cancels apart: a long wave's small stiffness to X is never a difference of large ones.
- */
+ * From the far side up, the stiffness M (3 by 3, over area) that what lies below a layer opposes to
+ * v becomes that of what lies below the next, by eliminating w. As w is a difference of
+ * displacements, a long wave's small stiffness to X is never a difference of large ones. */
 #include "core/contact/layered.h"
 #include "core/vectors.h"
 #include <math.h>
@@ -40,8 +38,7 @@ struct material {
 
 static struct material material_of(double poisson) {
     double mu = (1 - poisson) / 2;
-    /* Rounding errors grow as kappa/mu. Beyond this one the compliance moves by less than they do.
-     */
+    /* Rounding errors grow as kappa/mu; beyond this one the compliance moves by less than they. */
     double compressible = fmax(1 - 2 * poisson, 1e-8);
     return (struct material){mu, 2 * mu * (1 + poisson) / (3 * compressible)};
 }
@@ -65,7 +62,8 @@ static struct symbols symbols_of(size_t mode, size_t n, double distance) {
                             .tilt = 2 * s / distance};
 }
 
-/* The waves under way. Of symmetric matrices one half; terms left out are 0. */
+/* The waves under way; lanes from count on hold anything, and nobody reads what becomes of them. Of
+ * symmetric matrices one half; terms left out are 0. */
 struct waves {
     lane axx, axy, ayy, azz;           /* A */
     lane bxx, bxy, byy;                /* the part of A that comes from the mean dilatation */
@@ -151,8 +149,8 @@ static inline void condense(struct waves *w, size_t l, struct symmetric n, struc
     w->mzz[l] = n.zz - product(f, z, z);
 }
 
-/* The layer on the far side, where Z = 0 and X, Y are free. Z of w is that of the near face and
- * stays; w's X and Y go, and a unit pivot stands in for Z. */
+/* The layer on the far side, where Z = 0 and X, Y are free: Z of w is that of the near face and
+ * stays; X and Y of w go, and a unit pivot stands in for Z. */
 WIDE_VECTORS static void far_layer(struct waves *w, double h) {
     double a = h / 2, b = h / 3, c = h / 12;
     for (size_t l = 0; l < LANES; l++) {
@@ -170,8 +168,8 @@ WIDE_VECTORS static void far_layer(struct waves *w, double h) {
     }
 }
 
-/* Any other layer: with P, Q, R the blocks of v v, v w, w w and N = M + P, the energy
- * (v, w fixed by the near face v + w) leaves G = N - Q and H = N - Q - Q^T + R. */
+/* Any other layer. Its energy has blocks P for v v, Q for v w, R for w w; v is the near face less
+ * w, so that w meets G = N - Q and H = N - Q - Q^T + R, with N = M + P. */
 WIDE_VECTORS static void next_layer(struct waves *w, double h) {
     double a = h / 2, b = h / 3, c = h / 12;
     for (size_t l = 0; l < LANES; l++) {
