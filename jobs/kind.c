@@ -4,7 +4,7 @@
 #include <time.h>
 
 /* One line a kind; each is defined in the file of its name. */
-#define KINDS(KIND) KIND(STATISTICS_KIND)
+#define KINDS(KIND) KIND(STATISTICS_KIND) KIND(CONTACT_KIND)
 
 #define DECLARE(kind) extern const struct job_kind kind;
 KINDS(DECLARE)

@@ -6,6 +6,9 @@
 #include <math.h>
 
 static const char *const FAKE_COLOURS[] = {"red", "green", NULL};
+static const char *const FAKE_SHAPES[] = {"round", "square", "oval", NULL};
+static const char *const FAKE_DEPTHS[] = {"endless", NULL};
+static const char *const FAKE_UNITS[] = {"metres", "feet", NULL};
 static const struct parameter FAKE_PARAMETERS[] = {
     {.path = "/box/width",
      .type = PARAMETER_NUMBER,
@@ -37,6 +40,20 @@ static const struct parameter FAKE_PARAMETERS[] = {
      .sweep = true,
      .default_json = "[0,1]",
      .help = "low, high, middle"},
+    {.path = "/shapes",
+     .type = PARAMETER_CHOICES,
+     .choices = FAKE_SHAPES,
+     .default_json = "\"round\"",
+     .help = "of the lids"},
+    {.path = "/depth",
+     .type = PARAMETER_MEASURE,
+     .choices = FAKE_DEPTHS,
+     .units = FAKE_UNITS,
+     .minimum = 0,
+     .maximum = 10,
+     .above_minimum = true,
+     .sweep = true,
+     .help = "of a box"},
     {.path = "/seconds",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

@@ -29,6 +29,17 @@ static const struct parameter TABLE[] = {
      .items_low = 2,
      .items_high = 3,
      .default_json = "[0, 0.5]"},
+    {.path = "/choices",
+     .type = PARAMETER_CHOICES,
+     .choices = (const char *const[]){"first", "second", "third", NULL},
+     .default_json = "\"second\""},
+    {.path = "/measure",
+     .type = PARAMETER_MEASURE,
+     .choices = (const char *const[]){"none", "infinite", NULL},
+     .units = (const char *const[]){"metres", "feet", NULL},
+     .minimum = 0,
+     .maximum = 10,
+     .above_minimum = true},
 };
 
 static struct case_reader reader_of(const cJSON *parameters, struct fault_list *faults) {
@@ -98,6 +109,40 @@ static uint64_t mark_of(const char *text) {
     return mark;
 }
 
+/* In the order given; one alone; the default; and what does not fit. */
+static void choices_and_measures(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        size_t n, first;
+        double measure;
+        size_t unit, faults;
+    } CASES[] = {
+        {"{}", 1, 1, NAN, 0, 0},
+        {"{\"choices\": [\"third\", \"first\"], \"measure\": {\"feet\": 3}}", 2, 2, 3, 1, 0},
+        {"{\"choices\": \"first\", \"measure\": \"infinite\"}", 1, 0, INFINITY, 1, 0},
+        {"{\"choices\": [\"first\", \"first\"], \"measure\": {\"miles\": 3}}", 0, 0, NAN, 0, 2},
+        {"{\"choices\": [\"fourth\"], \"measure\": {\"feet\": 0}}", 0, 0, NAN, 0, 2},
+        {"{\"choices\": [], \"measure\": {\"feet\": 1, \"metres\": 1}}", 0, 0, NAN, 0, 2},
+        {"{\"choices\": 3, \"measure\": 3}", 0, 0, NAN, 0, 2},
+        {"{\"choices\": [3], \"measure\": {}}", 0, 0, NAN, 0, 2},
+    };
+    for (size_t a = 0; a < sizeof CASES / sizeof *CASES; a++) {
+        struct fault_list faults = {0};
+        cJSON *parameters = cJSON_Parse(CASES[a].text);
+        struct case_reader reader = reader_of(parameters, &faults);
+        size_t chosen[3] = {0}, unit;
+        assert_int_equal(case_choices(&reader, "/choices", chosen), CASES[a].n);
+        assert_true(CASES[a].n == 0 || chosen[0] == CASES[a].first);
+        double measure = case_measure(&reader, "/measure", &unit);
+        assert_true(measure == CASES[a].measure || (isnan(measure) && isnan(CASES[a].measure)));
+        assert_int_equal(unit, CASES[a].unit);
+        assert_int_equal(faults.count, CASES[a].faults);
+        fault_list_clear(&faults);
+        cJSON_Delete(parameters);
+    }
+}
+
 /* The same whatever the order of keys and whether a default is written out; else another. */
 static void fingerprints(void **state) {
     (void)state;
@@ -107,6 +152,11 @@ static void fingerprints(void **state) {
     assert_true(mark != mark_of("{\"a\": {\"integer\": 3, \"number\": 3}}"));
     assert_true(mark != mark_of("{\"a\": {\"integer\": 3}, \"numbers\": [0, 0.5, 0]}"));
     assert_true(mark != mark_of("{\"a\": {\"integer\": 3, \"choice\": \"first\"}}"));
+    assert_true(mark == mark_of("{\"a\": {\"integer\": 3}, \"choices\": \"second\"}"));
+    assert_true(mark != mark_of("{\"a\": {\"integer\": 3}, \"choices\": [\"first\"]}"));
+    assert_true(mark_of("{\"measure\": {\"feet\": 1}}") !=
+                mark_of("{\"measure\": {\"metres\": 1}}"));
+    assert_true(mark_of("{\"measure\": {\"feet\": 1}}") != mark_of("{\"measure\": {\"feet\": 2}}"));
 }
 
 static void values(void **state) {
@@ -131,13 +181,17 @@ static void values(void **state) {
 static void kinds(void **state) {
     (void)state;
     assert_non_null(kind_find("statistics"));
+    assert_non_null(kind_find("contact"));
     assert_null(kind_find("statistic"));
     for (size_t a = 0; a < JOB_KIND_COUNT; a++) {
         assert_ptr_equal(kind_find(JOB_KINDS[a]->name), JOB_KINDS[a]);
         for (size_t b = 0; b < JOB_KINDS[a]->parameter_count; b++) {
             const struct parameter *row = &JOB_KINDS[a]->parameters[b];
             assert_true(row->path[0] == '/' && strlen(row->help) > 0);
-            assert_true((row->type == PARAMETER_CHOICE) == (row->choices != NULL));
+            bool named = row->type == PARAMETER_CHOICE || row->type == PARAMETER_CHOICES ||
+                         row->type == PARAMETER_MEASURE;
+            assert_true(named == (row->choices != NULL));
+            assert_true((row->type == PARAMETER_MEASURE) == (row->units != NULL));
         }
     }
 }
@@ -146,6 +200,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(given_and_default),
         cmocka_unit_test(faults_in_words),
+        cmocka_unit_test(choices_and_measures),
         cmocka_unit_test(fingerprints),
         cmocka_unit_test(values),
         cmocka_unit_test(kinds),

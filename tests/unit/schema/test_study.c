@@ -12,6 +12,7 @@ static int read_text(const char *text, struct study **study, struct fault_list *
 }
 
 #define STUDY(rest) "{\"name\":\"n\",\"kind\":\"boxes\"," rest "}"
+#define WIDE(rest) STUDY("\"box\":{\"width\":1}," rest)
 #define BOX(rest) STUDY("\"box\":{\"width\":1" rest "}")
 
 static void faults_are_told_with_pointer_and_range(void **state) {
@@ -54,6 +55,26 @@ static void faults_are_told_with_pointer_and_range(void **state) {
         {STUDY("\"box\":{\"width\":1},\"bins\":3"), "/bins", "3 is not an array of 2 to 3 numbers"},
         {STUDY("\"box\":{\"width\":1},\"seconds\":[1,2]"), "/seconds",
          "a list is not allowed here: this cannot be swept"},
+        {WIDE("\"shapes\":\"flat\""), "/shapes",
+         "\"flat\" is not one of \"round\", \"square\", \"oval\""},
+        {WIDE("\"shapes\":[\"round\",\"flat\"]"), "/shapes/1",
+         "\"flat\" is not one of \"round\", \"square\", \"oval\""},
+        {WIDE("\"shapes\":[\"round\",\"oval\",\"round\"]"), "/shapes/2",
+         "\"round\" is there already"},
+        {WIDE("\"shapes\":[]"), "/shapes", "an empty list; give at least one value"},
+        {WIDE("\"shapes\":[[\"round\"]]"), "/shapes",
+         "a list is not allowed here: this cannot be swept"},
+        {WIDE("\"depth\":3"), "/depth",
+         "3 is not one of \"endless\", nor an object of one number named \"metres\", \"feet\""},
+        {WIDE("\"depth\":{\"feet\":11}"), "/depth/feet", "11 is not in (0, 10]"},
+        {WIDE("\"depth\":{\"feet\":\"x\"}"), "/depth/feet", "\"x\" is not a number"},
+        {WIDE("\"depth\":{\"miles\":1}"), "/depth",
+         "{\"miles\":1} is not one of \"endless\", nor an object of one number named \"metres\", "
+         "\"feet\""},
+        {WIDE("\"depth\":{\"feet\":1,\"metres\":1}"), "/depth",
+         "{\"feet\":1,\"metres\":1} is not one of \"endless\", nor an object of one number named "
+         "\"metres\", \"feet\""},
+        {WIDE("\"depth\":[{\"feet\":1},{\"feet\":0}]"), "/depth/1/feet", "0 is not in (0, 10]"},
         {STUDY("\"seed\":-1,\"box\":{\"width\":1}"), "/seed", "-1 is not an integer of 0 or more"},
         {STUDY("\"seed\":1.5,\"box\":{\"width\":1}"), "/seed",
          "1.5 is not an integer of 0 or more"},
@@ -106,6 +127,27 @@ static void all_faults_are_told_at_once(void **state) {
     assert_string_equal(faults.faults[0].detail, "7 is not an object");
     assert_string_equal(faults.faults[1].pointer, "/box/width");
     fault_list_clear(&faults);
+}
+
+/* A list of choices is one value; a measure may be swept, in any of its forms. */
+static void choices_and_measures(void **state) {
+    (void)state;
+    struct fault_list faults = {0};
+    struct study *study = NULL;
+    assert_int_equal(read_text(WIDE("\"shapes\":[\"oval\",\"round\"],"
+                                    "\"depth\":[\"endless\",{\"feet\":2}]"),
+                               &study, &faults, NULL),
+                     0);
+    assert_int_equal(study->case_count, 2);
+    assert_string_equal(study->swept[0], "/depth");
+    assert_int_equal(cJSON_GetArraySize(json_at(study->cases[1].parameters, "/shapes")), 2);
+    assert_true(cJSON_IsString(json_at(study->cases[0].parameters, "/depth")));
+    assert_true(json_at(study->cases[1].parameters, "/depth/feet")->valuedouble == 2);
+    study_destroy(&study);
+    assert_int_equal(read_text(WIDE("\"depth\":{\"metres\":0.5}"), &study, &faults, NULL), 0);
+    assert_int_equal(study->case_count, 1);
+    assert_string_equal(json_at(study->cases[0].parameters, "/shapes")->valuestring, "round");
+    study_destroy(&study);
 }
 
 static void sweeps_run_in_the_order_of_the_file(void **state) {
@@ -221,6 +263,14 @@ static void schema_has_what_the_reader_asks(void **state) {
     assert_string_equal(json_at(box, "/properties/colour/anyOf/0/enum/1")->valuestring, "green");
     assert_string_equal(json_at(schema, "/oneOf/0/properties/kind/const")->valuestring, "boxes");
     assert_null(json_at(schema, "/oneOf/0/properties/seconds/anyOf/1"));
+    const cJSON *shapes = json_at(schema, "/oneOf/0/properties/shapes/anyOf/0");
+    assert_string_equal(json_at(shapes, "/anyOf/0/enum/2")->valuestring, "oval");
+    assert_string_equal(json_at(shapes, "/anyOf/1/items/enum/2")->valuestring, "oval");
+    assert_true(cJSON_IsTrue(json_at(shapes, "/anyOf/1/uniqueItems")));
+    const cJSON *depth = json_at(schema, "/oneOf/0/properties/depth/anyOf/1/items");
+    assert_string_equal(json_at(depth, "/anyOf/0/enum/0")->valuestring, "endless");
+    assert_true(json_at(depth, "/anyOf/1/properties/feet/maximum")->valuedouble == 10);
+    assert_true(cJSON_IsFalse(json_at(depth, "/anyOf/1/additionalProperties")));
     cJSON_Delete(schema);
 }
 
@@ -228,6 +278,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(faults_are_told_with_pointer_and_range),
         cmocka_unit_test(all_faults_are_told_at_once),
+        cmocka_unit_test(choices_and_measures),
         cmocka_unit_test(sweeps_run_in_the_order_of_the_file),
         cmocka_unit_test(too_many_cases_are_refused_before_they_are_made),
         cmocka_unit_test(seeds_are_read_whole),

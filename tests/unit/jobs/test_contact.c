@@ -1,0 +1,434 @@
+/* The kind "contact" from parameters to curves: any split into blocks and any order of merging
+ * gives the same document, foreign and damaged results are refused whole, and means, errors and
+ * paired differences are those that the realisations themselves give. */
+#include "jobs/bytes.h"
+#include "jobs/kind.h"
+#include "jobs/value.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+enum { REALISATIONS = 12, SEED = 5, CASE = 2 };
+
+static const char LEVELS[] = /* three levels, two models */
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
+    " \"points_per_wavelength\": 8},"
+    " \"contact\": {\"model\": [\"layered\", \"halfspace\"], \"levels\": [2, 4, 8],"
+    " \"pressures\": {\"values\": [0.01, 0.1, 0.3]}, \"pressure_pdf\": {\"at\": [0.1, 0.3],"
+    " \"bins\": [0.2, 1, 8]}}}";
+static const char SURFACE[] =
+    "{\"surface\": {\"hurst\": 0.4, \"wavelength_ratio\": 2, \"length_ratio\": 2,"
+    " \"points_per_wavelength\": 4, \"heights\": {\"distribution\": \"weibull_max\", \"shape\": "
+    "2}},"
+    " \"contact\": {\"pressures\": {\"to\": 0.2, \"steps\": 2}}}";
+/* The last load is beyond full contact: no stiffness there. */
+static const char FULL[] = "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": "
+                           "2, \"length_ratio\": 1},"
+                           " \"contact\": {\"pressures\": {\"values\": [1e-7, 0.2, 50]}}}";
+static const char *const STUDIES[] = {LEVELS, SURFACE, FULL};
+enum { STUDY_COUNT = 3 };
+
+static uint64_t next_word(uint64_t *state) {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return *state;
+}
+
+static const struct job_kind *kind(void) {
+    return kind_find("contact");
+}
+
+static cJSON *parse(const char *text) {
+    cJSON *parameters = cJSON_Parse(text);
+    assert_non_null(parameters);
+    return parameters;
+}
+
+static struct job_shared *shared_of(const char *study) {
+    struct job_shared *shared = NULL;
+    struct error err = {0};
+    cJSON *parameters = parse(study);
+    if (kind()->shared_create(&shared, parameters, &err) != 0)
+        fail_msg("%s", err.text);
+    cJSON_Delete(parameters);
+    return shared;
+}
+
+/* shared: NULL for a runner with its own. */
+static struct job_runner *runner_of(const char *study, const struct job_shared *shared) {
+    struct job_runner *runner = NULL;
+    struct error err = {0};
+    cJSON *parameters = parse(study);
+    if (kind()->runner_create(&runner, parameters, shared, SEED, CASE, &err) != 0)
+        fail_msg("%s", err.text);
+    cJSON_Delete(parameters);
+    return runner;
+}
+
+static struct job_merger *merger_of(const char *study) {
+    struct job_merger *merger = NULL;
+    struct error err = {0};
+    cJSON *parameters = parse(study);
+    if (kind()->merger_create(&merger, parameters, &err) != 0)
+        fail_msg("%s", err.text);
+    cJSON_Delete(parameters);
+    return merger;
+}
+
+static struct job_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
+    struct job_result result = {0};
+    struct error err = {0};
+    if (kind()->run(runner, first, count, NULL, &result, &err) != 0)
+        fail_msg("%s", err.text);
+    return result;
+}
+
+static void merge(struct job_merger *merger, const struct job_result *result) {
+    struct error err = {0};
+    if (kind()->merge(merger, result, &err) != 0)
+        fail_msg("%s", err.text);
+}
+
+static cJSON *curves_of(struct job_merger *merger) {
+    cJSON *document = NULL;
+    struct error err = {0};
+    if (kind()->curves(merger, &document, &err) != 0)
+        fail_msg("%s", err.text);
+    return document;
+}
+
+static char *text_of(struct job_merger *merger) {
+    cJSON *document = curves_of(merger);
+    char *text = cJSON_PrintUnformatted(document);
+    assert_non_null(text);
+    cJSON_Delete(document);
+    return text;
+}
+
+/* The document of realisations 0 .. count - 1. */
+static cJSON *document_of(const char *study, uint64_t count) {
+    struct job_runner *runner = runner_of(study, NULL);
+    struct job_merger *merger = merger_of(study);
+    struct job_result result = run(runner, 0, count);
+    merge(merger, &result);
+    cJSON *document = curves_of(merger);
+    job_result_clear(&result);
+    kind()->merger_destroy(&merger);
+    kind()->runner_destroy(&runner);
+    return document;
+}
+
+static bool text_is(const cJSON *object, const char *key, const char *text) {
+    const cJSON *value = value_at(object, key);
+    return cJSON_IsString(value) && strcmp(value->valuestring, text) == 0;
+}
+
+static const cJSON *curve_of(const cJSON *document, const char *quantity, const char *series,
+                             const char *model, double level) {
+    const cJSON *curve;
+    cJSON_ArrayForEach(curve, value_at(document, "/curves")) {
+        if (text_is(curve, "/quantity", quantity) && text_is(curve, "/series", series) &&
+            text_is(curve, "/model", model) && value_at(curve, "/level")->valuedouble == level)
+            return curve;
+    }
+    fail_msg("no curve %s of %s, %s, %g", quantity, series, model, level);
+    return NULL;
+}
+
+static double at(const cJSON *curve, const char *key, int point) {
+    const cJSON *value = cJSON_GetArrayItem(value_at(curve, key), point);
+    assert_non_null(value);
+    return cJSON_IsNumber(value) ? value->valuedouble : NAN;
+}
+
+/* Random blocks, run by several runners on one shared part, merged in random order: the same text.
+ */
+static void any_split_and_order(void **state) {
+    (void)state;
+    uint64_t seed = (uint64_t)time(NULL) | 1;
+    printf("seed %llu\n", (unsigned long long)seed);
+    for (int s = 0; s < STUDY_COUNT; s++) {
+        struct job_shared *shared = shared_of(STUDIES[s]);
+        struct job_runner *runners[] = {runner_of(STUDIES[s], shared),
+                                        runner_of(STUDIES[s], shared)};
+        cJSON *whole = document_of(STUDIES[s], REALISATIONS);
+        char *expected = cJSON_PrintUnformatted(whole);
+        cJSON_Delete(whole);
+        for (int trial = 0; trial < 3; trial++) {
+            struct job_merger *merger = merger_of(STUDIES[s]);
+            struct job_result parts[REALISATIONS];
+            size_t count = 0;
+            for (uint64_t first = 0; first < REALISATIONS;) {
+                uint64_t size = 1 + next_word(&seed) % 5;
+                size = first + size <= REALISATIONS ? size : REALISATIONS - first;
+                parts[count] = run(runners[count % 2], first, size);
+                count++;
+                first += size;
+            }
+            for (size_t left = count; left > 0; left--) {
+                size_t pick = (size_t)(next_word(&seed) % left);
+                merge(merger, &parts[pick]);
+                job_result_clear(&parts[pick]);
+                parts[pick] = parts[left - 1];
+            }
+            char *got = text_of(merger);
+            assert_string_equal(got, expected);
+            free(got);
+            kind()->merger_destroy(&merger);
+        }
+        free(expected);
+        kind()->runner_destroy(&runners[0]);
+        kind()->runner_destroy(&runners[1]);
+        kind()->shared_destroy(&shared);
+    }
+}
+
+static void assert_refused(struct job_merger *merger, const struct job_result *result,
+                           const char *words) {
+    struct error err = {0};
+    int status = kind()->merge(merger, result, &err);
+    if (status != ERROR_INPUT || strstr(err.text, words) == NULL)
+        fail_msg("'%s' expected, but status %d, '%s'", words, status, err.text);
+}
+
+/* Another case's, another kind's, twice the same, damaged, cut: refused, and nothing is added. */
+static void foreign_and_damaged(void **state) {
+    (void)state;
+    struct job_runner *runner = runner_of(LEVELS, NULL), *other = runner_of(FULL, NULL);
+    struct job_merger *merger = merger_of(LEVELS);
+    struct job_result good = run(runner, 3, 2), next = run(runner, 7, 2);
+    struct job_result foreign = run(other, 0, 2);
+    merge(merger, &good);
+    char *before = text_of(merger);
+    assert_refused(merger, &good, "realisation 3 is there already");
+    assert_refused(merger, &foreign, "other parameters");
+    struct job_result bad = next;
+    bad.count = 1;
+    assert_refused(merger, &bad, "scalars beside it");
+    bad = good;
+    bad.first = 7; /* its scalars, with the accumulators of others */
+    bad.data = next.data;
+    bad.size = next.size;
+    assert_refused(merger, &bad, "scalars beside it");
+    bad = next;
+    bad.scalar_count--;
+    assert_refused(merger, &bad, "scalars a realisation");
+    for (size_t size = 0; size < next.size; size += 1 + next.size / 200) {
+        bad = next;
+        bad.size = size;
+        assert_refused(merger, &bad, "the partial result");
+    }
+    for (size_t bit = 0; bit < 8 * next.size; bit += 1 + next.size / 97) {
+        next.data[bit / 8] ^= (unsigned char)(1u << (bit % 8));
+        assert_refused(merger, &next, "the partial result");
+        next.data[bit / 8] ^= (unsigned char)(1u << (bit % 8));
+    }
+    char *after = text_of(merger);
+    assert_string_equal(after, before);
+    merge(merger, &next);
+    free(before);
+    free(after);
+    job_result_clear(&good);
+    job_result_clear(&next);
+    job_result_clear(&foreign);
+    kind()->merger_destroy(&merger);
+    kind()->runner_destroy(&runner);
+    kind()->runner_destroy(&other);
+}
+
+/* Changed bytes under a seal made anew: taken or refused, but never a crash, a read past the end or
+ * an overflow (run under sanitizers). */
+static void malicious(void **state) {
+    (void)state;
+    uint64_t seed = (uint64_t)time(NULL) | 1;
+    printf("seed %llu\n", (unsigned long long)seed);
+    struct job_runner *runner = runner_of(FULL, NULL);
+    struct job_merger *merger = merger_of(FULL);
+    struct job_result good = run(runner, 0, 2);
+    unsigned char *copy = malloc(good.size);
+    assert_non_null(copy);
+    size_t taken = 0;
+    for (int trial = 0; trial < 5000; trial++) {
+        struct job_result bad = good;
+        memcpy(copy, good.data, good.size);
+        bad.data = copy;
+        bad.first = (uint64_t)trial * 2;
+        bad.size = trial % 2 ? good.size : 8 + (size_t)(next_word(&seed) % (good.size - 8));
+        for (uint64_t change = next_word(&seed) % 4; change > 0; change--)
+            copy[next_word(&seed) % good.size] = (unsigned char)(next_word(&seed) >> 13);
+        uint64_t hash = hash_bytes(HASH_START, bad.size - 8, copy);
+        for (size_t a = 0; a < 8; a++)
+            copy[bad.size - 8 + a] = (unsigned char)(hash >> (8 * a));
+        struct error err = {0};
+        int status = kind()->merge(merger, &bad, &err);
+        assert_true(status == 0 || status == ERROR_INPUT);
+        taken += status == 0;
+    }
+    assert_true(taken > 300); /* the unchanged ones at least: the seal is made as it should be */
+    cJSON_Delete(curves_of(merger));
+    free(copy);
+    job_result_clear(&good);
+    kind()->merger_destroy(&merger);
+    kind()->runner_destroy(&runner);
+}
+
+/* Values y of each realisation by itself. */
+static void each_realisation(const char *series, const char *model, double level, int point,
+                             double y[REALISATIONS]) {
+    struct job_runner *runner = runner_of(LEVELS, NULL);
+    for (uint64_t r = 0; r < REALISATIONS; r++) {
+        struct job_merger *single = merger_of(LEVELS);
+        struct job_result result = run(runner, r, 1);
+        merge(single, &result);
+        cJSON *document = curves_of(single);
+        const cJSON *curve = curve_of(document, "contact_area", series, model, level);
+        y[r] = at(curve, "/y", point);
+        assert_true(isnan(at(curve, "/standard_error", point)));
+        cJSON_Delete(document);
+        job_result_clear(&result);
+        kind()->merger_destroy(&single);
+    }
+    kind()->runner_destroy(&runner);
+}
+
+static double mean_of(const double *y, double *standard_error) {
+    double sum = 0, squares = 0, n = REALISATIONS;
+    for (size_t r = 0; r < REALISATIONS; r++)
+        sum += y[r];
+    for (size_t r = 0; r < REALISATIONS; r++)
+        squares += (y[r] - sum / n) * (y[r] - sum / n);
+    *standard_error = sqrt(squares / (n - 1) / n);
+    return sum / n;
+}
+
+static void assert_near(double value, double expected, double tolerance) {
+    if (!(fabs(value - expected) <= tolerance))
+        fail_msg("%.17g, expected %.17g within %g", value, expected, tolerance);
+}
+
+/* Means, errors, the extrapolation and the model error against the realisations one by one. 1e-10:
+ * rounding of squares that cancel. */
+static void against_each_realisation(void **state) {
+    (void)state;
+    const int point = 1;
+    double fine[REALISATIONS], next[REALISATIONS], half[REALISATIONS], standard_error;
+    each_realisation("edges", "layered", 8, point, fine);
+    each_realisation("edges", "layered", 4, point, next);
+    each_realisation("edges", "halfspace", 8, point, half);
+    cJSON *document = document_of(LEVELS, REALISATIONS);
+    const cJSON *curve = curve_of(document, "contact_area", "edges", "layered", 8);
+    assert_near(at(curve, "/y", point), mean_of(fine, &standard_error), 1e-12);
+    assert_near(at(curve, "/standard_error", point), standard_error, 1e-10);
+    assert_null(value_at(curve, "/model_error")); /* it is the most complete model */
+    for (size_t r = 0; r < REALISATIONS; r++) {
+        next[r] = fine[r] - next[r];
+        half[r] -= fine[r];
+    }
+    double order = value_at(curve, "/discretisation_order")->valuedouble;
+    double factor = 1 / (pow(2, order) - 1);
+    assert_true(order >= 0.5 && order <= 3);
+    assert_true(text_is(curve, "/discretisation_order_from", "levels"));
+    assert_near(at(curve, "/discretisation_error", point), -factor * mean_of(next, &standard_error),
+                1e-10);
+    assert_near(at(curve, "/discretisation_standard_error", point), factor * standard_error, 1e-10);
+    curve = curve_of(document, "contact_area", "edges", "halfspace", 8);
+    assert_near(at(curve, "/model_error", point), mean_of(half, &standard_error), 1e-10);
+    assert_near(at(curve, "/model_error_standard_error", point), standard_error, 1e-10);
+    curve = curve_of(document, "contact_area", "edges", "layered", 4);
+    assert_true(cJSON_IsNull(value_at(curve, "/discretisation_error")));
+    cJSON_Delete(document);
+}
+
+/* What must be true of any solution, and what full contact leaves without a value. */
+static void curves_make_sense(void **state) {
+    (void)state;
+    cJSON *document = document_of(FULL, 3);
+    const cJSON *area = curve_of(document, "contact_area", "edges", "halfspace", 8);
+    const cJSON *low = curve_of(document, "contact_area", "nodes_lower", "halfspace", 8);
+    const cJSON *high = curve_of(document, "contact_area", "nodes_upper", "halfspace", 8);
+    for (int k = 0; k < 3; k++) {
+        assert_true(at(low, "/y", k) <= at(area, "/y", k));
+        assert_true(at(area, "/y", k) <= at(high, "/y", k));
+    }
+    assert_true(at(area, "/y", 0) > 0 && at(area, "/y", 0) < 0.2);
+    assert_near(at(area, "/y", 2), 1, 1e-12);
+    const cJSON *gap = curve_of(document, "mean_gap", "", "halfspace", 8);
+    assert_true(at(gap, "/y", 0) > at(gap, "/y", 1));
+    assert_near(at(gap, "/y", 2), 0, 1e-8);
+    const cJSON *stiffness = curve_of(document, "stiffness", "", "halfspace", 8);
+    assert_true(at(stiffness, "/y", 0) > 0 && at(stiffness, "/y", 0) < at(stiffness, "/y", 1));
+    assert_true(isnan(at(stiffness, "/y", 2)));
+    assert_near(at(stiffness, "/valueless", 1), 0, 0);
+    assert_near(at(stiffness, "/valueless", 2), 3, 0);
+    const cJSON *pressures = curve_of(document, "contact_pressure_pdf", "", "halfspace", 8);
+    assert_near(value_at(pressures, "/pressure")->valuedouble, 50, 0);
+    assert_near(value_at(pressures, "/overflow")->valuedouble, 3 * 16, 0); /* all points */
+    assert_true(text_is(value_at(document, "/curves")->child, "/series", "edges"));
+    cJSON_Delete(document);
+}
+
+/* The histogram of pressures adds up to the nodes in contact. */
+static void pressures_are_those_in_contact(void **state) {
+    (void)state;
+    cJSON *document = document_of(LEVELS, 5);
+    const cJSON *pressures = curve_of(document, "contact_pressure_pdf", "", "layered", 8);
+    const cJSON *nodes = curve_of(document, "contact_area", "nodes", "layered", 8);
+    double outside = value_at(pressures, "/underflow")->valuedouble +
+                     value_at(pressures, "/overflow")->valuedouble;
+    double share = outside / (5 * 64);
+    for (int b = 0; b < 8; b++)
+        share += at(pressures, "/y", b) * 0.1;
+    assert_true(outside > 0);
+    assert_near(share, at(nodes, "/y", 1), 1e-12);
+    cJSON_Delete(document);
+}
+
+/* Before any result there are curves too, all of them empty of values. */
+static void no_realisation_yet(void **state) {
+    (void)state;
+    struct job_merger *merger = merger_of(LEVELS);
+    cJSON *document = curves_of(merger);
+    assert_true(value_at(document, "/realisations")->valuedouble == 0);
+    const cJSON *curve = curve_of(document, "contact_area", "edges", "layered", 8);
+    assert_true(isnan(at(curve, "/y", 0)) && isnan(at(curve, "/discretisation_error", 0)));
+    assert_true(text_is(curve, "/discretisation_order_from", "assumed"));
+    cJSON_Delete(document);
+    kind()->merger_destroy(&merger);
+}
+
+/* Stops in the midst of a realisation, which has four questions: one before it, one a load. */
+static int stop_at_last(void *context, uint64_t done) {
+    int *asked = context;
+    (void)done;
+    return ++*asked > 12;
+}
+
+static void stopping(void **state) {
+    (void)state;
+    struct job_runner *runner = runner_of(FULL, NULL);
+    int asked = 0;
+    const struct job_control control = {stop_at_last, &asked};
+    struct job_result result = {.first = 77};
+    struct error err = {0};
+    assert_int_equal(kind()->run(runner, 0, 9, &control, &result, &err), ERROR_STOPPED);
+    assert_true(result.first == 77 && result.data == NULL);
+    assert_int_equal(asked, 13);
+    kind()->runner_destroy(&runner);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_split_and_order), cmocka_unit_test(foreign_and_damaged),
+        cmocka_unit_test(malicious),           cmocka_unit_test(against_each_realisation),
+        cmocka_unit_test(curves_make_sense),   cmocka_unit_test(pressures_are_those_in_contact),
+        cmocka_unit_test(no_realisation_yet),  cmocka_unit_test(stopping),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,242 @@
+/* A contact case is read as it was meant: defaults, models, blocks, loads, meshes; and what does
+ * not fit together is refused, with its pointer. */
+#include "jobs/contact_case.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define PROFILE "\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2"
+#define STUDY(surface, contact) "{\"surface\": {" surface "}, \"contact\": {" contact "}}"
+
+static struct contact_case read_case(const char *text) {
+    struct contact_case study;
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse(text);
+    assert_non_null(parameters);
+    if (contact_case_read(&study, parameters, NULL, &err) != 0)
+        fail_msg("%s: %s", text, err.text);
+    cJSON_Delete(parameters);
+    return study;
+}
+
+static void defaults(void **state) {
+    (void)state;
+    struct contact_case study = read_case(STUDY(PROFILE, ""));
+    assert_int_equal(study.model_count, 1);
+    assert_true(study.blocks[0].model == MODEL_HALFSPACE && isinf(study.blocks[0].height));
+    assert_true(study.blocks[0].poisson == 0.3 && study.blocks[0].weighting == GAP_STANDARD);
+    assert_int_equal(study.load_count, 30);
+    assert_true(fabs(study.loads[0] - 0.01) < 1e-15 && study.loads[29] == 0.3);
+    assert_int_equal(study.level_count, 1);
+    assert_true(study.levels[0].points == 8 && study.levels[0].grid.nx == 64);
+    assert_int_equal(study.levels[0].stride, 1);
+    assert_true(study.nodes && study.edges && !study.perimeter);
+    assert_true(study.tolerance == 1e-8);
+    assert_int_equal(study.pdf_count, 1);
+    assert_int_equal(study.pdf_loads[0], 29);
+    assert_true(study.pressure.low == 0 && study.pressure.high == 4 && study.pressure.count == 80);
+    contact_case_clear(&study);
+    study = read_case("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4}}");
+    assert_true(study.nodes && study.edges && study.perimeter);
+    contact_case_clear(&study);
+}
+
+static void blocks(void **state) {
+    (void)state;
+    struct contact_case study =
+        read_case(STUDY(PROFILE, "\"model\": [\"layered\", \"halfspace\"], \"poisson\": 0.4"));
+    assert_int_equal(study.model_count, 2);
+    assert_true(study.blocks[0].model == MODEL_LAYERED && study.blocks[0].height == 12);
+    assert_true(study.blocks[0].layer_growth == 1.1 && study.blocks[0].poisson == 0.4);
+    assert_true(study.blocks[1].model == MODEL_HALFSPACE && isinf(study.blocks[1].height));
+    assert_int_equal(contact_case_complete(&study), 0);
+    contact_case_clear(&study);
+    study = read_case(STUDY(PROFILE, "\"model\": [\"halfspace\", \"layered\"],"
+                                     "\"block_height\": {\"lengths\": 0.5}"));
+    assert_true(study.blocks[0].height == 4 && study.blocks[1].height == 4); /* both take it */
+    assert_int_equal(contact_case_complete(&study), 1);
+    contact_case_clear(&study);
+    study = read_case(STUDY(PROFILE ", \"rms_height\": 0.01",
+                            "\"block_height\": {\"rms_heights\": 160}, \"model\": \"layered\""));
+    assert_true(fabs(study.blocks[0].height - 1.6) < 1e-12);
+    contact_case_clear(&study);
+    /* one wave of amplitude a and length 1: slope sqrt(2) pi a, height a/sqrt(2) */
+    study = read_case(STUDY("\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 1,"
+                            "\"length_ratio\": 1, \"rms_slope\": 0.1",
+                            "\"block_height\": {\"rms_heights\": 100}, \"model\": \"layered\""));
+    assert_true(fabs(study.blocks[0].height - 100 * 0.1 / 6.283185307179586) < 1e-12);
+    contact_case_clear(&study);
+}
+
+static void loads_and_pressures(void **state) {
+    (void)state;
+    struct contact_case study =
+        read_case(STUDY(PROFILE, "\"pressures\": {\"to\": 0.4, \"steps\": 4},"
+                                 "\"pressure_pdf\": {\"at\": [0.1, 0.3], \"bins\": [0, 2, 10]}"));
+    assert_int_equal(study.load_count, 4);
+    assert_int_equal(study.pdf_count, 2);
+    assert_true(study.pdf_loads[0] == 0 && study.pdf_loads[1] == 2);
+    contact_case_clear(&study);
+    study = read_case(STUDY(PROFILE, "\"pressures\": {\"values\": [1e-6, 0.1, 7]},"
+                                     "\"estimators\": \"nodes\""));
+    assert_true(study.load_count == 3 && study.loads[2] == 7);
+    assert_true(study.nodes && !study.edges && !study.perimeter);
+    contact_case_clear(&study);
+}
+
+/* 2 points a wave: every 4th point of the own 8; 4: every 2nd; 6: resampled; 16: finer. */
+static void levels(void **state) {
+    (void)state;
+    struct contact_case study = read_case(STUDY(PROFILE, "\"levels\": [2, 4, 6, 16]"));
+    static const size_t sides[] = {16, 32, 48, 128}, strides[] = {4, 2, 0, 0};
+    assert_int_equal(study.level_count, 4);
+    for (size_t l = 0; l < 4; l++) {
+        assert_int_equal(study.levels[l].grid.nx, sides[l]);
+        assert_int_equal(study.levels[l].grid.ny, 1);
+        assert_int_equal(study.levels[l].stride, strides[l]);
+    }
+    assert_ptr_equal(contact_case_finest(&study), &study.levels[3]);
+    contact_case_clear(&study);
+}
+
+static void faults(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *pointer, *words;
+    } BAD[] = {
+        {STUDY(PROFILE, "\"model\": \"full\""), "/contact/model", "choices"},
+        {STUDY(PROFILE, "\"model\": [\"layered\", \"layered\"]"), "/contact/model", "different"},
+        {STUDY(PROFILE, "\"model\": []"), "/contact/model", "different"},
+        {STUDY(PROFILE, "\"young\": 0"), "/contact/young", "(0,"},
+        {STUDY(PROFILE, "\"poisson\": 0.5"), "/contact/poisson", "[0, 0.4999]"},
+        {STUDY(PROFILE, "\"model\": \"layered\", \"block_height\": \"infinite\""),
+         "/contact/block_height", "only a halfspace can be infinite"},
+        {STUDY(PROFILE, "\"model\": [\"halfspace\", \"layered\"], \"block_height\": \"infinite\""),
+         "/contact/block_height", "only a halfspace can be infinite"},
+        {STUDY(PROFILE, "\"block_height\": {\"rms_heights\": 160}"), "/contact/block_height",
+         "need the scale"},
+        {STUDY(PROFILE, "\"block_height\": {\"metres\": 1}"), "/contact/block_height", "unit"},
+        {STUDY(PROFILE, "\"block_height\": {\"lengths\": 0}"), "/contact/block_height", "(0,"},
+        {STUDY(PROFILE, "\"block_height\": {\"lengths\": 1, \"rms_heights\": 1}"),
+         "/contact/block_height", "one number"},
+        {STUDY(PROFILE, "\"block_height\": \"deep\""), "/contact/block_height", "infinite"},
+        {STUDY(PROFILE, "\"model\": \"layered\", \"layer_growth\": 1,"
+                        "\"block_height\": {\"lengths\": 1000}"),
+         "/contact/block_height", "4096 layers"},
+        {STUDY(PROFILE, "\"layer_growth\": 0.9"), "/contact/layer_growth", "[1, 2]"},
+        {STUDY(PROFILE, "\"gap_weighting\": \"dual\""), "/contact/gap_weighting", "layered"},
+        {STUDY(PROFILE, "\"pressures\": {\"to\": 0}"), "/contact/pressures/to", "(0,"},
+        {STUDY(PROFILE, "\"pressures\": {\"steps\": 2000}"), "/contact/pressures/steps", "1000"},
+        {STUDY(PROFILE, "\"pressures\": {\"values\": [0.2, 0.1]}"), "/contact/pressures/values",
+         "must rise"},
+        {STUDY(PROFILE, "\"pressures\": {\"values\": [0, 0.1]}"), "/contact/pressures/values",
+         "(0,"},
+        {STUDY(PROFILE, "\"pressures\": {\"values\": [0.3], \"to\": 0.3}"),
+         "/contact/pressures/values", "not both"},
+        {STUDY(PROFILE, "\"estimators\": [\"perimeter\"]"), "/contact/estimators", "profile"},
+        {STUDY(PROFILE, "\"estimators\": [\"corners\"]"), "/contact/estimators", "choices"},
+        {STUDY(PROFILE, "\"levels\": [1, 8]"), "/contact/levels", "[2,"},
+        {STUDY(PROFILE, "\"levels\": [8, 4]"), "/contact/levels", "must rise"},
+        {STUDY(PROFILE, "\"levels\": [2.3, 8]"), NULL, NULL}, /* 20 points hold 8 waves */
+        {STUDY(PROFILE ", \"points_per_wavelength\": 6", "\"levels\": [2, 4, 6]"), NULL, NULL},
+        {STUDY(PROFILE ", \"points_per_wavelength\": 5", "\"levels\": [2, 5]"), "/contact/levels",
+         "neither hold the 8 waves"},
+        {STUDY(PROFILE, "\"levels\": [7.99, 8]"), "/contact/levels", "the same grid"},
+        {STUDY(PROFILE, "\"tolerance\": 0.1"), "/contact/tolerance", "0.01"},
+        {STUDY(PROFILE, "\"pressure_pdf\": {\"at\": [0.015]}"), "/contact/pressure_pdf/at",
+         "none of the study's"},
+        {STUDY(PROFILE, "\"pressure_pdf\": {\"bins\": [1, 1, 5]}"), "/contact/pressure_pdf/bins",
+         "below high"},
+    };
+    for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++) {
+        struct fault_list list = {0};
+        struct contact_case study;
+        struct error err = {0};
+        cJSON *parameters = cJSON_Parse(BAD[b].text);
+        assert_non_null(parameters);
+        int status = contact_case_read(&study, parameters, &list, &err);
+        if (BAD[b].pointer == NULL) {
+            assert_int_equal(status, 0);
+            contact_case_clear(&study);
+        } else if (status != ERROR_INPUT || list.count != 1 ||
+                   strcmp(list.faults[0].pointer, BAD[b].pointer) != 0 ||
+                   strstr(list.faults[0].detail, BAD[b].words) == NULL) {
+            fail_msg("%s: %zu faults, %s", BAD[b].text, list.count, err.text);
+        }
+        fault_list_clear(&list);
+        cJSON_Delete(parameters);
+    }
+}
+
+/* Faults of the surface and of the contact, all at once. */
+static void all_faults_at_once(void **state) {
+    (void)state;
+    struct fault_list list = {0};
+    struct contact_case study;
+    cJSON *parameters = cJSON_Parse(STUDY("\"dimension\": 1, \"hurst\": 2",
+                                          "\"poisson\": 1, \"levels\": [8, 2], \"tolerance\": 1,"
+                                          "\"pressures\": {\"values\": [2, 1]}"));
+    assert_int_equal(contact_case_read(&study, parameters, &list, NULL), ERROR_INPUT);
+    assert_true(list.count >= 5);
+    fault_list_clear(&list);
+    cJSON_Delete(parameters);
+}
+
+static void fingerprints(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        STUDY(PROFILE, ""),
+        STUDY(PROFILE, "\"model\": \"layered\""),
+        STUDY(PROFILE, "\"model\": [\"layered\", \"halfspace\"]"),
+        STUDY(PROFILE, "\"model\": [\"halfspace\", \"layered\"]"),
+        STUDY(PROFILE, "\"block_height\": {\"lengths\": 2}"),
+        STUDY(PROFILE, "\"block_height\": {\"lengths\": 3}"),
+        STUDY(PROFILE ", \"rms_height\": 1", "\"block_height\": {\"rms_heights\": 3}"),
+        STUDY(PROFILE, "\"estimators\": [\"nodes\"]"),
+        STUDY(PROFILE, "\"estimators\": [\"edges\"]"),
+    };
+    enum { TEXTS = sizeof texts / sizeof *texts };
+    uint64_t marks[TEXTS];
+    for (size_t a = 0; a < TEXTS; a++) {
+        struct contact_case study = read_case(texts[a]);
+        marks[a] = study.fingerprint;
+        contact_case_clear(&study);
+        for (size_t b = 0; b < a; b++)
+            assert_true(marks[a] != marks[b]);
+    }
+}
+
+static void estimates(void **state) {
+    (void)state;
+    struct contact_case study = read_case(STUDY(PROFILE, ""));
+    struct job_estimate small, large;
+    contact_case_estimate(&study, &small);
+    contact_case_clear(&study);
+    study = read_case("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 16}, \"contact\":"
+                      " {\"model\": [\"halfspace\", \"layered\"], \"levels\": [4, 8]}}");
+    contact_case_estimate(&study, &large);
+    contact_case_clear(&study);
+    assert_true(small.nx == 64 && small.ny == 1 && large.nx == 1024 && large.ny == 1024);
+    assert_true(small.seconds > 0 && small.seconds < 1 && large.seconds > 10 * small.seconds);
+    assert_true(small.memory_bytes > 1e4 && small.memory_bytes < 1e8);
+    assert_true(large.memory_bytes > 2 * 13 * 8.0 * 1024 * 1024); /* two finest solvers at least */
+    assert_true(small.relative_error > 0.01 && small.relative_error < 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(defaults),
+        cmocka_unit_test(blocks),
+        cmocka_unit_test(loads_and_pressures),
+        cmocka_unit_test(levels),
+        cmocka_unit_test(faults),
+        cmocka_unit_test(all_faults_at_once),
+        cmocka_unit_test(fingerprints),
+        cmocka_unit_test(estimates),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
