@@ -1,26 +1,24 @@
-/* Where the edge lies between a node in contact and its neighbour out of contact.
- *
- * At a distance d from a smooth edge the pressure inside is p = c sqrt(d) E* and the gap outside
- * (4 c/3) d^(3/2) (from Hertz's line contact near its edge: Johnson 1985, chapter 4), with one c.
- * So p^2 = c^2 d and (3 gap/4)^(2/3) = c^(2/3) d rise linearly on the two sides, and the two nodes
- * of the pair give the edge and c. Where the contact goes on for two more nodes, the term in d^2 of
- * p^2 is taken out with the next of them (in a patch of two nodes that does harm). On a grid line
- * at an angle theta to the edge's normal the gap counts as gap/cos theta; the angle is that of the
- * gradient of the signed distance to the edge, which the two linear quantities are. */
+/* Edges are found by edge.h on every grid line that crosses one. On a line at an angle theta to the
+ * edge's normal the gap counts as gap/cos theta; the angle is that of the gradient of the signed
+ * distance to the edge, which the two linear quantities p^2 and (3 gap/4)^(2/3) are. */
 #include "core/contact/area.h"
+#include "core/contact/edge.h"
 #include <math.h>
 #include <stdlib.h>
 
-static const double PERIMETER = 0.118114159740; /* (pi - 1 + ln 2)/24 */
+static const double PERIMETER = 0.11811415975623911; /* (pi - 1 + ln 2)/24 */
 static const double COSINE_LEAST = 0.1;
-enum { ANGLE_STEPS = 4, ROOT_STEPS = 60 };
+enum { ANGLE_STEPS = 4 };
 
 struct area_workspace {
     struct grid grid;
+    struct edge_law rows, columns;
     double *rise; /* grid_points: p^2 in contact, -(3 gap/4)^(2/3) elsewhere, scaled */
 };
 
-int area_workspace_create(struct area_workspace **out, const struct grid *grid, struct error *err) {
+int area_workspace_create(struct area_workspace **out, const struct compliance *compliance,
+                          struct error *err) {
+    const struct grid *grid = &compliance->grid;
     size_t n = grid_points(grid);
     struct area_workspace *workspace = array_create(1, sizeof *workspace);
     if (workspace != NULL)
@@ -30,8 +28,14 @@ int area_workspace_create(struct area_workspace **out, const struct grid *grid, 
         return error_memory(err, n * sizeof(double), "contact areas");
     }
     workspace->grid = *grid;
+    int status = edge_law_make(grid, &compliance->block, false, &workspace->rows, err);
+    workspace->columns = workspace->rows;
+    if (status == 0 && !grid_is_profile(grid) && grid_dx(grid) != grid_dy(grid))
+        status = edge_law_make(grid, &compliance->block, true, &workspace->columns, err);
+    if (status != 0)
+        area_workspace_destroy(&workspace);
     *out = workspace;
-    return 0;
+    return status;
 }
 
 void area_workspace_destroy(struct area_workspace **workspace) {
@@ -44,62 +48,23 @@ void area_workspace_destroy(struct area_workspace **workspace) {
 
 /* Pressures and gaps over the largest pressure: an edge does not depend on the unit, and squares
  * stay in range. */
-static void fill_rise(struct area_workspace *workspace, const double *p, const double *gap) {
+static void fill_rise(struct area_workspace *workspace, const double *p, const double *opening) {
     size_t n = grid_points(&workspace->grid);
     double most = 0;
     for (size_t i = 0; i < n; i++)
         most = fmax(most, p[i]);
     for (size_t i = 0; i < n; i++) {
-        double open = most > 0 ? cbrt(0.75 * fmax(0, gap[i]) / most) : 1;
+        double open = most > 0 ? cbrt(0.75 * fmax(0, opening[i]) / most) : 1;
         workspace->rise[i] = p[i] > 0 ? (p[i] / most) * (p[i] / most) : -open * open;
     }
 }
 
 /* A walk along a grid line from a node in contact over the edge to its neighbour. */
 struct crossing {
-    size_t inside, outside, before, far_before; /* nodes; the last two further inside */
+    size_t inside, outside;                                        /* nodes, as all below */
     size_t inside_left, inside_right, outside_left, outside_right; /* beside the two */
     double step, across;                                           /* spacings, along and beside */
 };
-
-/* s in [0, 1] with s = ratio (1 - s)^3: the first-order edge, ratio = p^2/(3 gap/4)^2 in units of
- * the spacing. */
-static double first_order(double ratio) {
-    double k = sqrt(3 * ratio);
-    if (!(k < 1e150))
-        return 1;
-    double w = k > 1e-8 ? 2 / k * sinh(asinh(1.5 * k) / 3) : 1;
-    return fmin(1, ratio * w * w * w);
-}
-
-/* c^2 from the outside less that from the inside, for an edge at s: rises with s. */
-static double mismatch(double s, double p1, double p0, double g1) {
-    double outside = g1 / (1 - s);
-    double inside = p0 > 0 ? p1 * (1 + 1 / s) - p0 * s / (1 + s) : p1 / s;
-    return outside * outside * outside - inside;
-}
-
-/* Share of the step from node inside that is in contact. p1, p0: squared pressures at the nodes
- * inside and before (0: left out); g1: (3 gap/4)^(2/3) at the node outside, lengths in steps. */
-static double edge_share(double p1, double p0, double g1) {
-    double s = first_order(p1 / (g1 * g1 * g1));
-    if (!(p0 > 0 && s > 0 && s < 1))
-        return s;
-    double low = 0, high = 1;
-    for (int a = 0; a < ROOT_STEPS && high - low > 1e-12; a++) {
-        double at = mismatch(s, p1, p0, g1), h = 1e-6 * fmin(s, 1 - s);
-        double slope = (mismatch(s + h, p1, p0, g1) - at) / h, next = s - at / slope;
-        if (at > 0)
-            high = s;
-        else
-            low = s;
-        bool settled = fabs(next - s) < 1e-10;
-        s = next > low && next < high ? next : 0.5 * (low + high);
-        if (settled)
-            break;
-    }
-    return s;
-}
 
 /* Signed distance to the edge of constant c = 1/u, u2 = u^2 and ug = u^(2/3). */
 static double distance(double rise, double u2, double ug) {
@@ -111,7 +76,7 @@ static double crossing_cosine(const struct crossing *x, const double *rise, doub
     double cosine = 1;
     for (int a = 0; a < ANGLE_STEPS; a++) {
         double gap = g1 / cbrt(cosine * cosine);
-        double s = first_order(p1 / (gap * gap * gap));
+        double s = edge_guess(p1, gap);
         double u2 = s * x->step / p1, ug = cbrt(u2);
         double along =
             (distance(rise[x->inside], u2, ug) - distance(rise[x->outside], u2, ug)) / x->step;
@@ -124,17 +89,15 @@ static double crossing_cosine(const struct crossing *x, const double *rise, doub
     return cosine;
 }
 
-static double crossing_share(const struct crossing *x, const double *rise, bool profile) {
-    double unit = cbrt(x->step), lengths = unit * unit; /* of (3 gap/4)^(2/3) */
-    double p1 = rise[x->inside], g1 = -rise[x->outside] / lengths;
-    double p0 = rise[x->before] > 0 && rise[x->far_before] > 0 ? rise[x->before] : 0;
-    if (!(g1 > 0))
-        return 1;
-    if (!profile) {
+static double crossing_share(const struct crossing *x, const struct edge_law *law,
+                             const double *rise, bool profile) {
+    double unit = cbrt(x->step);
+    double p1 = rise[x->inside], g1 = fmax(0, -rise[x->outside]) / (unit * unit);
+    if (!profile && g1 > 0) {
         double cosine = crossing_cosine(x, rise, p1, g1);
         g1 /= cbrt(cosine * cosine);
     }
-    return edge_share(p1, p0, g1);
+    return edge_share(law, edge_guess(p1, g1));
 }
 
 /* One of the two families of grid lines: nodes of a line are `along` apart, lines `beside`. */
@@ -150,11 +113,8 @@ static size_t node_at(const struct family *f, size_t line, size_t node) {
 
 /* From node a of the line to node b, one step forth or back (nodes counted modulo the line). */
 static struct crossing crossing_at(const struct family *f, size_t line, size_t a, size_t b) {
-    size_t back = a + 2 * f->nodes - (b - a);
     return (struct crossing){.inside = node_at(f, line, a),
                              .outside = node_at(f, line, b),
-                             .before = node_at(f, line, back),
-                             .far_before = node_at(f, line, back - (b - a)),
                              .inside_left = node_at(f, line + 1, a),
                              .outside_left = node_at(f, line + 1, b),
                              .inside_right = node_at(f, line + f->lines - 1, a),
@@ -164,7 +124,7 @@ static struct crossing crossing_at(const struct family *f, size_t line, size_t a
 }
 
 /* Share of all lines that is in contact. */
-static double family_share(const struct family *f, const double *rise) {
+static double family_share(const struct family *f, const struct edge_law *law, const double *rise) {
     double steps = 0;
     for (size_t line = 0; line < f->lines; line++)
         for (size_t node = 0; node < f->nodes; node++) {
@@ -175,7 +135,7 @@ static double family_share(const struct family *f, const double *rise) {
             } else if (first || second) {
                 size_t a = f->nodes + node + (first ? 0 : 1), b = f->nodes + node + (first ? 1 : 0);
                 struct crossing crossing = crossing_at(f, line, a, b);
-                steps += crossing_share(&crossing, rise, f->lines == 1);
+                steps += crossing_share(&crossing, law, rise, f->lines == 1);
             }
         }
     return steps / ((double)f->lines * (double)f->nodes);
@@ -210,20 +170,20 @@ static void count_nodes(const struct grid *grid, const double *p, struct contact
     out->upper = (double)any / n;
 }
 
-void contact_area(struct area_workspace *workspace, const double *p, const double *gap,
+void contact_area(struct area_workspace *workspace, const double *p, const double *opening,
                   struct contact_area *out) {
     const struct grid *grid = &workspace->grid;
     double dx = grid_dx(grid), dy = grid_dy(grid);
     struct family rows = {grid->ny, grid->nx, 1, grid->nx, dx, dy};
     count_nodes(grid, p, out);
-    fill_rise(workspace, p, gap);
-    out->edges = family_share(&rows, workspace->rise);
+    fill_rise(workspace, p, opening);
+    out->edges = family_share(&rows, &workspace->rows, workspace->rise);
     out->perimeter = NAN;
     if (grid_is_profile(grid))
         return;
     struct family columns = {grid->nx, grid->ny, grid->nx, 1, dy, dx};
     size_t sides[2];
-    out->edges = 0.5 * (out->edges + family_share(&columns, workspace->rise));
+    out->edges = 0.5 * (out->edges + family_share(&columns, &workspace->columns, workspace->rise));
     count_sides(grid, p, sides);
     /* A side across x is dy long and the correction acts along x, over dx; and the other way. */
     double missed = PERIMETER * (double)(sides[0] + sides[1]) / (double)grid_points(grid);

@@ -2,7 +2,7 @@
 #ifndef RUGO_CORE_CONTACT_AREA_H
 #define RUGO_CORE_CONTACT_AREA_H
 
-#include "core/surface/grid.h"
+#include "core/contact/compliance.h"
 
 struct contact_area {
     double nodes; /* share of nodes in contact, each with the cell around it: an upper value */
@@ -15,11 +15,13 @@ struct contact_area {
 };
 
 struct area_workspace;
-int area_workspace_create(struct area_workspace **out, const struct grid *grid, struct error *err);
+/* Learns where edges lie in this model on this grid (edge.h): some milliseconds. */
+int area_workspace_create(struct area_workspace **out, const struct compliance *compliance,
+                          struct error *err);
 void area_workspace_destroy(struct area_workspace **workspace);
 
-/* p in E*, gap at the nodes, both grid_points: as contact_press gives them. */
-void contact_area(struct area_workspace *workspace, const double *p, const double *gap,
+/* p in E* and opening, both grid_points, as contact_press gives them. */
+void contact_area(struct area_workspace *workspace, const double *p, const double *opening,
                   struct contact_area *out);
 
 #endif

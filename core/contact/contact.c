@@ -16,13 +16,14 @@ struct contact {
     struct descent descent; /* its heights are weighted */
     double *z;              /* heights, mean 0 */
     double *pressure, *gap; /* what is told: the user's units */
+    double *opening;        /* gap where there is no weighting */
     double unit;            /* RMS height, the grid's length; 0 for a flat surface */
     double full;            /* smallest mean pressure of full contact */
     double mean;            /* of the descent's p: the load that it solves; 0 for none */
 };
 
 double contact_bytes(const struct grid *grid) {
-    return 3.0 * sizeof(double) * (double)grid_points(grid) + descent_bytes(grid);
+    return 4.0 * sizeof(double) * (double)grid_points(grid) + descent_bytes(grid);
 }
 
 int contact_create(struct contact **out, const struct compliance *compliance,
@@ -43,6 +44,11 @@ int contact_create(struct contact **out, const struct compliance *compliance,
         if (*arrays[a] == NULL)
             status = error_memory(err, n * sizeof(double), "a contact");
     }
+    if (status == 0) {
+        c->opening = compliance->weight != NULL ? array_create(n, sizeof(double)) : c->gap;
+        if (c->opening == NULL)
+            status = error_memory(err, n * sizeof(double), "a contact");
+    }
     if (status != 0)
         contact_destroy(&c);
     *out = c;
@@ -54,6 +60,8 @@ void contact_destroy(struct contact **contact) {
     if (c == NULL)
         return;
     descent_clear(&c->descent);
+    if (c->opening != c->gap)
+        free(c->opening);
     free(c->z);
     free(c->pressure);
     free(c->gap);
@@ -118,10 +126,11 @@ static void tell_open(struct contact *c, struct contact_state *out) {
     const struct descent *d = &c->descent;
     double highest = 0;
     for (size_t i = 0; i < d->n; i++)
-        highest = fmax(highest, c->z[i]);
+        highest = fmax(highest, d->z[i]);
     for (size_t i = 0; i < d->n; i++) {
         c->pressure[i] = 0;
         c->gap[i] = (highest - c->z[i]) * c->unit;
+        c->opening[i] = (highest - d->z[i]) * c->unit;
     }
     out->mean_gap = highest * c->unit;
 }
@@ -132,7 +141,7 @@ static void tell_full(struct contact *c, double pressure, struct contact_state *
     transform_filter(d->transform, d->stiff, pressure_unit(c), d->z, c->pressure);
     for (size_t i = 0; i < d->n; i++) {
         c->pressure[i] = fmax(0, c->pressure[i] + pressure);
-        c->gap[i] = 0;
+        c->gap[i] = c->opening[i] = 0;
     }
     out->stiffness = INFINITY;
     out->nodes = d->n;
@@ -143,6 +152,8 @@ static void tell_partial(struct contact *c, const struct descent_end *end,
                          struct contact_state *out) {
     struct descent *d = &c->descent;
     struct sum gap = {0};
+    for (size_t i = 0; i < d->n; i++)
+        c->opening[i] = (d->u[i] - d->z[i] + end->approach) * c->unit;
     if (c->compliance->weight != NULL)
         transform_filter(d->transform, c->compliance->length, 1 / d->largest, d->p, d->u);
     for (size_t i = 0; i < d->n; i++) {
@@ -198,7 +209,8 @@ int contact_press(struct contact *c, double pressure, struct contact_state *out,
     if (!(pressure >= 0 && isfinite(pressure)))
         return error_set(err, ERROR_INPUT, "mean pressure = %g; allowed: 0 or more, finite",
                          pressure);
-    struct contact_state state = {.pressure = pressure, .p = c->pressure, .gap = c->gap};
+    struct contact_state state = {
+        .pressure = pressure, .p = c->pressure, .gap = c->gap, .opening = c->opening};
     if (pressure == 0)
         tell_open(c, &state);
     else if (pressure >= contact_full_pressure(c))

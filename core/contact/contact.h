@@ -22,10 +22,11 @@ extern const struct contact_options CONTACT_DEFAULTS;
 /* How one load was solved, and what came out. Arrays are the solver's, valid until its next call.
  */
 struct contact_state {
-    double pressure;    /* mean, in E* */
-    const double *p;    /* grid_points, in E*; mean = pressure, 0 where open */
-    const double *gap;  /* grid_points, at the nodes whatever the weighting; mean_gap is its mean */
-    double mean_gap;    /* the grid's length */
+    double pressure;   /* mean, in E* */
+    const double *p;   /* grid_points, in E*; mean = pressure, 0 where open */
+    const double *gap; /* grid_points, at the nodes whatever the weighting; mean_gap is its mean */
+    const double *opening; /* grid_points: the weighted gap, which is 0 in contact */
+    double mean_gap;       /* the grid's length */
     double stiffness;   /* -d pressure/d mean_gap, E* per length; INFINITY in full contact, 0 when
                            nothing touches */
     size_t nodes;       /* in contact (p > 0) */

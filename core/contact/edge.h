@@ -1,0 +1,33 @@
+/* Where the edge of a contact lies between a node in contact and its neighbour out of contact.
+ *
+ * At a distance d from a smooth frictionless edge the pressure inside is p = c sqrt(d) E* and the
+ * gap outside (4 c/3) d^(3/2), with one c (Johnson 1985, chapter 4). So p^2 = c^2 d and
+ * (3 gap/4)^(2/3) = c^(2/3) d rise linearly on the two sides, and the two nodes of the pair give
+ * the edge and c: the first guess. Values at nodes of a discrete solution are not those of the
+ * exact one so near a singular edge, but near every straight edge they are off alike: an edge law
+ * holds where the edge truly is for each first guess, as found on one wave, whose edges are known
+ * (Westergaard 1939), pressed at many places of the same grid with the same model. */
+#ifndef RUGO_CORE_CONTACT_EDGE_H
+#define RUGO_CORE_CONTACT_EDGE_H
+
+#include "core/contact/compliance.h"
+
+enum { EDGE_PHASES = 64 };
+
+struct edge_law {
+    double root[EDGE_PHASES];  /* rising: square root of the first guess */
+    double share[EDGE_PHASES]; /* edge beyond the node in contact, in steps; from about -0.2 to 1 */
+};
+
+/* The law of grid lines along x (columns false) or y; some milliseconds. Errors of
+ * compliance_create and contact_press. */
+int edge_law_make(const struct grid *grid, const struct block *block, bool columns,
+                  struct edge_law *out, struct error *err);
+
+/* First guess, in [0, 1] steps: squared pressure at the node inside, (3 gap/4)^(2/3) at that
+ * outside, lengths in steps. */
+double edge_guess(double pressure_squared, double gap_rise);
+/* The law at a first guess. */
+double edge_share(const struct edge_law *law, double guess);
+
+#endif
