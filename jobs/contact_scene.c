@@ -13,7 +13,7 @@ struct contact_scene {
     const struct contact_case *study;
     double rms_slope, rms_height; /* of the prescribed spectrum */
     struct contact *solvers[CONTACT_MODELS][CONTACT_LEVELS_MOST];
-    struct area_workspace *areas[CONTACT_LEVELS_MOST];
+    struct area_workspace *areas[CONTACT_MODELS][CONTACT_LEVELS_MOST];
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
     double *z; /* a level's sampling; room for the finest */
 };
@@ -44,12 +44,13 @@ static int scene_fill(struct contact_scene *scene, const struct contact_complian
     options.tolerance = study->tolerance;
     int status = 0;
     for (size_t l = 0; l < study->level_count && status == 0; l++) {
-        const struct grid *grid = &study->levels[l].grid;
-        status = area_workspace_create(&scene->areas[l], grid, err);
-        if (status == 0)
-            status = patch_finder_create(&scene->finders[l], grid, err);
-        for (size_t m = 0; m < study->model_count && status == 0; m++)
-            status = contact_create(&scene->solvers[m][l], compliances->of[m][l], &options, err);
+        status = patch_finder_create(&scene->finders[l], &study->levels[l].grid, err);
+        for (size_t m = 0; m < study->model_count && status == 0; m++) {
+            status = area_workspace_create(&scene->areas[m][l], compliances->of[m][l], err);
+            if (status == 0)
+                status =
+                    contact_create(&scene->solvers[m][l], compliances->of[m][l], &options, err);
+        }
     }
     if (status != 0)
         return status;
@@ -79,10 +80,11 @@ void contact_scene_destroy(struct contact_scene **out) {
     if (scene == NULL)
         return;
     for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++) {
-        area_workspace_destroy(&scene->areas[l]);
         patch_finder_destroy(&scene->finders[l]);
-        for (size_t m = 0; m < CONTACT_MODELS; m++)
+        for (size_t m = 0; m < CONTACT_MODELS; m++) {
+            area_workspace_destroy(&scene->areas[m][l]);
             contact_destroy(&scene->solvers[m][l]);
+        }
     }
     free(scene->z);
     free(scene);
@@ -93,9 +95,10 @@ double contact_scene_bytes(const struct contact_case *study) {
     double bytes = 8.0 * (double)grid_points(&contact_case_finest(study)->grid);
     for (size_t l = 0; l < study->level_count; l++) {
         const struct grid *grid = &study->levels[l].grid;
-        bytes += 40.0 * (double)grid_points(grid); /* areas and patches */
+        bytes += 32.0 * (double)grid_points(grid); /* patches */
         for (size_t m = 0; m < study->model_count; m++)
-            bytes += contact_bytes(grid) + compliance_bytes(grid, &study->blocks[m]);
+            bytes += 8.0 * (double)grid_points(grid) + contact_bytes(grid) +
+                     compliance_bytes(grid, &study->blocks[m]);
     }
     return bytes;
 }
@@ -116,13 +119,13 @@ static int sample(const struct contact_scene *scene, const struct contact_level 
 }
 
 /* Measures of a solved load into a cell. */
-static void measure(struct contact_scene *scene, size_t level, const struct contact_state *state,
-                    struct contact_tally *tally, size_t cell) {
+static void measure(struct contact_scene *scene, size_t model, size_t level,
+                    const struct contact_state *state, struct contact_tally *tally, size_t cell) {
     double points = (double)grid_points(&scene->study->levels[level].grid);
     double stiffness = state->stiffness * scene->rms_height / scene->rms_slope;
     struct contact_area area;
     struct patches patches;
-    contact_area(scene->areas[level], state->p, state->gap, &area);
+    contact_area(scene->areas[model][level], state->p, state->opening, &area);
     patches_find(scene->finders[level], state->p, &patches, NULL);
     const double values[MEASURE_COUNT] = {
         [MEASURE_NODES] = area.nodes,
@@ -173,7 +176,7 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
         if (status != 0)
             error_context(err, "load %g", study->loads[k]);
         else
-            measure(scene, level, &state, tally, contact_case_cell(study, model, level, k));
+            measure(scene, model, level, &state, tally, contact_case_cell(study, model, level, k));
         if (status == 0 && level + 1 == study->level_count)
             count_pressures(scene, model, k, state.p, tally);
     }
