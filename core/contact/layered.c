@@ -65,10 +65,10 @@ static struct symbols symbols_of(size_t mode, size_t n, double distance) {
 /* The waves under way; lanes from count on hold anything, and nobody reads what becomes of them. Of
  * symmetric matrices one half; terms left out are 0. */
 struct waves {
-    lane axx, axy, ayy, azz;           /* A */
-    lane bxx, bxy, byy;                /* the part of A that comes from the mean dilatation */
-    lane cxz, cyz, czx, czy;           /* C: row phi, column phi' */
-    lane fh, fz;                       /* F of X and Y, of Z */
+    lane axx, axy, ayy, azz; /* A */
+    lane bxx, bxy, byy;      /* the part of A that sees the mean of phi: zeta zeta is h/4 */
+    lane cxz, cyz, czx, czy; /* C: row phi, column phi' */
+    lane fh, fz;             /* F of X and Y, of Z */
     lane mxx, mxy, myy, mxz, myz, mzz; /* M */
     lane compliance;                   /* Z over pressure at the face */
     size_t mx[LANES], my[LANES];
