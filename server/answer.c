@@ -73,6 +73,11 @@ void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
                    MHD_ContentReaderCallback read, void *context,
                    MHD_ContentReaderFreeCallback free_context) {
     enum { PART = 32768 };
+    if (size == MHD_SIZE_UNKNOWN && strcmp(exchange->method, "HEAD") == 0) {
+        free_context(context); /* the library would send an end of chunks */
+        answer_static(exchange, type, "", 0);
+        return;
+    }
     finish(exchange, 200, type,
            MHD_create_response_from_callback(size, PART, read, context, free_context));
     if (!exchange->response)

@@ -119,11 +119,6 @@ void handle_events(struct exchange *exchange, const char *id) {
         answer_problem(exchange, 503, "too many streams of events are open", NULL);
         return;
     }
-    if (strcmp(exchange->method, "HEAD") == 0) { /* the library would send an end of chunks */
-        stream_free(stream);
-        answer_static(exchange, "text/event-stream", "", 0);
-        return;
-    }
     answer_stream(exchange, "text/event-stream", MHD_SIZE_UNKNOWN, next_event, stream, stream_free);
     answer_header(exchange, "Cache-Control", "no-store");
 }

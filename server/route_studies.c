@@ -1,5 +1,4 @@
 /* Studies over HTTP: submission, progress, curves, reports. */
-#include "server/accept.h"
 #include "server/api.h"
 #include "server/route.h"
 #include "worker/aggregate.h"
@@ -150,71 +149,4 @@ void handle_report(struct exchange *exchange, const char *id) {
         answer_error(exchange, &err);
     else
         answer_json(exchange, 200, document);
-}
-
-/* --- curves --- */
-
-static bool wants_csv(const struct exchange *exchange) {
-    const char *accept = exchange_header(exchange, "Accept");
-    return accept_quality(accept, "text/csv") > accept_quality(accept, "application/json");
-}
-
-/* Every change of a study's results raises its revision: that, and the form, is the answer's
- * identity. */
-static int curves_etag(struct exchange *exchange, struct store *reader, const char *id, char *etag,
-                       size_t size, struct error *err) {
-    struct study_status status;
-    int code = store_status(reader, id, &status, err);
-    if (code)
-        return code;
-    snprintf(etag, size, "\"%s-%llu-%s\"", id, (unsigned long long)status.revision,
-             wants_csv(exchange) ? "csv" : "json");
-    study_status_clear(&status);
-    return 0;
-}
-
-static bool matches(const struct exchange *exchange, const char *etag) {
-    const char *known = exchange_header(exchange, "If-None-Match");
-    return known && (strcmp(known, "*") == 0 || strstr(known, etag));
-}
-
-static int read_curves(struct exchange *exchange, struct store *reader, const char *id,
-                       const struct curve_filter *filter, struct error *err) {
-    cJSON *document = NULL;
-    char *csv = NULL;
-    int status = aggregate_curves(reader, id, filter, &document, err);
-    if (!status && !wants_csv(exchange)) {
-        answer_json(exchange, 200, document);
-        return 0;
-    }
-    if (!status)
-        status = aggregate_csv(document, &csv, err);
-    cJSON_Delete(document);
-    if (!status)
-        answer_text(exchange, 200, "text/csv; charset=utf-8", csv);
-    return status;
-}
-
-void handle_curves(struct exchange *exchange, const char *id) {
-    struct store *reader;
-    struct error err = {0};
-    struct curve_filter filter = {.case_number = -1,
-                                  .quantity = exchange_query(exchange, "quantity")};
-    char etag[80] = "";
-    if (!query_number(exchange, "case", 0, INT64_MAX, &filter.case_number))
-        return;
-    int status = service_reader(exchange->service, &reader, &err);
-    if (!status)
-        status = curves_etag(exchange, reader, id, etag, sizeof etag, &err);
-    if (!status && matches(exchange, etag))
-        answer_empty(exchange, 304);
-    else if (!status)
-        status = read_curves(exchange, reader, id, &filter, &err);
-    service_give_back(exchange->service, reader);
-    if (status) {
-        answer_error(exchange, &err);
-        return;
-    }
-    answer_header(exchange, "ETag", etag);
-    answer_header(exchange, "Vary", "Accept");
 }
