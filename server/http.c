@@ -33,10 +33,11 @@ struct http {
     struct MHD_Daemon *daemon;
     uint16_t port;
     pthread_t watchdog;
-    pthread_mutex_t mutex; /* guards the list, requests and ending */
+    pthread_mutex_t mutex; /* guards the list, requests, stopping and ending */
     pthread_cond_t changed;
     struct connection *connections;
     unsigned requests; /* being answered */
+    bool stopping;     /* http_stop waits for the requests */
     bool ending;
     atomic_size_t bodies; /* bytes that running requests with larger bodies may bring */
 };
@@ -129,7 +130,8 @@ static void *watchdog_thread(void *context) {
 static void count_request(struct http *http, int change) {
     pthread_mutex_lock(&http->mutex);
     http->requests = (unsigned)((int)http->requests + change);
-    pthread_cond_broadcast(&http->changed);
+    if (http->stopping) /* else the watchdog would walk its list twice a request */
+        pthread_cond_broadcast(&http->changed);
     pthread_mutex_unlock(&http->mutex);
 }
 
@@ -379,6 +381,7 @@ void http_stop(struct http **http) {
     MHD_socket listening = MHD_quiesce_daemon(h->daemon);
     int64_t until = clock_ms() + END_MS;
     pthread_mutex_lock(&h->mutex);
+    h->stopping = true;
     while (h->requests && clock_ms() < until)
         clock_cond_wait(&h->changed, &h->mutex, until);
     h->ending = true;
