@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* --- texts --- */
 
@@ -11,11 +10,9 @@ enum { NUMBER_MOST = 25 }; /* "-1.2345678901234567e-308," */
 
 /* The fewest digits that read back to the same double; null where it is none. */
 static char *put_number(char *at, double value) {
-    if (!isfinite(value)) {
-        memcpy(at, "null", 4);
-        return at + 4;
-    }
-    int length = 0, digits = 15;
+    int length = snprintf(at, NUMBER_MOST + 1, "null"), digits = 15;
+    if (!isfinite(value))
+        return at + length;
     do
         length = snprintf(at, NUMBER_MOST + 1, "%.*g", digits, value);
     while (++digits <= 17 && strtod(at, NULL) != value);

@@ -3,7 +3,6 @@
 #include "schema/store_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 void claimed_job_clear(struct claimed_job *job) {
     free(job->kind);
