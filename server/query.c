@@ -24,7 +24,7 @@ static enum MHD_Result check_parameter(void *context, enum MHD_ValueKind kind, c
         fault_add(&query->faults, pointer, "unknown name");
     else if (query->seen[n])
         fault_add(&query->faults, pointer, "given twice");
-    else if (!value || !*value)
+    else if (!value)
         fault_add(&query->faults, pointer, "no value");
     else
         query->seen[n] = true;
