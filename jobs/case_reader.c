@@ -87,7 +87,7 @@ size_t case_choices(const struct case_reader *reader, const char *path, size_t *
     const cJSON *value = row != NULL ? given(reader, row) : NULL;
     if (row == NULL || (value == NULL && row->default_json == NULL))
         return 0;
-    if (!cJSON_IsArray(value)) { /* one alone; a default is one too */
+    if (value == NULL || !cJSON_IsArray(value)) { /* one alone; a default is one too */
         size_t before = reader->faults->count;
         out[0] = case_choice(reader, path);
         return reader->faults->count == before;
@@ -116,7 +116,7 @@ double case_measure(const struct case_reader *reader, const char *path, size_t *
     *unit = 0;
     if (row == NULL || (value == NULL && row->default_json == NULL))
         return NAN;
-    if (!cJSON_IsObject(value)) {
+    if (value == NULL || !cJSON_IsObject(value)) {
         size_t before = reader->faults->count;
         *unit = case_choice(reader, path);
         return reader->faults->count == before ? INFINITY : NAN;

@@ -75,20 +75,20 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
     return status;
 }
 
-void contact_scene_destroy(struct contact_scene **out) {
-    struct contact_scene *scene = *out;
-    if (scene == NULL)
+void contact_scene_destroy(struct contact_scene **scene) {
+    struct contact_scene *s = *scene;
+    if (s == NULL)
         return;
     for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++) {
-        patch_finder_destroy(&scene->finders[l]);
+        patch_finder_destroy(&s->finders[l]);
         for (size_t m = 0; m < CONTACT_MODELS; m++) {
-            area_workspace_destroy(&scene->areas[m][l]);
-            contact_destroy(&scene->solvers[m][l]);
+            area_workspace_destroy(&s->areas[m][l]);
+            contact_destroy(&s->solvers[m][l]);
         }
     }
-    free(scene->z);
-    free(scene);
-    *out = NULL;
+    free(s->z);
+    free(s);
+    *scene = NULL;
 }
 
 double contact_scene_bytes(const struct contact_case *study) {

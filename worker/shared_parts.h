@@ -25,7 +25,7 @@ int shared_parts_take(struct shared_parts *parts, const struct job_kind *kind, c
                       uint64_t case_number, const cJSON *parameters, struct shared_part **out,
                       struct error *err);
 /* Accepts NULL, and nulls the handle. */
-void shared_parts_let_go(struct shared_parts *parts, struct shared_part **part);
+void shared_parts_let_go(struct shared_parts *parts, struct shared_part **handle);
 /* NULL for NULL. */
 const struct job_shared *shared_part_content(const struct shared_part *part);
 
