@@ -62,6 +62,8 @@ static void fill_rise(struct area_workspace *workspace, const double *p, const d
 /* A walk along a grid line from a node in contact over the edge to its neighbour. */
 struct crossing {
     size_t inside, outside;                                        /* nodes, as all below */
+    size_t before, far_before;                                     /* further inside */
+    size_t behind;                                                 /* further outside */
     size_t inside_left, inside_right, outside_left, outside_right; /* beside the two */
     double step, across;                                           /* spacings, along and beside */
 };
@@ -89,15 +91,29 @@ static double crossing_cosine(const struct crossing *x, const double *rise, doub
     return cosine;
 }
 
+/* Half the width of a profile's patch of one node, in steps: the crossing's part of it; NaN where
+ * the inside node is not alone, or another patch is near enough to bend the gap beside it. */
+static double lone_share(const struct crossing *x, const double *rise) {
+    if (rise[x->before] > 0 || rise[x->far_before] > 0 || rise[x->behind] > 0)
+        return NAN;
+    double left = -rise[x->before], right = -rise[x->outside];
+    return edge_lone(sqrt(rise[x->inside]) * x->step, 4.0 / 3 * left * sqrt(left),
+                     4.0 / 3 * right * sqrt(right));
+}
+
 static double crossing_share(const struct crossing *x, const struct edge_law *law,
                              const double *rise, bool profile) {
+    double lone = profile ? lone_share(x, rise) : NAN;
+    if (!isnan(lone))
+        return lone;
     double unit = cbrt(x->step);
     double p1 = rise[x->inside], g1 = fmax(0, -rise[x->outside]) / (unit * unit);
     if (!profile && g1 > 0) {
         double cosine = crossing_cosine(x, rise, p1, g1);
         g1 /= cbrt(cosine * cosine);
     }
-    return edge_share(law, edge_guess(p1, g1));
+    bool known = rise[x->before] > 0 && rise[x->far_before] > 0; /* in two nodes it does harm */
+    return edge_share(law, p1, known ? rise[x->before] : 0, g1);
 }
 
 /* One of the two families of grid lines: nodes of a line are `along` apart, lines `beside`. */
@@ -113,8 +129,12 @@ static size_t node_at(const struct family *f, size_t line, size_t node) {
 
 /* From node a of the line to node b, one step forth or back (nodes counted modulo the line). */
 static struct crossing crossing_at(const struct family *f, size_t line, size_t a, size_t b) {
+    size_t back = a + 2 * f->nodes - (b - a);
     return (struct crossing){.inside = node_at(f, line, a),
                              .outside = node_at(f, line, b),
+                             .before = node_at(f, line, back),
+                             .far_before = node_at(f, line, back - (b - a)),
+                             .behind = node_at(f, line, b + (b - a)),
                              .inside_left = node_at(f, line + 1, a),
                              .outside_left = node_at(f, line + 1, b),
                              .inside_right = node_at(f, line + f->lines - 1, a),

@@ -8,7 +8,8 @@
  *   shear, S = (2/k) (cosh 2kH - 1)/(sinh 2kH + 2kH).
  * layered: linear finite elements, a column of bilinear quadrilaterals (trilinear hexahedra) a grid
  *   cell, layers that grow with depth by a factor; the mean dilatation of each element replaces the
- *   local one (B-bar; Hughes 1980), so that nu = 0.4999 does not lock. Periodic and equal sideways,
+ *   local one (as in B-bar; Hughes 1980) but for a part that makes the face's compliance of fourth
+ *   order along x and y (layered.c), so that nu = 0.4999 does not lock. Periodic, equal sideways,
  *   its stiffness falls apart into one block-tridiagonal system in depth a wave vector, which is
  *   eliminated from the far side up: the exact compliance of the mesh. */
 #ifndef RUGO_CORE_CONTACT_COMPLIANCE_H

@@ -9,6 +9,8 @@ static const double PI = 3.14159265358979323846;
  * model's compliance at long waves, a shorter one the curvature of the pressure. */
 enum { WAVE_STEPS = 128 };
 static const double WAVE_LOAD = 0.4;
+static const double BEND_MOST = 0.5;
+enum { BEND_STEPS = 2, ANGLE_STEPS = 40 };
 
 double edge_guess(double pressure_squared, double gap_rise) {
     /* s = ratio (1 - s)^3, solved for 1 - s by the hyperbolic form of Cardano's formula. */
@@ -19,13 +21,13 @@ double edge_guess(double pressure_squared, double gap_rise) {
     return fmin(1, ratio * rest * rest * rest);
 }
 
-double edge_share(const struct edge_law *law, double guess) {
-    double root = sqrt(guess);
+/* Values of the law at a root, between samples or at the nearest end. */
+static double interpolate(const struct edge_law *law, const double *values, double root) {
     size_t low = 0, high = EDGE_PHASES - 1;
     if (!(root > law->root[low]))
-        return law->share[low];
+        return values[low];
     if (!(root < law->root[high]))
-        return law->share[high];
+        return values[high];
     while (high - low > 1) {
         size_t middle = (low + high) / 2;
         if (law->root[middle] <= root)
@@ -34,7 +36,44 @@ double edge_share(const struct edge_law *law, double guess) {
             high = middle;
     }
     double part = (root - law->root[low]) / (law->root[high] - law->root[low]);
-    return law->share[low] + part * (law->share[high] - law->share[low]);
+    return values[low] + part * (values[high] - values[low]);
+}
+
+double edge_share(const struct edge_law *law, double pressure_squared, double before,
+                  double gap_rise) {
+    double root = sqrt(edge_guess(pressure_squared, gap_rise));
+    double share = interpolate(law, law->share, root);
+    if (!(before > 0))
+        return share;
+    /* p^2 = c^2 d (1 + bend d): the law holds for c^2 d. */
+    for (int a = 0; a < BEND_STEPS; a++) {
+        double straight = interpolate(law, law->before, root) * pressure_squared;
+        double bend = fmin(fmax(before / straight - 1, -BEND_MOST), BEND_MOST);
+        root = sqrt(edge_guess(pressure_squared / (1 + bend * fmax(0, share)), gap_rise));
+        share = interpolate(law, law->share, root);
+    }
+    return share;
+}
+
+/* t with sinh(2t)/2 - t = y >= 0, by Newton's method from above, where it is monotone. */
+static double hertz_angle(double y) {
+    double t = fmin(cbrt(1.5 * y), 0.5 * asinh(4 * y + 4));
+    for (int a = 0; a < ANGLE_STEPS && t > 0; a++) {
+        double sine = sinh(t), step = (0.5 * sinh(2 * t) - t - y) / (2 * sine * sine);
+        t -= step;
+        if (!(fabs(step) > 1e-12 * t))
+            break;
+    }
+    return t;
+}
+
+double edge_lone(double force, double gap_left, double gap_right) {
+    /* At a distance x = a cosh t from the middle of a contact of half-width a the gap is
+     * (2 force/(pi E*)) (sinh(2t)/2 - t) (Johnson 1985, section 4.2); the two nodes are 2 steps
+     * apart. */
+    double scale = PI / (2 * force);
+    return 2 / (cosh(hertz_angle(scale * fmax(0, gap_left))) +
+                cosh(hertz_angle(scale * fmax(0, gap_right))));
 }
 
 /* A strip of the grid with one wave along x, two nodes wide where the grid is a surface. */
@@ -48,9 +87,10 @@ static struct grid strip_of(const struct grid *grid, bool columns) {
                          .ly = profile ? WAVE_STEPS * along : 2 * across};
 }
 
-/* Presses the wave with its crest `phase` steps beyond a node, and finds the edge on its right. */
-static int sample(struct contact *contact, const struct grid *strip, double phase, double *guess,
-                  double *share, struct error *err) {
+/* Presses the wave with its crest `phase` steps beyond a node, and looks at the edge on its right.
+ */
+static int sample(struct contact *contact, const struct grid *strip, double phase, double *root,
+                  double *before, double *share, struct error *err) {
     double z[2 * WAVE_STEPS], step = grid_dx(strip), amplitude = step;
     struct contact_state state;
     for (size_t j = 0; j < strip->ny; j++)
@@ -64,24 +104,30 @@ static int sample(struct contact *contact, const struct grid *strip, double phas
     size_t inside = 0;
     while (inside + 1 < WAVE_STEPS && state.p[inside + 1] > 0)
         inside++;
-    if (inside + 1 == WAVE_STEPS)
-        return error_set(err, ERROR_NUMERIC, "a single wave did not open");
+    if (inside == 0 || inside + 1 == WAVE_STEPS)
+        return error_set(err, ERROR_NUMERIC, "the edge of a single wave was not found");
     double rise = cbrt(0.75 * fmax(0, state.opening[inside + 1]) / step);
     double edge = WAVE_STEPS / PI * asin(sqrt(WAVE_LOAD)); /* Westergaard (1939) */
-    *guess = edge_guess(state.p[inside] * state.p[inside], rise * rise);
+    double p = state.p[inside], next = state.p[inside - 1];
+    *root = sqrt(edge_guess(p * p, rise * rise));
+    *before = next * next / (p * p);
     *share = phase + edge - (double)inside;
     return 0;
+}
+
+static void swap(double *values, size_t a, size_t b) {
+    double value = values[a];
+    values[a] = values[b];
+    values[b] = value;
 }
 
 /* By insertion; samples come nearly in order. */
 static void sort(struct edge_law *law) {
     for (size_t a = 1; a < EDGE_PHASES; a++)
         for (size_t b = a; b > 0 && law->share[b] < law->share[b - 1]; b--) {
-            double root = law->root[b], share = law->share[b];
-            law->root[b] = law->root[b - 1];
-            law->share[b] = law->share[b - 1];
-            law->root[b - 1] = root;
-            law->share[b - 1] = share;
+            swap(law->root, b, b - 1);
+            swap(law->before, b, b - 1);
+            swap(law->share, b, b - 1);
         }
     for (size_t a = 1; a < EDGE_PHASES; a++)
         law->root[a] = fmax(law->root[a], law->root[a - 1]);
@@ -98,9 +144,8 @@ int edge_law_make(const struct grid *grid, const struct block *block, bool colum
     if (status == 0)
         status = contact_create(&contact, compliance, &CONTACT_DEFAULTS, err);
     for (size_t a = 0; status == 0 && a < EDGE_PHASES; a++) {
-        double guess;
-        status = sample(contact, &strip, (double)a / EDGE_PHASES, &guess, &out->share[a], err);
-        out->root[a] = sqrt(guess);
+        status = sample(contact, &strip, (double)a / EDGE_PHASES, &out->root[a], &out->before[a],
+                        &out->share[a], err);
     }
     contact_destroy(&contact);
     compliance_destroy(&compliance);

@@ -14,9 +14,11 @@
 
 enum { EDGE_PHASES = 64 };
 
-struct edge_law {
-    double root[EDGE_PHASES];  /* rising: square root of the first guess */
-    double share[EDGE_PHASES]; /* edge beyond the node in contact, in steps; from about -0.2 to 1 */
+struct edge_law {               /* a sample a phase, in rising order */
+    double root[EDGE_PHASES];   /* square root of the first guess */
+    double before[EDGE_PHASES]; /* squared pressure at the next node further inside, over that
+                                   inside */
+    double share[EDGE_PHASES];  /* edge beyond the node inside, in steps; from about -0.2 to 1 */
 };
 
 /* The law of grid lines along x (columns false) or y; some milliseconds. Errors of
@@ -27,7 +29,13 @@ int edge_law_make(const struct grid *grid, const struct block *block, bool colum
 /* First guess, in [0, 1] steps: squared pressure at the node inside, (3 gap/4)^(2/3) at that
  * outside, lengths in steps. */
 double edge_guess(double pressure_squared, double gap_rise);
-/* The law at a first guess. */
-double edge_share(const struct edge_law *law, double guess);
+/* The edge beyond the node inside, in steps. before: squared pressure at the next node further
+ * inside, which tells how p^2 bends (0: not known). */
+double edge_share(const struct edge_law *law, double pressure_squared, double before,
+                  double gap_rise);
+
+/* Half the width of a patch of one node, in steps: that of Hertz's line contact with the same force
+ * and the same gaps at the two nodes beside it (gaps and force over E*, lengths in steps). */
+double edge_lone(double force, double gap_left, double gap_right);
 
 #endif

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <suitesparse/cholmod.h>
 
-enum { NODES = 8, FREEDOMS = 3 * NODES, STRAINS = 6 };
+enum { NODES = 8, FREEDOMS = 3 * NODES, STRAINS = 7 };
 
 /* --- one element, corners numbered by bits: x 1, y 2, z 4; two unknowns a node less in a profile
  * --- */
@@ -48,16 +48,14 @@ static void gradients(const struct element *e, const double *at, double (*b)[3])
     }
 }
 
-/* Rows xx, yy, zz, yz, xz, xy (engineering shear); columns 3 a + axis. Hughes (1980): a third of
- * the mean dilatation takes the place of a third of the local one. */
-static void strain_matrix(double (*b)[3], double (*mean)[3], double (*strain)[FREEDOMS]) {
+/* Rows xx, yy, zz, yz, xz, xy (engineering shear), trace; columns 3 a + axis. */
+static void strain_matrix(double (*b)[3], double (*strain)[FREEDOMS]) {
     static const size_t SHEAR[3][2] = {{1, 2}, {0, 2}, {0, 1}};
     memset(strain, 0, STRAINS * sizeof *strain);
     for (size_t a = 0; a < NODES; a++)
         for (size_t axis = 0; axis < 3; axis++) {
             strain[axis][3 * a + axis] = b[a][axis];
-            for (size_t row = 0; mean && row < 3; row++)
-                strain[row][3 * a + axis] += (mean[a][axis] - b[a][axis]) / 3;
+            strain[6][3 * a + axis] = b[a][axis];
             for (size_t shear = 0; shear < 3; shear++) {
                 if (SHEAR[shear][0] == axis)
                     strain[3 + shear][3 * a + axis] = b[a][SHEAR[shear][1]];
@@ -70,30 +68,26 @@ static void strain_matrix(double (*b)[3], double (*mean)[3], double (*strain)[FR
 static void element_stiffness(const struct element *e, double (*k)[FREEDOMS]) {
     double modulus = 1 - e->poisson * e->poisson;
     double lambda = modulus * e->poisson / ((1 + e->poisson) * (1 - 2 * e->poisson));
-    double mu = modulus / (2 * (1 + e->poisson));
-    double b[NODES][3], mean[NODES][3] = {{0}}, strain[STRAINS][FREEDOMS];
+    double mu = modulus / (2 * (1 + e->poisson)), ratio = mu / (lambda + 2 * mu);
+    double local = e->mean_dilatation ? 2 / (1 + ratio * ratio) - 3 * mu : lambda;
+    double b[NODES][3], strain[STRAINS][FREEDOMS], mean[FREEDOMS] = {0};
     double weight = e->size[0] * (e->flat ? 1 : e->size[1]) * e->size[2] / 8;
-    for (size_t q = 0; q < 8; q++) {
-        double at[3] = {side(q, 0) / sqrt(3), side(q, 1) / sqrt(3), side(q, 2) / sqrt(3)};
-        gradients(e, at, b);
-        for (size_t i = 0; i < NODES * 3; i++)
-            mean[i / 3][i % 3] += b[i / 3][i % 3] / 8;
-    }
+    const double factor[STRAINS] = {2 * mu, 2 * mu, 2 * mu, mu, mu, mu, local};
     memset(k, 0, FREEDOMS * sizeof *k);
     for (size_t q = 0; q < 8; q++) {
         double at[3] = {side(q, 0) / sqrt(3), side(q, 1) / sqrt(3), side(q, 2) / sqrt(3)};
         gradients(e, at, b);
-        strain_matrix(b, e->mean_dilatation ? mean : NULL, strain);
-        for (size_t i = 0; i < FREEDOMS; i++)
-            for (size_t j = 0; j < FREEDOMS; j++) {
-                double trace_i = strain[0][i] + strain[1][i] + strain[2][i];
-                double trace_j = strain[0][j] + strain[1][j] + strain[2][j];
-                double sum = lambda * trace_i * trace_j;
+        strain_matrix(b, strain);
+        for (size_t i = 0; i < FREEDOMS; i++) {
+            mean[i] += strain[6][i] / 8;
+            for (size_t j = 0; j < FREEDOMS; j++)
                 for (size_t s = 0; s < STRAINS; s++)
-                    sum += (s < 3 ? 2 : 1) * mu * strain[s][i] * strain[s][j];
-                k[i][j] += weight * sum;
-            }
+                    k[i][j] += weight * factor[s] * strain[s][i] * strain[s][j];
+        }
     }
+    for (size_t i = 0; i < FREEDOMS; i++)
+        for (size_t j = 0; j < FREEDOMS; j++)
+            k[i][j] += 8 * weight * (lambda - local) * mean[i] * mean[j];
 }
 
 /* --- the assembled block --- */
@@ -262,9 +256,11 @@ static double first_wave(size_t nx, size_t ny, const struct block *block) {
     return length;
 }
 
-/* Relative errors of the layered block at 8, 16, 32 and 64 points a wave: all above 0, at most
- * `most` at 16 points, falling with the square of the points (the next term is of fourth order). */
-static void check_convergence(struct block block, bool surface, double most) {
+/* Relative errors of the layered block at 8, 16, 32 and 64 points a wave: at most `most` at 16
+ * points, falling as the points to the power of `order`, to which the next term of the error adds
+ * or takes up to `slack` at 16 points and half of it from 32 on. */
+static void check_convergence(struct block block, bool surface, double most, double order,
+                              double slack) {
     double before = 0;
     for (size_t n = 8; n <= 64; n *= 2) {
         size_t ny = surface ? n : 1;
@@ -275,37 +271,38 @@ static void check_convergence(struct block block, bool surface, double most) {
         if (n == 16)
             check_close(error, most / 2, most / 2);
         if (n > 8)
-            check_close(log2(before / error), 2, n == 16 ? 0.25 : 0.1);
+            check_close(log2(before / error), order, n == 16 ? slack : slack / 2);
         before = error;
     }
 }
 
 static const double POISSON[] = {0, 0.3, 0.49, 0.4999};
 
-/* Blocks 2 cells high feel their far side by exp(-8 pi), 1e-11: half-spaces. At 8, 16, 32 points
- * the error is 3.0, 0.7, 0.18 % for nu = 0, 6.0, 1.5, 0.36 % for 0.3, 7.7, 1.8, 0.46 % for 0.4999
- * in a profile; on a surface the wave runs along the diagonal, at 5.7, 11.3, 22.6 points: 12 to
- * 18, 2.8 to 4.1, 0.7 to 1.0 %. The forces act at the nodes: what is soft is their neighbourhood.
- */
+/* Blocks 2 cells high feel their far side by exp(-8 pi), 1e-11: half-spaces. In a profile, where
+ * the term in (k dx)^2 is gone, the error at 8, 16, 32 points is 0.41, 0.027, 0.0017 % for nu = 0,
+ * 0.85, 0.060, 0.0039 % for 0.3, 1.4, 0.10, 0.0069 % for 0.4999. On a surface the wave runs along
+ * the diagonal, where a third of that term is left, at 5.7, 11.3, 22.6 points: 7 to 11, 1.3 to 2.1,
+ * 0.31 to 0.47 %. */
 static void deep_blocks_converge_to_the_halfspace(void **state) {
     (void)state;
     for (size_t c = 0; c < 4; c++) {
         struct block block = {.poisson = POISSON[c], .height = 2, .layer_growth = 1};
-        check_convergence(block, false, 0.019);
-        check_convergence(block, true, 0.042);
+        check_convergence(block, false, 0.0011, 4, 0.3);
+        check_convergence(block, true, 0.022, 2, 0.5);
     }
 }
 
-/* The flat, shear-free far side counts where 2 k H is small. With 2 layers at 16 points the error
- * is 2.3 to 3.2 %, on a surface 4.7 to 5.8 %; less in higher blocks. */
+/* The flat, shear-free far side counts where 2 k H is small, and there the error is of second
+ * order: with 2 layers at 16 points 1.1 to 1.6 %, on a surface 3.2 to 4.0 %; less in higher blocks.
+ */
 static void shallow_blocks_converge_to_the_exact_layer(void **state) {
     (void)state;
-    static const double HEIGHTS[] = {0.125, 0.25, 0.5};
-    for (size_t c = 0; c < 12; c++) {
+    static const double HEIGHTS[] = {0.125, 0.25};
+    for (size_t c = 0; c < 8; c++) {
         struct block block = {
             .poisson = POISSON[c % 4], .height = HEIGHTS[c / 4], .layer_growth = 1};
-        check_convergence(block, false, 0.033);
-        check_convergence(block, true, 0.059);
+        check_convergence(block, false, 0.017, 2, 0.5);
+        check_convergence(block, true, 0.041, 2, 0.5);
     }
 }
 
@@ -317,7 +314,7 @@ static void growing_layers_stiffen_a_little(void **state) {
     static const struct {
         double growth, most; /* relative to equal layers */
         size_t layers;
-    } ROWS[] = {{1.05, 6.2e-4, 62}, {1.1, 1.3e-3, 39}, {1.2, 4.5e-3, 24}, {1.5, 1.5e-2, 13}};
+    } ROWS[] = {{1.05, 7e-4, 62}, {1.1, 1.5e-3, 39}, {1.2, 5e-3, 24}, {1.5, 1.7e-2, 13}};
     const struct grid grid = {256, 1, 1, 1};
     struct block block = {.model = MODEL_LAYERED, .poisson = 0.3, .height = 1.5, .layer_growth = 1};
     struct compliance *equal = make(&grid, &block);
@@ -349,8 +346,8 @@ static void nearly_incompressible_blocks_do_not_lock(void **state) {
         struct compliance *rubber = make(&GRIDS[g], &block);
         double *full = assembled_lengths(&GRIDS[g], &block, false);
         size_t k = GRIDS[g].ny; /* mx = 1, my = 0 */
-        check_relative(rubber->length[k], steel->length[k], 5e-3);
-        check_close(full[k] / steel->length[k], 0.2, 0.05);
+        check_relative(rubber->length[k], steel->length[k], 2e-3);
+        check_close(full[k] / steel->length[k], 0.16, 0.05);
         /* The shortest waves too: 2 points a wave, of which no more is asked than a likeness. */
         for (k = 1; k < steel->waves; k++)
             check_relative(rubber->length[k], steel->length[k], 0.5);
