@@ -1,0 +1,69 @@
+/* Contact studies through the queue: threads that share a case's compliance, blocks and their order
+ * leave the bits of the curves alone (run under ThreadSanitizer too). */
+#include "tests/unit/worker/small_study.h"
+#include "worker/aggregate.h"
+#include "worker/worker.h"
+
+/* Two cases, each of two models on two levels. */
+static const char CONTACT_STUDY[] =
+    "{\"name\":\"contact\",\"kind\":\"contact\",\"seed\":7,\"realisations\":12,\"surface\":{"
+    "\"dimension\":1,\"hurst\":[0.2,0.8],\"wavelength_ratio\":4,\"length_ratio\":2},"
+    "\"contact\":{\"model\":[\"halfspace\",\"layered\"],\"levels\":[4,8],"
+    "\"pressures\":{\"to\":0.4,\"steps\":4}}}";
+
+/* The study's curves without its id, as text. */
+static char *curves_text(struct fixture *fixture) {
+    struct curve_filter filter = {.case_number = -1};
+    struct error err = {0};
+    cJSON *curves = NULL;
+    if (aggregate_curves(fixture->store, fixture->study, &filter, &curves, &err) != 0) {
+        fail_msg("%s", err.text);
+    }
+    cJSON_DeleteItemFromObject(curves, "study");
+    char *text = json_print(curves);
+    assert_non_null(text);
+    cJSON_Delete(curves);
+    return text;
+}
+
+static void threads_and_blocks_leave_the_bits(void **state) {
+    (void)state;
+    static const struct {
+        unsigned threads;
+        uint64_t block;
+    } table[] = {{1, 12}, {2, 5}, {5, 1}};
+    char *first = NULL;
+    for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
+        struct fixture fixture;
+        struct error err = {0};
+        fixture_open(&fixture);
+        fixture_submit(&fixture, CONTACT_STUDY, table[n].block, NULL, 0);
+        struct worker_options options = {.source = {.database = fixture.database, .worker = "test"},
+                                         .threads = table[n].threads,
+                                         .drain = 1,
+                                         .quiet = 1};
+        if (workers_run(&options, &err) != 0) {
+            fail_msg("%s", err.text);
+        }
+        struct study_status status = fixture_status(&fixture);
+        assert_string_equal(status.state, "done");
+        assert_int_equal(status.realisations_done, 24);
+        study_status_clear(&status);
+        char *text = curves_text(&fixture);
+        if (first) {
+            assert_string_equal(text, first);
+            free(text);
+        } else {
+            first = text;
+        }
+        fixture_close(&fixture);
+    }
+    free(first);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(threads_and_blocks_leave_the_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
