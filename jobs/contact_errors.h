@@ -5,7 +5,7 @@
 #include "jobs/contact_tally.h"
 
 /* Richardson: with f = f_limit + C h^order on the two finest levels, finest minus limit is
- * factor * (finest minus next). */
+ * factor * (next minus finest). */
 struct contact_extrapolation {
     double order, factor;
     bool observed; /* order: fitted to the three finest levels; else assumed */

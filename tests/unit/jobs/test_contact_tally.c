@@ -1,0 +1,122 @@
+/* Sums of contact realisations: values at very light loads keep their digits, realisations without
+ * a value are left out and counted, and orders of convergence that were put in come out. */
+#include "jobs/contact_errors.h"
+#include "jobs/contact_tally.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+
+#define STUDY(contact)                                                                             \
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2,"                    \
+    " \"length_ratio\": 1}, \"contact\": {" contact "}}"
+
+struct fixture {
+    struct contact_case study;
+    struct contact_tally tally;
+};
+
+static void fixture_open(struct fixture *fixture, const char *text) {
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse(text);
+    assert_non_null(parameters);
+    if (contact_case_read(&fixture->study, parameters, NULL, &err) != 0 ||
+        contact_tally_create(&fixture->tally, &fixture->study, &err) != 0)
+        fail_msg("%s", err.text);
+    cJSON_Delete(parameters);
+}
+
+static void fixture_close(struct fixture *fixture) {
+    contact_tally_clear(&fixture->tally);
+    contact_case_clear(&fixture->study);
+}
+
+/* Areas and stiffness fall with the load. Exact sums resolve 2^-60 = 9e-19, squares too: at 1e-8 a
+ * value of 1e-8 scaled by 2^16 has the square 4e-7. */
+static void light_loads_keep_their_digits(void **state) {
+    (void)state;
+    static const double loads[] = {1e-12, 1e-8, 1e-3, 0.5, 100};
+    static const enum contact_measure measures[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_STIFFNESS,
+                                                    MEASURE_PATCH_MEAN};
+    struct fixture f;
+    fixture_open(&f, STUDY("\"pressures\": {\"values\": [1e-12, 1e-8, 1e-3, 0.5, 100]}"));
+    for (int r = 0; r < 2; r++) {
+        for (size_t k = 0; k < 5; k++)
+            for (size_t a = 0; a < 4; a++)
+                contact_tally_values(&f.tally, measures[a])[k] = loads[k] * (r == 0 ? 1.9 : 2.1);
+        contact_tally_add(&f.tally);
+    }
+    for (size_t k = 0; k < 5; k++)
+        for (size_t a = 0; a < 4; a++) {
+            struct estimate mean = contact_tally_mean(&f.tally, measures[a], k);
+            double tolerance = k == 0 ? 1e-6 : 1e-10;
+            check_relative(mean.value, 2 * loads[k], tolerance);
+            if (k > 0) /* half the difference; at 1e-12 the squares are below resolution */
+                check_relative(mean.standard_error, 0.1 * loads[k], 1e-6);
+        }
+    fixture_close(&f);
+}
+
+static void valueless_realisations_are_counted(void **state) {
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, STUDY("\"pressures\": {\"values\": [0.1]}"));
+    static const double stiffness[] = {1, NAN, 3, NAN};
+    for (size_t r = 0; r < 4; r++) {
+        contact_tally_values(&f.tally, MEASURE_STIFFNESS)[0] = stiffness[r];
+        contact_tally_add(&f.tally);
+    }
+    check_close(contact_tally_mean(&f.tally, MEASURE_STIFFNESS, 0).value, 2, 1e-14);
+    assert_int_equal(contact_tally_valueless(&f.tally, MEASURE_STIFFNESS, 0), 2);
+    assert_true(isnan(contact_tally_mean(&f.tally, MEASURE_GAP, 0).value));
+    assert_true(isnan(contact_tally_level(&f.tally, MEASURE_GAP, 0, 0).value));
+    assert_true(isnan(contact_tally_model(&f.tally, MEASURE_GAP, 0).value));
+    fixture_close(&f);
+}
+
+/* Values limit + slope (points)^-order on each level. */
+static struct contact_extrapolation extrapolate(const char *text, double order, double slope) {
+    struct fixture f;
+    fixture_open(&f, text);
+    double *values = contact_tally_values(&f.tally, MEASURE_EDGES);
+    for (size_t l = 0; l < f.study.level_count; l++)
+        for (size_t k = 0; k < f.study.load_count; k++)
+            values[contact_case_cell(&f.study, 0, l, k)] =
+                0.3 + slope * (double)(k + 1) * pow((double)f.study.levels[l].grid.nx, -order);
+    contact_tally_add(&f.tally);
+    struct contact_extrapolation rule = contact_extrapolate(&f.tally, MEASURE_EDGES, 0);
+    size_t finest = f.study.level_count - 1;
+    double change = contact_tally_level(&f.tally, MEASURE_EDGES, 0, 0).value;
+    double error = slope * pow((double)f.study.levels[finest].grid.nx, -order);
+    if (rule.observed && rule.order > 0.5 && rule.order < 3)
+        check_relative(-rule.factor * change, error, 1e-9);
+    fixture_close(&f);
+    return rule;
+}
+
+static void orders_come_out(void **state) {
+    (void)state;
+    static const char *const equal = STUDY("\"levels\": [4, 8, 16], \"pressures\": {\"steps\": 3}");
+    static const char *const uneven =
+        STUDY("\"levels\": [4, 6, 16], \"pressures\": {\"steps\": 3}");
+    static const double orders[] = {0.7, 1, 1.5, 2.5};
+    for (size_t a = 0; a < 4; a++) {
+        check_close(extrapolate(equal, orders[a], -0.1).order, orders[a], 1e-9);
+        check_close(extrapolate(uneven, orders[a], 0.2).order, orders[a], 1e-9);
+    }
+    check_close(extrapolate(equal, 5, 1).order, 3, 1e-9); /* clamped */
+    check_close(extrapolate(equal, 0.1, 0.1).order, 0.5, 1e-9);
+    struct contact_extrapolation flat = extrapolate(equal, 1, 0);
+    assert_true(!flat.observed && flat.order == 1.5);
+    struct contact_extrapolation two =
+        extrapolate(STUDY("\"levels\": [4, 8], \"pressures\": {\"steps\": 3}"), 1, 0.1);
+    assert_true(!two.observed && two.order == 1.5);
+    check_close(two.factor, 1 / (sqrt(8) - 1), 1e-14);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(light_loads_keep_their_digits),
+        cmocka_unit_test(valueless_realisations_are_counted),
+        cmocka_unit_test(orders_come_out),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
