@@ -251,17 +251,29 @@ static int check_block(const struct job_result *result, const struct contact_tal
     return 0;
 }
 
+/* Decodes a block that the merger could take; *tally is the caller's to clear, also on failure. */
+static int read_block(const struct job_merger *merger, const struct job_result *result,
+                      struct contact_tally *tally, struct error *err) {
+    *tally = (struct contact_tally){0};
+    int status = realisations_check(&merger->realisations, result, err);
+    if (status == 0)
+        status = contact_tally_create(tally, &merger->study, err);
+    if (status == 0)
+        status = contact_tally_decode(tally, result->data, result->size, err);
+    return status ? status : check_block(result, tally, err);
+}
+
+static int fits(const struct job_merger *merger, const struct job_result *result,
+                struct error *err) {
+    struct contact_tally tally;
+    int status = read_block(merger, result, &tally, err);
+    contact_tally_clear(&tally);
+    return status;
+}
+
 static int merge(struct job_merger *merger, const struct job_result *result, struct error *err) {
     struct contact_tally tally;
-    int status = realisations_check(&merger->realisations, result, err);
-    if (status != 0)
-        return status;
-    status = contact_tally_create(&tally, &merger->study, err);
-    if (status != 0)
-        return status;
-    status = contact_tally_decode(&tally, result->data, result->size, err);
-    if (status == 0)
-        status = check_block(result, &tally, err);
+    int status = read_block(merger, result, &tally, err);
     if (status == 0)
         status = realisations_add(&merger->realisations, result, err);
     if (status == 0)
@@ -298,6 +310,7 @@ const struct job_kind CONTACT_KIND = {
     .run = run,
     .merger_create = merger_create,
     .merger_destroy = merger_destroy,
+    .fits = fits,
     .merge = merge,
     .curves = curves,
 };
