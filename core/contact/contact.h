@@ -13,9 +13,9 @@
 #include "core/contact/compliance.h"
 
 struct contact_options {
-    double tolerance;      /* on the largest violation of complementarity, over the RMS height of
-                              the surface; default 1e-8; 1e-10 is reachable */
-    size_t max_iterations; /* a load; default 2000 */
+    double tolerance;      /* on the largest violation of complementarity, over the largest
+                              displacement from the mean; default 1e-8; 1e-12 is reachable */
+    size_t max_iterations; /* a load; default 5000 */
 };
 extern const struct contact_options CONTACT_DEFAULTS;
 

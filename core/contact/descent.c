@@ -3,8 +3,10 @@
  * what lies outside, remove the mean so that the load stays. Two things differ from the textbook.
  * The direction is kept when the set changes, with Polak and Ribiere's factor: a restart at every
  * node that opens or closes takes half as many iterations again. And when no progress is made,
- * careful steps follow: they stay feasible and the energy falls in each of them, so that no set of
- * nodes can come back. */
+ * careful steps follow (as Dostal 1997): conjugate gradients in the set that stop where a pressure
+ * comes to 0, and projected gradients where one did or where penetrations outweigh the gaps inside.
+ * The energy falls in each of them, in projected steps by no less than a part of the square of the
+ * change: they end at the solution, from wherever they start. */
 #include "core/contact/descent.h"
 #include "core/vectors.h"
 #include <fftw3.h>
@@ -19,6 +21,8 @@ enum {
     REFRESH = 50, /* iterations after which u is computed anew from p */
     TANGENT_MOST = 300,
 };
+/* Of a projected step, over the largest compliance, which is 1; below 2. */
+static const double STRIDE = 1.8;
 static const double TANGENT_TOLERANCE = 1e-2; /* of the slope; measured: its error is below 1e-5 */
 /* Violations that rounding of the highest points can make. */
 static const double ROUNDING = 64 * DBL_EPSILON;
@@ -245,6 +249,7 @@ static void scale(size_t n, double factor, double *x) {
 /* What one step leaves to the next. */
 struct memory {
     double energy; /* w.r of the last direction; 0: start anew */
+    bool blocked;  /* a careful step ended where a pressure came to 0 */
 };
 
 /* The next direction into t, and S of it into w. */
@@ -262,22 +267,31 @@ static void direct(struct descent *d, struct memory *memory) {
     filter(d, d->soft, d->t, d->w);
 }
 
-/* In place of direct, where nodes without pressure penetrate: raise these by their depth, and lower
- * the others alike, so that every pressure can follow. */
-static void direct_release(struct descent *d, double under_pressure) {
-    double raised = 0;
+/* The pressures nearest to p - STRIDE gap among those >= 0 of this mean (Michelot 1986: the level
+ * to take off is raised until no more of them turn negative). Where p is not the solution, its
+ * energy falls by at least the square of the change, times 1/STRIDE - 1/2. */
+static void project(struct descent *d, double mean) {
+    double top = -INFINITY, level = -INFINITY, sum = 0;
+    size_t count = d->n + 1, last;
     for (size_t i = 0; i < d->n; i++) {
-        bool released = d->r[i] != 0 && !(d->p[i] > 0);
-        d->t[i] = released ? d->r[i] : 0;
-        raised += d->t[i];
+        d->t[i] = d->p[i] - STRIDE * (d->u[i] - d->z[i]);
+        top = fmax(top, d->t[i]);
     }
+    do {
+        last = count;
+        count = 0;
+        sum = 0;
+        for (size_t i = 0; i < d->n; i++)
+            if (d->t[i] - top > level) {
+                sum += d->t[i] - top; /* from the top, so that the lightest load is not lost */
+                count++;
+            }
+        level = (sum - mean * (double)d->n) / (double)count;
+    } while (count != last);
+    sum = 0;
     for (size_t i = 0; i < d->n; i++)
-        if (d->p[i] > 0)
-            d->t[i] = -raised / under_pressure;
-    double *last = d->old;
-    d->old = d->r;
-    d->r = last;
-    filter(d, d->soft, d->t, d->w);
+        sum += d->p[i] = fmax(0, d->t[i] - top - level);
+    scale(d->n, mean * (double)d->n / sum, d->p);
 }
 
 /* The longest step along t that leaves no pressure negative. */
@@ -286,13 +300,6 @@ static double feasible_step(const struct descent *d, double step) {
         if (d->t[i] > 0 && d->p[i] > 0 && d->p[i] < step * d->t[i])
             step = d->p[i] / d->t[i];
     return step;
-}
-
-static size_t under_pressure(const struct descent *d) {
-    size_t count = 0;
-    for (size_t i = 0; i < d->n; i++)
-        count += d->p[i] > 0;
-    return count;
 }
 
 /* Whether the violation has not halved for STALL iterations. */
@@ -308,28 +315,19 @@ static bool stalled(struct progress *progress, double violation) {
     return progress->since > STALL;
 }
 
-/* One iteration from r; true when u has to be computed anew. */
-static bool iterate(struct descent *d, double mean, bool careful, bool release,
-                    struct memory *memory) {
-    if (careful && release) {
-        direct_release(d, (double)under_pressure(d));
-        memory->energy = 0;
-    } else {
-        direct(d, memory);
-    }
+/* One iteration from r; *stale: whether u has to be computed anew. */
+static void iterate(struct descent *d, double mean, bool careful, struct memory *memory,
+                    bool *stale) {
+    direct(d, memory);
     double step = step_length(d->padded, d->old, d->t, d->w);
-    bool cut, shortened = false;
     if (careful) {
         double longest = feasible_step(d, step);
-        shortened = longest < step;
-        step = shortened ? longest * (1 + 4 * DBL_EPSILON) : step; /* that node's pressure: 0 */
+        memory->blocked = longest < step;
+        step = memory->blocked ? longest * (1 + 4 * DBL_EPSILON) : step; /* that pressure: 0 */
     }
-    double sum = advance(d->padded, step, d->t, d->w, d->p, d->u, &cut);
-    if (cut)
+    double sum = advance(d->padded, step, d->t, d->w, d->p, d->u, stale);
+    if (*stale)
         scale(d->n, mean * (double)d->n / sum, d->p);
-    if (careful && shortened)
-        memory->energy = 0;
-    return cut;
 }
 
 void descent_run(struct descent *d, double mean, double tolerance, size_t max_iterations,
@@ -347,17 +345,22 @@ void descent_run(struct descent *d, double mean, double tolerance, size_t max_it
         if (stale || end->iterations % REFRESH == 0)
             filter(d, d->soft, d->p, d->u);
         end->approach = mean_approach(d->padded, d->p, d->u, d->z);
-        bool release = !careful || end->penetration >= end->inside;
-        residual(d->padded, d->p, d->u, d->z, release ? 1 : 0, d->r, end);
+        residual(d->padded, d->p, d->u, d->z, careful ? 0 : 1, d->r, end);
         double violation = fmax(end->inside, end->penetration);
         end->converged = violation <= fmax(tolerance * end->deepest, ROUNDING * highest);
         if (end->converged || end->iterations == max_iterations)
             return;
         if (!careful && stalled(&progress, violation)) {
-            careful = true;
+            careful = memory.blocked = true;
             memory.energy = 0;
         }
-        stale = iterate(d, mean, careful, release && end->penetration > 0, &memory);
+        if (careful && (memory.blocked || end->penetration >= end->inside)) {
+            project(d, mean);
+            memory = (struct memory){0};
+            stale = true;
+        } else {
+            iterate(d, mean, careful, &memory, &stale);
+        }
     }
 }
 
@@ -377,9 +380,10 @@ double descent_tangent(struct descent *d) {
     filter(d, d->soft, d->q, d->u);
     for (size_t iteration = 0;; iteration++) {
         double approach = 0, energy = 0;
-        size_t members = under_pressure(d);
+        size_t members = 0;
         for (size_t i = 0; i < d->n; i++) {
             approach -= d->p[i] > 0 ? d->u[i] : 0;
+            members += d->p[i] > 0;
             energy += d->q[i] * d->u[i];
         }
         approach /= (double)members;
