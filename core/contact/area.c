@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const double PI = 3.14159265358979323846;
 static const double PERIMETER = 0.11811415975623911; /* (pi - 1 + ln 2)/24 */
 static const double COSINE_LEAST = 0.1;
 enum { ANGLE_STEPS = 4 };
@@ -91,19 +92,37 @@ static double crossing_cosine(const struct crossing *x, const double *rise, doub
     return cosine;
 }
 
+/* Gap, over the largest pressure, of a rise outside. */
+static double gap_of(double rise) {
+    double root = sqrt(fmax(0, -rise));
+    return 4.0 / 3 * root * root * root;
+}
+
 /* Half the width of a profile's patch of one node, in steps: the crossing's part of it; NaN where
  * the inside node is not alone, or another patch is near enough to bend the gap beside it. */
-static double lone_share(const struct crossing *x, const double *rise) {
+static double lone_in_profile(const struct crossing *x, const double *rise) {
     if (rise[x->before] > 0 || rise[x->far_before] > 0 || rise[x->behind] > 0)
         return NAN;
-    double left = -rise[x->before], right = -rise[x->outside];
-    return edge_lone(sqrt(rise[x->inside]) * x->step, 4.0 / 3 * left * sqrt(left),
-                     4.0 / 3 * right * sqrt(right));
+    return edge_lone(sqrt(rise[x->inside]) * x->step, gap_of(rise[x->before]),
+                     gap_of(rise[x->outside]));
+}
+
+/* Half the area of a surface's patch of one node, in cells: an ellipse; NaN where the inside node
+ * is not alone. */
+static double lone_in_surface(const struct crossing *x, const double *rise) {
+    if (rise[x->before] > 0 || rise[x->inside_left] > 0 || rise[x->inside_right] > 0)
+        return NAN;
+    double force = sqrt(rise[x->inside]) * x->step * x->across;
+    double along =
+        edge_lone_axis(force / x->step, gap_of(rise[x->before]), gap_of(rise[x->outside]));
+    double beside = edge_lone_axis(force / x->across, gap_of(rise[x->inside_left]),
+                                   gap_of(rise[x->inside_right]));
+    return 0.5 * PI * along * beside;
 }
 
 static double crossing_share(const struct crossing *x, const struct edge_law *law,
                              const double *rise, bool profile) {
-    double lone = profile ? lone_share(x, rise) : NAN;
+    double lone = profile ? lone_in_profile(x, rise) : lone_in_surface(x, rise);
     if (!isnan(lone))
         return lone;
     double unit = cbrt(x->step);
@@ -113,7 +132,8 @@ static double crossing_share(const struct crossing *x, const struct edge_law *la
         g1 /= cbrt(cosine * cosine);
     }
     bool known = rise[x->before] > 0 && rise[x->far_before] > 0; /* in two nodes it does harm */
-    return edge_share(law, p1, known ? rise[x->before] : 0, g1);
+    double share = edge_share(law, p1, known ? rise[x->before] : 0, g1);
+    return rise[x->before] > 0 ? share : fmax(0, share); /* no line has a length below 0 */
 }
 
 /* One of the two families of grid lines: nodes of a line are `along` apart, lines `beside`. */
@@ -190,6 +210,11 @@ static void count_nodes(const struct grid *grid, const double *p, struct contact
     out->upper = (double)any / n;
 }
 
+/* Edges lie up to a step from the nodes that they are found from. */
+static void clamp_edges(struct contact_area *out) {
+    out->edges = fmin(fmax(out->edges, out->lower), out->upper);
+}
+
 void contact_area(struct area_workspace *workspace, const double *p, const double *opening,
                   struct contact_area *out) {
     const struct grid *grid = &workspace->grid;
@@ -199,11 +224,14 @@ void contact_area(struct area_workspace *workspace, const double *p, const doubl
     fill_rise(workspace, p, opening);
     out->edges = family_share(&rows, &workspace->rows, workspace->rise);
     out->perimeter = NAN;
-    if (grid_is_profile(grid))
+    if (grid_is_profile(grid)) {
+        clamp_edges(out);
         return;
+    }
     struct family columns = {grid->nx, grid->ny, grid->nx, 1, dy, dx};
     size_t sides[2];
     out->edges = 0.5 * (out->edges + family_share(&columns, &workspace->columns, workspace->rise));
+    clamp_edges(out);
     count_sides(grid, p, sides);
     /* A side across x is dy long and the correction acts along x, over dx; and the other way. */
     double missed = PERIMETER * (double)(sides[0] + sides[1]) / (double)grid_points(grid);

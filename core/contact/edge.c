@@ -76,6 +76,28 @@ double edge_lone(double force, double gap_left, double gap_right) {
                 cosh(hertz_angle(scale * fmax(0, gap_right))));
 }
 
+/* r >= 1 with r ((r^2 - 2) acos(1/r) + sqrt(r^2 - 1)) = y >= 0, by Newton's method from above,
+ * where it is monotone. */
+static double hertz_ratio(double y) {
+    double r = 2 + cbrt(y);
+    for (int a = 0; a < ANGLE_STEPS && r > 1; a++) {
+        double angle = acos(1 / r), root = sqrt((r - 1) * (r + 1));
+        double value = r * ((r * r - 2) * angle + root) - y;
+        double step = value / ((3 * r * r - 2) * angle + 3 * root);
+        r -= step;
+        if (!(fabs(step) > 1e-12 * r))
+            break;
+    }
+    return fmax(1, r);
+}
+
+double edge_lone_axis(double force, double gap_left, double gap_right) {
+    /* At a distance r a from the middle of a contact of radius a the gap is (3 force/(4 pi E* a))
+     * ((r^2 - 2) acos(1/r) + sqrt(r^2 - 1)) (Johnson 1985, section 3.4). */
+    double scale = 4 * PI / (3 * force);
+    return 2 / (hertz_ratio(scale * fmax(0, gap_left)) + hertz_ratio(scale * fmax(0, gap_right)));
+}
+
 /* A strip of the grid with one wave along x, two nodes wide where the grid is a surface. */
 static struct grid strip_of(const struct grid *grid, bool columns) {
     double along = columns ? grid_dy(grid) : grid_dx(grid);

@@ -37,5 +37,8 @@ double edge_share(const struct edge_law *law, double pressure_squared, double be
 /* Half the width of a patch of one node, in steps: that of Hertz's line contact with the same force
  * and the same gaps at the two nodes beside it (gaps and force over E*, lengths in steps). */
 double edge_lone(double force, double gap_left, double gap_right);
+/* The same of a surface's patch: semi-axis, in steps, towards two opposite nodes beside it, from
+ * Hertz's contact of a sphere (force over E* in steps squared). */
+double edge_lone_axis(double force, double gap_left, double gap_right);
 
 #endif
