@@ -107,6 +107,8 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
     int status = take_heights(c, z, err);
     if (status != 0)
         return status;
+    /* A surface's results must not depend on the one before. */
+    memset(d->q, 0, d->padded * sizeof *d->q);
     memcpy(d->z, c->z, d->n * sizeof *d->z);
     if (c->compliance->weight != NULL)
         transform_filter(d->transform, c->compliance->weight, 1, c->z, d->z);
@@ -167,7 +169,8 @@ static void tell_partial(struct contact *c, const struct descent_end *end,
     out->iterations = end->iterations;
     out->violation = fmax(end->inside, end->penetration);
     out->penetration = end->penetration;
-    out->stiffness = 1 / (descent_tangent(d) * d->largest);
+    /* All nodes in contact, a rounding error below the load of full contact. */
+    out->stiffness = out->nodes == d->n ? INFINITY : 1 / (descent_tangent(d) * d->largest);
 }
 
 /* The pressures of the last load, moved along their tangent to a mean; uniform before the first. */
@@ -179,8 +182,10 @@ static void predict(struct contact *c, double mean) {
         d->p[i] = fmax(0, p);
         sum += d->p[i];
     }
+    /* A load that falls by many orders is below the rounding of the pressures before. */
+    double factor = mean * (double)d->n / sum;
     for (size_t i = 0; i < d->n; i++)
-        d->p[i] *= mean * (double)d->n / sum;
+        d->p[i] = isfinite(factor) ? d->p[i] * factor : mean;
 }
 
 static int press_partial(struct contact *c, double pressure, struct contact_state *out,

@@ -347,8 +347,9 @@ void descent_run(struct descent *d, double mean, double tolerance, size_t max_it
         end->approach = mean_approach(d->padded, d->p, d->u, d->z);
         residual(d->padded, d->p, d->u, d->z, careful ? 0 : 1, d->r, end);
         double violation = fmax(end->inside, end->penetration);
-        end->converged = violation <= fmax(tolerance * end->deepest, ROUNDING * highest);
-        if (end->converged || end->iterations == max_iterations)
+        bool number = isfinite(end->approach); /* the largest of numbers and NaNs is a number */
+        end->converged = number && violation <= fmax(tolerance * end->deepest, ROUNDING * highest);
+        if (end->converged || !number || end->iterations == max_iterations)
             return;
         if (!careful && stalled(&progress, violation)) {
             careful = memory.blocked = true;
