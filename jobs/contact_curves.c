@@ -112,6 +112,7 @@ static bool append(struct workshop *shop, const struct row *row, size_t model, s
                           .series = row->series,
                           .model = CONTACT_MODEL_NAMES[study->blocks[model].model],
                           .level = study->levels[level].points,
+                          .points = (double)grid_points(&study->levels[level].grid),
                           .x_label = "p/(E* h'_rms)",
                           .y_label = row->y_label,
                           .n = study->load_count,
@@ -120,7 +121,7 @@ static bool append(struct workshop *shop, const struct row *row, size_t model, s
                           .standard_error = shop->standard_error};
     double factor = row->factor;
     if (row->measure == MEASURE_WORK)
-        factor *= (double)grid_points(&study->levels[level].grid);
+        factor *= curve.points;
     for (size_t k = 0; k < study->load_count; k++) {
         size_t cell = contact_case_cell(study, model, level, k);
         struct estimate mean = contact_tally_mean(shop->tally, row->measure, cell);
@@ -198,21 +199,23 @@ static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
         shop->standard_error[b] = share.standard_error / width;
     }
     bool theory = contact_theory_pressures(study, shop->modes, load, shop->pdf);
-    return curve_append(shop->curves,
-                        &(struct curve){.quantity = "contact_pressure_pdf",
-                                        .model = CONTACT_MODEL_NAMES[study->blocks[model].model],
-                                        .level = contact_case_finest(study)->points,
-                                        .pressure = load,
-                                        .x_label = "local p/(E* h'_rms)",
-                                        .y_label = "probability density",
-                                        .n = bins->count,
-                                        .x = shop->x,
-                                        .y = shop->y,
-                                        .standard_error = shop->standard_error,
-                                        .theories = {{theory ? "persson" : NULL, shop->pdf}},
-                                        .counted = true,
-                                        .underflow = (double)count[0],
-                                        .overflow = (double)count[bins->count + 1]});
+    return curve_append(
+        shop->curves,
+        &(struct curve){.quantity = "contact_pressure_pdf",
+                        .model = CONTACT_MODEL_NAMES[study->blocks[model].model],
+                        .level = contact_case_finest(study)->points,
+                        .points = (double)grid_points(&contact_case_finest(study)->grid),
+                        .pressure = load,
+                        .x_label = "local p/(E* h'_rms)",
+                        .y_label = "probability density",
+                        .n = bins->count,
+                        .x = shop->x,
+                        .y = shop->y,
+                        .standard_error = shop->standard_error,
+                        .theories = {{theory ? "persson" : NULL, shop->pdf}},
+                        .counted = true,
+                        .underflow = (double)count[0],
+                        .overflow = (double)count[bins->count + 1]});
 }
 
 static bool append_all(struct workshop *shop) {

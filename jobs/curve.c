@@ -22,7 +22,8 @@ static bool put_place(cJSON *object, const struct curve *curve) {
     bool done = value_put(object, "series", cJSON_CreateString(series));
     if (done && curve->model != NULL)
         done = value_put(object, "model", cJSON_CreateString(curve->model)) &&
-               value_put(object, "level", value_number(curve->level));
+               value_put(object, "level", value_number(curve->level)) &&
+               value_put(object, "points", value_number(curve->points));
     if (done && curve->pressure > 0)
         done = value_put(object, "pressure", value_number(curve->pressure));
     return done;

@@ -23,6 +23,7 @@ struct curve { /* all borrowed */
     const char *series; /* NULL: "" */
     const char *model;  /* NULL: without a model, and without a level */
     double level;       /* points_per_wavelength */
+    double points;      /* of the whole grid of the level */
     double pressure;    /* 0: not at a certain pressure */
     size_t n;           /* points, rows of a matrix */
     const double *x, *y, *standard_error;

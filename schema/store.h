@@ -155,13 +155,13 @@ int store_published(struct store *store, const char *study, uint64_t case_number
  * ERROR_ABSENT when there is none. */
 int store_unpublished(struct store *store, uint64_t skip, char study[STUDY_ID_SIZE],
                       uint64_t *case_number, struct error *err);
-/* Cost and time of each case for the report. */
+/* Cost and time of a case for the report. */
 struct case_cost {
     uint64_t case_number, realisations_done, realisations, jobs, attempts;
     double seconds; /* of completed jobs */
 };
-int store_costs(struct store *store, const char *study, struct case_cost **out, size_t *count,
-                struct error *err);
+int store_cost(struct store *store, const char *study, uint64_t case_number, struct case_cost *out,
+               struct error *err);
 
 /* --- upkeep --- */
 int store_snapshot(struct store *store, const char *path,

@@ -339,40 +339,33 @@ int store_unpublished(struct store *store, uint64_t skip, char study[STUDY_ID_SI
     return 0;
 }
 
-/* --- costs --- */
+/* --- cost --- */
 
-int store_costs(struct store *store, const char *study, struct case_cost **out, size_t *count,
-                struct error *err) {
-    int64_t id = 0, cases = 0;
+int store_cost(struct store *store, const char *study, uint64_t case_number, struct case_cost *out,
+               struct error *err) {
+    int64_t id = 0;
     sqlite3_stmt *row = NULL;
-    struct case_cost *costs = NULL;
-    size_t n = 0;
     int status = study_row(store, study, &id, err);
     if (!status)
-        status = store_integer(store, &cases, err, "SELECT cases FROM study WHERE id = ?", "i", id);
-    if (!status && !(costs = array_create((size_t)cases, sizeof *costs)))
-        status = error_memory(err, (size_t)cases * sizeof *costs, "costs");
+        status = store_query(store, &row, err,
+                             "SELECT realisations_done, (SELECT realisations FROM study WHERE id = "
+                             "study_id), jobs, (SELECT sum(attempts) FROM job WHERE job.study_id "
+                             "= study_case.study_id AND job.case_number = number), seconds FROM "
+                             "study_case WHERE study_id = ? AND number = ?",
+                             "ii", id, (int64_t)case_number);
     if (!status)
-        status =
-            store_query(store, &row, err,
-                        "SELECT number, realisations_done, (SELECT realisations FROM study WHERE "
-                        "id = study_id), jobs, (SELECT sum(attempts) FROM job WHERE job.study_id "
-                        "= study_case.study_id AND job.case_number = number), seconds FROM "
-                        "study_case WHERE study_id = ? ORDER BY number",
-                        "i", id);
-    while (!status && n < (size_t)cases && (status = store_step(store, row, err)) == 1) {
-        costs[n++] = (struct case_cost){
-            (uint64_t)sqlite3_column_int64(row, 0), (uint64_t)sqlite3_column_int64(row, 1),
-            (uint64_t)sqlite3_column_int64(row, 2), (uint64_t)sqlite3_column_int64(row, 3),
-            (uint64_t)sqlite3_column_int64(row, 4), sqlite3_column_double(row, 5)};
-        status = 0;
-    }
-    if (status < 0) {
-        free(costs);
+        status = store_step(store, row, err);
+    if (status == 0)
+        return error_set(err, ERROR_ABSENT, "study %s has no case %llu", study,
+                         (unsigned long long)case_number);
+    if (status < 0)
         return status;
-    }
+    *out = (struct case_cost){case_number,
+                              (uint64_t)sqlite3_column_int64(row, 0),
+                              (uint64_t)sqlite3_column_int64(row, 1),
+                              (uint64_t)sqlite3_column_int64(row, 2),
+                              (uint64_t)sqlite3_column_int64(row, 3),
+                              sqlite3_column_double(row, 4)};
     sqlite3_reset(row);
-    *out = costs;
-    *count = n;
     return 0;
 }

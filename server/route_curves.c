@@ -1,5 +1,5 @@
-/* Curves over HTTP. A study of ten thousand cases has gigabytes of them: as JSON they are read and
- * sent case by case. */
+/* Curves and reports over HTTP. A study of ten thousand cases has gigabytes of them: as JSON they
+ * are read and sent case by case, and end early when the server does. */
 #include "server/accept.h"
 #include "server/route.h"
 #include "worker/aggregate.h"
@@ -11,92 +11,124 @@
 enum { CSV_CASES_MOST = 64 }; /* a table is made as a whole: its columns depend on all cases */
 
 /* An answer on its way. */
-struct curves {
+struct stream {
     struct exchange *exchange; /* lives as long as the library calls next_part */
-    char id[SEGMENT_SIZE];
-    struct curve_filter filter; /* of the next case */
-    int64_t first, end;         /* cases */
-    char *text;                 /* owned: not yet taken; NULL where nothing waits */
+    struct aggregate study;    /* owned */
+    bool report;               /* rather than curves */
+    char *quantity;            /* owned; NULL: all */
+    uint64_t next, end;        /* cases */
+    char *text;                /* owned: not yet taken; NULL where nothing waits */
     size_t sent;
 };
 
-static void curves_free(void *context) {
-    struct curves *curves = context;
-    free(curves->text);
-    free(curves);
+static void stream_free(void *context) {
+    struct stream *stream = context;
+    aggregate_end(&stream->study);
+    free(stream->quantity);
+    free(stream->text);
+    free(stream);
 }
 
-/* The document of the first case opens the whole one, those behind it add their case. */
-static char *print_case(const struct curves *curves, const cJSON *document) {
-    bool opens = curves->filter.case_number == curves->first;
-    bool closes = curves->filter.case_number + 1 == curves->end;
-    char *all = NULL, *text = json_print(opens ? document : json_at(document, "/cases/0"));
-    size_t size = text ? strlen(text) - (opens ? strlen("]}") : 0) : 0;
+/* {..., "cases":[ of the document, without its end. */
+static char *print_head(const struct stream *stream) {
+    cJSON *cases, *document = aggregate_head(&stream->study, stream->report, &cases);
+    char *text = document ? json_print(document) : NULL;
+    cJSON_Delete(document);
+    if (text)
+        text[strlen(text) - strlen("]}")] = 0;
+    return text;
+}
+
+/* The next case behind what waits, with the end of the document behind the last one. */
+static int append_case(struct stream *stream, const cJSON *item, struct error *err) {
+    bool closes = stream->next + 1 == stream->end;
+    char *all = NULL, *text = json_print(item);
     if (!text ||
-        asprintf(&all, "%s%.*s%s", opens ? "" : ",", (int)size, text, closes ? "]}" : "") < 0)
+        asprintf(&all, "%s%s%s", stream->text ? stream->text : ",", text, closes ? "]}" : "") < 0)
         all = NULL;
     free(text);
-    return all;
+    free(stream->text);
+    stream->text = all;
+    stream->sent = 0;
+    stream->next++;
+    return all ? 0 : error_memory(err, 0, "an answer");
 }
 
-static int read_case(struct curves *curves, struct error *err) {
-    struct service *service = curves->exchange->service;
+static int read_case(struct stream *stream, struct error *err) {
+    struct service *service = stream->exchange->service;
     struct store *reader;
-    cJSON *document = NULL;
+    cJSON *item = NULL;
     int status = service_reader(service, &reader, err);
     if (!status)
-        status = aggregate_curves(reader, curves->id, &curves->filter, &document, err);
+        status = stream->report
+                     ? aggregate_report_case(reader, &stream->study, stream->next, &item, err)
+                     : aggregate_curves_case(reader, &stream->study, stream->next, stream->quantity,
+                                             &item, err);
     service_give_back(service, reader);
-    if (!status && !(curves->text = print_case(curves, document)))
-        status = error_memory(err, 0, "curves");
-    cJSON_Delete(document);
-    curves->filter.case_number++;
-    curves->sent = 0;
+    if (!status)
+        status = append_case(stream, item, err);
+    cJSON_Delete(item);
     return status;
 }
 
 static ssize_t next_part(void *context, uint64_t position, char *buffer, size_t room) {
-    struct curves *curves = context;
+    struct stream *stream = context;
     struct error err = {0};
     (void)position;
-    exchange_renew(curves->exchange); /* who takes nothing for a whole deadline is cut */
-    if (!curves->text && curves->filter.case_number == curves->end)
+    exchange_renew(stream->exchange); /* who takes nothing for a whole deadline is cut */
+    if (!stream->text && stream->next == stream->end)
         return MHD_CONTENT_READER_END_OF_STREAM;
-    if (!curves->text && atomic_load(&curves->exchange->service->stopping))
+    if (!stream->text && atomic_load(&stream->exchange->service->stopping))
         return MHD_CONTENT_READER_END_WITH_ERROR;
-    if (!curves->text && read_case(curves, &err)) {
-        struct log_about about = {.study = curves->id};
-        log_line(LEVEL_ERROR, &about, "curves: %s", err.text);
+    if (!stream->text && read_case(stream, &err)) {
+        struct log_about about = {.study = stream->study.about.id};
+        log_line(LEVEL_ERROR, &about, "%s: %s", stream->report ? "report" : "curves", err.text);
         return MHD_CONTENT_READER_END_WITH_ERROR;
     }
-    size_t left = strlen(curves->text + curves->sent), part = left < room ? left : room;
-    memcpy(buffer, curves->text + curves->sent, part);
-    curves->sent += part;
+    size_t left = strlen(stream->text + stream->sent), part = left < room ? left : room;
+    memcpy(buffer, stream->text + stream->sent, part);
+    stream->sent += part;
     if (part == left) {
-        free(curves->text);
-        curves->text = NULL;
+        free(stream->text);
+        stream->text = NULL;
     }
     return (ssize_t)part;
 }
 
 /* The first case is read before the answer begins: what is wrong is mostly wrong with it. */
-static int send_json(struct exchange *exchange, const char *id, const struct curve_filter *filter,
-                     uint64_t cases, struct error *err) {
-    struct curves *curves = array_create(1, sizeof *curves);
-    if (!curves)
-        return error_memory(err, sizeof *curves, "curves");
-    bool one = filter->case_number >= 0;
-    curves->exchange = exchange;
-    curves->first = one ? filter->case_number : 0;
-    curves->end = one ? curves->first + 1 : (int64_t)cases;
-    curves->filter = (struct curve_filter){curves->first, filter->quantity};
-    snprintf(curves->id, sizeof curves->id, "%s", id);
-    int status = read_case(curves, err);
+static int open_stream(struct stream *stream, const char *id, const struct curve_filter *filter,
+                       struct error *err) {
+    struct service *service = stream->exchange->service;
+    struct store *reader;
+    int status = service_reader(service, &reader, err);
+    if (!status)
+        status = aggregate_begin(reader, id, &stream->study, err);
+    service_give_back(service, reader);
     if (status)
-        curves_free(curves);
+        return status;
+    bool one = filter->case_number >= 0;
+    stream->next = one ? (uint64_t)filter->case_number : 0;
+    stream->end = one ? stream->next + 1 : stream->study.about.cases;
+    stream->quantity = filter->quantity ? strdup(filter->quantity) : NULL;
+    stream->text = print_head(stream);
+    if (!stream->text || (filter->quantity && !stream->quantity))
+        return error_memory(err, 0, "an answer");
+    return read_case(stream, err);
+}
+
+static int send_json(struct exchange *exchange, const char *id, const struct curve_filter *filter,
+                     bool report, struct error *err) {
+    struct stream *stream = array_create(1, sizeof *stream);
+    if (!stream)
+        return error_memory(err, sizeof *stream, "an answer");
+    stream->exchange = exchange;
+    stream->report = report;
+    int status = open_stream(stream, id, filter, err);
+    if (status)
+        stream_free(stream);
     else
-        answer_stream(exchange, "application/json", MHD_SIZE_UNKNOWN, next_part, curves,
-                      curves_free);
+        answer_stream(exchange, "application/json", MHD_SIZE_UNKNOWN, next_part, stream,
+                      stream_free);
     return status;
 }
 
@@ -158,7 +190,8 @@ void handle_curves(struct exchange *exchange, const char *id) {
     if (!status && matches(exchange, etag))
         answer_empty(exchange, 304);
     else if (!status)
-        status = (csv ? send_csv : send_json)(exchange, id, &filter, study.cases, &err);
+        status = csv ? send_csv(exchange, id, &filter, study.cases, &err)
+                     : send_json(exchange, id, &filter, false, &err);
     study_status_clear(&study);
     if (status) {
         answer_error(exchange, &err);
@@ -166,4 +199,11 @@ void handle_curves(struct exchange *exchange, const char *id) {
     }
     answer_header(exchange, "ETag", etag);
     answer_header(exchange, "Vary", "Accept");
+}
+
+void handle_report(struct exchange *exchange, const char *id) {
+    struct error err = {0};
+    struct curve_filter all = {.case_number = -1};
+    if (send_json(exchange, id, &all, true, &err))
+        answer_error(exchange, &err);
 }

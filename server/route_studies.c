@@ -1,7 +1,6 @@
-/* Studies over HTTP: submission, progress, curves, reports. */
+/* Studies over HTTP: submission, progress. */
 #include "server/api.h"
 #include "server/route.h"
-#include "worker/aggregate.h"
 #include "worker/kinds.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -130,20 +129,6 @@ void handle_study(struct exchange *exchange, const char *id) {
     int status = service_reader(exchange->service, &reader, &err);
     if (!status)
         status = api_status(reader, id, &document, &err);
-    service_give_back(exchange->service, reader);
-    if (status)
-        answer_error(exchange, &err);
-    else
-        answer_json(exchange, 200, document);
-}
-
-void handle_report(struct exchange *exchange, const char *id) {
-    struct store *reader;
-    struct error err = {0};
-    cJSON *document = NULL;
-    int status = service_reader(exchange->service, &reader, &err);
-    if (!status)
-        status = aggregate_report(reader, id, &document, &err);
     service_give_back(exchange->service, reader);
     if (status)
         answer_error(exchange, &err);

@@ -67,40 +67,69 @@ static bool is_complete(const cJSON *curves, const struct case_info *info) {
     return realisations >= (double)info->realisations;
 }
 
-/* Kind of a study, and what else its status says (study_status_clear). */
-static int study_find(struct store *store, const char *study, struct study_status *status,
-                      const struct job_kind **kind, struct error *err) {
-    int code = store_status(store, study, status, err);
-    if (code) {
-        return code;
-    }
-    *kind = kind_find(status->kind);
-    if (!*kind) {
-        code = error_set(err, ERROR_INPUT, "this program knows no kind '%.64s'", status->kind);
-        study_status_clear(status);
-        return code;
-    }
-    return 0;
+/* A case that has not begun: without a merger, since a study may have ten thousand of them. */
+static int empty_curves(cJSON **out, struct error *err) {
+    cJSON *curves = cJSON_CreateObject();
+    bool complete = curves && field_put_count(curves, "realisations", 0) &&
+                    field_put(curves, "scalars", cJSON_CreateObject()) &&
+                    field_put(curves, "curves", cJSON_CreateArray());
+    *out = fields_finish(curves, complete);
+    return *out ? 0 : no_memory(err);
 }
 
-/* The case's curves, and its info (case_info_clear) where this succeeds. unpublished: filled where
- * only the publishing failed. */
-static int case_curves(struct store *store, const char *study, uint64_t case_number,
-                       const struct job_kind *kind, struct case_info *info, cJSON **out,
-                       struct error *unpublished, struct error *err) {
-    struct case_info found = {0};
-    cJSON *curves = NULL;
-    int status = store_case(store, study, case_number, &found, err);
+int aggregate_begin(struct store *store, const char *study, struct aggregate *out,
+                    struct error *err) {
+    struct aggregate found = {0};
+    int status = store_status(store, study, &found.about, err);
     if (status) {
         return status;
     }
-    status = store_published(store, study, case_number, found.revision, &curves, err);
-    if (!status && !curves) {
-        status = case_merge(store, study, case_number, kind, found.parameters, &curves, err);
-        if (!status && is_complete(curves, &found)) {
-            (void)store_publish(store, study, case_number, found.revision, curves, unpublished);
-        }
+    found.kind = kind_find(found.about.kind);
+    if (!found.kind) {
+        status =
+            error_set(err, ERROR_INPUT, "this program knows no kind '%.64s'", found.about.kind);
+        aggregate_end(&found);
+        return status;
     }
+    *out = found;
+    return 0;
+}
+
+void aggregate_end(struct aggregate *aggregate) {
+    study_status_clear(&aggregate->about);
+    aggregate->kind = NULL;
+}
+
+/* Merges what is not published at this revision. */
+static int fresh_curves(struct store *store, const struct aggregate *aggregate,
+                        uint64_t case_number, const struct case_info *info, cJSON **out,
+                        struct error *unpublished, struct error *err) {
+    const char *study = aggregate->about.id;
+    if (info->realisations_done == 0) {
+        return empty_curves(out, err);
+    }
+    int status = store_published(store, study, case_number, info->revision, out, err);
+    if (status || *out) {
+        return status;
+    }
+    status = case_merge(store, study, case_number, aggregate->kind, info->parameters, out, err);
+    if (!status && is_complete(*out, info)) {
+        (void)store_publish(store, study, case_number, info->revision, *out, unpublished);
+    }
+    return status;
+}
+
+/* unpublished: filled where only the publishing failed. */
+static int case_open(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                     struct case_info *info, cJSON **out, struct error *unpublished,
+                     struct error *err) {
+    struct case_info found = {0};
+    cJSON *curves = NULL;
+    int status = store_case(store, aggregate->about.id, case_number, &found, err);
+    if (status) {
+        return status;
+    }
+    status = fresh_curves(store, aggregate, case_number, &found, &curves, unpublished, err);
     if (status) {
         case_info_clear(&found);
         return status;
@@ -110,33 +139,38 @@ static int case_curves(struct store *store, const char *study, uint64_t case_num
     return 0;
 }
 
-/* case_curves for those who know the study's name only. */
-static int case_open(struct store *store, const char *study, uint64_t case_number, cJSON **out,
-                     struct error *unpublished, struct error *err) {
-    struct study_status about = {0};
-    const struct job_kind *kind = NULL;
-    int status = study_find(store, study, &about, &kind, err);
+int aggregate_open(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                   struct case_info *info, cJSON **out, struct error *err) {
+    struct error unpublished = {0};
+    return case_open(store, aggregate, case_number, info, out, &unpublished, err);
+}
+
+/* For those who know the study's name only. */
+static int case_of_study(struct store *store, const char *study, uint64_t case_number, cJSON **out,
+                         struct error *unpublished, struct error *err) {
+    struct aggregate aggregate;
+    struct case_info info = {0};
+    int status = aggregate_begin(store, study, &aggregate, err);
     if (status) {
         return status;
     }
-    struct case_info info = {0};
-    status = case_curves(store, study, case_number, kind, &info, out, unpublished, err);
+    status = case_open(store, &aggregate, case_number, &info, out, unpublished, err);
     case_info_clear(&info);
-    study_status_clear(&about);
+    aggregate_end(&aggregate);
     return status;
 }
 
 int aggregate_case(struct store *store, const char *study, uint64_t case_number, cJSON **out,
                    struct error *err) {
     struct error unpublished = {0};
-    return case_open(store, study, case_number, out, &unpublished, err);
+    return case_of_study(store, study, case_number, out, &unpublished, err);
 }
 
 int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
                       struct error *err) {
     struct error unpublished = {0};
     cJSON *curves = NULL;
-    int status = case_open(store, study, case_number, &curves, &unpublished, err);
+    int status = case_of_study(store, study, case_number, &curves, &unpublished, err);
     cJSON_Delete(curves);
     if (!status && unpublished.code) {
         *err = unpublished;
@@ -203,67 +237,64 @@ static cJSON *case_document(uint64_t case_number, const cJSON *parameters, cJSON
     return fields_finish(document, complete);
 }
 
-static int case_append(struct store *store, const struct study_status *about,
-                       const struct job_kind *kind, uint64_t case_number,
-                       const struct curve_filter *filter, cJSON *cases, struct error *err) {
+int aggregate_curves_case(struct store *store, const struct aggregate *aggregate,
+                          uint64_t case_number, const char *quantity, cJSON **out,
+                          struct error *err) {
     struct case_info info = {0};
-    struct error unpublished = {0};
     cJSON *curves = NULL;
-    int status =
-        case_curves(store, about->id, case_number, kind, &info, &curves, &unpublished, err);
+    int status = aggregate_open(store, aggregate, case_number, &info, &curves, err);
     if (status) {
         return status;
     }
-    bool begun = cJSON_GetNumberValue(field_at(curves, "realisations")) > 0;
+    bool begun = info.realisations_done > 0;
     cJSON *list = cJSON_GetObjectItemCaseSensitive(curves, "curves");
-    if (filter->quantity && begun && !has_quantity(list, filter->quantity)) {
-        status = quantity_absent(list, filter->quantity, err);
+    if (quantity && begun && !has_quantity(list, quantity)) {
+        status = quantity_absent(list, quantity, err);
         cJSON_Delete(curves);
     } else {
-        if (filter->quantity) {
-            keep_quantity(list, filter->quantity);
+        if (quantity) {
+            keep_quantity(list, quantity);
         }
-        cJSON *document = case_document(case_number, info.parameters, curves);
-        if (!document || !cJSON_AddItemToArray(cases, document)) {
-            cJSON_Delete(document);
-            status = no_memory(err);
-        }
+        *out = case_document(case_number, info.parameters, curves);
+        status = *out ? 0 : no_memory(err);
     }
     case_info_clear(&info);
     return status;
 }
 
-static int cases_append(struct store *store, const struct study_status *about,
-                        const struct job_kind *kind, const struct curve_filter *filter,
-                        cJSON *cases, struct error *err) {
-    uint64_t first = 0, end = about->cases;
-    if (filter->case_number >= 0) {
-        first = (uint64_t)filter->case_number;
-        end = first + 1;
-    }
-    int status = 0;
-    for (uint64_t c = first; c < end && !status; c++) {
-        status = case_append(store, about, kind, c, filter, cases, err);
-    }
-    return status;
+cJSON *aggregate_head(const struct aggregate *aggregate, bool seconds, cJSON **cases) {
+    const struct study_status *about = &aggregate->about;
+    cJSON *document = cJSON_CreateObject();
+    bool complete = document && field_put_text(document, "study", about->id) &&
+                    field_put_text(document, "name", about->name) &&
+                    field_put_text(document, "kind", about->kind) &&
+                    field_put_text(document, "state", about->state) &&
+                    (!seconds || field_put(document, "seconds", json_number(about->seconds)));
+    *cases = complete ? cJSON_AddArrayToObject(document, "cases") : NULL;
+    return fields_finish(document, *cases != NULL);
 }
 
 int aggregate_curves(struct store *store, const char *study, const struct curve_filter *filter,
                      cJSON **out, struct error *err) {
-    struct study_status about = {0};
-    const struct job_kind *kind = NULL;
-    int status = study_find(store, study, &about, &kind, err);
+    struct aggregate aggregate;
+    int status = aggregate_begin(store, study, &aggregate, err);
     if (status) {
         return status;
     }
-    cJSON *document = cJSON_CreateObject(), *cases = cJSON_CreateArray();
-    bool complete = document && field_put_text(document, "study", about.id) &&
-                    field_put_text(document, "name", about.name) &&
-                    field_put_text(document, "kind", about.kind) &&
-                    field_put_text(document, "state", about.state);
-    complete = field_put(document, "cases", cases) && complete;
-    status = complete ? cases_append(store, &about, kind, filter, cases, err) : no_memory(err);
-    study_status_clear(&about);
+    bool one = filter->case_number >= 0;
+    uint64_t first = one ? (uint64_t)filter->case_number : 0;
+    uint64_t end = one ? first + 1 : aggregate.about.cases;
+    cJSON *cases = NULL, *document = aggregate_head(&aggregate, false, &cases);
+    status = document ? 0 : no_memory(err);
+    for (uint64_t c = first; c < end && !status; c++) {
+        cJSON *item = NULL;
+        status = aggregate_curves_case(store, &aggregate, c, filter->quantity, &item, err);
+        if (!status && !cJSON_AddItemToArray(cases, item)) {
+            cJSON_Delete(item);
+            status = no_memory(err);
+        }
+    }
+    aggregate_end(&aggregate);
     if (status) {
         cJSON_Delete(document);
         return status;

@@ -2,53 +2,21 @@
  *
  * The errors of a curve are sizes over all its points: the statistical one is |standard error|/|y|,
  * the deviation from a theory |y - theory|/|theory|, |.| being the root of the sum of squares over
- * the points where both are known. A case's statistical error is that of its main curve, the first
- * one that has an error and a theory beside it, or else the first one with an error at all.
+ * the points where both are known; those of mesh and model are in report_series.h. A case's errors
+ * are those of its main curve, the first one that has an error and a theory beside it, or else the
+ * first one with an error at all.
  * Statistical errors fall with the square root of the realisations, so that half the error costs
  * three times what was spent. */
 #include "worker/aggregate.h"
 #include "worker/flat.h"
+#include "worker/report_series.h"
 #include "worker/wire_field.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Sums of squares of a quotient: over the points where both numbers are known. */
-struct quotient {
-    double above, below;
-};
-
-/* Arrays of equal length, or matrices row by row. minus (NULL: 0) is taken from above. */
-static void quotient_add(struct quotient *sums, const cJSON *above, const cJSON *minus,
-                         const cJSON *below) {
-    const cJSON *a = above ? above->child : NULL, *b = below ? below->child : NULL;
-    const cJSON *m = minus ? minus->child : NULL;
-    for (; a && b && (m || !minus); a = a->next, b = b->next, m = m ? m->next : NULL) {
-        if (cJSON_IsArray(a) && cJSON_IsArray(b)) {
-            quotient_add(sums, a, m, b);
-        } else if (cJSON_IsNumber(a) && cJSON_IsNumber(b) && (!minus || cJSON_IsNumber(m))) {
-            double difference = a->valuedouble - (minus ? m->valuedouble : 0);
-            sums->above += difference * difference;
-            sums->below += b->valuedouble * b->valuedouble;
-        }
-    }
-}
-
-/* NaN where nothing is known. */
-static double quotient_value(const struct quotient *sums) {
-    return sums->below > 0 ? sqrt(sums->above / sums->below) : (double)NAN;
-}
-
 static double curve_error(const cJSON *curve) {
-    struct quotient sums = {0};
-    quotient_add(&sums, field_at(curve, "standard_error"), NULL, field_at(curve, "y"));
-    return quotient_value(&sums);
-}
-
-static double curve_discretisation(const cJSON *curve) {
-    struct quotient sums = {0};
-    quotient_add(&sums, field_at(curve, "discretisation_error"), NULL, field_at(curve, "y"));
-    return quotient_value(&sums);
+    return relative_size(field_at(curve, "standard_error"), NULL, field_at(curve, "y"));
 }
 
 static bool put_number(cJSON *object, const char *key, double number) {
@@ -66,30 +34,48 @@ static cJSON *curve_deviations(const cJSON *curve) {
     bool complete = deviations != NULL;
     const cJSON *theory;
     cJSON_ArrayForEach(theory, field_at(curve, "theory")) {
-        struct quotient sums = {0};
-        quotient_add(&sums, field_at(curve, "y"), theory, theory);
-        complete = complete && put_number(deviations, theory->string, quotient_value(&sums));
+        double deviation = relative_size(field_at(curve, "y"), theory, theory);
+        complete = complete && put_number(deviations, theory->string, deviation);
     }
     return fields_finish(deviations, complete);
 }
 
-static cJSON *curve_report(const cJSON *curve) {
-    cJSON *report = cJSON_CreateObject();
-    return fields_finish(
-        report, report && put_copy(report, "quantity", curve) &&
-                    put_copy(report, "series", curve) && put_copy(report, "model", curve) &&
-                    put_copy(report, "level", curve) &&
-                    put_number(report, "statistical_error", curve_error(curve)) &&
-                    put_number(report, "discretisation_error", curve_discretisation(curve)) &&
-                    field_put(report, "theory_deviation", curve_deviations(curve)));
+/* Root of the sum of squares of those that are known. NaN without a statistical one. */
+static double whole_error(double statistical, const struct series_errors *errors) {
+    double discretisation = isnan(errors->discretisation) ? 0 : errors->discretisation;
+    double model = isnan(errors->model) ? 0 : errors->model;
+    return sqrt(statistical * statistical + discretisation * discretisation + model * model);
 }
 
-static cJSON *curve_reports(const cJSON *curves) {
+static bool put_curve_errors(cJSON *report, const cJSON *curves, const cJSON *curve) {
+    struct series_errors errors;
+    double statistical = curve_error(curve);
+    return series_errors(curves, curve, &errors) &&
+           put_number(report, "statistical_error", statistical) &&
+           put_number(report, "discretisation_error", errors.discretisation) &&
+           put_number(report, "model_error", errors.model) &&
+           put_number(report, "total_error", whole_error(statistical, &errors)) &&
+           field_put(report, "theory_deviation", curve_deviations(curve));
+}
+
+static cJSON *curve_report(const cJSON *curves, const cJSON *curve, double seconds) {
+    static const char *const PLACE[] = {"quantity", "series", "model", "level", "pressure"};
+    cJSON *report = cJSON_CreateObject();
+    bool complete = report != NULL;
+    for (size_t n = 0; n < sizeof PLACE / sizeof *PLACE; n++) {
+        complete = complete && put_copy(report, PLACE[n], curve);
+    }
+    complete = complete && put_number(report, "seconds", seconds * series_share(curves, curve)) &&
+               put_curve_errors(report, curves, curve);
+    return fields_finish(report, complete);
+}
+
+static cJSON *curve_reports(const cJSON *curves, double seconds) {
     cJSON *reports = cJSON_CreateArray();
     bool complete = reports != NULL;
     const cJSON *curve;
     cJSON_ArrayForEach(curve, curves) {
-        cJSON *report = complete ? curve_report(curve) : NULL;
+        cJSON *report = complete ? curve_report(curves, curve, seconds) : NULL;
         complete = report && cJSON_AddItemToArray(reports, report);
         if (!complete) {
             cJSON_Delete(report);
@@ -153,74 +139,74 @@ static bool put_cost(cJSON *report, const struct case_cost *cost) {
            put_number(report, "seconds_per_realisation", each);
 }
 
-static bool put_errors(cJSON *report, const struct case_cost *cost, const cJSON *document) {
-    const cJSON *curves = field_at(document, "curves"), *main = main_curve(curves);
+/* Of the main curve; without one, of nothing. */
+static bool put_errors(cJSON *report, const cJSON *main, double seconds, const cJSON *curves) {
+    static const char *const PLACE[] = {"series", "model", "level"};
     const cJSON *quantity = field_at(main, "quantity");
-    double halving = main ? 3.0 * cost->seconds : (double)NAN;
-    return field_put(report, "main_curve",
-                     quantity ? cJSON_Duplicate(quantity, true) : cJSON_CreateNull()) &&
-           put_number(report, "statistical_error", main ? curve_error(main) : (double)NAN) &&
-           put_number(report, "discretisation_error",
-                      main ? curve_discretisation(main) : (double)NAN) &&
-           field_put(report, "model_error", cJSON_CreateNull()) &&
-           field_put(report, "theory_deviation",
-                     main ? curve_deviations(main) : cJSON_CreateNull()) &&
-           put_number(report, "seconds_to_halve_error", halving) &&
-           field_put(report, "curves", curve_reports(curves)) &&
+    bool complete = field_put(report, "main_curve",
+                              quantity ? cJSON_Duplicate(quantity, true) : cJSON_CreateNull());
+    for (size_t n = 0; n < sizeof PLACE / sizeof *PLACE; n++) {
+        complete = complete && put_copy(report, PLACE[n], main);
+    }
+    if (complete && main) {
+        complete = put_curve_errors(report, curves, main);
+    } else {
+        static const char *const ERRORS[] = {"statistical_error", "discretisation_error",
+                                             "model_error", "total_error", "theory_deviation"};
+        for (size_t n = 0; n < sizeof ERRORS / sizeof *ERRORS; n++) {
+            complete = complete && field_put(report, ERRORS[n], cJSON_CreateNull());
+        }
+    }
+    return complete &&
+           put_number(report, "seconds_to_halve_error", main ? 3.0 * seconds : (double)NAN);
+}
+
+static bool put_document(cJSON *report, const struct case_cost *cost, const cJSON *document) {
+    const cJSON *curves = field_at(document, "curves");
+    return put_errors(report, main_curve(curves), cost->seconds, curves) &&
+           field_put(report, "curves", curve_reports(curves, cost->seconds)) &&
            field_put(report, "scalars", scalar_reports(field_at(document, "scalars")));
 }
 
-static int case_report(struct store *store, const char *study, const struct case_cost *cost,
-                       cJSON *cases, struct error *err) {
+int aggregate_report_case(struct store *store, const struct aggregate *aggregate,
+                          uint64_t case_number, cJSON **out, struct error *err) {
     struct case_info info = {0};
+    struct case_cost cost;
     cJSON *document = NULL;
-    int status = store_case(store, study, cost->case_number, &info, err);
+    int status = store_cost(store, aggregate->about.id, case_number, &cost, err);
+    if (!status) {
+        status = aggregate_open(store, aggregate, case_number, &info, &document, err);
+    }
     if (status) {
         return status;
     }
-    status = aggregate_case(store, study, cost->case_number, &document, err);
-    if (!status) {
-        cJSON *report = cJSON_CreateObject();
-        bool complete = report && put_cost(report, cost) &&
-                        field_put(report, "parameters", flat_parameters(info.parameters)) &&
-                        put_errors(report, cost, document) && cJSON_AddItemToArray(cases, report);
-        if (!complete) {
+    cJSON *report = cJSON_CreateObject();
+    bool complete = report && put_cost(report, &cost) &&
+                    field_put(report, "parameters", flat_parameters(info.parameters)) &&
+                    put_document(report, &cost, document);
+    cJSON_Delete(document);
+    case_info_clear(&info);
+    *out = fields_finish(report, complete);
+    return *out ? 0 : error_set(err, ERROR_MEMORY, "no memory left for a report");
+}
+
+int aggregate_report(struct store *store, const char *study, cJSON **out, struct error *err) {
+    struct aggregate aggregate;
+    int status = aggregate_begin(store, study, &aggregate, err);
+    if (status) {
+        return status;
+    }
+    cJSON *cases = NULL, *document = aggregate_head(&aggregate, true, &cases);
+    status = document ? 0 : error_set(err, ERROR_MEMORY, "no memory left for a report");
+    for (uint64_t c = 0; c < aggregate.about.cases && !status; c++) {
+        cJSON *report = NULL;
+        status = aggregate_report_case(store, &aggregate, c, &report, err);
+        if (!status && !cJSON_AddItemToArray(cases, report)) {
             cJSON_Delete(report);
             status = error_set(err, ERROR_MEMORY, "no memory left for a report");
         }
     }
-    cJSON_Delete(document);
-    case_info_clear(&info);
-    return status;
-}
-
-static cJSON *report_begin(const struct study_status *about, cJSON **cases) {
-    cJSON *document = cJSON_CreateObject();
-    bool complete = document && field_put_text(document, "study", about->id) &&
-                    field_put_text(document, "name", about->name) &&
-                    field_put_text(document, "kind", about->kind) &&
-                    field_put_text(document, "state", about->state) &&
-                    put_number(document, "seconds", about->seconds);
-    *cases = complete ? cJSON_AddArrayToObject(document, "cases") : NULL;
-    return fields_finish(document, *cases != NULL);
-}
-
-int aggregate_report(struct store *store, const char *study, cJSON **out, struct error *err) {
-    struct study_status about = {0};
-    int status = store_status(store, study, &about, err);
-    if (status) {
-        return status;
-    }
-    struct case_cost *costs = NULL;
-    size_t count = 0;
-    cJSON *cases = NULL, *document = report_begin(&about, &cases);
-    study_status_clear(&about);
-    status = document ? store_costs(store, study, &costs, &count, err)
-                      : error_set(err, ERROR_MEMORY, "no memory left for a report");
-    for (size_t n = 0; n < count && !status; n++) {
-        status = case_report(store, study, &costs[n], cases, err);
-    }
-    free(costs);
+    aggregate_end(&aggregate);
     if (status) {
         cJSON_Delete(document);
         return status;

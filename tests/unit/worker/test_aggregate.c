@@ -260,6 +260,131 @@ static void report_of_an_empty_study_is_null(void **state) {
     fixture_close(&fixture);
 }
 
+/* A contact study of two cases, of which the tests run the first: both models, three meshes. */
+static const char CONTACT_STUDY[] =
+    "{\"name\":\"pressed\",\"kind\":\"contact\",\"seed\":5,\"realisations\":3,\"surface\":{"
+    "\"dimension\":1,\"hurst\":[0.8,0.5],\"wavelength_ratio\":4,\"length_ratio\":2},\"contact\":{"
+    "\"model\":[\"halfspace\",\"layered\"],\"levels\":[4,8,16],\"pressures\":{\"to\":0.2,"
+    "\"steps\":4}}}";
+
+/* An entry of the report's list of curves; the first one of these. */
+static const cJSON *reported(const cJSON *report, const char *quantity, const char *series,
+                             const char *model, double level) {
+    const cJSON *curve;
+    cJSON_ArrayForEach(curve, json_at(report, "/cases/0/curves")) {
+        if (strcmp(cJSON_GetStringValue(json_at(curve, "/quantity")), quantity) == 0 &&
+            strcmp(cJSON_GetStringValue(json_at(curve, "/series")), series) == 0 &&
+            strcmp(cJSON_GetStringValue(json_at(curve, "/model")), model) == 0 &&
+            number_at(curve, "/level") == level) {
+            return curve;
+        }
+    }
+    fail_msg("no %s %s %s %g in the report", quantity, series, model, level);
+    return NULL;
+}
+
+static const cJSON *drawn(const cJSON *document, const char *model, double level) {
+    const cJSON *curve;
+    cJSON_ArrayForEach(curve, json_at(document, "/cases/0/curves")) {
+        if (strcmp(cJSON_GetStringValue(json_at(curve, "/quantity")), "contact_area") == 0 &&
+            strcmp(cJSON_GetStringValue(json_at(curve, "/series")), "edges") == 0 &&
+            strcmp(cJSON_GetStringValue(json_at(curve, "/model")), model) == 0 &&
+            number_at(curve, "/level") == level) {
+            return curve;
+        }
+    }
+    fail_msg("no curve %s %g", model, level);
+    return NULL;
+}
+
+/* Size of y - (reference - error) over that of the latter; error may be null. */
+static double deviation(const cJSON *curve, const cJSON *reference, const char *error) {
+    double above = 0, below = 0;
+    for (int k = 0; k < 4; k++) {
+        char place[64];
+        snprintf(place, sizeof place, "/y/%d", k);
+        double y = number_at(curve, place), limit = number_at(reference, place);
+        snprintf(place, sizeof place, "/%s/%d", error, k);
+        limit -= *error ? number_at(reference, place) : 0;
+        above += (y - limit) * (y - limit);
+        below += limit * limit;
+    }
+    return sqrt(above / below);
+}
+
+/* The report of contact: errors of coarse meshes count from the finest one's limit, those of a
+ * model from the most complete one on the same mesh, and the seconds of all parts add up. */
+static void report_tells_levels_and_models_apart(void **state) {
+    (void)state;
+    struct fixture fixture;
+    struct error err = {0};
+    cJSON *report = NULL;
+    fixture_open(&fixture);
+    fixture_submit(&fixture, CONTACT_STUDY, 3, NULL, 0);
+    run_one(&fixture);
+    assert_int_equal(aggregate_report(fixture.store, fixture.study, &report, &err), 0);
+    cJSON *document = curves(&fixture, 0, NULL);
+    static const char *const MODELS[] = {"halfspace", "layered"};
+    static const double LEVELS[] = {4, 8, 16};
+    double seconds = 0;
+    for (int m = 0; m < 2; m++) {
+        for (int l = 0; l < 3; l++) {
+            const cJSON *curve = drawn(document, MODELS[m], LEVELS[l]);
+            const cJSON *entry = reported(report, "contact_area", "edges", MODELS[m], LEVELS[l]);
+            /* the same few operations: equal up to their rounding */
+            double expected =
+                deviation(curve, drawn(document, MODELS[m], 16), "discretisation_error");
+            assert_true(fabs(number_at(entry, "/discretisation_error") - expected) <= 1e-12);
+            seconds += number_at(entry, "/seconds");
+            if (m == 0) {
+                expected = deviation(curve, drawn(document, "layered", LEVELS[l]), "");
+                assert_true(fabs(number_at(entry, "/model_error") - expected) <= 1e-12);
+            } else { /* the errors of the others count from it */
+                assert_true(cJSON_IsNull(json_at(entry, "/model_error")));
+            }
+            assert_true(number_at(entry, "/total_error") >= number_at(entry, "/statistical_error"));
+        }
+    }
+    assert_true(fabs(seconds / number_at(report, "/cases/0/seconds") - 1) <= 1e-12);
+    /* twice the points, and more iterations, take more than twice as long */
+    assert_true(
+        number_at(reported(report, "contact_area", "edges", "halfspace", 16), "/seconds") >
+        2 * number_at(reported(report, "contact_area", "edges", "halfspace", 8), "/seconds"));
+    /* the case has those of its main curve */
+    const cJSON *entry = reported(report, "contact_area", "edges", "halfspace", 16);
+    assert_true(number_at(report, "/cases/0/model_error") == number_at(entry, "/model_error"));
+    assert_true(number_at(report, "/cases/0/discretisation_error") ==
+                number_at(entry, "/discretisation_error"));
+    cJSON_Delete(document);
+    cJSON_Delete(report);
+    fixture_close(&fixture);
+}
+
+/* A case that has not begun has no curves and no scalars, in a study that has begun and in one that
+ * has not: nothing is merged for it, and the whole table of ten thousand comes at once. */
+static void cases_not_begun_are_empty(void **state) {
+    (void)state;
+    struct fixture fixture;
+    struct error err = {0};
+    cJSON *report = NULL;
+    fixture_open(&fixture);
+    fixture_submit(&fixture, CONTACT_STUDY, 3, NULL, 0);
+    run_one(&fixture);
+    cJSON *document = curves(&fixture, -1, NULL);
+    assert_true(cJSON_GetArraySize(json_at(document, "/cases/0/curves")) > 0);
+    assert_int_equal(cJSON_GetArraySize(json_at(document, "/cases/1/curves")), 0);
+    assert_int_equal(cJSON_GetArraySize(json_at(document, "/cases/1/scalars")), 0);
+    assert_true(number_at(document, "/cases/1/realisations") == 0);
+    assert_true(number_at(document, "/cases/1/parameters/~1surface~1hurst") == 0.5);
+    assert_int_equal(aggregate_report(fixture.store, fixture.study, &report, &err), 0);
+    assert_int_equal(cJSON_GetArraySize(json_at(report, "/cases/1/curves")), 0);
+    assert_true(cJSON_IsNull(json_at(report, "/cases/1/main_curve")));
+    assert_true(cJSON_IsNull(json_at(report, "/cases/1/model_error")));
+    cJSON_Delete(document);
+    cJSON_Delete(report);
+    fixture_close(&fixture);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(document_has_the_form_of_the_contract),
@@ -269,6 +394,8 @@ int main(void) {
         cmocka_unit_test(csv_is_one_table),
         cmocka_unit_test(report_agrees_with_the_curves),
         cmocka_unit_test(report_of_an_empty_study_is_null),
+        cmocka_unit_test(report_tells_levels_and_models_apart),
+        cmocka_unit_test(cases_not_begun_are_empty),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
