@@ -166,15 +166,20 @@ static int insert_scalar(const struct target *target, const cJSON *scalar, struc
     return status ? status : run_bound(target->store, statement, err);
 }
 
+/* Values of a point, in the order of its columns. */
+enum { POINT_X, POINT_X2, POINT_Y, POINT_VALUES = 6 };
+static const char *const POINT_KEYS[POINT_VALUES] = {
+    "x", "x2", "y", "standard_error", "discretisation_error", "model_error"};
+
 static int insert_point(struct store *store, int64_t curve, int64_t number,
-                        const cJSON *const values[4], struct error *err) {
+                        const cJSON *const values[POINT_VALUES], struct error *err) {
     sqlite3_stmt *statement = NULL;
-    int status =
-        store_query(store, &statement, err,
-                    "INSERT INTO point (curve_id, number, x, x2, y, standard_error) VALUES "
-                    "(?1, ?2, ?3, ?4, ?5, ?6)",
-                    "ii", curve, number);
-    for (int v = 0; !status && v < 4; v++)
+    int status = store_query(store, &statement, err,
+                             "INSERT INTO point (curve_id, number, x, x2, y, standard_error, "
+                             "discretisation_error, model_error) VALUES (?1, ?2, ?3, ?4, ?5, ?6, "
+                             "?7, ?8)",
+                             "ii", curve, number);
+    for (int v = 0; !status && v < POINT_VALUES; v++)
         if (bind_number(statement, 3 + v, values[v]))
             status = store_error(store, err);
     return status ? status : run_bound(store, statement, err);
@@ -190,29 +195,35 @@ static const cJSON *first_of(const cJSON *object, const char *name) {
 }
 
 /* A row of a matrix: only its non-zero cells become points. */
-static int insert_row(struct store *store, int64_t curve, int64_t *number, const cJSON *x,
-                      const cJSON *x2, const cJSON *y, const cJSON *deviation, struct error *err) {
+static int insert_row(struct store *store, int64_t curve, int64_t *number,
+                      const cJSON *const row[POINT_VALUES], struct error *err) {
+    const cJSON *cell[POINT_VALUES];
     int status = 0;
-    for (; !status && y && x2; y = y->next, x2 = x2->next, deviation = next_of(deviation))
-        if (cJSON_IsNumber(y) && y->valuedouble != 0)
-            status = insert_point(store, curve, (*number)++, (const cJSON *[]){x, x2, y, deviation},
-                                  err);
+    for (int v = 0; v < POINT_VALUES; v++)
+        cell[v] = v < POINT_Y ? row[v] : cJSON_IsArray(row[v]) ? row[v]->child : NULL;
+    while (!status && cell[POINT_Y] && cell[POINT_X2]) {
+        if (cJSON_IsNumber(cell[POINT_Y]) && cell[POINT_Y]->valuedouble != 0)
+            status = insert_point(store, curve, (*number)++, cell, err);
+        for (int v = POINT_X2; v < POINT_VALUES; v++)
+            cell[v] = next_of(cell[v]);
+    }
     return status;
 }
 
 static int insert_points(struct store *store, int64_t curve, const cJSON *document,
                          struct error *err) {
-    const cJSON *x = first_of(document, "x"), *x2 = first_of(document, "x2");
-    const cJSON *y = first_of(document, "y"), *deviation = first_of(document, "standard_error");
+    const cJSON *point[POINT_VALUES];
     int64_t number = 0;
     int status = 0;
-    for (; !status && x && y; x = x->next, y = y->next, deviation = next_of(deviation)) {
-        if (cJSON_IsArray(y))
-            status = insert_row(store, curve, &number, x, x2, y->child,
-                                cJSON_IsArray(deviation) ? deviation->child : NULL, err);
+    for (int v = 0; v < POINT_VALUES; v++)
+        point[v] = first_of(document, POINT_KEYS[v]);
+    while (!status && point[POINT_X] && point[POINT_Y]) {
+        if (cJSON_IsArray(point[POINT_Y]))
+            status = insert_row(store, curve, &number, point, err);
         else
-            status =
-                insert_point(store, curve, number++, (const cJSON *[]){x, NULL, y, deviation}, err);
+            status = insert_point(store, curve, number++, point, err);
+        for (int v = 0; v < POINT_VALUES; v++)
+            point[v] = v == POINT_X2 ? point[v] : next_of(point[v]);
     }
     return status;
 }
@@ -224,13 +235,15 @@ static int insert_curve(const struct target *target, const cJSON *document, stru
     sqlite3_stmt *statement = NULL;
     int status =
         store_query(target->store, &statement, err,
-                    "INSERT INTO curve (study_id, case_number, quantity, series, model, level) "
-                    "VALUES (?, ?, ?, ?, ?, ?6)",
+                    "INSERT INTO curve (study_id, case_number, quantity, series, model, level, "
+                    "pressure) VALUES (?, ?, ?, ?, ?, ?6, ?7)",
                     "iittt", target->study, target->case_number,
                     cJSON_IsString(quantity) ? quantity->valuestring : "",
                     cJSON_IsString(series) ? series->valuestring : "",
                     cJSON_IsString(model) ? model->valuestring : NULL);
-    if (!status && bind_number(statement, 6, cJSON_GetObjectItemCaseSensitive(document, "level")))
+    if (!status &&
+        (bind_number(statement, 6, cJSON_GetObjectItemCaseSensitive(document, "level")) ||
+         bind_number(statement, 7, cJSON_GetObjectItemCaseSensitive(document, "pressure"))))
         status = store_error(target->store, err);
     if (!status)
         status = run_bound(target->store, statement, err);

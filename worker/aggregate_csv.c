@@ -81,14 +81,18 @@ static const cJSON *next(const cJSON *item) {
 }
 
 /* Places in the columns of one curve (or of one row of a matrix). */
+enum { VALUES = 4 };
+static const char *const VALUE_KEYS[VALUES] = {"y", "standard_error", "discretisation_error",
+                                               "model_error"};
 struct place {
-    const cJSON *y, *error, *discretisation, *theory[THEORIES_MOST];
+    const cJSON *value[VALUES], *theory[THEORIES_MOST];
 };
 
 static struct place place_begin(const cJSON *curve, const struct theories *theories) {
-    struct place place = {.y = first(field_at(curve, "y")),
-                          .error = first(field_at(curve, "standard_error")),
-                          .discretisation = first(field_at(curve, "discretisation_error"))};
+    struct place place;
+    for (size_t n = 0; n < VALUES; n++) {
+        place.value[n] = first(field_at(curve, VALUE_KEYS[n]));
+    }
     for (size_t n = 0; n < theories->count; n++) {
         place.theory[n] = first(field_at(field_at(curve, "theory"), theories->names[n]));
     }
@@ -96,9 +100,10 @@ static struct place place_begin(const cJSON *curve, const struct theories *theor
 }
 
 static struct place place_inner(const struct place *row, size_t theories) {
-    struct place place = {.y = first(row->y),
-                          .error = first(row->error),
-                          .discretisation = first(row->discretisation)};
+    struct place place;
+    for (size_t n = 0; n < VALUES; n++) {
+        place.value[n] = first(row->value[n]);
+    }
     for (size_t n = 0; n < theories; n++) {
         place.theory[n] = first(row->theory[n]);
     }
@@ -106,9 +111,9 @@ static struct place place_inner(const struct place *row, size_t theories) {
 }
 
 static void place_next(struct place *place, size_t theories) {
-    place->y = next(place->y);
-    place->error = next(place->error);
-    place->discretisation = next(place->discretisation);
+    for (size_t n = 0; n < VALUES; n++) {
+        place->value[n] = next(place->value[n]);
+    }
     for (size_t n = 0; n < theories; n++) {
         place->theory[n] = next(place->theory[n]);
     }
@@ -117,17 +122,19 @@ static void place_next(struct place *place, size_t theories) {
 /* One line: the curve, its point (x2 NULL but in a matrix), its values. */
 static void put_line(FILE *file, const cJSON *number, const cJSON *curve, const cJSON *x,
                      const cJSON *x2, const struct place *place, size_t theories) {
-    static const char *const labels[] = {"quantity", "series", "model", "level"};
+    static const char *const labels[] = {"quantity", "series", "model", "level", "pressure"};
     put_number(file, number);
     for (size_t n = 0; n < sizeof labels / sizeof *labels; n++) {
         fputc(',', file);
         put_value(file, field_at(curve, labels[n]));
     }
-    enum { VALUES = 5 };
-    const cJSON *const values[VALUES] = {x, x2, place->y, place->error, place->discretisation};
+    fputc(',', file);
+    put_number(file, x);
+    fputc(',', file);
+    put_number(file, x2);
     for (size_t n = 0; n < VALUES; n++) {
         fputc(',', file);
-        put_number(file, values[n]);
+        put_number(file, place->value[n]);
     }
     for (size_t n = 0; n < theories; n++) {
         fputc(',', file);
@@ -141,7 +148,7 @@ static void put_curve(FILE *file, const cJSON *number, const cJSON *curve,
     struct place place = place_begin(curve, theories);
     const cJSON *x = first(field_at(curve, "x"));
     for (; x; x = next(x), place_next(&place, theories->count)) {
-        if (!cJSON_IsArray(place.y)) {
+        if (!cJSON_IsArray(place.value[0])) {
             put_line(file, number, curve, x, NULL, &place, theories->count);
             continue;
         }
@@ -163,7 +170,10 @@ int aggregate_csv(const cJSON *curves, char **out, struct error *err) {
         return error_set(err, ERROR_MEMORY, "no memory left for a table");
     }
     theories_collect(&theories, curves);
-    fputs("case,quantity,series,model,level,x,x2,y,standard_error,discretisation_error", file);
+    fputs("case,quantity,series,model,level,pressure,x,x2", file);
+    for (size_t n = 0; n < VALUES; n++) {
+        fprintf(file, ",%s", VALUE_KEYS[n]);
+    }
     for (size_t n = 0; n < theories.count; n++) {
         fprintf(file, ",theory_%s", theories.names[n]);
     }

@@ -102,7 +102,8 @@ CREATE TABLE curve (
     quantity TEXT NOT NULL,
     series TEXT NOT NULL,
     model TEXT,
-    level REAL
+    level REAL,
+    pressure REAL
 );
 CREATE INDEX curve_case ON curve(study_id, case_number, quantity);
 CREATE TABLE point (
@@ -112,6 +113,8 @@ CREATE TABLE point (
     x2 REAL,                               -- second abscissa of a matrix
     y REAL,
     standard_error REAL,
+    discretisation_error REAL,
+    model_error REAL,
     PRIMARY KEY (curve_id, number)
 ) WITHOUT ROWID;
 
@@ -125,7 +128,7 @@ CREATE VIEW case_scalars AS
     FROM scalar c JOIN study s ON s.id = c.study_id;
 CREATE VIEW curve_points AS
     SELECT s.public AS study, c.case_number AS "case", c.quantity, c.series, p.x, p.y, p.standard_error,
-           p.x2, c.model, c.level
+           p.x2, c.model, c.level, c.pressure, p.discretisation_error, p.model_error
     FROM study s JOIN curve c ON c.study_id = s.id JOIN point p ON p.curve_id = c.id;
 CREATE VIEW realisation_scalars AS
     SELECT s.public AS study, j.case_number AS "case", j.first + one.key AS realisation,
