@@ -27,6 +27,7 @@ int command_serve(int argc, char **argv);
 int command_work(int argc, char **argv);
 int command_generate(int argc, char **argv);
 int command_characterise(int argc, char **argv);
+int command_press(int argc, char **argv);
 
 /* Set by SIGINT and SIGTERM once signals_catch was called; the second SIGINT ends at once. */
 extern atomic_int stop_requested;

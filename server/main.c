@@ -62,6 +62,15 @@ static const struct command COMMANDS[] = {
      command_characterise,
      "  --dx D              distance of points (1)\n"
      "  --format FORMAT     text or json (text)\n"},
+    {"press", "FILE", "contact of a height map in a file, periodic, with a rigid flat",
+     command_press,
+     "  --dx D              distance of points (1)\n"
+     "  --loads LIST        rising loads p/(E* h') (0.01,0.02,0.05,0.1,0.2,0.3)\n"
+     "  --model MODEL       halfspace or layered (halfspace)\n"
+     "  --poisson NU        Poisson's ratio, layered (0.3)\n"
+     "  --height LENGTHS    height of the block in lengths of the map (infinite; layered 1.5)\n"
+     "  --format FORMAT     text or json (text)\n"
+     "  -o FILE             write the pressures p/(E* h') of the last load there, as a map\n"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
 

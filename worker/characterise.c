@@ -3,14 +3,11 @@
 #include "server/command.h"
 #include "server/options.h"
 #include "worker/characterisation.h"
-#include "worker/height_map.h"
-#include <math.h>
+#include "worker/map_file.h"
 #include <stdlib.h>
 #include <string.h>
 
 static const char NAME[] = "characterise";
-static const size_t FILE_MOST = (size_t)1 << 36; /* bytes; 2^31 points as text fit */
-
 struct options {
     const char *path;
     double dx; /* 0: not given */
@@ -23,12 +20,8 @@ static bool read_options(int argc, char **argv, struct options *out) {
         {"dx", OPTION_TEXT, &dx}, {"format", OPTION_TEXT, &format}, {NULL, OPTION_FLAG, NULL}};
     if (!options_parse(argc, argv, rows, 1, 1, &out->path))
         return false;
-    if (dx != NULL) {
-        char *stop;
-        out->dx = strtod(dx, &stop);
-        if (stop == dx || *stop != '\0' || !(out->dx > 0 && isfinite(out->dx)))
-            return usage_error(NAME, "--dx %.40s is not a number above 0", dx);
-    }
+    if (!map_spacing(NAME, dx, &out->dx))
+        return false;
     out->json = strcmp(format, "json") == 0;
     if (!out->json && strcmp(format, "text") != 0)
         return usage_error(NAME, "--format %.40s is not json or text", format);
@@ -60,20 +53,9 @@ int command_characterise(int argc, char **argv) {
     struct options options = {0};
     struct height_map map = {0};
     struct error err = {0};
-    char *text = NULL;
-    size_t size;
     if (!read_options(argc, argv, &options))
         return EXIT_USAGE;
-    int status = file_read(options.path, FILE_MOST, &text, &size, &err);
-    if (status == 0) {
-        enum height_map_format format = height_map_format_of(options.path);
-        if (format == HEIGHT_MAP_FORMATS)
-            format = size > 0 && text[0] == '\x93' ? HEIGHT_MAP_NPY : HEIGHT_MAP_CSV;
-        status = height_map_parse(&map, format, text, size, options.dx, &err);
-        if (status != 0)
-            error_context(&err, "%s", options.path);
-    }
-    free(text);
+    int status = map_file_read(&map, options.path, options.dx, &err);
     if (status == 0)
         status = print(&options, &map, &err);
     height_map_clear(&map);

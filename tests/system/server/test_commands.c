@@ -3,6 +3,8 @@
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
+#include <cjson/cJSON.h>
+#include <math.h>
 #include <signal.h>
 #include <sqlite3.h>
 #include <stdio.h>
@@ -69,6 +71,12 @@ static void wrong_usage_and_input(void **state) {
         {"$RUGO generate --case 7 one.json", 2, "there is no case 7"},
         {"$RUGO characterise text.csv", 2, "text.csv"},
         {"$RUGO characterise absent.npy", 2, "absent.npy"},
+        {"$RUGO press absent.npy", 2, "absent.npy"},
+        {"$RUGO press text.csv", 2, "text.csv"},
+        {"$RUGO press --loads 0.2,0.1 text.csv", 2, "--loads 0.2,0.1: not up to 1000 rising"},
+        {"$RUGO press --model steel text.csv", 2, "--model steel is not halfspace or layered"},
+        {"$RUGO press --poisson 0.5 text.csv", 2, "--poisson 0.5 is not a number in [0, 0.4999]"},
+        {"printf '1,1\\n1,1\\n' > flat.csv; $RUGO press flat.csv", 2, "flat.csv: the map is flat"},
         {"mkdir -p d && $RUGO run --db d one.json", 2, "is not a file"},
         {"echo junkjunkjunkjunk > junk.db && $RUGO status --db junk.db", 1,
          "damaged or no database"},
@@ -87,9 +95,9 @@ static void wrong_usage_and_input(void **state) {
 
 static void every_command_has_help(void **state) {
     (void)state;
-    static const char *const COMMANDS[] = {"run",    "check",    "submit",      "status", "curves",
-                                           "report", "snapshot", "cancel",      "retry",  "serve",
-                                           "work",   "generate", "characterise"};
+    static const char *const COMMANDS[] = {"run",    "check",    "submit",       "status", "curves",
+                                           "report", "snapshot", "cancel",       "retry",  "serve",
+                                           "work",   "generate", "characterise", "press"};
     for (size_t c = 0; c < sizeof COMMANDS / sizeof *COMMANDS; c++) {
         char line[80], usage[80];
         snprintf(line, sizeof line, "$RUGO %s --help", COMMANDS[c]);
@@ -217,6 +225,25 @@ static void a_surface_goes_out_and_in(void **state) {
         0);
 }
 
+/* A plane wave in a file is Westergaard's: (2/pi) asin(sqrt(sqrt(2) load)). */
+static void a_map_in_a_file_is_pressed(void **state) {
+    (void)state;
+    assert_int_equal(
+        shell("awk 'BEGIN { for (i = 0; i < 256; i++) print cos(i * 3.14159265358979 / "
+              "128) }' > wave.csv && $RUGO press wave.csv --loads 0.1,0.4,5 --format "
+              "json > wave.json && $RUGO press wave.csv --model layered -o p.npy && "
+              "$RUGO characterise p.npy"),
+        0);
+    char *text = slurp("wave.json");
+    cJSON *document = cJSON_Parse(text);
+    const cJSON *edges = cJSON_GetObjectItem(document, "edges");
+    const double exact[] = {0.245442906579788, 0.541937864805995, 1};
+    for (int l = 0; l < 3; l++) /* measured: 1e-4 */
+        assert_true(fabs(cJSON_GetArrayItem(edges, l)->valuedouble - exact[l]) < 1e-3);
+    cJSON_Delete(document);
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wrong_usage_and_input),
@@ -226,6 +253,7 @@ int main(void) {
         cmocka_unit_test(output_that_cannot_be_written_is_an_error),
         cmocka_unit_test(a_full_disk_loses_nothing),
         cmocka_unit_test(a_surface_goes_out_and_in),
+        cmocka_unit_test(a_map_in_a_file_is_pressed),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }
