@@ -99,9 +99,9 @@ static double gap_of(double rise) {
 }
 
 /* Half the width of a profile's patch of one node, in steps: the crossing's part of it; NaN where
- * the inside node is not alone, or another patch is near enough to bend the gap beside it. */
+ * the inside node is not alone. */
 static double lone_in_profile(const struct crossing *x, const double *rise) {
-    if (rise[x->before] > 0 || rise[x->far_before] > 0 || rise[x->behind] > 0)
+    if (rise[x->before] > 0)
         return NAN;
     return edge_lone(sqrt(rise[x->inside]) * x->step, gap_of(rise[x->before]),
                      gap_of(rise[x->outside]));
@@ -123,7 +123,9 @@ static double lone_in_surface(const struct crossing *x, const double *rise) {
 static double crossing_share(const struct crossing *x, const struct edge_law *law,
                              const double *rise, bool profile) {
     double lone = profile ? lone_in_profile(x, rise) : lone_in_surface(x, rise);
-    if (!isnan(lone))
+    /* In a profile another patch, two steps away, bends the gap beside this one. */
+    bool crowded = profile && (rise[x->far_before] > 0 || rise[x->behind] > 0);
+    if (!isnan(lone) && !crowded)
         return lone;
     double unit = cbrt(x->step);
     double p1 = rise[x->inside], g1 = fmax(0, -rise[x->outside]) / (unit * unit);
@@ -133,7 +135,8 @@ static double crossing_share(const struct crossing *x, const struct edge_law *la
     }
     bool known = rise[x->before] > 0 && rise[x->far_before] > 0; /* in two nodes it does harm */
     double share = edge_share(law, p1, known ? rise[x->before] : 0, g1);
-    return rise[x->before] > 0 ? share : fmax(0, share); /* no line has a length below 0 */
+    /* Alone on its line: no length is below 0, nor below that of the node alone. */
+    return rise[x->before] > 0 ? share : fmax(fmax(0, lone), share);
 }
 
 /* One of the two families of grid lines: nodes of a line are `along` apart, lines `beside`. */

@@ -2,6 +2,7 @@
 #include "core/contact/descent.h"
 #include "core/sum.h"
 #include <fftw3.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -142,7 +143,7 @@ static void tell_full(struct contact *c, double pressure, struct contact_state *
     struct descent *d = &c->descent;
     transform_filter(d->transform, d->stiff, pressure_unit(c), d->z, c->pressure);
     for (size_t i = 0; i < d->n; i++) {
-        c->pressure[i] = fmax(0, c->pressure[i] + pressure);
+        c->pressure[i] = fmax(DBL_MIN, c->pressure[i] + pressure); /* in contact, if barely */
         c->gap[i] = c->opening[i] = 0;
     }
     out->stiffness = INFINITY;
@@ -163,7 +164,7 @@ static void tell_partial(struct contact *c, const struct descent_end *end,
         sum_add(&gap, g);
         c->gap[i] = g * c->unit;
         c->pressure[i] = d->p[i] * pressure_unit(c);
-        out->nodes += d->p[i] > 0;
+        out->nodes += c->pressure[i] > 0;
     }
     out->mean_gap = sum_value(&gap) / (double)d->n * c->unit;
     out->iterations = end->iterations;
