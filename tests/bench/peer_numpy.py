@@ -3,6 +3,7 @@
 
 peer_numpy.py gaussian N REPEATS      a Gaussian surface with its nine-point summits
 peer_numpy.py weibull N ITERATIONS    plain alternation, C = 1 maximum (Perez-Rafols & Almqvist 2019)
+peer_numpy.py contact N LOAD...       half-space contact by the textbook solver (Polonsky & Keer 1999)
 
 Each prints `peer NAME N ms FIGURES...`, one line a variant: plain (as one writes it first) and tuned.
 """
@@ -109,5 +110,47 @@ def run_weibull(n, iterations):
               f"{iterations}, summits {len(summits(z)[0])}, skewness {skewness:.4f}")
 
 
+def press(z, load, p, tolerance):
+    """Polonsky & Keer (1999) with transforms: mean pressure load (E* = 1), cell of unit length, starting from p."""
+    n = z.shape[0]
+    k = 2 * np.pi * np.hypot(np.fft.fftfreq(n, 1 / n)[:, None], np.arange(n // 2 + 1)[None, :])
+    soft = np.where(k > 0, 2 / np.where(k > 0, k, 1), 0)
+    displace = lambda x: fft.irfft2(soft * fft.rfft2(x), s=z.shape)
+    p, t, old, keep = p * load / p.mean(), np.zeros_like(z), 1.0, 0.0
+    for iteration in range(5000):
+        gap = displace(p) - z
+        inside = p > 0
+        gap -= gap[inside].mean()
+        displaced = np.abs(gap + z).max()
+        if max(np.abs(gap[inside]).max(), -gap.min()) <= tolerance * displaced:
+            break
+        size = (gap[inside] ** 2).sum()
+        t = np.where(inside, gap + keep * size / old * t, 0)
+        old = size
+        r = displace(t)
+        r -= r[inside].mean()
+        step = (gap[inside] * t[inside]).sum() / (r[inside] * t[inside]).sum()
+        p = np.maximum(0, np.where(inside, p - step * t, p))
+        outside = (p == 0) & (gap < 0)
+        p[outside] -= step * gap[outside]
+        keep = 0.0 if outside.any() else 1.0
+        p *= load / p.mean()
+    return p, iteration
+
+
+def run_contact(n, *loads):
+    amplitude = spectrum(n)
+    z = gaussian(amplitude, np.random.default_rng(1), True)
+    k = 2 * np.pi * np.hypot(np.fft.fftfreq(n, 1 / n)[:, None], np.arange(n // 2 + 1)[None, :])
+    half = np.abs(fft.rfft2(z, norm="forward")) ** 2
+    slope = np.sqrt((k**2 * half * np.where(np.arange(n // 2 + 1) == 0, 1, 2)).sum())
+    p = np.ones_like(z)
+    for load in loads:
+        middle, _, _, (p, iterations) = timed(lambda: press(z, load * slope, p, 1e-8), 1)
+        print(f"peer contact {n} load {load}: {middle:.0f} ms, {iterations} iterations, nodes {(p > 0).mean():.4f}")
+
+
 if __name__ == "__main__":
+    if sys.argv[1] == "contact":
+        sys.exit(run_contact(int(sys.argv[2]), *map(float, sys.argv[3:])))
     {"gaussian": run_gaussian, "weibull": run_weibull}[sys.argv[1]](int(sys.argv[2]), int(sys.argv[3]))
