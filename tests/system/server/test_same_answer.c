@@ -14,37 +14,43 @@
 
 static unsigned seed;
 
-/* Curves without what names the run. */
-static char *curves_of(const char *database) {
+/* One row out of a database, for what only its views tell. Whoever opens a database after a crash,
+ * or closes it as the last one, keeps others out for a moment: the reader waits for them. */
+static sqlite3_stmt *read_row(const char *database, const char *sql) {
     sqlite3 *db = NULL;
     sqlite3_stmt *row = NULL;
-    char id[32], *text;
     assert_int_equal(sqlite3_open_v2(database, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_prepare_v2(db, "SELECT study FROM study_progress", -1, &row, NULL),
-                     SQLITE_OK);
+    assert_int_equal(sqlite3_busy_timeout(db, 20000), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &row, NULL), SQLITE_OK);
     assert_int_equal(sqlite3_step(row), SQLITE_ROW);
-    snprintf(id, sizeof id, "%s", (const char *)sqlite3_column_text(row, 0));
+    return row;
+}
+
+static void end_row(sqlite3_stmt *row) {
+    sqlite3 *db = sqlite3_db_handle(row);
     sqlite3_finalize(row);
     sqlite3_close(db);
+}
+
+static long log_number(const char *database, const char *sql) {
+    sqlite3_stmt *row = read_row(database, sql);
+    long number = (long)sqlite3_column_int64(row, 0);
+    end_row(row);
+    return number;
+}
+
+/* Curves without what names the run. */
+static char *curves_of(const char *database) {
+    char id[32], *text;
+    sqlite3_stmt *row = read_row(database, "SELECT study FROM study_progress");
+    snprintf(id, sizeof id, "%s", (const char *)sqlite3_column_text(row, 0));
+    end_row(row);
     assert_int_equal(run_rugo("curves", (const char *[]){"curves", "--db", database, id, NULL}), 0);
     text = slurp("curves.out");
     char *cases = strstr(text, "\"cases\":");
     assert_non_null(cases);
     memmove(text, cases, strlen(cases) + 1);
     return text;
-}
-
-/* One number out of a database, for figures that only its log has. */
-static long log_number(const char *database, const char *sql) {
-    sqlite3 *db = NULL;
-    sqlite3_stmt *row = NULL;
-    assert_int_equal(sqlite3_open_v2(database, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &row, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
-    long number = (long)sqlite3_column_int64(row, 0);
-    sqlite3_finalize(row);
-    sqlite3_close(db);
-    return number;
 }
 
 static long attempts_of(const char *database) {
