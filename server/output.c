@@ -45,7 +45,7 @@ static void print_number(FILE *file, const cJSON *value) {
         fprintf(file, "%.17g", value->valuedouble);
 }
 
-/* Columns x[, x2], y, standard_error and each theory; a matrix has a line a cell. */
+/* Columns x[, x2], the values, and each theory; a matrix has a line a cell. */
 static void write_row(FILE *file, const cJSON *x, const cJSON *x2, const cJSON *const *columns,
                       size_t count) {
     print_number(file, x);
@@ -60,22 +60,25 @@ static void write_row(FILE *file, const cJSON *x, const cJSON *x2, const cJSON *
     fputc('\n', file);
 }
 
-enum { THEORIES_MOST = 8 };
+enum { VALUES_MOST = 4, THEORIES_MOST = 8, COLUMNS_MOST = VALUES_MOST + THEORIES_MOST };
 
+/* The errors of mesh and model only where the curve has them. */
 static size_t curve_columns(const cJSON *curve, const cJSON **columns, FILE *file) {
+    static const char *const VALUES[VALUES_MOST] = {"y", "standard_error", "discretisation_error",
+                                                    "model_error"};
     size_t count = 0;
-    columns[count++] = member(curve, "y");
-    columns[count++] = member(curve, "standard_error");
-    fprintf(file, "x%s,y,standard_error", member(curve, "x2") ? ",x2" : "");
-    const cJSON *theory = member(curve, "theory");
-    for (const cJSON *t = theory ? theory->child : NULL; t && count < 2 + THEORIES_MOST;
-         t = t->next) {
-        columns[count++] = t;
+    fprintf(file, "x%s", member(curve, "x2") ? ",x2" : "");
+    for (size_t v = 0; v < VALUES_MOST; v++)
+        if (v < 2 || cJSON_IsArray(member(curve, VALUES[v]))) {
+            columns[count++] = first_of(curve, VALUES[v]);
+            fprintf(file, ",%s", VALUES[v]);
+        }
+    const cJSON *t = first_of(curve, "theory");
+    for (; t && count < COLUMNS_MOST; t = t->next) {
+        columns[count++] = t->child;
         fprintf(file, ",%s", t->string);
     }
     fputc('\n', file);
-    for (size_t c = 0; c < count; c++)
-        columns[c] = columns[c] ? columns[c]->child : NULL;
     return count;
 }
 
@@ -86,19 +89,17 @@ static void advance(const cJSON **columns, size_t count) {
 
 static void write_matrix_row(FILE *file, const cJSON *x, const cJSON *curve,
                              const cJSON *const *columns, size_t count) {
-    const cJSON *cells[2 + THEORIES_MOST];
+    const cJSON *cells[COLUMNS_MOST];
     for (size_t c = 0; c < count; c++)
         cells[c] = columns[c] ? columns[c]->child : NULL;
-    const cJSON *x2 = member(curve, "x2");
-    for (x2 = x2 ? x2->child : NULL; x2; x2 = x2->next, advance(cells, count))
+    for (const cJSON *x2 = first_of(curve, "x2"); x2; x2 = x2->next, advance(cells, count))
         write_row(file, x, x2, cells, count);
 }
 
 static void write_curve(FILE *file, const cJSON *curve) {
-    const cJSON *columns[2 + THEORIES_MOST];
+    const cJSON *columns[COLUMNS_MOST];
     size_t count = curve_columns(curve, columns, file);
-    const cJSON *x = member(curve, "x");
-    for (x = x ? x->child : NULL; x; x = x->next, advance(columns, count)) {
+    for (const cJSON *x = first_of(curve, "x"); x; x = x->next, advance(columns, count)) {
         if (cJSON_IsArray(columns[0]))
             write_matrix_row(file, x, curve, columns, count);
         else
@@ -118,6 +119,8 @@ static void curve_name(const cJSON *one, const cJSON *curve, char *name, size_t 
                 snprintf(name + used, size - (size_t)used, "-%.40s", text_of(curve, PARTS[p], ""));
     if (cJSON_IsNumber(level))
         used += snprintf(name + used, size - (size_t)used, "-%g", level->valuedouble);
+    if (cJSON_IsNumber(member(curve, "pressure")))
+        used += snprintf(name + used, size - (size_t)used, "-at-%g", number_of(curve, "pressure"));
     snprintf(name + used, size - (size_t)used, ".csv");
 }
 
@@ -137,26 +140,55 @@ static int write_case(const cJSON *one, const char *folder, struct error *err) {
     return status;
 }
 
-/* One plot for each quantity of the first case that is no matrix. */
+static int write_plot(const cJSON *curves, const struct plot_request *request, const char *folder,
+                      const char *name, struct error *err) {
+    FILE *file;
+    int status = open_file(&file, folder, name, err);
+    if (status)
+        return status;
+    status = plot_quantity(curves, request, file, err);
+    int closed = close_file(file, folder, name, err);
+    return status ? status : closed;
+}
+
+/* A quantity in several units (patches in the cell, patches per wave) takes a picture each, the
+ * first one under the quantity's own name. The contact area has a second one that shows light
+ * loads. */
+static int write_plots_of(const cJSON *curves, const cJSON *curve, bool first_unit,
+                          const char *folder, struct error *err) {
+    struct plot_request request = {.quantity = text_of(curve, "quantity", ""),
+                                   .y_label = text_of(curve, "y_label", "")};
+    char name[192];
+    snprintf(name, sizeof name, "%.100s%s%.60s.svg", request.quantity, first_unit ? "" : "-",
+             first_unit ? "" : text_of(curve, "series", ""));
+    int status = write_plot(curves, &request, folder, name, err);
+    if (!status && strcmp(request.quantity, "contact_area") == 0) {
+        request.logarithmic = true;
+        status = write_plot(curves, &request, folder, "contact_area-light.svg", err);
+    }
+    return status;
+}
+
+static bool same_text(const cJSON *a, const cJSON *b, const char *name) {
+    return strcmp(text_of(a, name, ""), text_of(b, name, "")) == 0;
+}
+
+/* The quantities of the first case that has begun; no matrices. */
 static int write_plots(const cJSON *curves, const char *folder, struct error *err) {
-    const cJSON *first = member(curves, "cases");
-    const cJSON *list = first && first->child ? member(first->child, "curves") : NULL;
-    const char *last = "";
+    const cJSON *one = first_of(curves, "cases");
+    while (one && one->next && !first_of(one, "curves"))
+        one = one->next;
+    const cJSON *list = first_of(one, "curves");
     int status = 0;
-    for (const cJSON *curve = list ? list->child : NULL; !status && curve; curve = curve->next) {
-        const char *quantity = text_of(curve, "quantity", "");
-        char name[128];
-        FILE *file;
-        if (member(curve, "x2") || strcmp(quantity, last) == 0)
-            continue;
-        last = quantity;
-        snprintf(name, sizeof name, "%.100s.svg", quantity);
-        status = open_file(&file, folder, name, err);
-        if (status)
-            break;
-        status = plot_quantity(curves, quantity, file, err);
-        int closed = close_file(file, folder, name, err);
-        status = status ? status : closed;
+    for (const cJSON *curve = list; !status && curve; curve = curve->next) {
+        bool first_unit = true, drawn = member(curve, "x2") != NULL;
+        for (const cJSON *other = list; other != curve; other = other->next)
+            if (same_text(other, curve, "quantity")) {
+                first_unit = false;
+                drawn = drawn || same_text(other, curve, "y_label");
+            }
+        if (!drawn)
+            status = write_plots_of(curves, curve, first_unit, folder, err);
     }
     return status;
 }

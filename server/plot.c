@@ -1,70 +1,39 @@
 #include "server/plot.h"
 #include "server/document.h"
+#include "server/plot_choice.h"
 #include "server/plot_frame.h"
-#include <stdarg.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* The picture, in SVG user units, and its legend at the right. LETTER: about a letter's width. */
-enum { WIDTH = 960, HEIGHT = 570, LEGEND = FRAME_RIGHT + 48, LETTER = 7, LABEL_SIZE = 200 };
+enum { WIDTH = 960, HEIGHT = 570, LEGEND = FRAME_RIGHT + 48, LETTER = 7 };
 
 /* The first seven after Okabe & Ito (2008): told apart by every reader. */
-static const char *const COLOURS[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                      "#e69f00", "#56b4e9", "#000000", "#8a8a00",
-                                      "#7f3b08", "#6a51a3", "#999999", "#a50026"};
-enum { COLOUR_COUNT = sizeof COLOURS / sizeof *COLOURS };
+static const char *const COLOURS[PLOT_LINES] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                "#e69f00", "#56b4e9", "#000000", "#8a8a00",
+                                                "#7f3b08", "#6a51a3", "#999999", "#a50026"};
+/* Of theories, told apart by their dashes. */
+static const char *const DASHES[] = {"7 4", "2 3", "12 3 2 3", "4 2 1 2 1 2", "14 5", "1 5"};
+enum { DASH_COUNT = sizeof DASHES / sizeof *DASHES };
 
-static bool has_quantity(const cJSON *curve, const char *quantity) {
-    return strcmp(text_of(curve, "quantity", ""), quantity) == 0 && !member(curve, "x2");
-}
+/* Coarser levels are fainter. */
+static const char *const LEVEL_STYLES[] = {
+    " stroke-width=\"1.8\"", " stroke-opacity=\".65\" stroke-width=\"1.2\"",
+    " stroke-opacity=\".45\" stroke-width=\".9\"", " stroke-opacity=\".3\" stroke-width=\".7\""};
+enum { STYLE_COUNT = sizeof LEVEL_STYLES / sizeof *LEVEL_STYLES };
 
-/* Spectra span decades. */
-static bool is_logarithmic(const char *quantity) {
-    return strcmp(quantity, "psd") == 0;
-}
-
-__attribute__((format(printf, 2, 3))) static void append(char label[LABEL_SIZE], const char *format,
-                                                         ...) {
-    size_t used = strlen(label);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(label + used, LABEL_SIZE - used, format, arguments);
-    va_end(arguments);
-}
-
-static bool varies(const cJSON *cases, const cJSON *parameter) {
-    for (const cJSON *other = cases; other; other = other->next)
-        if (!cJSON_Compare(parameter, member(member(other, "parameters"), parameter->string), true))
-            return true;
-    return false;
-}
-
-/* "hurst 0.8, shape 2": what tells this case from others, and its series. */
-static void label_of(const cJSON *cases, const cJSON *one, const char *series,
-                     char label[LABEL_SIZE]) {
-    label[0] = 0;
-    const cJSON *parameter = first_of(one, "parameters");
-    for (; parameter; parameter = parameter->next) {
-        const char *slash = strrchr(parameter->string, '/'), *comma = *label ? ", " : "";
-        if (!varies(cases, parameter))
-            continue;
-        if (cJSON_IsString(parameter))
-            append(label, "%s%s", comma, parameter->valuestring);
-        else
-            append(label, "%s%s %.5g", comma, slash ? slash + 1 : parameter->string,
-                   parameter->valuedouble);
-    }
-    if (*series)
-        append(label, "%s%s", *label ? ", " : "", series);
-    else if (!*label)
-        append(label, "case %.0f", member(one, "case")->valuedouble);
-}
+/* What the pen is about to draw of a quantity. */
+struct plot {
+    FILE *file;
+    struct frame frame;
+    struct plot_choice choice;
+    int rows; /* of the legend, so far */
+};
 
 /* --- curves --- */
 
-/* A band of one standard error to either side, where the error can be seen. */
-static void draw_band(FILE *file, const struct frame *frame, const cJSON *curve,
+/* A bar of one standard error to either side, where the error can be seen. */
+static void draw_bars(FILE *file, const struct frame *frame, const cJSON *curve,
                       const char *colour) {
     const cJSON *x = first_of(curve, "x"), *y = first_of(curve, "y");
     const cJSON *deviation = first_of(curve, "standard_error");
@@ -78,16 +47,17 @@ static void draw_band(FILE *file, const struct frame *frame, const cJSON *curve,
         double top = frame_y(frame, fmin(high, frame->y.high));
         double bottom = frame_y(frame, fmax(low, frame->y.low));
         if (bottom - top > 1)
-            fprintf(file, "<path d=\"M%.2f %.2fV%.2f\" class=\"band\" stroke=\"%s\"/>",
+            fprintf(file, "<path d=\"M%.2f %.2fV%.2f\" class=\"bar\" stroke=\"%s\"/>",
                     frame_x(frame, x->valuedouble), top, bottom, colour);
     }
     fputc('\n', file);
 }
 
+/* style: attributes of the path. */
 static void draw_line(FILE *file, const struct frame *frame, const cJSON *x, const cJSON *y,
-                      const char *colour, bool dashed) {
+                      const char *style) {
     bool pen_down = false;
-    fprintf(file, "<path class=\"%s\" stroke=\"%s\" d=\"", dashed ? "theory" : "curve", colour);
+    fprintf(file, "<path %s d=\"", style);
     for (; x && y; x = x->next, y = y->next) {
         bool inside = frame_has_place(frame, x, y) && x->valuedouble >= frame->x.low &&
                       x->valuedouble <= frame->x.high && y->valuedouble <= frame->y.high &&
@@ -100,126 +70,175 @@ static void draw_line(FILE *file, const struct frame *frame, const cJSON *x, con
     fputs("\"/>\n", file);
 }
 
-/* What the pen is about to draw of a quantity. */
-struct plot {
-    FILE *file;
-    struct frame frame;
-    const cJSON *cases;
-    const char *quantity;
-    const cJSON *shared; /* the theories of every curve, where they are the same; or NULL */
-    int lines;           /* of the legend, so far */
-};
+enum { STYLE_SIZE = 128 };
 
-/* The first curve of the quantity that is drawn after this one (NULL: from the start); *one is its
- * case. */
-static const cJSON *next_curve(const struct plot *plot, const cJSON **one, int *drawn,
-                               const cJSON *curve) {
-    curve = curve ? curve->next : NULL;
-    for (;;) {
-        for (; curve; curve = curve->next)
-            if (has_quantity(curve, plot->quantity))
-                return curve;
-        *one = *one ? (*one)->next : plot->cases;
-        if (!*one || ++*drawn > PLOT_CASES)
-            return NULL;
-        curve = first_of(*one, "curves");
-    }
+static void curve_style(const struct plot_line *line, char style[STYLE_SIZE]) {
+    size_t level = line->coarseness < STYLE_COUNT ? line->coarseness : STYLE_COUNT - 1;
+    snprintf(style, STYLE_SIZE, "class=\"curve\" stroke=\"%s\"%s", COLOURS[line->colour],
+             LEVEL_STYLES[level]);
 }
 
-static const cJSON *shared_theory(const struct plot *plot) {
-    const cJSON *one = NULL, *first = NULL;
-    int drawn = 0;
-    for (const cJSON *curve = NULL; (curve = next_curve(plot, &one, &drawn, curve));) {
-        first = first ? first : curve;
-        if (!first_of(curve, "theory") ||
-            !cJSON_Compare(member(curve, "theory"), member(first, "theory"), true) ||
-            !cJSON_Compare(member(curve, "x"), member(first, "x"), true))
-            return NULL;
-    }
-    return member(first, "theory");
+static void theory_style(size_t dash, const char *colour, char style[STYLE_SIZE]) {
+    snprintf(style, STYLE_SIZE, "class=\"theory\" stroke=\"%s\" stroke-dasharray=\"%s\"", colour,
+             DASHES[dash % DASH_COUNT]);
 }
 
-static void draw_legend(struct plot *plot, const char *label, const char *colour, bool dashed) {
-    int y = FRAME_TOP + 12 + 20 * plot->lines++;
-    fprintf(plot->file,
-            "<path d=\"M%d %dh24\" class=\"%s\" stroke=\"%s\"/><text x=\"%d\" y=\"%d\">",
-            FRAME_RIGHT + 16, y - 4, dashed ? "theory" : "curve", colour, LEGEND, y);
+static void draw_legend(struct plot *plot, const char *label, const char *style) {
+    int y = FRAME_TOP + 12 + 20 * plot->rows++;
+    fprintf(plot->file, "<path d=\"M%d %dh26\" %s/><text x=\"%d\" y=\"%d\">", FRAME_RIGHT + 16,
+            y - 4, style, LEGEND, y);
     svg_text(plot->file, label);
     fputs("</text>\n", plot->file);
 }
 
-static void draw_curve(const struct plot *plot, const cJSON *curve, const char *colour) {
-    draw_band(plot->file, &plot->frame, curve, colour);
-    draw_line(plot->file, &plot->frame, first_of(curve, "x"), first_of(curve, "y"), colour, false);
-    for (const cJSON *theory = plot->shared ? NULL : first_of(curve, "theory"); theory;
-         theory = theory->next)
-        draw_line(plot->file, &plot->frame, first_of(curve, "x"), theory->child, colour, true);
-}
-
 static void draw_note(struct plot *plot, const char *text) {
-    fprintf(plot->file, "<text x=\"%d\" y=\"%d\" class=\"note\">%s</text>\n", FRAME_RIGHT + 16,
-            FRAME_TOP + 16 + 20 * plot->lines++, text);
+    fprintf(plot->file, "<text x=\"%d\" y=\"%d\" class=\"note\">", FRAME_RIGHT + 16,
+            FRAME_TOP + 16 + 20 * plot->rows++);
+    svg_text(plot->file, text);
+    fputs("</text>\n", plot->file);
 }
 
-/* The theories on top of all curves: one line of the legend each. */
-static void draw_theories(struct plot *plot, const cJSON *curve) {
-    const cJSON *theory = first_of(curve, "theory");
-    for (; theory; theory = theory->next) {
-        const char *colour = plot->shared ? "#222" : "#777";
-        char label[LABEL_SIZE] = "theory";
-        if (plot->shared)
-            append(label, ": %s", theory->string);
-        else
-            append(label, " of each case");
-        draw_legend(plot, label, colour, true);
-        if (plot->shared)
-            draw_line(plot->file, &plot->frame, first_of(curve, "x"), theory->child, colour, true);
+/* Coarse levels first, so that the finest lies on top; without their bars, which are much the same.
+ */
+static void draw_curves(struct plot *plot) {
+    const struct plot_choice *choice = &plot->choice;
+    char style[STYLE_SIZE], label[PLOT_LABEL_SIZE];
+    for (size_t n = choice->count; n > 0; n--) {
+        const struct plot_line *line = &choice->lines[n - 1];
+        curve_style(line, style);
+        if (line->coarseness == 0)
+            draw_bars(plot->file, &plot->frame, line->curve, COLOURS[line->colour]);
+        draw_line(plot->file, &plot->frame, first_of(line->curve, "x"), first_of(line->curve, "y"),
+                  style);
+    }
+    for (size_t n = 0; n < choice->count; n++) {
+        curve_style(&choice->lines[n], style);
+        plot_label(choice, n, label);
+        draw_legend(plot, label, style);
     }
 }
 
-static void draw_cases(struct plot *plot, const cJSON *first) {
-    const cJSON *one = NULL;
-    int drawn = 0;
-    plot->shared = shared_theory(plot);
-    for (const cJSON *curve = NULL; (curve = next_curve(plot, &one, &drawn, curve));) {
-        const char *colour = COLOURS[plot->lines % COLOUR_COUNT];
-        char label[LABEL_SIZE];
-        label_of(plot->cases, one, text_of(curve, "series", ""), label);
-        draw_curve(plot, curve, colour);
-        draw_legend(plot, label, colour, false);
+/* --- theories --- */
+
+static const cJSON *theory_of(const struct plot_line *line, const char *name) {
+    return member(member(line->curve, "theory"), name);
+}
+
+/* Whether two lines have the same theory of this name, or one of them has none. */
+static bool same_theory(const struct plot_line *a, const struct plot_line *b, const char *name) {
+    const cJSON *one = theory_of(a, name), *other = theory_of(b, name);
+    return !one || !other ||
+           (cJSON_Compare(member(a->curve, "x"), member(b->curve, "x"), true) &&
+            cJSON_Compare(one, other, true));
+}
+
+/* Whether the theory of this name was met at a line before this one; alike: with the same values.
+ */
+static bool met_before(const struct plot_choice *choice, size_t line, const char *name,
+                       bool alike) {
+    for (size_t n = 0; n < line; n++)
+        if (theory_of(&choice->lines[n], name) &&
+            (!alike || same_theory(&choice->lines[n], &choice->lines[line], name)))
+            return true;
+    return false;
+}
+
+static bool is_shared(const struct plot_choice *choice, const char *name) {
+    size_t first = 0;
+    while (!theory_of(&choice->lines[first], name))
+        first++;
+    for (size_t n = first + 1; n < choice->count; n++)
+        if (!same_theory(&choice->lines[first], &choice->lines[n], name))
+            return false;
+    return true;
+}
+
+/* One that all curves share is black; otherwise each has the colour of its curve. */
+static void draw_theory(struct plot *plot, const char *name, size_t dash) {
+    const struct plot_choice *choice = &plot->choice;
+    char style[STYLE_SIZE], label[PLOT_LABEL_SIZE];
+    bool shared = is_shared(choice, name);
+    for (size_t n = 0; n < choice->count; n++) {
+        const struct plot_line *line = &choice->lines[n];
+        const cJSON *theory = theory_of(line, name);
+        if (!theory || met_before(choice, n, name, true))
+            continue;
+        theory_style(dash, shared ? "#222" : COLOURS[line->colour], style);
+        draw_line(plot->file, &plot->frame, first_of(line->curve, "x"), theory->child, style);
     }
-    draw_theories(plot, first);
+    snprintf(label, sizeof label, "theory: %.80s%s", name, shared ? "" : " of each");
+    theory_style(dash, shared ? "#222" : "#777", style);
+    draw_legend(plot, label, style);
+}
+
+/* On top of all curves, in the order in which they are met. */
+static void draw_theories(struct plot *plot) {
+    size_t dash = 0;
+    for (size_t n = 0; n < plot->choice.count; n++) {
+        const cJSON *theory = first_of(plot->choice.lines[n].curve, "theory");
+        for (; theory; theory = theory->next)
+            if (!met_before(&plot->choice, n, theory->string, false))
+                draw_theory(plot, theory->string, dash++);
+    }
+}
+
+/* --- the picture --- */
+
+static void draw_notes(struct plot *plot) {
     draw_note(plot, "bars: one standard error");
-    if (drawn > PLOT_CASES)
-        draw_note(plot, "the first cases only");
+    if (*plot->choice.left_out) {
+        char text[PLOT_LABEL_SIZE + 16];
+        snprintf(text, sizeof text, "shown: %s", plot->choice.left_out);
+        draw_note(plot, text);
+    }
 }
 
-static bool fit(struct plot *plot) {
-    const cJSON *one = NULL;
-    int drawn = 0;
-    frame_start(&plot->frame, is_logarithmic(plot->quantity));
-    for (const cJSON *curve = NULL; (curve = next_curve(plot, &one, &drawn, curve));)
-        frame_include(&plot->frame, curve);
+/* Loads in geometric steps: their middle one lies near the geometric mean of the ends. */
+static bool is_geometric(const cJSON *x) {
+    int n = cJSON_GetArraySize(x);
+    const cJSON *first = n > 4 ? x->child : NULL;
+    if (!first || !(first->valuedouble > 0))
+        return false;
+    double last = cJSON_GetArrayItem(x, n - 1)->valuedouble;
+    return last > 10 * first->valuedouble && cJSON_GetArrayItem(x, n / 2)->valuedouble < last / 4;
+}
+
+/* Theories are seen as far as the curves go; on logarithmic axes, where they are near, as a whole.
+ */
+static void include(struct frame *frame, const cJSON *curve, bool theories) {
+    const cJSON *x = first_of(curve, "x"), *theory = theories ? first_of(curve, "theory") : NULL;
+    frame_include(frame, x, first_of(curve, "y"));
+    for (; theory; theory = theory->next)
+        frame_include(frame, x, theory->child);
+}
+
+static bool fit(struct plot *plot, const struct plot_request *request) {
+    const struct plot_choice *choice = &plot->choice;
+    bool spectrum = strcmp(request->quantity, "psd") == 0; /* spans decades */
+    bool both = request->logarithmic || spectrum;
+    frame_start(&plot->frame, both || is_geometric(member(choice->lines[0].curve, "x")), both);
+    for (size_t n = 0; n < choice->count; n++)
+        include(&plot->frame, choice->lines[n].curve, request->logarithmic);
     return frame_finish(&plot->frame);
 }
 
 /* As wide as the longest label of the legend needs. */
-static int width_of(const struct plot *plot) {
-    const cJSON *one = NULL;
-    int drawn = 0, width = WIDTH;
-    for (const cJSON *curve = NULL; (curve = next_curve(plot, &one, &drawn, curve));) {
-        char label[LABEL_SIZE];
-        label_of(plot->cases, one, text_of(curve, "series", ""), label);
+static int width_of(const struct plot_choice *choice) {
+    int width = WIDTH;
+    for (size_t n = 0; n < choice->count; n++) {
+        char label[PLOT_LABEL_SIZE];
+        plot_label(choice, n, label);
         int needed = LEGEND + LETTER * (int)strlen(label) + 16;
         width = needed > width ? needed : width;
     }
-    return width;
+    int note = FRAME_RIGHT + 16 + LETTER * (int)(strlen(choice->left_out) + 8) + 16;
+    return note > width ? note : width;
 }
 
 /* title for readers of the file and for those of the picture. */
-static void draw_title(const struct plot *plot, const char *name) {
-    char title[LABEL_SIZE] = "";
-    append(title, "%.120s: %.60s", name, plot->quantity);
+static void draw_title(const struct plot *plot, const char *name, const char *quantity) {
+    char title[PLOT_LABEL_SIZE];
+    snprintf(title, sizeof title, "%.120s: %.60s", name, quantity);
     fputs("<title>", plot->file);
     svg_text(plot->file, title);
     fprintf(plot->file, "</title>\n<text x=\"%d\" y=\"%d\" class=\"title\">", FRAME_LEFT,
@@ -228,28 +247,30 @@ static void draw_title(const struct plot *plot, const char *name) {
     fputs("</text>\n", plot->file);
 }
 
-int plot_quantity(const cJSON *curves, const char *quantity, FILE *file, struct error *err) {
-    struct plot plot = {.file = file, .cases = first_of(curves, "cases"), .quantity = quantity};
-    const cJSON *one = NULL;
-    int drawn = 0;
-    const cJSON *first = next_curve(&plot, &one, &drawn, NULL);
-    if (!first)
-        return error_set(err, ERROR_ABSENT, "no case has the quantity \"%.60s\"", quantity);
-    int width = width_of(&plot);
+int plot_quantity(const cJSON *curves, const struct plot_request *request, FILE *file,
+                  struct error *err) {
+    struct plot plot = {.file = file};
+    plot_choose(&plot.choice, curves, request->quantity, request->y_label);
+    if (!plot.choice.count)
+        return error_set(err, ERROR_ABSENT, "no case has the quantity \"%.60s\"",
+                         request->quantity);
+    const cJSON *first = plot.choice.lines[0].curve;
+    int width = width_of(&plot.choice);
     fprintf(file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" "
             "height=\"%d\">\n<style>text{font:13px system-ui,sans-serif;fill:#222}"
             ".title{font-weight:600}.middle{text-anchor:middle}.end{text-anchor:end}"
             ".note{fill:#666;font-size:12px}.grid{stroke:#e4e4e4}.frame{fill:none;stroke:#444}"
-            ".curve{fill:none;stroke-width:1.8;stroke-linejoin:round}"
-            ".theory{fill:none;stroke-width:1.4;stroke-dasharray:6 4;stroke-opacity:.85}"
-            ".band{stroke-width:1.4;stroke-opacity:.35}</style>\n"
+            ".curve{fill:none;stroke-linejoin:round}.theory{fill:none;stroke-width:1.4}"
+            ".bar{stroke-width:1.4;stroke-opacity:.45}</style>\n"
             "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
             width, HEIGHT, width, HEIGHT, width, HEIGHT);
-    draw_title(&plot, text_of(curves, "name", ""));
-    if (fit(&plot)) {
+    draw_title(&plot, text_of(curves, "name", ""), request->quantity);
+    if (fit(&plot, request)) {
         frame_draw(file, &plot.frame, text_of(first, "x_label", ""), text_of(first, "y_label", ""));
-        draw_cases(&plot, first);
+        draw_curves(&plot);
+        draw_theories(&plot);
+        draw_notes(&plot);
     }
     fputs("</svg>\n", file);
     return 0;

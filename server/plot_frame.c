@@ -28,8 +28,7 @@ bool frame_has_place(const struct frame *frame, const cJSON *x, const cJSON *y) 
            (!frame->y.logarithmic || y->valuedouble > 0);
 }
 
-void frame_include(struct frame *frame, const cJSON *curve) {
-    const cJSON *x = first_of(curve, "x"), *y = first_of(curve, "y");
+void frame_include(struct frame *frame, const cJSON *x, const cJSON *y) {
     for (; x && y; x = x->next, y = y->next) {
         /* Points at zero at the ends of a histogram say nothing: they do not widen the frame. */
         if (!frame_has_place(frame, x, y) || y->valuedouble == 0)
@@ -39,15 +38,22 @@ void frame_include(struct frame *frame, const cJSON *curve) {
     }
 }
 
-void frame_start(struct frame *frame, bool logarithmic) {
-    frame->x = frame->y = (struct axis){INFINITY, -INFINITY, logarithmic};
+void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
+    frame->x = (struct axis){INFINITY, -INFINITY, x_logarithmic};
+    frame->y = (struct axis){INFINITY, -INFINITY, y_logarithmic};
+}
+
+/* Zero belongs to an axis that begins near it. */
+static void axis_begin_at_zero(struct axis *axis) {
+    if (!axis->logarithmic && axis->low > 0 && axis->low < axis->high / 2)
+        axis->low = 0;
 }
 
 bool frame_finish(struct frame *frame) {
     if (!(frame->x.low <= frame->x.high))
         return false;
-    if (!frame->y.logarithmic && frame->y.low > 0 && frame->y.low < frame->y.high / 2)
-        frame->y.low = 0;
+    axis_begin_at_zero(&frame->x);
+    axis_begin_at_zero(&frame->y);
     struct axis *axes[] = {&frame->x, &frame->y};
     for (int a = 0; a < 2; a++)
         if (axes[a]->low == axes[a]->high) {

@@ -16,9 +16,10 @@ struct axis {
 struct frame {
     struct axis x, y;
 };
-/* Start, include each curve that will be drawn, finish: false when there is no point at all. */
-void frame_start(struct frame *frame, bool logarithmic);
-void frame_include(struct frame *frame, const cJSON *curve);
+/* Start, include the points that must be seen (the first of each list), finish: false when there is
+ * no point at all. */
+void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic);
+void frame_include(struct frame *frame, const cJSON *x, const cJSON *y);
 bool frame_finish(struct frame *frame);
 
 /* Where a value stands on the picture. */
