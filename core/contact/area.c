@@ -107,7 +107,8 @@ static double lone_in_profile(const struct crossing *x, const double *rise) {
                      gap_of(rise[x->outside]));
 }
 
-/* Half the area of a surface's patch of one node, in cells: an ellipse; NaN where the inside node
+/* Half the area of a surface's patch of one node, in cells: an ellipse, within the steps to the
+ * nodes beside it; NaN where the inside node
  * is not alone. */
 static double lone_in_surface(const struct crossing *x, const double *rise) {
     if (rise[x->before] > 0 || rise[x->inside_left] > 0 || rise[x->inside_right] > 0)
@@ -117,7 +118,7 @@ static double lone_in_surface(const struct crossing *x, const double *rise) {
         edge_lone_axis(force / x->step, gap_of(rise[x->before]), gap_of(rise[x->outside]));
     double beside = edge_lone_axis(force / x->across, gap_of(rise[x->inside_left]),
                                    gap_of(rise[x->inside_right]));
-    return 0.5 * PI * along * beside;
+    return fmin(1, 0.5 * PI * along * beside);
 }
 
 static double crossing_share(const struct crossing *x, const struct edge_law *law,
@@ -135,7 +136,8 @@ static double crossing_share(const struct crossing *x, const struct edge_law *la
     }
     bool known = rise[x->before] > 0 && rise[x->far_before] > 0; /* in two nodes it does harm */
     double share = edge_share(law, p1, known ? rise[x->before] : 0, g1);
-    /* Alone on its line: no length is below 0, nor below that of the node alone. */
+    /* Alone on its line: no length is below 0, nor below that of the node alone. Elsewhere an edge
+     * may well lie before the node inside, which then has a small pressure. */
     return rise[x->before] > 0 ? share : fmax(fmax(0, lone), share);
 }
 
@@ -213,11 +215,6 @@ static void count_nodes(const struct grid *grid, const double *p, struct contact
     out->upper = (double)any / n;
 }
 
-/* Edges lie up to a step from the nodes that they are found from. */
-static void clamp_edges(struct contact_area *out) {
-    out->edges = fmin(fmax(out->edges, out->lower), out->upper);
-}
-
 void contact_area(struct area_workspace *workspace, const double *p, const double *opening,
                   struct contact_area *out) {
     const struct grid *grid = &workspace->grid;
@@ -227,14 +224,11 @@ void contact_area(struct area_workspace *workspace, const double *p, const doubl
     fill_rise(workspace, p, opening);
     out->edges = family_share(&rows, &workspace->rows, workspace->rise);
     out->perimeter = NAN;
-    if (grid_is_profile(grid)) {
-        clamp_edges(out);
+    if (grid_is_profile(grid))
         return;
-    }
     struct family columns = {grid->nx, grid->ny, grid->nx, 1, dy, dx};
     size_t sides[2];
     out->edges = 0.5 * (out->edges + family_share(&columns, &workspace->columns, workspace->rise));
-    clamp_edges(out);
     count_sides(grid, p, sides);
     /* A side across x is dy long and the correction acts along x, over dx; and the other way. */
     double missed = PERIMETER * (double)(sides[0] + sides[1]) / (double)grid_points(grid);
