@@ -81,10 +81,25 @@ static void put_discretisation(struct workshop *shop, const struct row *row, siz
     errors->order_known = rule.observed;
 }
 
-static void put_model(struct workshop *shop, const struct row *row, struct curve_errors *errors) {
+/* Of a model against the most complete one, on the same realisations: of the limits where levels
+ * tell them, or else of the finest level, whose own error is then in it. */
+static void put_model(struct workshop *shop, const struct row *row, size_t model,
+                      struct curve_errors *errors) {
+    size_t complete = contact_case_complete(shop->study);
+    bool limits = shop->study->level_count > 1;
+    double factor = 0, best = 0;
+    if (limits) {
+        factor = contact_extrapolate(shop->tally, row->measure, model).factor;
+        best = contact_extrapolate(shop->tally, row->measure, complete).factor;
+    }
     for (size_t k = 0; k < shop->study->load_count; k++) {
         struct estimate difference = contact_tally_model(shop->tally, row->measure, k);
-        shop->model[k] = row->factor * difference.value;
+        double own = 0, other = 0;
+        if (limits) {
+            own = factor * contact_tally_level(shop->tally, row->measure, model, k).value;
+            other = best * contact_tally_level(shop->tally, row->measure, complete, k).value;
+        }
+        shop->model[k] = row->factor * (difference.value + own - other);
         shop->model_error[k] = row->factor * difference.standard_error;
     }
     errors->model = shop->model;
@@ -138,7 +153,7 @@ static bool append(struct workshop *shop, const struct row *row, size_t model, s
         if (study->level_count > 1)
             put_discretisation(shop, row, model, &curve.errors);
         if (study->model_count > 1 && model != contact_case_complete(study))
-            put_model(shop, row, &curve.errors);
+            put_model(shop, row, model, &curve.errors);
     }
     return curve_append(shop->curves, &curve);
 }
