@@ -115,7 +115,8 @@ deps:
 
 run: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all
-	@$(BUILD)/rugo run --db $(BUILD)/demo.db jobs/studies/demo.json
+	@for study in demo contact-demo; do \
+	    $(BUILD)/rugo run --db $(BUILD)/demo.db jobs/studies/$$study.json || exit; echo; done
 
 bench: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(call all_tests,bench)

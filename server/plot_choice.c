@@ -1,5 +1,6 @@
 #include "server/plot_choice.h"
 #include "server/document.h"
+#include "server/summary_cells.h"
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -24,16 +25,6 @@ static bool is_candidate(const struct choosing *choosing, const cJSON *curve) {
     return strcmp(text_of(curve, "quantity", ""), choosing->quantity) == 0 &&
            !member(curve, "x2") &&
            (!choosing->y_label || strcmp(text_of(curve, "y_label", ""), choosing->y_label) == 0);
-}
-
-static bool ends_with(const char *text, const char *end) {
-    size_t length = strlen(text), tail = strlen(end);
-    return length >= tail && strcmp(text + length - tail, end) == 0;
-}
-
-static bool is_bracket(const cJSON *curve) {
-    const char *series = text_of(curve, "series", "");
-    return ends_with(series, "_lower") || ends_with(series, "_upper");
 }
 
 static bool same_series(const cJSON *a, const cJSON *b) {

@@ -1,11 +1,9 @@
 #include "server/summary.h"
 #include "server/document.h"
-#include "server/text_table.h"
+#include "server/summary_cells.h"
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
-
-enum { COLUMNS_MOST = 24 };
 
 void duration_text(double seconds, char *out, size_t size) {
     if (isnan(seconds))
@@ -22,35 +20,6 @@ void duration_text(double seconds, char *out, size_t size) {
 }
 
 /* --- curves --- */
-
-static bool is_among(const char *name, const char *const *names, size_t count) {
-    for (size_t n = 0; n < count; n++)
-        if (strcmp(names[n], name) == 0)
-            return true;
-    return false;
-}
-
-/* Whether some case has another value than this one. */
-static bool varies(const cJSON *cases, const cJSON *parameter) {
-    for (const cJSON *one = cases->child; one; one = one->next)
-        if (!cJSON_Compare(parameter, member(member(one, "parameters"), parameter->string), true))
-            return true;
-    return false;
-}
-
-/* Pointers whose values differ between cases, in the order of the first case; then those that it
- * does not have. */
-static size_t varied_parameters(const cJSON *cases, const char **names) {
-    size_t count = 0;
-    const cJSON *first = member(cases->child, "parameters");
-    for (const cJSON *one = cases->child; one; one = one->next)
-        for (const cJSON *p = first_of(one, "parameters"); p && count < COLUMNS_MOST; p = p->next) {
-            bool candidate = one == cases->child ? varies(cases, p) : !member(first, p->string);
-            if (candidate && !is_among(p->string, names, count))
-                names[count++] = p->string;
-        }
-    return count;
-}
 
 /* What a table of results shows first, of the kinds that have it. */
 static const char *const HEADLINES[] = {"nayak_alpha", "summit_density", "summit_height_mean",
@@ -84,32 +53,6 @@ static size_t shown_scalars(const cJSON *cases, const char **names) {
     return count;
 }
 
-static void value_cell(struct text_table *table, const cJSON *value) {
-    if (cJSON_IsString(value))
-        table_cell(table, "%s", value->valuestring);
-    else
-        table_number(table, cJSON_IsNumber(value) ? value->valuedouble : (double)NAN);
-}
-
-static const char *last_name(const char *pointer) {
-    const char *slash = strrchr(pointer, '/');
-    return slash ? slash + 1 : pointer;
-}
-
-/* "0.25772 +- 0.00022": as many digits as the error has sense for. */
-static void measured_cell(struct text_table *table, double value, double error) {
-    if (!isfinite(value) || !(error > 1e-9 * fabs(value))) {
-        table_number(table, value);
-        return;
-    }
-    int decimals = 1 - (int)floor(log10(error));
-    decimals = decimals < 0 ? 0 : decimals;
-    if (decimals > 9)
-        table_cell(table, "%.5g +- %.2g", value, error);
-    else
-        table_cell(table, "%.*f +- %.*f", decimals, value, decimals, error);
-}
-
 static void scalar_cells(struct text_table *table, const cJSON *scalar, bool with_theory) {
     double value = number_of(scalar, "value"), theory = number_of(scalar, "theory");
     measured_cell(table, value, number_of(scalar, "standard_error"));
@@ -131,15 +74,20 @@ struct results {
     bool uneven; /* not all cases have as many realisations */
 };
 
+static bool is_even(const cJSON *cases) {
+    for (const cJSON *one = cases->child; one; one = one->next)
+        if (number_of(one, "realisations") != number_of(cases->child, "realisations"))
+            return false;
+    return true;
+}
+
 static void results_prepare(struct results *results, const cJSON *cases, const cJSON *report) {
     *results = (struct results){.cases = cases, .costs = member(report, "cases")};
     results->varied_count = varied_parameters(cases, results->varied);
     results->scalar_count = shown_scalars(cases, results->scalars);
     for (size_t s = 0; s < results->scalar_count; s++)
         results->compared[s] = has_scalar(cases, results->scalars[s], true);
-    for (const cJSON *one = cases->child; one; one = one->next)
-        results->uneven = results->uneven ||
-                          number_of(one, "realisations") != number_of(cases->child, "realisations");
+    results->uneven = !is_even(cases);
 }
 
 static size_t results_columns(const struct results *results) {
@@ -186,10 +134,7 @@ static void results_row(const struct results *results, const cJSON *one, const c
     }
 }
 
-void summary_of_curves(const cJSON *curves, const cJSON *report, FILE *file) {
-    const cJSON *cases = member(curves, "cases");
-    if (!cJSON_IsArray(cases) || !cases->child)
-        return;
+static void results_table(const cJSON *cases, const cJSON *report, FILE *file) {
     struct results results;
     results_prepare(&results, cases, report);
     struct text_table table = {.columns = results_columns(&results)};
@@ -199,18 +144,29 @@ void summary_of_curves(const cJSON *curves, const cJSON *report, FILE *file) {
         results_row(&results, one, cost, &table);
         cost = cost ? cost->next : NULL;
     }
+    fputc('\n', file);
+    table_print(&table, file);
+    table_clear(&table);
+}
+
+void summary_of_curves(const cJSON *curves, const cJSON *report, FILE *file) {
+    const cJSON *cases = member(curves, "cases");
+    if (!cJSON_IsArray(cases) || !cases->child)
+        return;
     fprintf(file, "%s (%s), study %s", text_of(curves, "name", "-"), text_of(curves, "state", "-"),
             text_of(curves, "study", "-"));
-    if (!results.uneven)
+    if (is_even(cases))
         fprintf(file, ", %.0f realisations a case", number_of(cases->child, "realisations"));
     if (report) {
         char time[48];
         duration_text(number_of(report, "seconds"), time, sizeof time);
         fprintf(file, ", %s of work", time);
     }
-    fputs("\n\n", file);
-    table_print(&table, file);
-    table_clear(&table);
+    fputc('\n', file);
+    if (strcmp(text_of(curves, "kind", ""), "contact") == 0)
+        summary_of_contact(cases, member(report, "cases"), file);
+    else
+        results_table(cases, report, file);
 }
 
 /* --- status --- */
@@ -252,41 +208,6 @@ void summary_of_list(const cJSON *studies, FILE *file) {
                    100 * number_of(realisations, "done") / number_of(realisations, "total"));
         table_cell(&table, "%s", text_of(s, "created", "-"));
     }
-    table_print(&table, file);
-    table_clear(&table);
-}
-
-/* --- report --- */
-
-void summary_of_report(const cJSON *report, FILE *file) {
-    const cJSON *cases = member(report, "cases");
-    const char *varied[COLUMNS_MOST];
-    if (!cJSON_IsArray(cases) || !cases->child)
-        return;
-    size_t varied_count = varied_parameters(cases, varied);
-    static const char *const NUMBERS[] = {
-        "realisations",         "seconds",     "seconds_per_realisation", "statistical_error",
-        "discretisation_error", "model_error", "seconds_to_halve_error"};
-    static const char *const HEADINGS[] = {"realisations", "seconds",        "s/realisation",
-                                           "statistical",  "discretisation", "model",
-                                           "s to halve"};
-    enum { NUMBER_COUNT = sizeof NUMBERS / sizeof *NUMBERS };
-    struct text_table table = {.columns = 1 + varied_count + NUMBER_COUNT};
-    table_cell(&table, "case");
-    for (size_t p = 0; p < varied_count; p++)
-        table_cell(&table, "%s", last_name(varied[p]));
-    for (size_t n = 0; n < NUMBER_COUNT; n++)
-        table_cell(&table, "%s", HEADINGS[n]);
-    for (const cJSON *one = cases->child; one; one = one->next) {
-        table_number(&table, number_of(one, "case"));
-        for (size_t p = 0; p < varied_count; p++)
-            value_cell(&table, member(member(one, "parameters"), varied[p]));
-        for (size_t n = 0; n < NUMBER_COUNT; n++)
-            table_number(&table, number_of(one, NUMBERS[n]));
-    }
-    fprintf(file, "%s (%s), study %s: cost, and relative errors of the main curve\n",
-            text_of(report, "name", "-"), text_of(report, "state", "-"),
-            text_of(report, "study", "-"));
     table_print(&table, file);
     table_clear(&table);
 }

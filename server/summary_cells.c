@@ -1,0 +1,91 @@
+#include "server/summary_cells.h"
+#include "server/document.h"
+#include <string.h>
+
+static bool is_among(const char *name, const char *const *names, size_t count) {
+    for (size_t n = 0; n < count; n++)
+        if (strcmp(names[n], name) == 0)
+            return true;
+    return false;
+}
+
+/* Whether some case has another value than this one. */
+static bool varies(const cJSON *cases, const cJSON *parameter) {
+    for (const cJSON *one = cases->child; one; one = one->next)
+        if (!cJSON_Compare(parameter, member(member(one, "parameters"), parameter->string), true))
+            return true;
+    return false;
+}
+
+size_t varied_parameters(const cJSON *cases, const char *names[COLUMNS_MOST]) {
+    size_t count = 0;
+    const cJSON *first = member(cases->child, "parameters");
+    for (const cJSON *one = cases->child; one; one = one->next)
+        for (const cJSON *p = first_of(one, "parameters"); p && count < COLUMNS_MOST; p = p->next) {
+            bool candidate = one == cases->child ? varies(cases, p) : !member(first, p->string);
+            if (candidate && !is_among(p->string, names, count))
+                names[count++] = p->string;
+        }
+    return count;
+}
+
+const char *last_name(const char *pointer) {
+    const char *slash = strrchr(pointer, '/');
+    return slash ? slash + 1 : pointer;
+}
+
+void value_cell(struct text_table *table, const cJSON *value) {
+    if (cJSON_IsString(value))
+        table_cell(table, "%s", value->valuestring);
+    else
+        table_number(table, cJSON_IsNumber(value) ? value->valuedouble : (double)NAN);
+}
+
+void measured_text(double value, double error, char *out, size_t size) {
+    if (!isfinite(value)) {
+        snprintf(out, size, "-");
+        return;
+    }
+    bool uncertain = error > 1e-9 * fabs(value);
+    int decimals = uncertain ? 1 - (int)floor(log10(error)) : 0;
+    decimals = decimals < 0 ? 0 : decimals;
+    if (!uncertain)
+        snprintf(out, size, "%.5g", value);
+    else if (decimals > 9)
+        snprintf(out, size, "%.5g +- %.2g", value, error);
+    else
+        snprintf(out, size, "%.*f +- %.*f", decimals, value, decimals, error);
+}
+
+void measured_cell(struct text_table *table, double value, double error) {
+    char text[64];
+    measured_text(value, error, text, sizeof text);
+    table_cell(table, "%s", text);
+}
+
+void percent_cell(struct text_table *table, double share) {
+    if (isnan(share))
+        table_cell(table, "-");
+    else
+        table_cell(table, "%.2g", 100 * share);
+}
+
+void print_swept(const cJSON *one, const char *const *names, size_t count, FILE *file) {
+    for (size_t n = 0; n < count; n++) {
+        const cJSON *value = member(member(one, "parameters"), names[n]);
+        if (cJSON_IsString(value))
+            fprintf(file, "%s, ", value->valuestring);
+        else if (cJSON_IsNumber(value))
+            fprintf(file, "%s %.5g, ", last_name(names[n]), value->valuedouble);
+    }
+}
+
+static bool ends_with(const char *text, const char *end) {
+    size_t length = strlen(text), tail = strlen(end);
+    return length >= tail && strcmp(text + length - tail, end) == 0;
+}
+
+bool is_bracket(const cJSON *curve) {
+    const char *series = text_of(curve, "series", "");
+    return ends_with(series, "_lower") || ends_with(series, "_upper");
+}

@@ -1,0 +1,27 @@
+/* What the tables of summary.h share: swept parameters and cells. */
+#ifndef RUGO_SERVER_SUMMARY_CELLS_H
+#define RUGO_SERVER_SUMMARY_CELLS_H
+
+#include "server/text_table.h"
+#include <cjson/cJSON.h>
+
+enum { COLUMNS_MOST = 24 };
+
+/* Pointers whose values differ between cases (an array of curves or of a report), in the order of
+ * the first case; then those that it does not have. Borrowed; how many. */
+size_t varied_parameters(const cJSON *cases, const char *names[COLUMNS_MOST]);
+/* "hurst" of "/surface/hurst". */
+const char *last_name(const char *pointer);
+/* A parameter's value. */
+void value_cell(struct text_table *table, const cJSON *value);
+/* "0.25772 +- 0.00022": as many digits as the error has sense for. */
+void measured_text(double value, double error, char *out, size_t size);
+void measured_cell(struct text_table *table, double value, double error);
+/* A share of one in percent, with two digits; "-" for NaN. */
+void percent_cell(struct text_table *table, double share);
+/* "hurst 0.8, dimension 2", each followed by a comma and a space. */
+void print_swept(const cJSON *one, const char *const *names, size_t count, FILE *file);
+/* Whether a series is a bracket of another one, and no estimate: nodes_lower, nodes_upper. */
+bool is_bracket(const cJSON *curve);
+
+#endif
