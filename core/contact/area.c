@@ -107,9 +107,8 @@ static double lone_in_profile(const struct crossing *x, const double *rise) {
                      gap_of(rise[x->outside]));
 }
 
-/* Half the area of a surface's patch of one node, in cells: an ellipse, within the steps to the
- * nodes beside it; NaN where the inside node
- * is not alone. */
+/* Half the area of a surface's patch of one node, in cells: an ellipse, no larger than the steps to
+ * the nodes beside it; NaN where the inside node is not alone. */
 static double lone_in_surface(const struct crossing *x, const double *rise) {
     if (rise[x->before] > 0 || rise[x->inside_left] > 0 || rise[x->inside_right] > 0)
         return NAN;
