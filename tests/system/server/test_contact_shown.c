@@ -1,0 +1,116 @@
+/* Protects: a contact study is told of by every command: tables of area against load with their
+ * errors, the report of what models, levels and estimators cost, pictures, tables, views. */
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#define PRESSED(hurst)                                                                             \
+    "{\"name\":\"pressed\",\"kind\":\"contact\",\"seed\":5,\"realisations\":4,\"surface\":{"       \
+    "\"dimension\":1,\"hurst\":" hurst ",\"wavelength_ratio\":4,\"length_ratio\":2},\"contact\":{" \
+    "\"model\":[\"halfspace\",\"layered\"],\"levels\":[4,8],\"pressures\":{\"to\":0.3,"            \
+    "\"steps\":30},\"pressure_pdf\":{\"at\":[0.1,0.3]}}}"
+
+static int setup(void **state) {
+    (void)state;
+    spit("pressed.json", PRESSED("0.8"));
+    spit("many.json", PRESSED("[0.2,0.3,0.4,0.5,0.6]"));
+    spit("wave.json",
+         "{\"name\":\"wave\",\"kind\":\"contact\",\"realisations\":2,\"surface\":{\"dimension\":1,"
+         "\"length_ratio\":1,\"wavelength_ratio\":1,\"points_per_wavelength\":64},\"contact\":{"
+         "\"pressures\":{\"values\":[0.1,0.4]}}}");
+    return 0;
+}
+
+/* A shell line with $RUGO and, of $DB, $ID; it must succeed. Output goes to shell.out. */
+static void shell(const char *database, const char *line) {
+    char command[900];
+    snprintf(command, sizeof command,
+             "RUGO='%s'; DB=%s; ID=$($RUGO status --db $DB 2>/dev/null | awk 'NR == 2 {print "
+             "$1}'); { %s ; } >shell.out 2>shell.err",
+             rugo(), database, line);
+    int status = system(command);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        fail_msg("%s: status %d", line, status);
+}
+
+static void check_shown(const char *const *texts) {
+    char *out = slurp("shell.out");
+    for (; *texts; texts++)
+        if (!strstr(out, *texts))
+            fail_msg("no \"%s\" in\n%s", *texts, out);
+    free(out);
+}
+
+static void a_run_shows_area_against_load(void **state) {
+    (void)state;
+    shell("one.db", "$RUGO run --db $DB --out out pressed.json");
+    check_shown((const char *[]){"pressed (done)", "case 0: 4 realisations",
+                                 "contact area by edges "
+                                 "at 8 points",
+                                 "load  ", "halfspace  ", "mesh %", "model %", "layered  ",
+                                 "persson", "\n0.01  ", "\n 0.3  ", " +- ", "kappa ", "erf_kappa ",
+                                 "(theory 1.5958)", NULL});
+    shell("one.db",
+          "test $($RUGO run --db $DB pressed.json | grep -c '^ *0.* +- .* +- ') = 10"); /* of 30
+                                                                                           loads */
+    shell("wave.db", "$RUGO run --db $DB wave.json");
+    check_shown((const char *[]){"westergaard", NULL});
+}
+
+static void many_cases_have_a_row_each(void **state) {
+    (void)state;
+    shell("many.db", "$RUGO run --db $DB --set realisations=2 many.json");
+    check_shown((const char *[]){"case  hurst", "area at 0.01", "area at 0.15", "area at 0.3",
+                                 "mesh %", "model %", "kappa", "\n   4    0.6  ", NULL});
+    shell("many.db", "$RUGO report --db $DB $ID");
+    check_shown((const char *[]){"all cases, root mean square: contact_area by model, level and "
+                                 "estimator",
+                                 "\nlayered        4  nodes", NULL});
+    /* a study that has not begun shows what there is */
+    shell("queued.db", "$RUGO submit --db $DB many.json");
+    shell("queued.db", "$RUGO report --db $DB $ID && $RUGO curves --db $DB $ID");
+    check_shown((const char *[]){"pressed (queued)", "\"scalars\":{},\"curves\":[]", NULL});
+}
+
+static void the_report_tells_what_each_part_buys(void **state) {
+    (void)state;
+    shell("one.db", "$RUGO report --db $DB $ID");
+    check_shown((const char *[]){"statistical %", "discretisation %", "model %", "total %",
+                                 "s to halve", "case 0: contact_area by model, level and estimator",
+                                 "\nhalfspace      8  edges", "\nhalfspace      4  nodes",
+                                 "\nlayered        8  edges", NULL});
+    shell("one.db", "! $RUGO report --db $DB $ID | grep nodes_");
+    shell("one.db", "$RUGO report --db $DB --format json $ID");
+    check_shown((const char *[]){"\"main_curve\":\"contact_area\",\"series\":\"edges\",\"model\":"
+                                 "\"halfspace\",\"level\":8",
+                                 "\"model_error\":0.", "\"seconds\":", "\"total_error\":", NULL});
+}
+
+/* Nothing overwrites another: every curve has its file, every unit its picture. */
+static void files_hold_every_curve(void **state) {
+    (void)state;
+    shell("one.db", "cd out && for q in contact_area contact_area-light contact_pressure_pdf "
+                    "mean_gap stiffness patch_count patch_count-wave; do grep -q '</svg>' $q.svg "
+                    "|| exit 1; done; ls; head -1 case-0-contact_area-edges-halfspace-8.csv; "
+                    "test $(ls *.csv | wc -l) = $(grep -o '\"quantity\"' curves.json | wc -l)");
+    check_shown((const char *[]){"case-0-contact_pressure_pdf-layered-8-at-0.1.csv\n",
+                                 "x,y,standard_error,discretisation_error,model_error,persson",
+                                 NULL});
+    shell("one.db", "$RUGO curves --db $DB --format csv $ID");
+    check_shown((const char *[]){"case,quantity,series,model,level,pressure,x,x2,y,standard_error,"
+                                 "discretisation_error,model_error,theory_persson",
+                                 "\n0,contact_pressure_pdf,,layered,8,0.1,", NULL});
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_run_shows_area_against_load),
+        cmocka_unit_test(many_cases_have_a_row_each),
+        cmocka_unit_test(the_report_tells_what_each_part_buys),
+        cmocka_unit_test(files_hold_every_curve),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}
