@@ -5,10 +5,13 @@
 static const double ORDER_LOW = 1, ORDER_HIGH = 3;
 
 /* As measured on rough profiles and surfaces; the gap has no clear order, its error is small. */
-static double assumed_order(const struct contact_case *study, enum contact_measure measure) {
+static double assumed_order(const struct contact_case *study, enum contact_measure measure,
+                            size_t model) {
     switch (measure) {
     case MEASURE_EDGES:
-        return study->surface.dimension == 2 ? 1.5 : 2;
+        if (study->surface.dimension == 1)
+            return 2;
+        return study->blocks[model].model == MODEL_LAYERED ? 2.5 : 1.5;
     case MEASURE_GAP:
         return 2;
     default:
@@ -66,7 +69,7 @@ struct contact_extrapolation contact_extrapolate(const struct contact_tally *tal
                                                  enum contact_measure measure, size_t model) {
     const struct contact_case *study = tally->study;
     size_t next = study->level_count - 2;
-    struct contact_extrapolation out = {.order = assumed_order(study, measure)};
+    struct contact_extrapolation out = {.order = assumed_order(study, measure, model)};
     double fine = refinement(study, next);
     if (study->level_count > 2) {
         double ratio = observed_ratio(tally, measure, model);
