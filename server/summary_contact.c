@@ -50,7 +50,7 @@ static void areas_find(struct areas *areas, const cJSON *one) {
 static double item_of(const cJSON *curve, const char *name, int index) {
     const cJSON *list = member(curve, name);
     const cJSON *item = cJSON_IsArray(list) ? cJSON_GetArrayItem(list, index) : NULL;
-    return cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
+    return item && cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
 }
 
 static int load_count(const struct areas *areas) {
