@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const struct contact_options CONTACT_DEFAULTS = {.tolerance = 1e-8, .max_iterations = 5000};
+const struct contact_options CONTACT_DEFAULTS = {
+    .tolerance = 1e-8, .max_iterations = 5000, .stall_iterations = 60};
 
 /* Within, heights are in units of the surface's RMS height and pressures in RMS height over the
  * largest compliance: all numbers are near 1 whatever the units of the user. */
@@ -196,7 +197,8 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
     double mean = pressure / pressure_unit(c);
     d->transforms = 0;
     predict(c, mean);
-    descent_run(d, mean, c->options.tolerance, c->options.max_iterations, &end);
+    descent_run(d, mean, c->options.tolerance, c->options.stall_iterations,
+                c->options.max_iterations, &end);
     if (!end.converged) {
         c->mean = 0;
         return error_set(err, ERROR_NUMERIC,

@@ -13,9 +13,11 @@
 #include "core/contact/compliance.h"
 
 struct contact_options {
-    double tolerance;      /* on the largest violation of complementarity, over the largest
-                              displacement from the mean; default 1e-8; 1e-12 is reachable */
-    size_t max_iterations; /* a load; default 5000 */
+    double tolerance;        /* on the largest violation of complementarity, over the largest
+                                displacement from the mean; default 1e-8; 1e-12 is reachable */
+    size_t max_iterations;   /* a load; default 5000 */
+    size_t stall_iterations; /* without halving the violation, after which steps become careful
+                                (descent.h); default 60 */
 };
 extern const struct contact_options CONTACT_DEFAULTS;
 

@@ -17,7 +17,6 @@
 
 enum {
     LANES = 8,    /* independent partial sums, so that reductions vectorise */
-    STALL = 60,   /* iterations without halving the violation: steps become careful */
     REFRESH = 50, /* iterations after which u is computed anew from p */
     TANGENT_MOST = 300,
 };
@@ -302,17 +301,17 @@ static double feasible_step(const struct descent *d, double step) {
     return step;
 }
 
-/* Whether the violation has not halved for STALL iterations. */
+/* Whether the violation has not halved for so many iterations. */
 struct progress {
     double best;
     size_t since;
 };
-static bool stalled(struct progress *progress, double violation) {
+static bool stalled(struct progress *progress, double violation, size_t iterations) {
     if (violation < 0.5 * progress->best)
         *progress = (struct progress){violation, 0};
     else
         progress->since++;
-    return progress->since > STALL;
+    return progress->since >= iterations;
 }
 
 /* One iteration from r; *stale: whether u has to be computed anew. */
@@ -330,8 +329,8 @@ static void iterate(struct descent *d, double mean, bool careful, struct memory 
         scale(d->n, mean * (double)d->n / sum, d->p);
 }
 
-void descent_run(struct descent *d, double mean, double tolerance, size_t max_iterations,
-                 struct descent_end *end) {
+void descent_run(struct descent *d, double mean, double tolerance, size_t stall_iterations,
+                 size_t max_iterations, struct descent_end *end) {
     struct memory memory = {0};
     struct progress progress = {.best = INFINITY};
     bool careful = false, stale = true;
@@ -351,7 +350,7 @@ void descent_run(struct descent *d, double mean, double tolerance, size_t max_it
         end->converged = number && violation <= fmax(tolerance * end->deepest, ROUNDING * highest);
         if (end->converged || !number || end->iterations == max_iterations)
             return;
-        if (!careful && stalled(&progress, violation)) {
+        if (!careful && stalled(&progress, violation, stall_iterations)) {
             careful = memory.blocked = true;
             memory.energy = 0;
         }

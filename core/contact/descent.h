@@ -37,9 +37,11 @@ struct descent_end {
 };
 
 /* From the p given (mean p = mean > 0), until no violation is larger than tolerance * deepest (or
- * than rounding allows). p has the mean whether converged or not. */
-void descent_run(struct descent *descent, double mean, double tolerance, size_t max_iterations,
-                 struct descent_end *end);
+ * than rounding allows). After stall_iterations that did not halve the violation steps become
+ * careful: each lowers the energy, and they end at the solution from anywhere, if slowly. p has the
+ * mean whether converged or not. */
+void descent_run(struct descent *descent, double mean, double tolerance, size_t stall_iterations,
+                 size_t max_iterations, struct descent_end *end);
 /* From the q given: solves for q in the set p > 0, and returns -d(approach)/d(mean p) > 0: minus
  * the slope of the mean gap. It is an energy, so that its error is the square of q's. */
 double descent_tangent(struct descent *descent);

@@ -172,8 +172,10 @@ static inline void check_contact(const struct scene *scene) {
     double mean = mean_of(n, scene->z), highest = 0;
     for (size_t i = 0; i < n; i++)
         highest = fmax(highest, fabs(scene->z[i] - mean));
-    /* What the solver promises, and what rounding does to sums of heights and displacements. */
-    double rounding = 2e-13 * (highest + largest(n, u));
+    /* What the solver promises; what rounding does in it, to heights above a level far below, and
+     * here to sums over all nodes. */
+    double rounding = 1e-13 * (highest + largest(n, u)) + 1e-15 * largest(n, scene->z) +
+                      1e-15 * (double)n * largest(n, response) * largest(n, state->p);
     double reach = scene->tolerance * largest(n, u) + rounding;
     for (size_t i = 0; i < n; i++)
         gap[i] = state->mean_gap + u[i] - (scene->z[i] - mean);

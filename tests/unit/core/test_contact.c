@@ -119,7 +119,8 @@ static void too_few_iterations(void **state) {
     struct scene scene, sound;
     noisy_scene(&scene, square(16), DEEP, 1e-10);
     noisy_scene(&sound, square(16), DEEP, 1e-10);
-    struct contact_options options = {.tolerance = 1e-10, .max_iterations = 12};
+    struct contact_options options = {
+        .tolerance = 1e-10, .max_iterations = 12, .stall_iterations = 60};
     struct error err = {0};
     contact_destroy(&scene.contact);
     assert_int_equal(contact_create(&scene.contact, scene.compliance, &options, &err), 0);
