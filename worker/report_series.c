@@ -45,11 +45,12 @@ static bool same_series(const cJSON *a, const cJSON *b) {
            same_member(a, b, "pressure");
 }
 
-/* The curve of the finest level, which alone knows its discretisation error; NULL without one. */
-static const cJSON *finest_of(const cJSON *curves, const cJSON *curve) {
+/* The curve of the same series and model that has such errors at its points, as only that of the
+ * finest level has; NULL without one. */
+static const cJSON *finest_with(const cJSON *curves, const cJSON *curve, const char *errors) {
     const cJSON *other;
     cJSON_ArrayForEach(other, curves) {
-        if (cJSON_IsArray(field_at(other, "discretisation_error")) && same_series(other, curve) &&
+        if (cJSON_IsArray(field_at(other, errors)) && same_series(other, curve) &&
             same_member(other, curve, "model")) {
             return other;
         }
@@ -93,38 +94,53 @@ static const cJSON *complete_of(const cJSON *curves, const cJSON *curve) {
 
 /* --- errors --- */
 
-/* y - discretisation_error; null where either is unknown. NULL: out of memory. */
-static cJSON *limit_of(const cJSON *finest) {
-    cJSON *limit = cJSON_CreateArray();
-    const cJSON *y = field_at(finest, "y")->child;
-    const cJSON *error = field_at(finest, "discretisation_error")->child;
-    bool complete = limit != NULL;
-    for (; complete && y && error; y = y->next, error = error->next) {
-        bool known = cJSON_IsNumber(y) && cJSON_IsNumber(error);
-        cJSON *item =
-            known ? cJSON_CreateNumber(y->valuedouble - error->valuedouble) : cJSON_CreateNull();
-        complete = cJSON_AddItemToArray(limit, item);
+/* a - b; a where b is no list, null where either is unknown. NULL: out of memory. */
+static cJSON *difference_of(const cJSON *a, const cJSON *b) {
+    cJSON *difference = cJSON_CreateArray();
+    const cJSON *x = a ? a->child : NULL, *y = b ? b->child : NULL;
+    bool complete = difference != NULL, all = cJSON_IsArray(b);
+    for (; complete && x && (y || !all); x = x->next, y = y ? y->next : NULL) {
+        bool known = cJSON_IsNumber(x) && (!all || cJSON_IsNumber(y));
+        cJSON *item = known ? cJSON_CreateNumber(x->valuedouble - (all ? y->valuedouble : 0))
+                            : cJSON_CreateNull();
+        complete = cJSON_AddItemToArray(difference, item);
     }
-    return fields_finish(limit, complete);
+    return fields_finish(difference, complete);
+}
+
+static cJSON *limit_of(const cJSON *finest) {
+    return difference_of(field_at(finest, "y"), field_at(finest, "discretisation_error"));
+}
+
+static bool discretisation_error(const cJSON *curves, const cJSON *curve, double *out) {
+    const cJSON *finest = finest_with(curves, curve, "discretisation_error");
+    cJSON *limit = finest ? limit_of(finest) : NULL;
+    *out = relative_size(field_at(curve, "y"), limit, limit);
+    cJSON_Delete(limit);
+    return !finest || limit;
+}
+
+/* Of the finest level, which counts it between limits; where it does not, between curves of one
+ * level. */
+static bool model_error(const cJSON *curves, const cJSON *curve, double *out) {
+    const cJSON *finest = finest_with(curves, curve, "model_error");
+    if (!finest) {
+        const cJSON *complete = field_at(complete_of(curves, curve), "y");
+        *out = relative_size(field_at(curve, "y"), complete, complete);
+        return true;
+    }
+    const cJSON *error = field_at(finest, "model_error");
+    cJSON *limit = limit_of(finest), *complete = limit ? difference_of(limit, error) : NULL;
+    bool done = complete != NULL;
+    *out = relative_size(error, NULL, complete);
+    cJSON_Delete(limit);
+    cJSON_Delete(complete);
+    return done;
 }
 
 bool series_errors(const cJSON *curves, const cJSON *curve, struct series_errors *out) {
-    const cJSON *finest = finest_of(curves, curve), *complete = complete_of(curves, curve);
-    const cJSON *y = field_at(curve, "y");
-    *out = (struct series_errors){NAN, NAN};
-    if (finest && cJSON_IsArray(field_at(finest, "y"))) {
-        cJSON *limit = limit_of(finest);
-        if (!limit) {
-            return false;
-        }
-        out->discretisation = relative_size(y, limit, limit);
-        cJSON_Delete(limit);
-    }
-    if (complete) {
-        const cJSON *reference = field_at(complete, "y");
-        out->model = relative_size(y, reference, reference);
-    }
-    return true;
+    return discretisation_error(curves, curve, &out->discretisation) &&
+           model_error(curves, curve, &out->model);
 }
 
 /* --- cost --- */

@@ -14,7 +14,8 @@ double relative_size(const cJSON *above, const cJSON *minus, const cJSON *below)
 /* Relative, of the size of what they are counted from; NaN where they are unknown. */
 struct series_errors {
     double discretisation; /* from the limit: the finest level less its own discretisation error */
-    double model;          /* from the most complete model on the same level */
+    double model; /* of the model's limit from that of the most complete one; the same for all its
+                     levels. Of a quantity without limits: from its curve on the same level */
 };
 /* curve: one of the curves of the case. Every realisation is solved on all levels by all models, so
  * that the differences are those of pairs. False when out of memory. */

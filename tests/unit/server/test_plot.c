@@ -10,17 +10,16 @@
 /* A curve of two points. theory: a value that tells theories apart; 0 for none. */
 static void add_curve(cJSON *curves, const char *quantity, const char *series, const char *model,
                       double level, double theory) {
-    char text[512];
+    char text[512], theories[64] = "";
+    if (theory > 0)
+        snprintf(theories, sizeof theories, "\"persson\":[%g,%g]", theory, 2 * theory);
     snprintf(
         text, sizeof text,
         "{\"quantity\":\"%s\",\"series\":\"%s\",\"model\":\"%s\",\"level\":%g,\"x\":[0.1,0.2],"
         "\"y\":[0.2,0.3],\"standard_error\":[0.05,null],\"x_label\":\"load\",\"y_label\":\"%s\","
-        "\"theory\":{",
-        quantity, series, model, level, strcmp(series, "wave") == 0 ? "per wave" : "A/A0 <share>");
-    if (theory > 0)
-        snprintf(text + strlen(text), sizeof text - strlen(text), "\"persson\":[%g,%g]", theory,
-                 2 * theory);
-    strcat(text, "}}");
+        "\"theory\":{%s}}",
+        quantity, series, model, level, strcmp(series, "wave") == 0 ? "per wave" : "A/A0 <share>",
+        theories);
     cJSON *curve = cJSON_Parse(text);
     assert_non_null(curve);
     cJSON_AddItemToArray(curves, curve);
