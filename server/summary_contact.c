@@ -241,6 +241,6 @@ void summary_of_contact(const cJSON *cases, const cJSON *costs, FILE *file) {
     table_clear(&table);
     fputs(
         "\nload: p/(E* h'_rms); area: A/A0, +- one standard error; mesh %: error from the limit of "
-        "the levels, model %: from the most complete model\n",
+        "the levels, model %: of the limit from that of the most complete model\n",
         file);
 }
