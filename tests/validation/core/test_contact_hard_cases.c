@@ -163,9 +163,9 @@ static void fill(struct scene *scene, double (*height)(const struct place *)) {
 
 /* As fractions of the load of full contact: rising by factors of 1e6, falling as far, around full
  * contact by one rounding error, up and down. */
-static const double LOADS[] = {1e-300, 1e-18, 1e-12, 1e-6,      1,        1e-8, 0.5,
-                               1e-3,   100,   0.9,   0.999,     0.1,      0.3,  0.01,
-                               1e-16,  0.7,   1e-4,  1 - 1e-16, 1 - 1e-12};
+static const double LOADS[] = {1e-300, 1e-18, 1e-12, 1e-6, 1,         1e-8,     0.5,
+                               1e-300, 1e-3,  100,   0.9,  0.999,     0.1,      0.3,
+                               0.01,   1e-16, 0.7,   1e-4, 1 - 1e-16, 1 - 1e-12};
 
 static void press_all(struct scene *scene, const char *surface, const char *block) {
     double full = contact_full_pressure(scene->contact);
