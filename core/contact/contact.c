@@ -8,7 +8,7 @@
 #include <string.h>
 
 const struct contact_options CONTACT_DEFAULTS = {
-    .tolerance = 1e-8, .max_iterations = 5000, .stall_iterations = 60};
+    .tolerance = 1e-8, .max_iterations = 5000, .stall_iterations = 400};
 
 /* Within, heights are in units of the surface's RMS height and pressures in RMS height over the
  * largest compliance: all numbers are near 1 whatever the units of the user. */
