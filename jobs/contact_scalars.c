@@ -78,8 +78,9 @@ static void theories(const struct contact_case *study, const struct moments *mom
     struct height_moments heights;
     for (size_t a = 0; a < CONTACT_SCALAR_COUNT; a++)
         theory[a] = NAN;
-    theory[CONTACT_SCALAR_KAPPA] = persson_light_load();
-    theory[CONTACT_SCALAR_ERF_KAPPA] = persson_light_load();
+    /* One wave alone has alpha = 1, and no light-load line. */
+    if (study->surface.dimension == 2 || moments->nayak_alpha > 1 + 1e-9)
+        theory[CONTACT_SCALAR_KAPPA] = theory[CONTACT_SCALAR_ERF_KAPPA] = persson_light_load();
     theory[CONTACT_SCALAR_RMS_HEIGHT] = moments->rms_height;
     theory[CONTACT_SCALAR_RMS_SLOPE] = moments->rms_slope;
     if (!surface_case_exact(&study->surface))
