@@ -210,7 +210,7 @@ static void profiles_against_persson(void **state) {
     const cJSON *area = curve_of(document, "contact_area", "edges", "halfspace");
     for (int k = 0; k < 4; k++) {
         double expected = times[k] * at(area, "/theory/persson", k);
-        assert_near(at(area, "/y", k), expected, 0.1 * expected, at(area, "/x", k));
+        assert_near(at(area, "/y", k), expected, 0.15 * expected, at(area, "/x", k));
     }
     cJSON_Delete(document);
 }
