@@ -31,13 +31,11 @@ FORTIFY = $(if $(or $(SAN),$(DEBUG),$(COV)),,-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE
 CFLAGS  = -std=c11 -D_GNU_SOURCE -g $(OPT) $(WARN) -ffp-contract=off -fno-math-errno -fno-trapping-math \
           -fstack-protector-strong -fPIE -pthread $(FORTIFY) -I.
 LDFLAGS = -pie -Wl,-z,relro,-z,now -pthread $(if $(SAN),-fsanitize=$(SAN)) $(if $(COV),--coverage)
-LIBS_core   = -lfftw3 -lgsl -lgslcblas -lm
+LIBS_core   = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
 LIBS_jobs   = -lcjson $(LIBS_core)
 LIBS_schema = -lsqlite3 $(LIBS_jobs)
 LIBS_worker = -lcurl $(LIBS_schema)
 LIBS_server = -lmicrohttpd -lnettle $(LIBS_worker)
-# what a ladder's tests need beyond their layer
-LIBS_validation_core = -lcholmod
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
 embedded = $(wildcard $(1)/migrations/*.sql $(1)/web/* $(1)/*.yaml)
@@ -83,7 +81,7 @@ define TESTS
 TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c))
 $$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(call archive,$(BELOW_$(2)))
 	$(say) LD $$@
-	$(Q)$(CC) $(LDFLAGS) -o $$@ $$^ -lcmocka $(LIBS_$(1)_$(2)) $(LIBS_$(2))
+	$(Q)$(CC) $(LDFLAGS) -o $$@ $$^ -lcmocka $(LIBS_$(2))
 $(1)-$(2): $$(TESTS_$(1)_$(2))
 	tests/run-tests $$^
 .PHONY: $(1)-$(2)

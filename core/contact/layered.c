@@ -39,17 +39,12 @@ static const double PI = 3.14159265358979323846;
 enum { LANES = 32 };
 typedef double lane[LANES];
 
-/* Elasticity with E* = E/(1 - nu^2) = 1: shear modulus and the parts of lambda. */
-struct material {
-    double mu, local, mean;
-};
-
-static struct material material_of(double poisson) {
+struct layered_material layered_material(double poisson) {
     double mu = (1 - poisson) / 2, ratio = (1 - 2 * poisson) / (2 * (1 - poisson));
     double local = 2 / (1 + ratio * ratio) - 3 * mu;
     /* Rounding errors grow as lambda/mu; beyond this one the compliance moves by less than they. */
     double compressible = fmax(1 - 2 * poisson, 1e-8);
-    return (struct material){mu, local, 2 * mu * poisson / compressible - local};
+    return (struct layered_material){mu, local, 2 * mu * poisson / compressible - local};
 }
 
 /* A direction's symbols for one wave. */
@@ -84,8 +79,8 @@ struct waves {
     size_t count;
 };
 
-static void wave_add(struct waves *w, const struct material *material, const struct symbols *x,
-                     const struct symbols *y) {
+static void wave_add(struct waves *w, const struct layered_material *material,
+                     const struct symbols *x, const struct symbols *y) {
     size_t l = w->count++;
     double mu = material->mu, local = material->local, mean = material->mean;
     double kx = x->stiffness * y->mass, ky = x->mass * y->stiffness, mass = x->mass * y->mass;
@@ -210,7 +205,7 @@ WIDE_VECTORS static void face(struct waves *w) {
 /* A mesh under way; lengths in units of dx, so that no unit of the user's overflows. */
 struct mesh {
     struct compliance *compliance;
-    struct material material;
+    struct layered_material material;
     double *thickness;     /* layers, from the face down */
     struct symbols *x, *y; /* nx/2 + 1, ny/2 + 1 */
     bool square;           /* x and y may be swapped */
@@ -275,7 +270,7 @@ static int mesh_prepare(struct mesh *mesh, struct error *err) {
     for (size_t my = 0; my <= grid->ny / 2; my++)
         mesh->y[my] = symbols_of(my, grid->ny, dy / dx);
     mesh->square = grid->nx == grid->ny && dx == dy;
-    mesh->material = material_of(compliance->block.poisson);
+    mesh->material = layered_material(compliance->block.poisson);
     return 0;
 }
 

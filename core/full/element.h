@@ -1,0 +1,36 @@
+/* The element of the full model: bilinear quadrilateral, trilinear hexahedron, 2 Gauss points a
+ * direction, with the mean dilatation theta = v/V (its volume now and before) in place of the local
+ * one but for the part that the layered model keeps:
+ *
+ *   energy = sum over Gauss points of weight x solid's energy (hencky.h)
+ *          + V (mean/2) (ln theta)^2      (small: (theta - 1)^2)
+ *
+ * so that one pressure an element is bound when nu nears 1/2 (Simo, Taylor & Pister 1985), and
+ * small strains on a flat block are those of layered.c.
+ *
+ * Node a lies at side (a >> k) & 1 of axis k; the vertical axis is the last. */
+#ifndef RUGO_CORE_FULL_ELEMENT_H
+#define RUGO_CORE_FULL_ELEMENT_H
+
+#include "core/full/hencky.h"
+
+enum { ELEMENT_NODES = 8, ELEMENT_FREEDOMS = 24 };
+
+struct element_shape {        /* of the reference */
+    double gradient[8][8][3]; /* [q][a][k]: dN_a/dX_k at Gauss point q */
+    double weight[8];         /* of Gauss points: volume */
+    double volume;
+};
+/* Reference positions [a][k]. False when a Jacobian at a Gauss point is not positive. */
+bool element_shape_make(int dimension, double position[8][3], struct element_shape *out);
+/* Least over the corners of the Jacobian over its edges' lengths: 1 for a brick, 0 or less for an
+ * element folded there. */
+double element_quality(int dimension, double position[8][3]);
+
+/* Displacements u[a][k]; force and stiffness by freedom a*dimension + k. energy, force, stiffness:
+ * NULL where not wanted. False when a Gauss point is turned inside out. */
+bool element_evaluate(int dimension, const struct solid *solid, const struct element_shape *shape,
+                      double u[8][3], double *energy, double *force,
+                      double (*stiffness)[ELEMENT_FREEDOMS]);
+
+#endif

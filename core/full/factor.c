@@ -1,0 +1,145 @@
+#include "core/full/factor.h"
+#include <stdint.h>
+#include <stdlib.h>
+#include <suitesparse/cholmod.h>
+
+enum { HELD = -1 };
+
+struct factor {
+    const struct mesh *mesh; /* borrowed */
+    int *unknown;            /* mesh_freedoms: number, or HELD */
+    bool *held;              /* unknowns held by contact */
+    size_t unknowns;
+    cholmod_common common;
+    cholmod_triplet *triplet;
+    cholmod_factor *factor;
+    cholmod_dense *load;
+};
+
+static void number_unknowns(struct factor *f) {
+    const struct mesh *mesh = f->mesh;
+    size_t d = (size_t)mesh->dimension, far_side = mesh->layers * mesh->face * d;
+    int count = 0, common = HELD;
+    for (size_t freedom = 0; freedom < mesh_freedoms(mesh); freedom++) {
+        bool vertical = freedom % d == d - 1;
+        if (freedom >= far_side && vertical) {
+            if (common == HELD)
+                common = count++;
+            f->unknown[freedom] = common;
+        } else
+            f->unknown[freedom] = freedom >= far_side && freedom < far_side + d ? HELD : count++;
+    }
+    f->unknowns = (size_t)count;
+}
+
+int factor_create(struct factor **out, const struct mesh *mesh, struct error *err) {
+    *out = NULL;
+    size_t freedoms = mesh_freedoms(mesh);
+    size_t slots = mesh->dimension == 2 ? 9 : 27, d = (size_t)mesh->dimension;
+    struct factor *f = array_create(1, sizeof *f);
+    if (f == NULL)
+        return error_memory(err, sizeof *f, "a factorisation");
+    cholmod_start(&f->common);
+    f->common.print = 0;
+    f->common.supernodal = CHOLMOD_SUPERNODAL;
+    f->mesh = mesh;
+    f->unknown = array_create(freedoms, sizeof *f->unknown);
+    f->held = array_create(freedoms, sizeof *f->held);
+    int status = 0;
+    if (f->unknown != NULL && f->held != NULL) {
+        number_unknowns(f);
+        f->triplet = cholmod_allocate_triplet(f->unknowns, f->unknowns, freedoms * slots * d, -1,
+                                              CHOLMOD_REAL, &f->common);
+        f->load = cholmod_allocate_dense(f->unknowns, 1, f->unknowns, CHOLMOD_REAL, &f->common);
+    }
+    if (f->triplet == NULL || f->load == NULL) {
+        status = error_memory(err, freedoms * slots * d * 16, "a factorisation");
+        factor_destroy(&f);
+    }
+    *out = f;
+    return status;
+}
+
+void factor_destroy(struct factor **factor) {
+    struct factor *f = *factor;
+    if (f == NULL)
+        return;
+    cholmod_free_triplet(&f->triplet, &f->common);
+    cholmod_free_factor(&f->factor, &f->common);
+    cholmod_free_dense(&f->load, &f->common);
+    cholmod_finish(&f->common);
+    free(f->unknown);
+    free(f->held);
+    free(f);
+    *factor = NULL;
+}
+
+/* The lower half; entries of one place are summed. Zeros stay, so that the pattern does. */
+static void fill(struct factor *f, const struct stencil *tangent) {
+    const struct mesh *mesh = f->mesh;
+    size_t d = (size_t)mesh->dimension, count = 0;
+    int *row = f->triplet->i, *column = f->triplet->j;
+    double *entry = f->triplet->x;
+    for (size_t node = 0; node < mesh->nodes; node++)
+        for (size_t slot = 0; slot < tangent->slots; slot++) {
+            size_t other = stencil_neighbour(mesh, node, slot);
+            const double *value = tangent->values + (node * tangent->slots + slot) * d * d;
+            for (size_t i = 0; other != SIZE_MAX && i < d; i++)
+                for (size_t j = 0; j < d; j++) {
+                    int r = f->unknown[node * d + i], c = f->unknown[other * d + j];
+                    if (c == HELD || r < c)
+                        continue;
+                    row[count] = r;
+                    column[count] = c;
+                    bool kept = !f->held[r] && !f->held[c];
+                    /* In a cell of 2 columns a node meets itself only in the middle slot. */
+                    bool self = node == other && i == j;
+                    entry[count++] = kept ? value[i * d + j] : self ? 1 : 0;
+                }
+        }
+    f->triplet->nnz = count;
+}
+
+static int failure(struct factor *f, struct error *err) {
+    if (f->common.status == CHOLMOD_OUT_OF_MEMORY || f->common.status == CHOLMOD_TOO_LARGE)
+        return error_set(err, ERROR_MEMORY,
+                         "the factorisation of %zu equations needs too much "
+                         "memory",
+                         f->unknowns);
+    return error_set(err, ERROR_NUMERIC, "the stiffness of the block is not positive definite");
+}
+
+int factor_run(struct factor *f, const struct stencil *tangent, const bool *active,
+               struct error *err) {
+    for (size_t u = 0; u < f->unknowns; u++)
+        f->held[u] = false;
+    for (size_t node = 0; node < f->mesh->face; node++)
+        f->held[f->unknown[mesh_vertical(f->mesh, node)]] = active[node];
+    fill(f, tangent);
+    cholmod_sparse *matrix = cholmod_triplet_to_sparse(f->triplet, 0, &f->common);
+    if (matrix != NULL && f->factor == NULL)
+        f->factor = cholmod_analyze(matrix, &f->common);
+    bool done = matrix != NULL && f->factor != NULL &&
+                cholmod_factorize(matrix, f->factor, &f->common) && f->common.status == CHOLMOD_OK;
+    int status = done ? 0 : failure(f, err);
+    cholmod_free_sparse(&matrix, &f->common);
+    return status;
+}
+
+int factor_solve(struct factor *f, double *x, struct error *err) {
+    double *load = f->load->x;
+    size_t freedoms = mesh_freedoms(f->mesh);
+    for (size_t u = 0; u < f->unknowns; u++)
+        load[u] = 0;
+    for (size_t n = 0; n < freedoms; n++)
+        if (f->unknown[n] != HELD && !f->held[f->unknown[n]])
+            load[f->unknown[n]] += x[n];
+    cholmod_dense *solution = cholmod_solve(CHOLMOD_A, f->factor, f->load, &f->common);
+    if (solution == NULL)
+        return failure(f, err);
+    const double *displacement = solution->x;
+    for (size_t n = 0; n < freedoms; n++)
+        x[n] = f->unknown[n] == HELD ? 0 : displacement[f->unknown[n]];
+    cholmod_free_dense(&solution, &f->common);
+    return 0;
+}

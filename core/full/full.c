@@ -1,0 +1,340 @@
+#include "core/full/full.h"
+#include "core/sum.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
+                                           .tolerance = 1e-9,
+                                           .max_iterations = 60,
+                                           .least_step = 1.0 / 64};
+
+/* Within, lengths are in steps along x. */
+struct full {
+    struct grid grid;
+    struct full_options options;
+    struct mesh *mesh;
+    struct newton newton;
+    struct compliance *compliance;
+    struct contact *linear;    /* the guess of what touches */
+    double *z;                 /* heights, mean 0, in steps */
+    double *pressure, *gap;    /* face: what is told */
+    double *kept;              /* displacements of the last load that went well */
+    double *told;              /* displacements, in the user's unit */
+    bool *kept_active, *guess; /* face: its active set; the linear model's for it */
+    double load;               /* that load; 0: lifted off */
+    double rms;                /* height, in steps */
+};
+
+static int options_check(const struct full_options *options, struct error *err) {
+    if (!(options->tolerance > 0 && options->tolerance < 1))
+        return error_set(err, ERROR_INPUT, "tolerance = %g; allowed: above 0, below 1",
+                         options->tolerance);
+    if (!(options->least_step > 0 && options->least_step <= 1))
+        return error_set(err, ERROR_INPUT, "least load step = %g; allowed: above 0, up to 1",
+                         options->least_step);
+    return 0;
+}
+
+static int arrays_create(struct full *f, struct error *err) {
+    size_t face = f->mesh->face, freedoms = mesh_freedoms(f->mesh);
+    f->z = array_create(face, sizeof *f->z);
+    f->pressure = array_create(face, sizeof *f->pressure);
+    f->gap = array_create(face, sizeof *f->gap);
+    f->kept_active = array_create(face, sizeof *f->kept_active);
+    f->guess = array_create(face, sizeof *f->guess);
+    f->kept = array_create(freedoms, sizeof *f->kept);
+    f->told = array_create(freedoms, sizeof *f->told);
+    if (!f->z || !f->pressure || !f->gap || !f->kept_active || !f->guess || !f->kept || !f->told)
+        return error_memory(err, 2 * freedoms * sizeof(double), "finite elements");
+    return 0;
+}
+
+int full_create(struct full **out, const struct grid *grid, const struct block *block,
+                const struct full_options *options, struct error *err) {
+    *out = NULL;
+    int status = options_check(options, err);
+    if (status == 0 && block->weighting != GAP_DUAL)
+        status = error_set(err, ERROR_INPUT,
+                           "gap weighting %d is not offered on the true geometry; allowed: dual",
+                           (int)block->weighting);
+    if (status != 0)
+        return status;
+    struct full *f = array_create(1, sizeof *f);
+    if (f == NULL)
+        return error_memory(err, sizeof *f, "finite elements");
+    struct block linear = *block;
+    struct contact_options loose = CONTACT_DEFAULTS;
+    struct solid solid = solid_of(block->poisson, options->kinematics);
+    linear.model = MODEL_LAYERED;
+    loose.tolerance = 1e-5;
+    f->grid = *grid;
+    f->options = *options;
+    status = mesh_create(&f->mesh, grid, block, err);
+    if (status == 0)
+        status = compliance_create(&f->compliance, grid, &linear, err);
+    if (status == 0)
+        status = contact_create(&f->linear, f->compliance, &loose, err);
+    if (status == 0)
+        status = newton_create(&f->newton, f->mesh, &solid, err);
+    if (status == 0)
+        status = arrays_create(f, err);
+    if (status != 0)
+        full_destroy(&f);
+    else {
+        f->newton.tolerance = options->tolerance;
+        f->newton.max_iterations = options->max_iterations;
+    }
+    *out = f;
+    return status;
+}
+
+void full_destroy(struct full **full) {
+    struct full *f = *full;
+    if (f == NULL)
+        return;
+    newton_clear(&f->newton);
+    contact_destroy(&f->linear);
+    compliance_destroy(&f->compliance);
+    mesh_destroy(&f->mesh);
+    free(f->z);
+    free(f->pressure);
+    free(f->gap);
+    free(f->kept_active);
+    free(f->guess);
+    free(f->kept);
+    free(f->told);
+    free(f);
+    *full = NULL;
+}
+
+/* Heights of mean 0, in steps. */
+static int take_heights(struct full *f, const double *z, struct error *err) {
+    size_t n = f->mesh->face;
+    struct sum sum = {0}, square = {0};
+    for (size_t i = 0; i < n; i++) {
+        f->z[i] = z[i] / f->mesh->unit;
+        if (!isfinite(f->z[i]))
+            return error_set(err, ERROR_INPUT, "height %zu of the surface = %g is not finite", i,
+                             z[i]);
+        sum_add(&sum, f->z[i]);
+    }
+    double mean = sum_value(&sum) / (double)n, highest = -INFINITY;
+    for (size_t i = 0; i < n; i++) {
+        f->z[i] -= mean;
+        highest = fmax(highest, f->z[i]);
+        sum_add(&square, f->z[i] * f->z[i]);
+    }
+    f->rms = sqrt(sum_value(&square) / (double)n);
+    f->newton.flat = -highest;
+    return 0;
+}
+
+static void lift(struct full *f) {
+    f->load = 0;
+    memset(f->kept, 0, mesh_freedoms(f->mesh) * sizeof *f->kept);
+    memset(f->newton.u, 0, mesh_freedoms(f->mesh) * sizeof *f->newton.u);
+    for (size_t node = 0; node < f->mesh->face; node++)
+        f->newton.active[node] = f->kept_active[node] = f->guess[node] = false;
+}
+
+int full_begin(struct full *f, const double *z, struct error *err) {
+    int status = take_heights(f, z, err);
+    if (status == 0)
+        status = mesh_shape(f->mesh, f->z, err);
+    if (status == 0)
+        status = contact_begin(f->linear, z, err);
+    lift(f);
+    return status;
+}
+
+/* --- load steps --- */
+
+/* The active set kept, with the change that the linear model sees from there to this load. Where it
+ * finds no answer, the set kept. */
+static void predict(struct full *f, double load) {
+    struct contact_state state;
+    struct error ignored;
+    if (contact_press(f->linear, load, &state, &ignored) != 0)
+        return;
+    for (size_t node = 0; node < f->mesh->face; node++) {
+        bool touches = state.p[node] > 0;
+        if (f->load == 0 || touches != f->guess[node])
+            f->newton.active[node] = touches;
+    }
+}
+
+static void keep(struct full *f, double load) {
+    struct contact_state state;
+    struct error ignored;
+    size_t face = f->mesh->face;
+    f->load = load;
+    memcpy(f->kept, f->newton.u, mesh_freedoms(f->mesh) * sizeof *f->kept);
+    memcpy(f->kept_active, f->newton.active, face * sizeof *f->kept_active);
+    bool known = contact_press(f->linear, load, &state, &ignored) == 0;
+    for (size_t node = 0; known && node < face; node++)
+        f->guess[node] = state.p[node] > 0;
+}
+
+static void restore(struct full *f) {
+    memcpy(f->newton.u, f->kept, mesh_freedoms(f->mesh) * sizeof *f->kept);
+    memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
+}
+
+/* From the load kept to another: in one step, or in smaller ones that grow again. */
+static int raise_load(struct full *f, double goal, struct newton_end *end,
+                      struct full_report *report, struct error *err) {
+    double whole = goal - f->load, step = whole;
+    int status = 0;
+    do {
+        bool last = fabs(step) >= fabs(goal - f->load);
+        double next = last ? goal : f->load + step;
+        predict(f, next);
+        status = newton_settle(&f->newton, next, end, err);
+        report->newton += end->iterations;
+        report->changes += end->changes;
+        report->cycles += end->cycles;
+        if (status == 0) {
+            keep(f, next);
+            report->steps++;
+            step *= 2;
+        } else {
+            restore(f);
+            if (status != ERROR_NUMERIC)
+                return status;
+            report->cuts++;
+            step /= 2;
+            if (fabs(step) < f->options.least_step * fabs(whole) || whole == 0)
+                return error_set(err, ERROR_NUMERIC,
+                                 "contact on the true geometry under a mean pressure of %g E* was "
+                                 "reached up to %g E* only; steepest slope %.3g, worst element "
+                                 "%.2g; the next step of %.2g E* found no equilibrium",
+                                 goal, f->load, f->mesh->slope, f->mesh->quality, 2 * step);
+        }
+    } while (f->load != goal || status != 0);
+    return 0;
+}
+
+/* --- what is told --- */
+
+/* Displacement of a node of the face along x or y. */
+static double sideways(const struct full *f, size_t node, size_t axis) {
+    return f->newton.u[node * (size_t)f->mesh->dimension + axis];
+}
+
+/* Area of a face cell as seen from the flat, now, over that undeformed: half of the cross product
+ * of its diagonals. */
+static double cell_stretch(const struct full *f, size_t j, size_t i) {
+    const struct mesh *m = f->mesh;
+    size_t right = (i + 1) % m->nx, back = (j + 1) % m->ny;
+    size_t a = j * m->nx + i, b = j * m->nx + right;
+    if (m->dimension == 2)
+        return 1 + sideways(f, b, 0) - sideways(f, a, 0);
+    size_t c = back * m->nx + i, e = back * m->nx + right;
+    double x1 = 1 + sideways(f, e, 0) - sideways(f, a, 0);
+    double y1 = m->across + sideways(f, e, 1) - sideways(f, a, 1);
+    double x2 = -1 + sideways(f, c, 0) - sideways(f, b, 0);
+    double y2 = m->across + sideways(f, c, 1) - sideways(f, b, 1);
+    return (x1 * y2 - x2 * y1) / (2 * m->across);
+}
+
+/* Each cell gives a node its share: the integral of N is the same for all its corners where the
+ * cell is a parallelogram, and nearly so elsewhere. */
+static double contact_stretch(const struct full *f) {
+    const struct mesh *m = f->mesh;
+    const bool *active = f->newton.active;
+    struct sum now = {0};
+    size_t corners = 0;
+    for (size_t j = 0; j < m->ny; j++)
+        for (size_t i = 0; i < m->nx; i++) {
+            size_t right = (i + 1) % m->nx, back = (j + 1) % m->ny;
+            int touching = active[j * m->nx + i] + active[j * m->nx + right];
+            if (m->dimension == 3)
+                touching += active[back * m->nx + i] + active[back * m->nx + right];
+            corners += (size_t)touching;
+            sum_add(&now, touching * cell_stretch(f, j, i));
+        }
+    return corners > 0 ? sum_value(&now) / (double)corners : NAN;
+}
+
+static void tell_report(const struct full *f, const struct newton_end *end,
+                        const struct contact_state *state, struct full_report *report) {
+    struct sum force = {0};
+    for (size_t node = 0; node < f->mesh->face; node++)
+        sum_add(&force, f->pressure[node]);
+    report->kinematics = f->options.kinematics;
+    report->reached = state->pressure;
+    report->balance =
+        state->pressure > 0 ? sum_value(&force) / (double)f->mesh->face / state->pressure - 1 : 0;
+    report->residual = end->residual;
+    report->penetration = state->penetration;
+    report->stretch = contact_stretch(f);
+    report->slope = f->mesh->slope;
+    report->quality = f->mesh->quality;
+    report->unchanged = end->unchanged;
+    memcpy(report->history, end->history, sizeof report->history);
+}
+
+static int tell(struct full *f, const struct newton_end *end, struct contact_state *out,
+                struct error *err) {
+    const struct newton *n = &f->newton;
+    size_t face = f->mesh->face;
+    struct sum gap = {0};
+    for (size_t node = 0; node < face; node++) {
+        double force = n->force[mesh_vertical(f->mesh, node)];
+        double g = newton_gap(n, node);
+        sum_add(&gap, g);
+        f->gap[node] = g * f->mesh->unit;
+        /* In contact, if barely. */
+        f->pressure[node] = n->active[node] ? fmax(DBL_MIN, force / newton_node_area(n)) : 0;
+        out->nodes += n->active[node];
+    }
+    double scale = f->rms > 0 ? f->rms : 1, compliance = 0;
+    out->mean_gap = sum_value(&gap) / (double)face * f->mesh->unit;
+    out->penetration = end->penetration / scale;
+    out->violation = fmax(end->inside, end->penetration) / scale;
+    if (out->nodes == 0)
+        return 0;
+    int status = newton_compliance(&f->newton, &compliance, err);
+    out->stiffness = out->nodes == face ? INFINITY : 1 / (compliance * f->mesh->unit);
+    return status;
+}
+
+int full_press(struct full *f, double pressure, struct contact_state *out,
+               struct full_report *report, struct error *err) {
+    if (!(pressure >= 0 && isfinite(pressure)))
+        return error_set(err, ERROR_INPUT, "mean pressure = %g; allowed: 0 or more, finite",
+                         pressure);
+    struct contact_state state = {
+        .pressure = pressure, .p = f->pressure, .gap = f->gap, .opening = f->gap};
+    struct full_report full_report = {0};
+    struct newton_end end = {0};
+    int status = 0;
+    if (pressure == 0)
+        lift(f);
+    else
+        status = raise_load(f, pressure, &end, &full_report, err);
+    if (status == 0)
+        status = tell(f, &end, &state, err);
+    full_report.reached = f->load;
+    if (status == 0) {
+        tell_report(f, &end, &state, &full_report);
+        state.iterations = full_report.newton;
+        state.work = (double)full_report.newton * (double)mesh_freedoms(f->mesh);
+        *out = state;
+    }
+    if (report != NULL)
+        *report = full_report;
+    return status;
+}
+
+const struct mesh *full_mesh(const struct full *f) {
+    return f->mesh;
+}
+
+const double *full_displacement(struct full *f) {
+    for (size_t i = 0; i < mesh_freedoms(f->mesh); i++)
+        f->told[i] = f->newton.u[i] * f->mesh->unit;
+    return f->told;
+}

@@ -1,0 +1,313 @@
+#include "core/full/newton.h"
+#include "core/sum.h"
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Force per gap that weighs the two in the choice of the active set: E* over a step. */
+static const double COMPLEMENTARITY = 1;
+/* A step is halved so often at most. */
+enum { HALVINGS = 8 };
+/* Forces and gaps below these, over the largest force and over a step, are rounding. */
+static const double FORCE_ROUNDING = 1e-12, GAP_ROUNDING = 1e-12;
+
+int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
+                  struct error *err) {
+    *out = (struct newton){.mesh = mesh, .solid = *solid};
+    size_t freedoms = mesh_freedoms(mesh);
+    double **const arrays[] = {&out->u, &out->force, &out->before, &out->change, &out->rest};
+    int status = stencil_create(&out->tangent, mesh, err);
+    if (status == 0)
+        status = factor_create(&out->factor, mesh, err);
+    for (size_t a = 0; status == 0 && a < sizeof arrays / sizeof *arrays; a++) {
+        *arrays[a] = array_create(freedoms, sizeof(double));
+        if (*arrays[a] == NULL)
+            status = error_memory(err, freedoms * sizeof(double), "displacements");
+    }
+    if (status == 0) {
+        out->active = array_create(mesh->face, sizeof *out->active);
+        if (out->active == NULL)
+            status = error_memory(err, mesh->face * sizeof(bool), "the active set");
+    }
+    if (status != 0)
+        newton_clear(out);
+    return status;
+}
+
+void newton_clear(struct newton *n) {
+    stencil_destroy(&n->tangent);
+    factor_destroy(&n->factor);
+    free(n->u);
+    free(n->force);
+    free(n->before);
+    free(n->change);
+    free(n->rest);
+    free(n->active);
+    *n = (struct newton){0};
+}
+
+double newton_gap(const struct newton *n, size_t node) {
+    return n->mesh->height[node] + n->u[mesh_vertical(n->mesh, node)] - n->flat;
+}
+
+double newton_node_area(const struct newton *n) {
+    return n->mesh->across;
+}
+
+static double contact_force(const struct newton *n, size_t node) {
+    return n->force[mesh_vertical(n->mesh, node)];
+}
+
+/* --- the active set --- */
+
+static double largest_force(const struct newton *n) {
+    double most = 0;
+    for (size_t node = 0; node < n->mesh->face; node++)
+        most = fmax(most, fabs(contact_force(n, node)));
+    return most;
+}
+
+/* How much a node contradicts its being in contact or not; 0 where it agrees. */
+static double contradiction(const struct newton *n, size_t node, double rounding) {
+    double gap = newton_gap(n, node), force = contact_force(n, node);
+    if (n->active[node]) {
+        double pull = COMPLEMENTARITY * gap - force;
+        return pull > rounding + COMPLEMENTARITY * GAP_ROUNDING ? pull : 0;
+    }
+    return gap < -GAP_ROUNDING ? -COMPLEMENTARITY * gap : 0;
+}
+
+static size_t active_count(const struct newton *n) {
+    size_t count = 0;
+    for (size_t node = 0; node < n->mesh->face; node++)
+        count += n->active[node];
+    return count;
+}
+
+static size_t nearest_node(const struct newton *n) {
+    size_t nearest = 0;
+    for (size_t node = 1; node < n->mesh->face; node++)
+        if (newton_gap(n, node) < newton_gap(n, nearest))
+            nearest = node;
+    return nearest;
+}
+
+/* Something must carry the load. */
+static void active_fill(struct newton *n) {
+    if (active_count(n) == 0)
+        n->active[nearest_node(n)] = true;
+}
+
+/* Moves the nodes that contradict: all, or the worst alone. Returns how many. */
+static size_t active_update(struct newton *n, bool one) {
+    double rounding = FORCE_ROUNDING * largest_force(n), worst = 0;
+    size_t changes = 0, which = 0;
+    for (size_t node = 0; node < n->mesh->face; node++) {
+        double wrong = contradiction(n, node, rounding);
+        if (wrong > worst) {
+            worst = wrong;
+            which = node;
+        }
+        if (wrong > 0 && !one)
+            n->active[node] = !n->active[node];
+        changes += wrong > 0;
+    }
+    if (one && changes > 0) {
+        n->active[which] = !n->active[which];
+        changes = 1;
+    }
+    active_fill(n);
+    return changes;
+}
+
+/* A fingerprint (Fowler, Noll & Vo 1991) by which a set that comes back is known. */
+static uint64_t active_hash(const struct newton *n) {
+    uint64_t hash = UINT64_C(14695981039346656037);
+    for (size_t node = 0; node < n->mesh->face; node++)
+        hash = (hash ^ (n->active[node] ? 1 : 2)) * UINT64_C(1099511628211);
+    return hash;
+}
+
+enum { REMEMBERED = 64 };
+struct memory {
+    uint64_t hash[REMEMBERED];
+    size_t count;
+};
+
+/* Whether this set was met before; it is now. */
+static bool memory_meets(struct memory *memory, uint64_t hash) {
+    for (size_t a = 0; a < memory->count && a < REMEMBERED; a++)
+        if (memory->hash[a] == hash)
+            return true;
+    memory->hash[memory->count++ % REMEMBERED] = hash;
+    return false;
+}
+
+/* --- equilibrium --- */
+
+/* Out-of-balance forces, outer less inner; what the flat carries balances itself. Far side: the sum
+ * at its first node, whose sideways are held. Returns the largest over all. */
+static double residual(const struct newton *n, double pressure, double *out) {
+    const struct mesh *mesh = n->mesh;
+    size_t d = (size_t)mesh->dimension, far_side = mesh->layers * mesh->face;
+    double largest = 0;
+    struct sum far_force = {0};
+    for (size_t f = 0; f < mesh_freedoms(mesh); f++)
+        out[f] = -n->force[f];
+    for (size_t node = 0; node < mesh->face; node++) {
+        size_t vertical = mesh_vertical(mesh, far_side + node);
+        sum_add(&far_force, out[vertical] - pressure * newton_node_area(n));
+        out[vertical] = 0;
+        if (n->active[node])
+            out[mesh_vertical(mesh, node)] = 0;
+    }
+    for (size_t k = 0; k + 1 < d; k++)
+        out[far_side * d + k] = 0;
+    out[mesh_vertical(mesh, far_side)] = sum_value(&far_force);
+    for (size_t f = 0; f < mesh_freedoms(mesh); f++)
+        largest = fmax(largest, fabs(out[f]));
+    return largest;
+}
+
+static void measure(const struct newton *n, struct newton_end *end) {
+    end->inside = end->penetration = 0;
+    for (size_t node = 0; node < n->mesh->face; node++) {
+        double gap = newton_gap(n, node);
+        if (n->active[node])
+            end->inside = fmax(end->inside, fabs(gap));
+        else
+            end->penetration = fmax(end->penetration, -gap);
+    }
+}
+
+/* Potential energy of the block and the load. */
+static double potential(const struct newton *n, double energy, double pressure, const double *u) {
+    size_t far_side = n->mesh->layers * n->mesh->face;
+    return energy + pressure * newton_node_area(n) * (double)n->mesh->face *
+                        u[mesh_vertical(n->mesh, far_side)];
+}
+
+/* Newton's change for out-of-balance forces in change, which it replaces: nodes in contact go to
+ * the flat. */
+static int newton_change(struct newton *n, struct error *err) {
+    const struct mesh *mesh = n->mesh;
+    size_t freedoms = mesh_freedoms(mesh);
+    int status = factor_run(n->factor, n->tangent, n->active, err);
+    if (status != 0)
+        return status;
+    double *moved = n->before, *product = n->rest;
+    memset(moved, 0, freedoms * sizeof *moved);
+    bool any = false;
+    for (size_t node = 0; node < mesh->face; node++)
+        if (n->active[node]) {
+            moved[mesh_vertical(mesh, node)] = -newton_gap(n, node);
+            any = any || newton_gap(n, node) != 0;
+        }
+    if (any) {
+        stencil_apply(n->tangent, moved, product);
+        for (size_t f = 0; f < freedoms; f++)
+            n->change[f] -= product[f];
+    }
+    status = factor_solve(n->factor, n->change, err);
+    for (size_t node = 0; node < mesh->face; node++)
+        if (n->active[node])
+            n->change[mesh_vertical(mesh, node)] = moved[mesh_vertical(mesh, node)];
+    return status;
+}
+
+/* Where a step starts. */
+struct start {
+    double residual, potential, inside;
+};
+
+/* Takes the longest of the step and its halves that turns no element inside out and, where nodes in
+ * contact already lie on the flat, brings the forces or the energy down. */
+static int advance(struct newton *n, double pressure, const struct start *start,
+                   struct error *err) {
+    size_t freedoms = mesh_freedoms(n->mesh);
+    double energy, length = 1;
+    bool feasible = start->inside <= GAP_ROUNDING;
+    memcpy(n->before, n->u, freedoms * sizeof *n->before);
+    int status = ERROR_NUMERIC;
+    for (int halving = 0; status != 0 && halving < HALVINGS; halving++, length /= 2) {
+        for (size_t f = 0; f < freedoms; f++)
+            n->u[f] = n->before[f] + length * n->change[f];
+        if (!stencil_evaluate(n->mesh, &n->solid, n->u, &energy, n->force, NULL))
+            continue;
+        if (!feasible || residual(n, pressure, n->rest) <= start->residual ||
+            potential(n, energy, pressure, n->u) < start->potential)
+            status = 0;
+    }
+    return status == 0 ? 0
+                       : error_set(err, ERROR_NUMERIC,
+                                   "a step of Newton's turns elements inside out or leads uphill");
+}
+
+static void remember_residual(struct newton_end *end, double value, bool changed) {
+    if (changed)
+        end->unchanged = 0;
+    memmove(end->history, end->history + 1, (NEWTON_HISTORY - 1) * sizeof *end->history);
+    end->history[NEWTON_HISTORY - 1] = value;
+    end->unchanged++;
+}
+
+int newton_settle(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
+    struct memory memory = {0};
+    bool careful = false;
+    *end = (struct newton_end){0};
+    active_fill(n);
+    memory_meets(&memory, active_hash(n));
+    for (size_t iteration = 0;; iteration++) {
+        struct start start;
+        double energy;
+        if (!stencil_evaluate(n->mesh, &n->solid, n->u, &energy, n->force, n->tangent))
+            return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
+        double largest = fmax(largest_force(n), pressure * newton_node_area(n));
+        start.residual = residual(n, pressure, n->change);
+        bool settled = start.residual <= n->tolerance * largest;
+        size_t changes = 0;
+        if (iteration > 0 && (!careful || start.residual <= 1e-4 * largest))
+            changes = active_update(n, careful);
+        if (changes > 0) {
+            end->changes += changes;
+            start.residual = residual(n, pressure, n->change);
+            if (memory_meets(&memory, active_hash(n)) && !careful) {
+                careful = true;
+                end->cycles++;
+            }
+        }
+        measure(n, end);
+        start.inside = end->inside;
+        start.potential = potential(n, energy, pressure, n->u);
+        end->residual = start.residual / largest;
+        remember_residual(end, end->residual, changes > 0);
+        if (iteration > 0 && changes == 0 && settled && end->inside <= GAP_ROUNDING)
+            return 0;
+        if (iteration == n->max_iterations)
+            return error_set(err, ERROR_NUMERIC,
+                             "%zu iterations of Newton's left %.2g of the largest force", iteration,
+                             end->residual);
+        end->iterations++;
+        int status = newton_change(n, err);
+        if (status == 0)
+            status = advance(n, pressure, &start, err);
+        if (status != 0)
+            return status;
+    }
+}
+
+int newton_compliance(struct newton *n, double *out, struct error *err) {
+    const struct mesh *mesh = n->mesh;
+    memset(n->change, 0, mesh_freedoms(mesh) * sizeof *n->change);
+    for (size_t node = 0; node < mesh->face; node++)
+        n->change[mesh_vertical(mesh, mesh->layers * mesh->face + node)] = -newton_node_area(n);
+    int status = factor_solve(n->factor, n->change, err);
+    struct sum gap = {0};
+    for (size_t node = 0; status == 0 && node < mesh->face; node++)
+        if (!n->active[node])
+            sum_add(&gap, n->change[mesh_vertical(mesh, node)]);
+    *out = -sum_value(&gap) / (double)mesh->face;
+    return status;
+}

@@ -1,0 +1,212 @@
+/* Protects the material of the full model: closed forms, its moduli against differences, equal and
+ * nearly equal stretches, objectivity. */
+#include "tests/support/check.h"
+
+#include "core/full/hencky.h"
+#include "core/random.h"
+#include <string.h>
+
+static const double POISSON[] = {0, 0.3, 0.49, 0.4999};
+static const enum kinematics KINEMATICS[] = {KINEMATICS_HENCKY, KINEMATICS_ST_VENANT,
+                                             KINEMATICS_SMALL};
+
+static struct strained strain(int d, const struct solid *solid, double h[3][3]) {
+    struct strained point;
+    assert_true(solid_strain(d, solid, h, &point));
+    return point;
+}
+
+/* A gradient of entries up to size, the same each run. */
+static void random_gradient(uint64_t draw, double size, double h[3][3]) {
+    struct random_key key = {.seed = 4, .realisation = draw};
+    double uniform[9];
+    random_uniform(key, 0, 0, 9, uniform);
+    for (size_t n = 0; n < 9; n++)
+        h[n / 3][n % 3] = size * (2 * uniform[n] - 1);
+}
+
+/* Hencky (1928): tau_p = 2 mu ln lambda_p + lambda ln J, plane strain's third stretch 1. Rounding
+ * alone: 1e-13 of the moduli, far below the 1e-10 that is asked. */
+static void closed_forms_hold(void **state) {
+    (void)state;
+    for (size_t n = 0; n < 4; n++) {
+        struct solid solid = solid_of(POISSON[n], KINEMATICS_HENCKY);
+        for (double stretch = 0.5; stretch < 2.1; stretch += 0.25) {
+            double logarithm = log(stretch), mu = solid.shear, a = solid.local;
+            double uniaxial[3][3] = {{stretch - 1}};
+            for (int d = 2; d <= 3; d++) {
+                struct strained p = strain(d, &solid, uniaxial);
+                check_close(p.stress[0][0], (2 * mu + a) * logarithm, 1e-13);
+                check_close(p.stress[1][1], a * logarithm, 1e-13);
+                check_close(p.energy, (mu + a / 2) * logarithm * logarithm, 1e-13);
+            }
+            /* Simple shear by gamma = 2 sinh e: stretches exp(+-e), axes at half of acot(gamma/2)
+             * to the shear; tau = 2 mu e (cos, sin) of twice that angle. */
+            double gamma = stretch, e = asinh(gamma / 2), angle = atan2(1, gamma / 2);
+            double shear[3][3] = {{0, gamma}};
+            for (int d = 2; d <= 3; d++) {
+                struct strained p = strain(d, &solid, shear);
+                check_close(p.stress[0][0], 2 * mu * e * cos(angle), 1e-13);
+                check_close(p.stress[0][1], 2 * mu * e * sin(angle), 1e-13);
+                check_close(p.energy, 2 * mu * e * e, 1e-13);
+                check_close(p.dilatation, 0, 1e-14);
+            }
+        }
+    }
+}
+
+/* Small gradients: all kinematics are one, with digits left in the strain itself. */
+static void small_strains_are_linear(void **state) {
+    (void)state;
+    double h[3][3];
+    random_gradient(1, 1e-9, h);
+    for (int d = 2; d <= 3; d++) {
+        struct solid small = solid_of(0.3, KINEMATICS_SMALL);
+        struct strained linear = strain(d, &small, h);
+        for (size_t k = 0; k < 2; k++) {
+            struct solid solid = solid_of(0.3, KINEMATICS[k]);
+            struct strained p = strain(d, &solid, h);
+            for (int i = 0; i < d; i++)
+                for (int j = 0; j < d; j++)
+                    check_close(p.stress[i][j], linear.stress[i][j], 1e-16);
+        }
+    }
+}
+
+/* energy and stress at F + step G F, whose gradient in space is G. */
+static double varied_energy(int d, const struct solid *solid, double h[3][3], double g[3][3],
+                            double step, double pull_modulus, double *volume) {
+    double varied[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            varied[i][k] = h[i][k];
+            for (int l = 0; l < d; l++) {
+                double f = solid->kinematics == KINEMATICS_SMALL ? l == k : h[l][k] + (l == k);
+                varied[i][k] += step * g[i][l] * f;
+            }
+        }
+    struct strained p = strain(d, solid, varied);
+    *volume = p.dilatation;
+    return p.energy + pull_modulus * p.dilatation;
+}
+
+/* First and second differences along a direction: steps of 1e-4 leave 1e-8 of the fourth
+ * derivative and 1e-16/1e-8 of rounding. */
+static void check_differences(int d, const struct solid *solid, double h[3][3], double g[3][3]) {
+    static const double STEP = 3e-4, PULL = 0.07;
+    double volume;
+    bool small = solid->kinematics == KINEMATICS_SMALL;
+    double pull = small ? 0 : PULL;
+    struct strained p = strain(d, solid, h);
+    double before = varied_energy(d, solid, h, g, -STEP, pull, &volume);
+    double after = varied_energy(d, solid, h, g, STEP, pull, &volume);
+    double here = varied_energy(d, solid, h, g, 0, pull, &volume);
+    double first = 0, second = 0, moduli[9][9], kirchhoff = pull * (1 + p.dilatation);
+    solid_moduli(d, solid, &p, small ? 0 : kirchhoff, moduli);
+    for (int i = 0; i < d; i++)
+        for (int k = 0; k < d; k++) {
+            first += (p.stress[i][k] + (i == k && !small ? kirchhoff : 0)) * g[i][k];
+            for (int j = 0; j < d; j++)
+                for (int l = 0; l < d; l++) {
+                    check_close(moduli[i * d + k][j * d + l], moduli[j * d + l][i * d + k], 1e-12);
+                    second += moduli[i * d + k][j * d + l] * g[i][k] * g[j][l];
+                }
+        }
+    check_close((after - before) / (2 * STEP), first, 1e-6 * (1 + fabs(first)));
+    check_close((after - 2 * here + before) / (STEP * STEP), second, 1e-6 * (1 + fabs(second)));
+}
+
+static void moduli_are_the_second_derivative(void **state) {
+    (void)state;
+    static const double SIZES[] = {0, 1e-12, 1e-8, 1e-3, 0.05, 0.3};
+    for (uint64_t draw = 0; draw < 72; draw++) {
+        int d = 2 + (int)(draw % 2);
+        struct solid solid = solid_of(0.3, KINEMATICS[draw / 2 % 3]);
+        double h[3][3], g[3][3];
+        random_gradient(draw, SIZES[draw / 12 % 6], h);
+        random_gradient(1000 + draw, 0.2, g);
+        check_differences(d, &solid, h, g);
+    }
+}
+
+/* Equal and nearly equal stretches: the moduli join up, with no jump where a formula changes. */
+static void equal_stretches_are_no_exception(void **state) {
+    (void)state;
+    struct solid solid = solid_of(0.3, KINEMATICS_HENCKY);
+    for (int d = 2; d <= 3; d++) {
+        double h[3][3] = {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}, equal[9][9], moduli[9][9];
+        struct strained point = strain(d, &solid, h);
+        solid_moduli(d, &solid, &point, 0.02, equal);
+        double g[3][3];
+        random_gradient(7, 0.2, g);
+        check_differences(d, &solid, h, g);
+        for (double apart = 1e-16; apart < 0.03; apart *= 3) {
+            h[0][0] = 0.1 + apart;
+            h[0][1] = apart / 3;
+            point = strain(d, &solid, h);
+            solid_moduli(d, &solid, &point, 0.02, moduli);
+            for (int m = 0; m < d * d; m++)
+                for (int n = 0; n < d * d; n++)
+                    check_close(moduli[m][n], equal[m][n], 1e-13 + 10 * apart);
+        }
+        h[0][1] = 0;
+        for (double edge = 0.0999; edge < 0.1002; edge += 2e-5) { /* where the series ends */
+            h[0][0] = (1.1) * exp(edge * 0.1) - 1;
+            check_differences(d, &solid, h, g);
+        }
+    }
+}
+
+/* A rotation after the strain turns the stress and leaves the energy. */
+static void a_rotation_turns_the_stress(void **state) {
+    (void)state;
+    for (uint64_t draw = 0; draw < 20; draw++)
+        for (int d = 2; d <= 3; d++) {
+            struct solid solid = solid_of(0.3, KINEMATICS[draw % 2]);
+            double c = cos((double)draw), s = sin((double)draw), h[3][3], turned[3][3];
+            double r[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
+            random_gradient(draw, 0.25, h);
+            struct strained before = strain(d, &solid, h);
+            for (int i = 0; i < 3; i++)
+                for (int k = 0; k < 3; k++) {
+                    turned[i][k] = -(i == k);
+                    for (int l = 0; l < 3; l++)
+                        turned[i][k] += r[i][l] * (h[l][k] + (l == k));
+                }
+            struct strained after = strain(d, &solid, turned);
+            check_close(after.energy, before.energy, 1e-13);
+            for (int i = 0; i < d; i++)
+                for (int k = 0; k < d; k++) {
+                    double expected = 0;
+                    for (int l = 0; l < d; l++)
+                        for (int m = 0; m < d; m++)
+                            expected += r[i][l] * before.stress[l][m] * r[k][m];
+                    check_close(after.stress[i][k], expected, 1e-13);
+                }
+        }
+}
+
+static void what_is_inside_out_is_refused(void **state) {
+    (void)state;
+    struct solid solid = solid_of(0.3, KINEMATICS_HENCKY);
+    struct strained point;
+    double flat[3][3] = {{-1}}, beyond[3][3] = {{-1.5}}, twice[3][3] = {{-2, 0, 0}, {0, -2, 0}};
+    assert_false(solid_strain(2, &solid, flat, &point));
+    assert_false(solid_strain(3, &solid, beyond, &point));
+    assert_true(solid_strain(2, &solid, twice, &point)); /* half a turn, no strain */
+    check_close(point.energy, 0, 1e-30);
+    double lost[3][3] = {{NAN}};
+    assert_false(solid_strain(2, &solid, lost, &point));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(closed_forms_hold),
+        cmocka_unit_test(small_strains_are_linear),
+        cmocka_unit_test(moduli_are_the_second_derivative),
+        cmocka_unit_test(equal_stretches_are_no_exception),
+        cmocka_unit_test(a_rotation_turns_the_stress),
+        cmocka_unit_test(what_is_inside_out_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

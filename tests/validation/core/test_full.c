@@ -1,0 +1,338 @@
+/* Protects the finite elements on the true geometry: Westergaard's wave and Hertz where slopes are
+ * small, the layered model as the limit of small slopes, Newton's convergence, units, and the hard
+ * cases: first touch, full contact, nearly incompressible and steep blocks. */
+#include "tests/support/check.h"
+
+#include "core/full/full.h"
+#include "core/surface/surface.h"
+#include "core/theory/contact.h"
+#include "tests/support/contact_scene.h"
+
+static const struct block BLOCK = {.model = MODEL_LAYERED,
+                                   .poisson = 0.3,
+                                   .height = 1.5,
+                                   .layer_growth = 1.2,
+                                   .weighting = GAP_DUAL};
+
+struct pressed {
+    struct scene scene; /* the layered model of the same mesh, its heights those of both */
+    struct full *full;
+    struct contact_state state;
+    struct full_report report;
+};
+
+static void open_both(struct pressed *p, struct grid grid, struct block block) {
+    struct error err = {0};
+    scene_open(&p->scene, grid, block, 1e-11);
+    p->full = NULL;
+    if (full_create(&p->full, &grid, &block, &FULL_DEFAULTS, &err) != 0)
+        fail_msg("%s", err.text);
+}
+
+static void close_both(struct pressed *p) {
+    full_destroy(&p->full);
+    scene_close(&p->scene);
+}
+
+static void begin_both(struct pressed *p) {
+    struct error err = {0};
+    scene_begin(&p->scene);
+    if (full_begin(p->full, p->scene.z, &err) != 0)
+        fail_msg("%s", err.text);
+}
+
+/* What every answer must meet: forces in balance, nothing through the flat, no pull. */
+static void check_answer(const struct pressed *p) {
+    size_t n = scene_points(&p->scene), nodes = 0;
+    for (size_t i = 0; i < n; i++) {
+        assert_true(isfinite(p->state.p[i]) && p->state.p[i] >= 0 && isfinite(p->state.gap[i]));
+        nodes += p->state.p[i] > 0;
+    }
+    assert_int_equal(nodes, p->state.nodes);
+    /* The solver's tolerance on each force, 1e-9, times the square root of their number. */
+    check_relative(mean_of(n, p->state.p), p->state.pressure, 1e-7);
+    check_close(p->report.balance, 0, 1e-7);
+    assert_true(p->report.residual <= 1e-9 && p->report.penetration <= 1e-8);
+    assert_true(p->state.stiffness > 0);
+}
+
+static void press_both(struct pressed *p, double pressure) {
+    struct error err = {0};
+    scene_press(&p->scene, pressure);
+    if (full_press(p->full, pressure, &p->state, &p->report, &err) != 0)
+        fail_msg("%s", err.text);
+    check_answer(p);
+}
+
+static struct grid line(size_t n) {
+    return (struct grid){.nx = n, .ny = 1, .lx = 1, .ly = 1};
+}
+
+/* z = height cos 2 pi x, times cos 2 pi y on a surface. */
+static void fill_wave(struct scene *scene, double height) {
+    size_t nx = scene->grid.nx, ny = scene->grid.ny;
+    for (size_t i = 0; i < nx * ny; i++) {
+        size_t column = i % nx, row = i / nx;
+        double x = (double)column / (double)nx, y = (double)row / (double)ny;
+        scene->z[i] = height * cos(2 * M_PI * x) * cos(2 * M_PI * y) * scene->grid.lx;
+    }
+}
+
+static void fill_rough(struct scene *scene, double slope) {
+    double cell = scene->grid.lx;
+    struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                .hurst = 0.8,
+                                .wavelength_long = cell / 2,
+                                .wavelength_rolloff = cell / 2,
+                                .wavelength_short = cell / 16,
+                                .scale = SCALE_RMS_SLOPE,
+                                .scale_value = slope};
+    struct generator *generator = NULL;
+    struct error err = {0};
+    if (generator_create(&generator, &spectrum, &scene->grid, &SURFACE_DEFAULTS, &err) != 0 ||
+        generator_run(generator, (struct random_key){.seed = 20260102}, scene->z, NULL, &err) != 0)
+        fail_msg("%s", err.text);
+    generator_destroy(&generator);
+}
+
+/* |a - b|/|b| in the mean square. */
+static double distance(size_t n, const double *a, const double *b) {
+    double above = 0, below = 0;
+    for (size_t i = 0; i < n; i++) {
+        above += (a[i] - b[i]) * (a[i] - b[i]);
+        below += b[i] * b[i];
+    }
+    return sqrt(above / below);
+}
+
+/* Slope 0.0126, height/length 0.002: finite slope alone is worth 0.2 % of the pressure. */
+static void a_low_wave_is_westergaards(void **state) {
+    (void)state;
+    enum { N = 256 };
+    static const double HEIGHT = 0.002;
+    struct pressed p;
+    struct block block = BLOCK;
+    double full = M_PI * HEIGHT, exact[N];
+    block.layer_growth = 1.1;
+    open_both(&p, line(N), block);
+    fill_wave(&p.scene, HEIGHT);
+    begin_both(&p);
+    for (double load = 0.1; load < 0.95; load += 0.2) {
+        press_both(&p, load * full);
+        double fraction = 2 / M_PI * asin(sqrt(load));
+        struct contact_area area;
+        contact_area(p.scene.areas, p.state.p, p.state.opening, &area);
+        check_close(area.nodes, fraction, 2.0 / N); /* a step at either end */
+        check_relative(area.edges, fraction, 0.01);
+        double sine = sqrt(load);
+        for (size_t i = 0; i < N; i++) {
+            double psi = M_PI * ((double)i / N - (i > N / 2 ? 1 : 0));
+            double inside = sine * sine - sin(psi) * sin(psi);
+            exact[i] = inside > 0 && fabs(psi) < M_PI / 2
+                           ? 2 * load * full * cos(psi) / (sine * sine) * sqrt(inside)
+                           : 0;
+        }
+        check_close(distance(N, p.state.p, exact), 0, 0.01);
+    }
+    close_both(&p);
+}
+
+/* Hertz's line on the crest of a wave, radius 1/(4 pi^2 height): contact 6 % of the period wide,
+ * where the wave differs from the parabola by (pi a)^2/2, 0.4 %, and neighbours count as much. */
+static void a_light_load_is_hertzs(void **state) {
+    (void)state;
+    static const double HEIGHT = 0.002, HALF = 0.03;
+    struct pressed p;
+    open_both(&p, line(256), BLOCK);
+    fill_wave(&p.scene, HEIGHT);
+    begin_both(&p);
+    double radius = 1 / (4 * M_PI * M_PI * HEIGHT), force = M_PI * HALF * HALF / (4 * radius);
+    press_both(&p, force);
+    struct contact_area area;
+    contact_area(p.scene.areas, p.state.p, p.state.opening, &area);
+    check_relative(area.edges, 2 * HALF, 0.02);
+    check_relative(p.state.p[0], 2 * force / (M_PI * HALF), 0.02);
+    close_both(&p);
+}
+
+/* Scaled down, geometry and strain become those of the layered model on the same mesh: what is left
+ * falls as the slope, by 10 a decade (0.85 decades where a node of the profile has come into
+ * contact by 1e-2). Bounds: 1.5 times what is seen, 0.10 to 0.23 of the slope; the layered model
+ * knows its stiffness to 3e-4. */
+static void small_slopes_are_layered(void **state) {
+    (void)state;
+    static const struct grid GRIDS[] = {{128, 1, 1, 1}, {12, 12, 1, 1}, {12, 9, 1, 0.8}};
+    for (size_t g = 0; g < 3; g++) {
+        double before = NAN;
+        for (double slope = 1e-4; slope < 2e-2; slope *= 10) {
+            struct pressed p;
+            open_both(&p, GRIDS[g], BLOCK);
+            if (g == 0)
+                fill_rough(&p.scene, slope);
+            else
+                fill_wave(&p.scene, slope / (2 * M_PI));
+            begin_both(&p);
+            press_both(&p, 0.15 * slope);
+            double error = distance(scene_points(&p.scene), p.state.p, p.scene.state.p);
+            check_relative(p.state.mean_gap, p.scene.state.mean_gap, 0.1 * slope);
+            check_relative(p.state.stiffness, p.scene.state.stiffness, 0.3 * slope + 3e-4);
+            print_message(
+                "grid %zu slope %g: pressures %.2e, gap %.2e, stiffness %.2e from layered\n", g,
+                slope, error, p.state.mean_gap / p.scene.state.mean_gap - 1,
+                p.state.stiffness / p.scene.state.stiffness - 1);
+            assert_true(error < 0.35 * slope);
+            if (slope > 2e-4)
+                check_close(log10(error / before), 1, 0.2);
+            before = error;
+            close_both(&p);
+        }
+    }
+}
+
+/* From a residual r near the solution the next is at most r^2 (measured 0.05 to 0.2 of it), down to
+ * rounding; the last three steps, at several loads of a profile of RMS slope 0.2. */
+static void newton_converges_quadratically(void **state) {
+    (void)state;
+    struct pressed p;
+    open_both(&p, line(128), BLOCK);
+    fill_rough(&p.scene, 0.2);
+    begin_both(&p);
+    for (double load = 0.05; load < 0.35; load += 0.05) {
+        press_both(&p, load * 0.2);
+        const double *last = p.report.history + NEWTON_HISTORY - 1;
+        assert_true(p.report.unchanged >= 2);
+        for (size_t k = 0; k + 2 < p.report.unchanged && k < 3; k++)
+            assert_true(last[-(ptrdiff_t)k] <=
+                        last[-(ptrdiff_t)k - 1] * last[-(ptrdiff_t)k - 1] + 1e-11);
+    }
+    close_both(&p);
+}
+
+/* Lengths of any unit: dx = 1/256e-3, and far smaller and larger. */
+static void units_do_not_matter(void **state) {
+    (void)state;
+    enum { N = 64 };
+    static const double UNITS[] = {1, 1e-3, 1e-9, 1e6};
+    double first[N], gap = 0, stiffness = 0;
+    for (size_t u = 0; u < 4; u++) {
+        struct pressed p;
+        struct block block = BLOCK;
+        struct grid grid = {.nx = N, .ny = 1, .lx = UNITS[u] * N / 256, .ly = 1};
+        block.height *= grid.lx;
+        open_both(&p, grid, block);
+        fill_rough(&p.scene, 0.1);
+        begin_both(&p);
+        press_both(&p, 0.01);
+        if (u == 0) {
+            memcpy(first, p.state.p, sizeof first);
+            gap = p.state.mean_gap;
+            stiffness = p.state.stiffness;
+        }
+        /* The solver's tolerance, and rounding of heights in other units. */
+        check_close(distance(N, p.state.p, first), 0, 1e-8);
+        check_relative(p.state.mean_gap, gap * UNITS[u], 1e-8);
+        check_relative(p.state.stiffness, stiffness / UNITS[u], 1e-8);
+        close_both(&p);
+    }
+}
+
+/* E* = 1 for all: Westergaard's areas hold for every nu, and would be far off in locked elements.
+ */
+static void nearly_incompressible_blocks_do_not_lock(void **state) {
+    (void)state;
+    struct pressed p;
+    struct block block = BLOCK;
+    block.poisson = 0.4999;
+    open_both(&p, line(128), block);
+    fill_wave(&p.scene, 0.002);
+    begin_both(&p);
+    for (double load = 0.2; load < 0.9; load += 0.3) {
+        press_both(&p, load * M_PI * 0.002);
+        struct contact_area area;
+        contact_area(p.scene.areas, p.state.p, p.state.opening, &area);
+        check_relative(area.edges, 2 / M_PI * asin(sqrt(load)), 0.02);
+        check_close(distance(128, p.state.p, p.scene.state.p), 0, 0.02);
+    }
+    close_both(&p);
+}
+
+static void first_touch_and_full_contact(void **state) {
+    (void)state;
+    struct pressed p;
+    open_both(&p, line(64), BLOCK);
+    fill_wave(&p.scene, 0.002);
+    begin_both(&p);
+    press_both(&p, 1e-8);
+    assert_int_equal(p.state.nodes, 1);
+    press_both(&p, 1.05 * M_PI * 0.002); /* a little more than full contact's */
+    assert_int_equal(p.state.nodes, 64);
+    assert_true(isinf(p.state.stiffness));
+    check_close(largest(64, p.state.gap), 0, 1e-12);
+    press_both(&p, 0.95 * M_PI * 0.002);
+    assert_in_range(p.state.nodes, 48, 62);
+    press_both(&p, 1e-8); /* elastic: back to the start */
+    assert_int_equal(p.state.nodes, 1);
+    struct error err = {0};
+    assert_int_equal(full_press(p.full, 0, &p.state, NULL, &err), 0);
+    assert_int_equal(p.state.nodes, 0);
+    check_close(p.state.mean_gap, 0.002, 1e-15);
+    close_both(&p);
+}
+
+static void a_flat_block_is_all_in_contact(void **state) {
+    (void)state;
+    struct pressed p;
+    open_both(&p, line(16), BLOCK);
+    begin_both(&p);
+    press_both(&p, 0.01);
+    assert_int_equal(p.state.nodes, 16);
+    for (size_t i = 0; i < 16; i++)
+        check_relative(p.state.p[i], 0.01, 1e-8);
+    close_both(&p);
+}
+
+/* RMS slope 1, edges up to 3: an answer at each load, or a failure that says how far it came, after
+ * which what was reached is still there. */
+static void steep_profiles_end_clearly(void **state) {
+    (void)state;
+    struct pressed p;
+    struct error err = {0};
+    open_both(&p, line(64), BLOCK);
+    fill_rough(&p.scene, 1);
+    begin_both(&p);
+    double reached = 0;
+    for (double load = 0.05; load < 0.5; load += 0.1) {
+        int status = full_press(p.full, load, &p.state, &p.report, &err);
+        if (status == 0) {
+            check_answer(&p);
+            reached = load;
+            continue;
+        }
+        assert_int_equal(status, ERROR_NUMERIC);
+        assert_non_null(strstr(err.text, "was reached up to"));
+        assert_true(p.report.reached >= reached && p.report.reached < load);
+        break;
+    }
+    print_message("RMS slope 1: %g E* reached, %s\n", p.report.reached, err.text);
+    assert_true(reached > 0);
+    for (size_t i = 0; i < 64; i++)
+        p.scene.z[i] *= 20;
+    assert_int_equal(full_begin(p.full, p.scene.z, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "steepest slope"));
+    close_both(&p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_low_wave_is_westergaards),
+        cmocka_unit_test(a_light_load_is_hertzs),
+        cmocka_unit_test(small_slopes_are_layered),
+        cmocka_unit_test(newton_converges_quadratically),
+        cmocka_unit_test(units_do_not_matter),
+        cmocka_unit_test(nearly_incompressible_blocks_do_not_lock),
+        cmocka_unit_test(first_touch_and_full_contact),
+        cmocka_unit_test(a_flat_block_is_all_in_contact),
+        cmocka_unit_test(steep_profiles_end_clearly),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
