@@ -218,42 +218,59 @@ static void silent_connections_are_cut(void **state) {
 }
 
 /* Room for a snapshot that no socket's buffers hold. */
-static void fatten_database(void) {
+static void fatten_database(const char *path) {
     sqlite3 *db;
-    assert_int_equal(sqlite3_open("rugo.db", &db), SQLITE_OK);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
     assert_int_equal(sqlite3_exec(db, "CREATE TABLE fat AS SELECT zeroblob(24000000) AS bytes",
                                   NULL, NULL, NULL),
                      SQLITE_OK);
     sqlite3_close(db);
 }
 
-/* Who asks for a copy of the database and does not read it is cut after a deadline; as long as such
- * copies stand, there are no more than four of them. */
+/* A connection whose answer has begun, and of which nothing more is read. */
+static int begin_download(unsigned at) {
+    int connection = http_connect(at), room = 4096;
+    setsockopt(connection, SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
+    say(connection, "GET /v1/snapshot HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    assert_true(hear(connection, "200 OK"));
+    return connection;
+}
+
+/* Who asks for a copy of the database and does not read it is cut after a deadline. */
 static void downloads_that_are_not_read_are_cut(void **state) {
     (void)state;
+    fatten_database("rugo.db");
+    int connection = begin_download(port);
+    for (int tries = 0; tries < 200 && !contains(server.err, "cut off"); tries++)
+        sleep_ms(100);
+    assert_true(contains(server.err, "status=200") && contains(server.err, "cut off"));
+    close(connection);
+}
+
+/* There are no more than four copies at a time, here of a server that waits for long. */
+static void downloads_are_few(void **state) {
+    (void)state;
     enum { MOST = 4 };
-    const char *request = "GET /v1/snapshot HTTP/1.1\r\nHost: localhost\r\n\r\n";
-    int connections[MOST], room = 4096, status = 503;
-    fatten_database();
-    for (int i = 0; i < MOST; i++) {
-        connections[i] = http_connect(port);
-        setsockopt(connections[i], SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
-        say(connections[i], request);
-        assert_true(hear(connections[i], "200 OK"));
-    }
-    check_raw("GET /v1/snapshot HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n", "503");
+    struct process patient;
+    int connections[MOST], status = 503;
+    unsigned at = serve_start(&patient, (const char *[]){"--db", "patient.db", NULL});
+    fatten_database("patient.db");
+    for (int i = 0; i < MOST; i++)
+        connections[i] = begin_download(at);
+    assert_int_equal(http_exchange(at, "GET", "/v1/snapshot", NULL, NULL, NULL), 503);
+    for (int i = 0; i < MOST; i++)
+        close(connections[i]);
     char *answer = NULL;
-    for (int tries = 0; status == 503 && tries < 40; tries++) {
-        sleep_ms(200);
+    for (int tries = 0; status == 503 && tries < 200; tries++) {
+        sleep_ms(100);
         free(answer);
-        status = http_exchange(port, "GET", "/v1/snapshot", NULL, NULL, &answer);
+        status = http_exchange(at, "GET", "/v1/snapshot", NULL, NULL, &answer);
     }
     assert_int_equal(status, 200);
     assert_memory_equal(answer, "SQLite format 3", 15);
     free(answer);
-    assert_true(contains(server.err, "status=200") && contains(server.err, "cut off"));
-    for (int i = 0; i < MOST; i++)
-        close(connections[i]);
+    process_kill(&patient, SIGTERM);
+    assert_int_equal(process_wait(&patient, 20), 0);
 }
 
 /* --- streams of events --- */
@@ -357,6 +374,7 @@ int main(void) {
         cmocka_unit_test(half_closed_connections_do_no_harm),
         cmocka_unit_test(silent_connections_are_cut),
         cmocka_unit_test(downloads_that_are_not_read_are_cut),
+        cmocka_unit_test(downloads_are_few),
         cmocka_unit_test(a_stream_outlives_the_deadline),
         cmocka_unit_test(head_of_a_stream_has_no_body),
         cmocka_unit_test(streams_left_alone_end),
