@@ -103,7 +103,7 @@ static int measure(size_t n, int dimension, double points, enum contact_model mo
                    const double *load, struct result *result, double *preparation,
                    struct error *err) {
     struct bench bench;
-    int surfaces = n >= 1024 && dimension == 2 ? 1 : SURFACES;
+    int surfaces = n >= 512 && dimension == 2 ? 1 : SURFACES;
     int status = bench_create(&bench, n, dimension, points, model, err);
     for (int r = 0; !status && r < surfaces; r++)
         status = bench_run(&bench, (uint64_t)r, loads, load, result, err);
@@ -119,7 +119,7 @@ static int measure(size_t n, int dimension, double points, enum contact_model mo
 static int profiles(enum contact_model model, struct error *err) {
     printf("profiles, %s, 10 loads to 0.3: time a load, and the area's error at the loads\n",
            model == MODEL_LAYERED ? "layered" : "halfspace");
-    for (size_t n = 512; n <= 32768; n *= 4) {
+    for (size_t n = 512; n <= 8192; n *= 4) {
         double coarse[EVEN_COUNT] = {0}, fine[EVEN_COUNT] = {0}, preparation, ignored, worst = 0;
         struct result result = {.area = coarse}, reference = {.area = fine};
         int status = measure(n, 1, 8, model, EVEN_COUNT, EVEN, &result, &preparation, err);
@@ -156,6 +156,7 @@ static int surfaces(enum contact_model model, struct error *err) {
 
 int main(void) {
     struct error err = {0};
+    setvbuf(stdout, NULL, _IOLBF, 0);
     if (profiles(MODEL_HALFSPACE, &err) || profiles(MODEL_LAYERED, &err) ||
         surfaces(MODEL_HALFSPACE, &err) || surfaces(MODEL_LAYERED, &err)) {
         fprintf(stderr, "%s\n", err.text);
