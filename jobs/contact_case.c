@@ -5,10 +5,16 @@
 
 static const double ROUNDING = 1e-9; /* relative: numbers that are meant to be equal */
 enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
+/* Elements allow edges of slope 6 (core/full/mesh.c), which is where steepest ones lie then. */
+static const double FULL_SLOPE_MOST = 2;
 enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS }; /* the order of units in the table */
 
 const char *const CONTACT_MODEL_NAMES[] = {
-    [MODEL_HALFSPACE] = "halfspace", [MODEL_LAYERED] = "layered", NULL};
+    [MODEL_HALFSPACE] = "halfspace", [MODEL_LAYERED] = "layered", [MODEL_FULL] = "full", NULL};
+const char *const FULL_KINEMATICS_NAMES[] = {[KINEMATICS_HENCKY] = "hencky",
+                                             [KINEMATICS_ST_VENANT] = "st_venant_kirchhoff",
+                                             [KINEMATICS_SMALL] = "small",
+                                             NULL};
 
 const struct parameter CONTACT_PARAMETERS[] = {
 #include "jobs/contact_parameters.inc"
@@ -17,21 +23,26 @@ const struct parameter CONTACT_PARAMETERS[] = {
 _Static_assert(sizeof CONTACT_PARAMETERS / sizeof *CONTACT_PARAMETERS == CONTACT_PARAMETER_COUNT,
                "the count in contact_case.h");
 
-/* RMS height of the prescribed spectrum in lambda_s; NaN without a scale. */
-static int read_rms_height(const struct surface_case *surface, double *out, struct error *err) {
+static bool has_scale(const struct surface_case *surface) {
+    return surface->spectrum.scale == SCALE_RMS_HEIGHT ||
+           surface->spectrum.scale == SCALE_RMS_SLOPE;
+}
+
+/* Of the prescribed spectrum, lengths in lambda_s; NaN without a scale. */
+static int read_scale(const struct surface_case *surface, double *rms_height, double *rms_slope,
+                      struct error *err) {
     struct modes *modes = NULL;
     struct moments moments;
-    *out = NAN;
-    if (surface->spectrum.scale == SCALE_RMS_HEIGHT)
-        *out = surface->spectrum.scale_value;
-    if (surface->spectrum.scale != SCALE_RMS_SLOPE)
+    *rms_height = *rms_slope = NAN;
+    if (!has_scale(surface))
         return 0;
     int status = modes_create(&modes, &surface->spectrum, &surface->grid, err);
     if (status != 0)
         return status;
     modes_moments(modes, &moments);
     modes_destroy(&modes);
-    *out = moments.rms_height;
+    *rms_height = moments.rms_height;
+    *rms_slope = moments.rms_slope;
     return 0;
 }
 
@@ -46,12 +57,54 @@ static int read_height(const struct contact_case *study, const struct case_reade
         *out *= study->surface.grid.lx;
         return 0;
     }
-    double rms_height;
-    int status = read_rms_height(&study->surface, &rms_height, err);
+    double rms_height, rms_slope;
+    int status = read_scale(&study->surface, &rms_height, &rms_slope, err);
     *out *= rms_height;
     if (status == 0 && isnan(rms_height))
         fault_add(reader->faults, "/contact/block_height",
                   "rms_heights need the scale of the surface: give rms_slope or rms_height");
+    return status;
+}
+
+/* All models of a case weight the gap alike, so that their differences are those of the models. */
+static enum gap_weighting read_weighting(size_t n, const size_t *models,
+                                         const struct case_reader *reader) {
+    static const char path[] = "/contact/gap_weighting";
+    size_t chosen[2];
+    bool layered = false, full = false, given = case_choices(reader, path, chosen) == 1;
+    for (size_t m = 0; m < n; m++) {
+        layered = layered || models[m] == MODEL_LAYERED;
+        full = full || models[m] == MODEL_FULL;
+    }
+    if (given && full && chosen[0] != GAP_DUAL)
+        fault_add(reader->faults, path, "beside the model full it can only be \"dual\"");
+    if (given && !full && !layered && n > 0 && chosen[0] == GAP_DUAL)
+        fault_add(reader->faults, path,
+                  "\"dual\" belongs to finite elements, and no such model is asked for");
+    if (given)
+        return (enum gap_weighting)chosen[0];
+    return full ? GAP_DUAL : GAP_STANDARD;
+}
+
+/* What the finite elements on the true geometry ask of the surface: its slopes matter. */
+static int check_full(const struct contact_case *study, const struct case_reader *reader,
+                      struct error *err) {
+    const struct surface_case *surface = &study->surface;
+    double rms_height, rms_slope;
+    if (surface->grid.nx == 0)
+        return 0;
+    if (!has_scale(surface))
+        fault_add(reader->faults, "/surface/rms_slope",
+                  "the model full needs the scale of the surface, whose slopes count in it: give "
+                  "rms_slope or rms_height");
+    int status = read_scale(surface, &rms_height, &rms_slope, err);
+    if (status == 0 && rms_slope > FULL_SLOPE_MOST)
+        fault_add(reader->faults,
+                  surface->spectrum.scale == SCALE_RMS_SLOPE ? "/surface/rms_slope"
+                                                             : "/surface/rms_height",
+                  "RMS slope %.4g: the model full can mesh surfaces up to about %g, whose steepest "
+                  "edges are three times as steep",
+                  rms_slope, FULL_SLOPE_MOST);
     return status;
 }
 
@@ -60,30 +113,28 @@ static int read_blocks(struct contact_case *out, const struct case_reader *reade
     size_t models[CONTACT_MODELS];
     double height, poisson = case_number(reader, "/contact/poisson");
     double growth = case_number(reader, "/contact/layer_growth");
-    size_t weighting = case_choice(reader, "/contact/gap_weighting");
-    bool layered = false;
+    bool elements = false;
     out->model_count = case_choices(reader, "/contact/model", models);
+    out->kinematics = (enum kinematics)case_choice(reader, "/contact/kinematics");
+    enum gap_weighting weighting = read_weighting(out->model_count, models, reader);
     int status = read_height(out, reader, &height, err);
     if (status != 0)
         return status;
     for (size_t m = 0; m < out->model_count; m++) {
         bool deep = models[m] == MODEL_HALFSPACE;
-        layered = layered || !deep;
+        elements = elements || !deep;
         out->blocks[m] = (struct block){.model = (enum contact_model)models[m],
                                         .poisson = poisson,
                                         .height = !isnan(height) ? height
                                                   : deep         ? INFINITY
                                                                  : 1.5 * out->surface.grid.lx,
                                         .layer_growth = growth,
-                                        .weighting = (enum gap_weighting)weighting};
+                                        .weighting = weighting};
     }
-    if (layered && isinf(height))
+    if (elements && isinf(height))
         fault_add(reader->faults, "/contact/block_height",
-                  "only a halfspace can be infinite, and a layered block is asked for");
-    if (!layered && out->model_count > 0 && weighting == GAP_DUAL)
-        fault_add(reader->faults, "/contact/gap_weighting",
-                  "\"dual\" belongs to the model layered, which is not asked for");
-    return 0;
+                  "only a halfspace can be infinite, and a block of finite elements is asked for");
+    return contact_case_full(out) < out->model_count ? check_full(out, reader, err) : 0;
 }
 
 static void check_rising(const struct case_reader *reader, const char *path, size_t n,
@@ -197,7 +248,7 @@ static void check_layers(const struct contact_case *study, const struct case_rea
     double thickness[LAYERS_MOST];
     for (size_t m = 0; m < study->model_count; m++)
         for (size_t l = 0; l < study->level_count; l++)
-            if (study->blocks[m].model == MODEL_LAYERED && isfinite(study->blocks[m].height) &&
+            if (study->blocks[m].model != MODEL_HALFSPACE && isfinite(study->blocks[m].height) &&
                 isfinite(study->blocks[m].layer_growth) &&
                 block_layers(&study->levels[l].grid, &study->blocks[m], thickness) == 0) {
                 fault_add(reader->faults, "/contact/block_height",
@@ -300,4 +351,11 @@ size_t contact_case_complete(const struct contact_case *study) {
         if (study->blocks[m].model > study->blocks[complete].model)
             complete = m;
     return complete;
+}
+
+size_t contact_case_full(const struct contact_case *study) {
+    size_t m = 0;
+    while (m < study->model_count && !contact_case_is_full(study, m))
+        m++;
+    return m;
 }

@@ -5,16 +5,18 @@
 #define RUGO_JOBS_CONTACT_CASE_H
 
 #include "core/contact/contact.h"
+#include "core/full/full.h"
 #include "core/statistics/histogram.h"
 #include "jobs/kind.h"
 #include "jobs/surface_case.h"
 
 /* Table of the kind: the rows of /surface/..., then those of /contact/.... */
-enum { CONTACT_PARAMETER_COUNT = SURFACE_PARAMETER_COUNT + 14 };
+enum { CONTACT_PARAMETER_COUNT = SURFACE_PARAMETER_COUNT + 15 };
 extern const struct parameter CONTACT_PARAMETERS[];
 
-enum { CONTACT_MODELS = 2, CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000 };
-extern const char *const CONTACT_MODEL_NAMES[]; /* of enum contact_model; NULL at the end */
+enum { CONTACT_MODELS = 3, CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000 };
+extern const char *const CONTACT_MODEL_NAMES[];   /* of enum contact_model; NULL at the end */
+extern const char *const FULL_KINEMATICS_NAMES[]; /* of enum kinematics; NULL at the end */
 
 /* A mesh on which every realisation is solved: the own grid sampled at other points. */
 struct contact_level {
@@ -28,6 +30,7 @@ struct contact_case {
     size_t band;                 /* highest wave number of a realisation on its own grid */
     size_t model_count;
     struct block blocks[CONTACT_MODELS]; /* one a model, in the order given */
+    enum kinematics kinematics;          /* of the model full */
     size_t level_count;
     struct contact_level levels[CONTACT_LEVELS_MOST]; /* rising: the last is the finest */
     size_t load_count;
@@ -58,6 +61,13 @@ static inline size_t contact_case_cells(const struct contact_case *study) {
 
 /* The most complete of the models: that from which the errors of the others are counted. */
 size_t contact_case_complete(const struct contact_case *study);
+/* Whether a model is the finite elements on the true geometry, which may find no answer: the
+ * realisation has no values then, from that load on. */
+static inline bool contact_case_is_full(const struct contact_case *study, size_t model) {
+    return study->blocks[model].model == MODEL_FULL;
+}
+/* Position of that model, or model_count without it. */
+size_t contact_case_full(const struct contact_case *study);
 
 /* Memory, time and error of one realisation, before anything ran. */
 void contact_case_estimate(const struct contact_case *study, struct job_estimate *out);

@@ -1,6 +1,7 @@
 /* What a contact case costs, before anything ran. */
 #include "jobs/contact_case.h"
 #include "jobs/contact_scene.h"
+#include "jobs/contact_solver.h"
 #include "jobs/contact_tally.h"
 #include <math.h>
 
@@ -34,6 +35,15 @@ static double level_seconds(const struct contact_case *study, const struct grid 
     return 1e-9 * nanoseconds * points * load_transforms(study, grid) * (double)study->load_count;
 }
 
+/* Newton's iterations a load of evenly spaced ones, and time of one; as measured. */
+static double full_seconds(const struct contact_case *study, size_t model,
+                           const struct grid *grid) {
+    double freedoms = contact_full_freedoms(grid, &study->blocks[model]);
+    double iterations = 2.5 * (double)study->load_count + 8;
+    double nanoseconds = grid_is_profile(grid) ? 4500 : 7e4;
+    return 1e-9 * nanoseconds * freedoms * iterations;
+}
+
 /* Standard deviation of the fraction over itself: a cell of n longest waves holds about n^d
  * independent pieces of surface; fitted to profiles of 2 to 32 and surfaces of 4 and 8 waves. Small
  * Hurst exponents put more into the short waves, of which there are many. */
@@ -54,6 +64,9 @@ void contact_case_estimate(const struct contact_case *study, struct job_estimate
                         contact_scene_bytes(study) + contact_tally_bytes(study) + PROCESS_BYTES;
     out->seconds = 1e-4 + surface_seconds(surface);
     for (size_t l = 0; l < study->level_count; l++)
-        out->seconds += (double)study->model_count * level_seconds(study, &study->levels[l].grid);
+        for (size_t m = 0; m < study->model_count; m++)
+            out->seconds += contact_case_is_full(study, m)
+                                ? full_seconds(study, m, &study->levels[l].grid)
+                                : level_seconds(study, &study->levels[l].grid);
     out->relative_error = area_scatter(surface);
 }

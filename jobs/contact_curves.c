@@ -93,7 +93,7 @@ static void put_model(struct workshop *shop, const struct row *row, size_t model
         best = contact_extrapolate(shop->tally, row->measure, complete).factor;
     }
     for (size_t k = 0; k < shop->study->load_count; k++) {
-        struct estimate difference = contact_tally_model(shop->tally, row->measure, k);
+        struct estimate difference = contact_tally_model(shop->tally, row->measure, model, k);
         double own = 0, other = 0;
         if (limits) {
             own = factor * contact_tally_level(shop->tally, row->measure, model, k).value;
@@ -121,11 +121,17 @@ static const struct curve_theory *theories_of(const struct workshop *shop, const
     }
 }
 
+/* Of strain; NULL of linear models. */
+static const char *kinematics_of(const struct contact_case *study, size_t model) {
+    return contact_case_is_full(study, model) ? FULL_KINEMATICS_NAMES[study->kinematics] : NULL;
+}
+
 static bool append(struct workshop *shop, const struct row *row, size_t model, size_t level) {
     const struct contact_case *study = shop->study;
     struct curve curve = {.quantity = row->quantity,
                           .series = row->series,
                           .model = CONTACT_MODEL_NAMES[study->blocks[model].model],
+                          .kinematics = kinematics_of(study, model),
                           .level = study->levels[level].points,
                           .points = (double)grid_points(&study->levels[level].grid),
                           .x_label = "p/(E* h'_rms)",
@@ -144,7 +150,7 @@ static bool append(struct workshop *shop, const struct row *row, size_t model, s
         shop->standard_error[k] = factor * mean.standard_error;
         shop->valueless[k] = (double)contact_tally_valueless(shop->tally, row->measure, cell);
     }
-    if (row->measure == MEASURE_STIFFNESS)
+    if (row->measure == MEASURE_STIFFNESS || contact_case_is_full(study, model))
         curve.valueless = shop->valueless;
     const struct curve_theory *theories = theories_of(shop, row);
     for (size_t a = 0; theories != NULL && a < CURVE_THEORIES_MOST; a++)
@@ -158,12 +164,18 @@ static bool append(struct workshop *shop, const struct row *row, size_t model, s
     return curve_append(shop->curves, &curve);
 }
 
-/* Every model and level, the finest first. */
+/* Every level of a model, the finest first. */
+static bool append_model(struct workshop *shop, const struct row *row, size_t model) {
+    bool done = true;
+    for (size_t l = shop->study->level_count; l > 0 && done; l--)
+        done = append(shop, row, model, l - 1);
+    return done;
+}
+
 static bool append_row(struct workshop *shop, const struct row *row) {
     bool done = true;
-    for (size_t m = 0; m < shop->study->model_count; m++)
-        for (size_t l = shop->study->level_count; l > 0 && done; l--)
-            done = append(shop, row, m, l - 1);
+    for (size_t m = 0; m < shop->study->model_count && done; m++)
+        done = append_model(shop, row, m);
     return done;
 }
 
@@ -194,9 +206,16 @@ static bool append_others(struct workshop *shop) {
         {"patch_largest_area", NULL, "largest patch/cell", MEASURE_PATCH_LARGEST, 1},
         {"iterations", NULL, "iterations", MEASURE_ITERATIONS, 1},
         {"work", NULL, "points x transforms", MEASURE_WORK, 1}};
+    static const struct row FULL[] = {
+        {"stretch", NULL, "contact area now/undeformed", MEASURE_STRETCH, 1},
+        {"load_cuts", NULL, "load steps made smaller", MEASURE_CUTS, 1}};
+    size_t full = contact_case_full(shop->study);
     bool done = true;
     for (size_t a = 0; a < sizeof rows / sizeof *rows && done; a++)
         done = append_row(shop, &rows[a]);
+    if (full < shop->study->model_count)
+        for (size_t a = 0; a < sizeof FULL / sizeof *FULL && done; a++)
+            done = append_model(shop, &FULL[a], full);
     return done;
 }
 
@@ -218,6 +237,7 @@ static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
         shop->curves,
         &(struct curve){.quantity = "contact_pressure_pdf",
                         .model = CONTACT_MODEL_NAMES[study->blocks[model].model],
+                        .kinematics = kinematics_of(study, model),
                         .level = contact_case_finest(study)->points,
                         .points = (double)grid_points(&contact_case_finest(study)->grid),
                         .pressure = load,

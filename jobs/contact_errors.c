@@ -11,7 +11,7 @@ static double assumed_order(const struct contact_case *study, enum contact_measu
     case MEASURE_EDGES:
         if (study->surface.dimension == 1)
             return 2;
-        return study->blocks[model].model == MODEL_LAYERED ? 2.5 : 1.5;
+        return study->blocks[model].model == MODEL_HALFSPACE ? 1.5 : 2.5;
     case MEASURE_GAP:
         return 2;
     default:

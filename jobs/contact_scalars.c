@@ -15,6 +15,12 @@ const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1] = {
     [CONTACT_SCALAR_GAP_LAST] = "mean_gap_last",
     [CONTACT_SCALAR_ITERATIONS] = "iterations",
     [CONTACT_SCALAR_VIOLATION] = "violation",
+    [CONTACT_SCALAR_FULL_LOAD_REACHED] = "full_load_reached",
+    [CONTACT_SCALAR_FULL_ITERATIONS] = "full_iterations",
+    [CONTACT_SCALAR_FULL_CUTS] = "full_load_cuts",
+    [CONTACT_SCALAR_FULL_BALANCE] = "full_force_balance",
+    [CONTACT_SCALAR_FULL_PENETRATION] = "full_penetration",
+    [CONTACT_SCALAR_FULL_STRETCH] = "full_stretch",
     [CONTACT_SCALAR_RMS_HEIGHT] = "rms_height",
     [CONTACT_SCALAR_RMS_SLOPE] = "rms_slope",
     [CONTACT_SCALAR_NAYAK_ALPHA] = "nayak_alpha",
@@ -25,6 +31,50 @@ const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1] = {
     [CONTACT_SCALAR_EPS_S] = "eps_s",
     [CONTACT_SCALAR_EPS_S0] = "eps_s0",
 };
+
+/* Of a measure on the finest level, by load. */
+static const double *finest_values(struct contact_tally *tally, enum contact_measure measure,
+                                   size_t model) {
+    const struct contact_case *study = tally->study;
+    return contact_tally_values(tally, measure) +
+           contact_case_cell(study, model, study->level_count - 1, 0);
+}
+
+/* Over the loads that have values, which come first; 0 without any. */
+static double sum_of(size_t n, const double *values) {
+    double sum = 0;
+    for (size_t k = 0; k < n && !isnan(values[k]); k++)
+        sum += values[k];
+    return sum;
+}
+
+static double largest_of(size_t n, const double *values) {
+    double largest = 0;
+    for (size_t k = 0; k < n && !isnan(values[k]); k++)
+        largest = fmax(largest, values[k]);
+    return largest;
+}
+
+/* What the model full tells of itself. */
+static void measure_full(struct contact_tally *tally, double *out) {
+    const struct contact_case *study = tally->study;
+    size_t full = contact_case_full(study), n = study->load_count, solved = 0;
+    for (size_t a = CONTACT_SCALAR_FULL_LOAD_REACHED; a <= CONTACT_SCALAR_FULL_STRETCH; a++)
+        out[a] = NAN;
+    if (full == study->model_count)
+        return;
+    const double *iterations = finest_values(tally, MEASURE_ITERATIONS, full);
+    while (solved < n && !isnan(iterations[solved]))
+        solved++;
+    out[CONTACT_SCALAR_FULL_LOAD_REACHED] = solved > 0 ? study->loads[solved - 1] : 0;
+    out[CONTACT_SCALAR_FULL_ITERATIONS] = sum_of(n, iterations);
+    out[CONTACT_SCALAR_FULL_CUTS] = sum_of(n, finest_values(tally, MEASURE_CUTS, full));
+    out[CONTACT_SCALAR_FULL_BALANCE] = largest_of(n, finest_values(tally, MEASURE_BALANCE, full));
+    out[CONTACT_SCALAR_FULL_PENETRATION] =
+        largest_of(n, finest_values(tally, MEASURE_PENETRATION, full));
+    if (solved > 0)
+        out[CONTACT_SCALAR_FULL_STRETCH] = finest_values(tally, MEASURE_STRETCH, full)[solved - 1];
+}
 
 /* Fits of the fraction against the load. */
 static int measure_fits(const struct contact_case *study, const double *fraction, double *out,
@@ -47,20 +97,14 @@ int contact_scalars_measure(struct contact_tally *tally, const struct roughness 
                             double nayak_alpha, const struct surface_report *report,
                             double out[CONTACT_SCALAR_COUNT], struct error *err) {
     const struct contact_case *study = tally->study;
-    size_t first = contact_case_cell(study, 0, study->level_count - 1, 0);
-    size_t last = study->load_count - 1;
-    const double *fraction = contact_tally_values(tally, MEASURE_EDGES) + first;
-    const double *iterations = contact_tally_values(tally, MEASURE_ITERATIONS) + first;
-    const double *violation = contact_tally_values(tally, MEASURE_VIOLATION) + first;
+    size_t n = study->load_count;
+    const double *fraction = finest_values(tally, MEASURE_EDGES, 0);
     bool iterated = report->end != END_DIRECT;
-    out[CONTACT_SCALAR_AREA_LAST] = fraction[last];
-    out[CONTACT_SCALAR_GAP_LAST] = contact_tally_values(tally, MEASURE_GAP)[first + last];
-    out[CONTACT_SCALAR_ITERATIONS] = 0;
-    out[CONTACT_SCALAR_VIOLATION] = 0;
-    for (size_t k = 0; k <= last; k++) {
-        out[CONTACT_SCALAR_ITERATIONS] += iterations[k];
-        out[CONTACT_SCALAR_VIOLATION] = fmax(out[CONTACT_SCALAR_VIOLATION], violation[k]);
-    }
+    out[CONTACT_SCALAR_AREA_LAST] = fraction[n - 1];
+    out[CONTACT_SCALAR_GAP_LAST] = finest_values(tally, MEASURE_GAP, 0)[n - 1];
+    out[CONTACT_SCALAR_ITERATIONS] = sum_of(n, finest_values(tally, MEASURE_ITERATIONS, 0));
+    out[CONTACT_SCALAR_VIOLATION] = largest_of(n, finest_values(tally, MEASURE_VIOLATION, 0));
+    measure_full(tally, out);
     out[CONTACT_SCALAR_RMS_HEIGHT] = roughness->rms_height;
     out[CONTACT_SCALAR_RMS_SLOPE] = roughness->rms_slope;
     out[CONTACT_SCALAR_NAYAK_ALPHA] = nayak_alpha;
@@ -99,7 +143,11 @@ int contact_scalars_json(const struct contact_case *study, const struct moments 
     cJSON *scalars = cJSON_CreateObject();
     bool done = column != NULL && scalars != NULL;
     theories(study, moments, theory);
+    bool full = contact_case_full(study) < study->model_count;
     for (size_t a = 0; a < CONTACT_SCALAR_COUNT && done; a++) {
+        bool of_full = a >= CONTACT_SCALAR_FULL_LOAD_REACHED && a <= CONTACT_SCALAR_FULL_STRETCH;
+        if (of_full && !full)
+            continue;
         realisations_column(realisations, a, column);
         struct estimate estimate = estimate_mean(n, column);
         if (a == CONTACT_SCALAR_NAYAK_ALPHA && surface_case_exact(&study->surface))

@@ -16,7 +16,14 @@ enum contact_scalar {
     CONTACT_SCALAR_GAP_LAST,
     CONTACT_SCALAR_ITERATIONS, /* of all loads */
     CONTACT_SCALAR_VIOLATION,  /* the largest */
-    CONTACT_SCALAR_RMS_HEIGHT, /* by finite differences, as the slope */
+    /* Of the model full on the finest level; none without it. */
+    CONTACT_SCALAR_FULL_LOAD_REACHED, /* the last with values; 0: no mesh, or no equilibrium */
+    CONTACT_SCALAR_FULL_ITERATIONS,   /* Newton's, of all loads, as the cuts */
+    CONTACT_SCALAR_FULL_CUTS,
+    CONTACT_SCALAR_FULL_BALANCE, /* largest, as the penetration, which is in RMS heights */
+    CONTACT_SCALAR_FULL_PENETRATION,
+    CONTACT_SCALAR_FULL_STRETCH, /* at the last load reached */
+    CONTACT_SCALAR_RMS_HEIGHT,   /* by finite differences, as the slope */
     CONTACT_SCALAR_RMS_SLOPE,
     CONTACT_SCALAR_NAYAK_ALPHA, /* spectral */
     CONTACT_SCALAR_SKEWNESS,

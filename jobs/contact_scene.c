@@ -1,6 +1,7 @@
 #include "jobs/contact_scene.h"
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
+#include "jobs/contact_solver.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +13,7 @@ static const double STIFFNESS_MOST = 1e6;
 struct contact_scene {
     const struct contact_case *study;
     double rms_slope, rms_height; /* of the prescribed spectrum */
-    struct contact *solvers[CONTACT_MODELS][CONTACT_LEVELS_MOST];
+    struct contact_solver *solvers[CONTACT_MODELS][CONTACT_LEVELS_MOST];
     struct area_workspace *areas[CONTACT_MODELS][CONTACT_LEVELS_MOST];
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
     double *z; /* a level's sampling; room for the finest */
@@ -23,9 +24,10 @@ int contact_compliances_create(struct contact_compliances *out, const struct con
     int status = 0;
     *out = (struct contact_compliances){0};
     for (size_t m = 0; m < study->model_count && status == 0; m++)
-        for (size_t l = 0; l < study->level_count && status == 0; l++)
-            status =
-                compliance_create(&out->of[m][l], &study->levels[l].grid, &study->blocks[m], err);
+        for (size_t l = 0; l < study->level_count && status == 0; l++) {
+            struct block block = contact_linear_block(&study->blocks[m]);
+            status = compliance_create(&out->of[m][l], &study->levels[l].grid, &block, err);
+        }
     if (status != 0)
         contact_compliances_clear(out);
     return status;
@@ -40,16 +42,14 @@ void contact_compliances_clear(struct contact_compliances *compliances) {
 static int scene_fill(struct contact_scene *scene, const struct contact_compliances *compliances,
                       struct error *err) {
     const struct contact_case *study = scene->study;
-    struct contact_options options = CONTACT_DEFAULTS;
-    options.tolerance = study->tolerance;
     int status = 0;
     for (size_t l = 0; l < study->level_count && status == 0; l++) {
         status = patch_finder_create(&scene->finders[l], &study->levels[l].grid, err);
         for (size_t m = 0; m < study->model_count && status == 0; m++) {
             status = area_workspace_create(&scene->areas[m][l], compliances->of[m][l], err);
             if (status == 0)
-                status =
-                    contact_create(&scene->solvers[m][l], compliances->of[m][l], &options, err);
+                status = contact_solver_create(&scene->solvers[m][l], study, m,
+                                               compliances->of[m][l], err);
         }
     }
     if (status != 0)
@@ -83,7 +83,7 @@ void contact_scene_destroy(struct contact_scene **scene) {
         patch_finder_destroy(&s->finders[l]);
         for (size_t m = 0; m < CONTACT_MODELS; m++) {
             area_workspace_destroy(&s->areas[m][l]);
-            contact_destroy(&s->solvers[m][l]);
+            contact_solver_destroy(&s->solvers[m][l]);
         }
     }
     free(s->z);
@@ -96,31 +96,33 @@ double contact_scene_bytes(const struct contact_case *study) {
     for (size_t l = 0; l < study->level_count; l++) {
         const struct grid *grid = &study->levels[l].grid;
         bytes += 32.0 * (double)grid_points(grid); /* patches */
-        for (size_t m = 0; m < study->model_count; m++)
-            bytes += 8.0 * (double)grid_points(grid) + contact_bytes(grid) +
-                     compliance_bytes(grid, &study->blocks[m]);
+        for (size_t m = 0; m < study->model_count; m++) {
+            struct block block = contact_linear_block(&study->blocks[m]);
+            bytes += 8.0 * (double)grid_points(grid) + contact_solver_bytes(study, m, grid) +
+                     compliance_bytes(grid, &block);
+        }
     }
     return bytes;
 }
 
-/* The realisation on a level's grid. */
-static int sample(const struct contact_scene *scene, const struct contact_level *level,
-                  const double *z, struct error *err) {
-    const struct grid *own = &scene->study->surface.grid, *grid = &level->grid;
-    size_t band = scene->study->band;
+int contact_level_sample(const struct contact_case *study, const struct contact_level *level,
+                         const double *z, double *out, struct error *err) {
+    const struct grid *own = &study->surface.grid, *grid = &level->grid;
+    size_t band = study->band;
     if (level->stride == 0)
-        return surface_resample(own, z, grid, scene->z, band, grid_is_profile(own) ? 0 : band, err);
+        return surface_resample(own, z, grid, out, band, grid_is_profile(own) ? 0 : band, err);
     for (size_t j = 0; j < grid->ny; j++) {
         const double *row = z + j * level->stride * own->nx;
         for (size_t i = 0; i < grid->nx; i++)
-            scene->z[j * grid->nx + i] = row[i * level->stride];
+            out[j * grid->nx + i] = row[i * level->stride];
     }
     return 0;
 }
 
 /* Measures of a solved load into a cell. */
 static void measure(struct contact_scene *scene, size_t model, size_t level,
-                    const struct contact_state *state, struct contact_tally *tally, size_t cell) {
+                    const struct contact_state *state, const struct full_report *report,
+                    struct contact_tally *tally, size_t cell) {
     double points = (double)grid_points(&scene->study->levels[level].grid);
     double stiffness = state->stiffness * scene->rms_height / scene->rms_slope;
     struct contact_area area;
@@ -141,6 +143,10 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
         [MEASURE_ITERATIONS] = (double)state->iterations,
         [MEASURE_WORK] = state->work / points,
         [MEASURE_VIOLATION] = state->violation,
+        [MEASURE_PENETRATION] = state->penetration,
+        [MEASURE_CUTS] = report != NULL ? (double)report->cuts : NAN,
+        [MEASURE_BALANCE] = report != NULL ? fabs(report->balance) : NAN,
+        [MEASURE_STRETCH] = report != NULL ? report->stretch : NAN,
     };
     for (size_t a = 0; a < MEASURE_COUNT; a++)
         contact_tally_values(tally, (enum contact_measure)a)[cell] = values[a];
@@ -165,22 +171,26 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
                        struct contact_tally *tally, const struct stopper *stopper,
                        struct error *err) {
     const struct contact_case *study = scene->study;
-    struct contact *solver = scene->solvers[model][level];
+    struct contact_solver *solver = scene->solvers[model][level];
     struct contact_state state;
-    int status = contact_begin(solver, scene->z, err);
+    const struct full_report *report;
+    int status = contact_solver_begin(solver, scene->z, err);
     for (size_t k = 0; k < study->load_count && status == 0; k++) {
         if (stopper->stop(stopper->context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
                              study->load_count);
-        status = contact_press(solver, study->loads[k] * scene->rms_slope, &state, err);
+        status =
+            contact_solver_press(solver, study->loads[k] * scene->rms_slope, &state, &report, err);
         if (status != 0)
             error_context(err, "load %g", study->loads[k]);
         else
-            measure(scene, model, level, &state, tally, contact_case_cell(study, model, level, k));
+            measure(scene, model, level, &state, report, tally,
+                    contact_case_cell(study, model, level, k));
         if (status == 0 && level + 1 == study->level_count)
             count_pressures(scene, model, k, state.p, tally);
     }
-    return status;
+    bool unsolved = status == ERROR_NUMERIC || status == ERROR_INPUT;
+    return unsolved && contact_case_is_full(study, model) ? 0 : status;
 }
 
 int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
@@ -189,7 +199,7 @@ int contact_scene_solve(struct contact_scene *scene, const double *z, struct con
     const struct stopper stopper = {stop, context};
     int status = 0;
     for (size_t l = 0; l < study->level_count && status == 0; l++) {
-        status = sample(scene, &study->levels[l], z, err);
+        status = contact_level_sample(study, &study->levels[l], z, scene->z, err);
         for (size_t m = 0; m < study->model_count && status == 0; m++) {
             status = solve_loads(scene, m, l, tally, &stopper, err);
             if (status != 0 && status != ERROR_STOPPED)

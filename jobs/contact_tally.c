@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { FORMAT_KIND = 0x434f, FORMAT_VERSION = 1 }; /* "CO" */
+enum { FORMAT_KIND = 0x434f, FORMAT_VERSION = 2 }; /* "CO" */
 enum { SCALE_BITS_MOST = 16 };
 
 static size_t bins_of(const struct contact_case *study) {
@@ -67,7 +67,7 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *s
         status = sums_create(&out->sums[SUMS_LEVELS + a], pairs, err);
         if (status == 0)
             status = sums_create(&out->sums[SUMS_MODELS + a],
-                                 study->model_count > 1 ? study->load_count : 0, err);
+                                 (study->model_count - 1) * study->load_count, err);
     }
     if (status == 0)
         status = tally_create(&out->pressures, study->model_count * study->pdf_count * bins, err);
@@ -89,7 +89,7 @@ void contact_tally_clear(struct contact_tally *tally) {
 
 double contact_tally_bytes(const struct contact_case *study) {
     size_t cells = contact_case_cells(study), bins = bins_of(study);
-    size_t pairs = (study->model_count + 1) * study->load_count;
+    size_t pairs = (2 * study->model_count - 1) * study->load_count;
     double a_cell = tally_sums_bytes(1) + tally_bytes(1);
     return MEASURE_COUNT * (double)cells * (a_cell + sizeof(double)) +
            MEASURE_PAIRED * (double)pairs * a_cell +
@@ -122,15 +122,21 @@ static void add_level_pairs(struct contact_tally *tally, enum contact_measure me
                          scale_of(study, measure, k));
 }
 
+/* Place of a model and load among the differences from the most complete model, which has none. */
+static size_t model_pair(const struct contact_case *study, size_t model, size_t load) {
+    return (model - (model > contact_case_complete(study))) * study->load_count + load;
+}
+
 static void add_model_pairs(struct contact_tally *tally, enum contact_measure measure) {
     const struct contact_case *study = tally->study;
     const double *values = contact_tally_values(tally, measure);
     size_t finest = study->level_count - 1, complete = contact_case_complete(study);
-    for (size_t k = 0; k < study->load_count; k++)
-        sums_add(&tally->sums[SUMS_MODELS + measure], k,
-                 (values[contact_case_cell(study, 1 - complete, finest, k)] -
-                  values[contact_case_cell(study, complete, finest, k)]) *
-                     scale_of(study, measure, k));
+    for (size_t m = 0; m < study->model_count; m++)
+        for (size_t k = 0; m != complete && k < study->load_count; k++)
+            sums_add(&tally->sums[SUMS_MODELS + measure], model_pair(study, m, k),
+                     (values[contact_case_cell(study, m, finest, k)] -
+                      values[contact_case_cell(study, complete, finest, k)]) *
+                         scale_of(study, measure, k));
 }
 
 void contact_tally_add(struct contact_tally *tally) {
@@ -180,11 +186,11 @@ struct estimate contact_tally_level(const struct contact_tally *tally, enum cont
 }
 
 struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
-                                    size_t load) {
-    if (tally->study->model_count < 2)
+                                    size_t model, size_t load) {
+    if (model == contact_case_complete(tally->study))
         return (struct estimate){NAN, NAN};
-    return sums_mean(&tally->sums[SUMS_MODELS + measure], load, tally->realisations,
-                     scale_of(tally->study, measure, load));
+    return sums_mean(&tally->sums[SUMS_MODELS + measure], model_pair(tally->study, model, load),
+                     tally->realisations, scale_of(tally->study, measure, load));
 }
 
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at) {
@@ -193,8 +199,13 @@ size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t mod
 
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
                                        size_t bin) {
+    const struct contact_case *study = tally->study;
+    size_t cell = contact_case_cell(study, model, study->level_count - 1, study->pdf_loads[at]);
+    fixed_point points = grid_points(&contact_case_finest(study)->grid);
+    uint64_t solved = tally->sums[MEASURE_NODES].counts.count[cell];
+    struct tally_total total = {solved, points * solved, points * points * solved};
     return tally_share(&tally->pressures, contact_tally_pressure_cell(tally, model, at) + bin,
-                       &tally->points);
+                       &total);
 }
 
 int contact_tally_encode(const struct contact_tally *tally, unsigned char **data, size_t *size,
@@ -224,17 +235,34 @@ static int refuse(struct error *err, const char *reason) {
     return error_set(err, ERROR_INPUT, "the partial result %s", reason);
 }
 
-/* Whether no cell has more values than there are realisations, and all have one where every
- * realisation gives one; and no load more points than there are. */
+/* Whether a cell has as many values as it can: none more than there are realisations, one of each
+ * where all have one, and of the model full no more than at the load before. */
+static bool count_fits(const struct contact_tally *tally, enum contact_measure measure,
+                       size_t cell) {
+    const struct contact_case *study = tally->study;
+    const uint64_t *count = tally->sums[measure].counts.count;
+    size_t model = cell / (study->level_count * study->load_count);
+    bool always = measure == MEASURE_NODES || measure == MEASURE_EDGES || measure == MEASURE_GAP ||
+                  measure == MEASURE_ITERATIONS;
+    if (!always)
+        return count[cell] <= tally->realisations;
+    if (contact_case_is_full(study, model))
+        return count[cell] <=
+               (cell % study->load_count > 0 ? count[cell - 1] : tally->realisations);
+    return count[cell] == tally->realisations;
+}
+
+/* Whether the counts can be, and no load has more points than there are. */
 static bool adds_up(const struct contact_tally *tally) {
     size_t bins = bins_of(tally->study);
-    for (size_t a = 0; a < CONTACT_SUMS; a++) {
+    for (size_t a = 0; a < MEASURE_COUNT; a++)
+        for (size_t cell = 0; cell < contact_case_cells(tally->study); cell++)
+            if (!count_fits(tally, (enum contact_measure)a, cell))
+                return false;
+    for (size_t a = MEASURE_COUNT; a < CONTACT_SUMS; a++) {
         const struct tally *counts = &tally->sums[a].counts;
-        bool always =
-            a == MEASURE_NODES || a == MEASURE_EDGES || a == MEASURE_GAP || a == MEASURE_ITERATIONS;
         for (size_t cell = 0; cell < counts->size; cell++)
-            if (counts->count[cell] > tally->realisations ||
-                (always && counts->count[cell] != tally->realisations))
+            if (counts->count[cell] > tally->realisations)
                 return false;
     }
     for (size_t first = 0; first < tally->pressures.size; first += bins) {

@@ -1,7 +1,8 @@
 /* What a block of realisations adds up to: exact sums and counts, encoded into a partial result.
  *
  * Each realisation is solved for every model, level and load (a cell of contact_case_cell) and
- * gives a value of each measure there, or none (NaN). Differences between levels and between models
+ * gives a value of each measure there, or none (NaN): a measure that is not defined there, or any
+ * where the model full found no answer. Differences between levels and between models
  * are summed on their own: both see the same surface, so that their errors are those of pairs. */
 #ifndef RUGO_JOBS_CONTACT_TALLY_H
 #define RUGO_JOBS_CONTACT_TALLY_H
@@ -24,6 +25,10 @@ enum contact_measure {
     MEASURE_ITERATIONS,
     MEASURE_WORK, /* transforms of the level's grid */
     MEASURE_VIOLATION,
+    MEASURE_PENETRATION,
+    MEASURE_CUTS,    /* of load steps; of the model full alone, as all below */
+    MEASURE_BALANCE, /* |sum of contact forces/load - 1| */
+    MEASURE_STRETCH, /* area of the nodes in contact now, over that undeformed */
     MEASURE_COUNT
 };
 
@@ -35,8 +40,8 @@ struct contact_sums {
 /* Which sums: those of each measure, by cell; then differences of the paired measures. */
 enum {
     SUMS_LEVELS = MEASURE_COUNT,                /* finest level less the next; by model and load */
-    SUMS_MODELS = SUMS_LEVELS + MEASURE_PAIRED, /* finest level: the other model less the most
-                                                   complete one; by load */
+    SUMS_MODELS = SUMS_LEVELS + MEASURE_PAIRED, /* finest level: a model less the most complete
+                                                   one; by model and load */
     CONTACT_SUMS = SUMS_MODELS + MEASURE_PAIRED
 };
 struct contact_tally {
@@ -74,12 +79,12 @@ double contact_tally_total(const struct contact_tally *tally, enum contact_measu
 /* Realisations without a value. */
 uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact_measure measure,
                                  size_t cell);
-/* Means of the paired differences; NaN with one level, or one model. */
+/* Means of the paired differences; NaN with one level, or for the most complete model. */
 struct estimate contact_tally_level(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load);
 struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
-                                    size_t load);
-/* Share of the points of the finest level in a bin. */
+                                    size_t model, size_t load);
+/* Share of the points of the finest level in a bin, over the realisations with values there. */
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
                                        size_t bin);
 /* First cell of the pressures of a model and load: underflow, the bins, overflow. */

@@ -24,6 +24,8 @@ static bool put_place(cJSON *object, const struct curve *curve) {
         done = value_put(object, "model", cJSON_CreateString(curve->model)) &&
                value_put(object, "level", value_number(curve->level)) &&
                value_put(object, "points", value_number(curve->points));
+    if (done && curve->kinematics != NULL)
+        done = value_put(object, "kinematics", cJSON_CreateString(curve->kinematics));
     if (done && curve->pressure > 0)
         done = value_put(object, "pressure", value_number(curve->pressure));
     return done;

@@ -20,12 +20,13 @@ struct curve_errors {
 };
 struct curve { /* all borrowed */
     const char *quantity, *x_label, *y_label;
-    const char *series; /* NULL: "" */
-    const char *model;  /* NULL: without a model, and without a level */
-    double level;       /* points_per_wavelength */
-    double points;      /* of the whole grid of the level */
-    double pressure;    /* 0: not at a certain pressure */
-    size_t n;           /* points, rows of a matrix */
+    const char *series;     /* NULL: "" */
+    const char *model;      /* NULL: without a model, and without a level */
+    const char *kinematics; /* of strain, in a model that has several; NULL: not said */
+    double level;           /* points_per_wavelength */
+    double points;          /* of the whole grid of the level */
+    double pressure;        /* 0: not at a certain pressure */
+    size_t n;               /* points, rows of a matrix */
     const double *x, *y, *standard_error;
     struct curve_theory theories[CURVE_THEORIES_MOST];
     struct curve_errors errors;

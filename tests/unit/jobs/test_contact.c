@@ -31,8 +31,15 @@ static const char SURFACE[] =
 static const char FULL[] = "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": "
                            "2, \"length_ratio\": 1},"
                            " \"contact\": {\"pressures\": {\"values\": [1e-7, 0.2, 50]}}}";
-static const char *const STUDIES[] = {LEVELS, SURFACE, FULL};
-enum { STUDY_COUNT = 3 };
+/* Three models, and a slope at which the one on the true geometry finds no answer to some loads. */
+static const char STEEP[] =
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\":"
+    " 2, \"points_per_wavelength\": 6, \"rms_slope\": 1.6}, \"contact\": {\"model\":"
+    " [\"full\", \"halfspace\", \"layered\"], \"levels\": [3, 6], \"block_height\": {\"lengths\": "
+    "1},"
+    " \"pressures\": {\"to\": 0.5, \"steps\": 3}}}";
+static const char *const STUDIES[] = {LEVELS, SURFACE, FULL, STEEP};
+enum { STUDY_COUNT = 4 };
 
 static uint64_t next_word(uint64_t *state) {
     *state ^= *state << 13;

@@ -72,6 +72,35 @@ static void blocks(void **state) {
     contact_case_clear(&study);
 }
 
+/* Beside the model full all weight the gap as it does, or their differences would be those of the
+ * weighting. Errors are counted from full, wherever it stands. */
+static void models_beside_full(void **state) {
+    (void)state;
+    struct contact_case study = read_case(
+        STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": [\"layered\", \"full\", \"halfspace\"]"));
+    assert_int_equal(study.model_count, 3);
+    assert_int_equal(contact_case_complete(&study), 1);
+    assert_int_equal(contact_case_full(&study), 1);
+    assert_true(contact_case_is_full(&study, 1) && !contact_case_is_full(&study, 0));
+    assert_int_equal(study.kinematics, KINEMATICS_HENCKY);
+    for (size_t m = 0; m < 2; m++) {
+        assert_int_equal(study.blocks[m].weighting, GAP_DUAL);
+        assert_true(study.blocks[m].height == 1.5 * study.surface.grid.lx);
+    }
+    assert_true(isinf(study.blocks[2].height));
+    contact_case_clear(&study);
+    study = read_case(STUDY(PROFILE ", \"rms_slope\": 0.1",
+                            "\"model\": \"full\", \"kinematics\": \"st_venant_kirchhoff\","
+                            "\"gap_weighting\": \"dual\""));
+    assert_int_equal(study.kinematics, KINEMATICS_ST_VENANT);
+    contact_case_clear(&study);
+    study = read_case(STUDY(PROFILE, "\"model\": [\"layered\", \"halfspace\"]"));
+    assert_int_equal(study.blocks[0].weighting, GAP_STANDARD);
+    assert_int_equal(contact_case_complete(&study), 0);
+    assert_int_equal(contact_case_full(&study), 2);
+    contact_case_clear(&study);
+}
+
 static void loads_and_pressures(void **state) {
     (void)state;
     struct contact_case study =
@@ -108,7 +137,22 @@ static void faults(void **state) {
     static const struct {
         const char *text, *pointer, *words;
     } BAD[] = {
-        {STUDY(PROFILE, "\"model\": \"full\""), "/contact/model", "choices"},
+        {STUDY(PROFILE, "\"model\": \"mesh\""), "/contact/model", "choices"},
+        {STUDY(PROFILE, "\"model\": \"full\""), "/surface/rms_slope", "slopes count"},
+        {STUDY(PROFILE ", \"rms_slope\": 3", "\"model\": [\"layered\", \"full\"]"),
+         "/surface/rms_slope", "up to about 2"},
+        {STUDY(PROFILE ", \"rms_height\": 100", "\"model\": \"full\""), "/surface/rms_height",
+         "RMS slope"},
+        {STUDY(PROFILE ", \"rms_slope\": 0.1",
+               "\"model\": \"full\", \"block_height\": \"infinite\""),
+         "/contact/block_height", "only a halfspace can be infinite"},
+        {STUDY(PROFILE ", \"rms_slope\": 0.1",
+               "\"model\": \"full\", \"gap_weighting\": \"standard\""),
+         "/contact/gap_weighting", "only be \"dual\""},
+        {STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": \"full\", \"layer_growth\": 1,"
+                                               "\"block_height\": {\"lengths\": 1000}"),
+         "/contact/block_height", "4096 layers"},
+        {STUDY(PROFILE, "\"kinematics\": \"finite\""), "/contact/kinematics", "choices"},
         {STUDY(PROFILE, "\"model\": [\"layered\", \"layered\"]"), "/contact/model", "different"},
         {STUDY(PROFILE, "\"model\": []"), "/contact/model", "different"},
         {STUDY(PROFILE, "\"young\": 0"), "/contact/young", "(0,"},
@@ -128,7 +172,8 @@ static void faults(void **state) {
                         "\"block_height\": {\"lengths\": 1000}"),
          "/contact/block_height", "4096 layers"},
         {STUDY(PROFILE, "\"layer_growth\": 0.9"), "/contact/layer_growth", "[1, 2]"},
-        {STUDY(PROFILE, "\"gap_weighting\": \"dual\""), "/contact/gap_weighting", "layered"},
+        {STUDY(PROFILE, "\"gap_weighting\": \"dual\""), "/contact/gap_weighting",
+         "finite elements"},
         {STUDY(PROFILE, "\"pressures\": {\"to\": 0}"), "/contact/pressures/to", "(0,"},
         {STUDY(PROFILE, "\"pressures\": {\"steps\": 2000}"), "/contact/pressures/steps", "1000"},
         {STUDY(PROFILE, "\"pressures\": {\"values\": [0.2, 0.1]}"), "/contact/pressures/values",
@@ -198,6 +243,8 @@ static void fingerprints(void **state) {
         STUDY(PROFILE ", \"rms_height\": 1", "\"block_height\": {\"rms_heights\": 3}"),
         STUDY(PROFILE, "\"estimators\": [\"nodes\"]"),
         STUDY(PROFILE, "\"estimators\": [\"edges\"]"),
+        STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": \"full\""),
+        STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": \"full\", \"kinematics\": \"small\""),
     };
     enum { TEXTS = sizeof texts / sizeof *texts };
     uint64_t marks[TEXTS];
@@ -231,6 +278,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
         cmocka_unit_test(blocks),
+        cmocka_unit_test(models_beside_full),
         cmocka_unit_test(loads_and_pressures),
         cmocka_unit_test(levels),
         cmocka_unit_test(faults),

@@ -68,7 +68,7 @@ static void valueless_realisations_are_counted(void **state) {
     assert_int_equal(contact_tally_valueless(&f.tally, MEASURE_STIFFNESS, 0), 2);
     assert_true(isnan(contact_tally_mean(&f.tally, MEASURE_GAP, 0).value));
     assert_true(isnan(contact_tally_level(&f.tally, MEASURE_GAP, 0, 0).value));
-    assert_true(isnan(contact_tally_model(&f.tally, MEASURE_GAP, 0).value));
+    assert_true(isnan(contact_tally_model(&f.tally, MEASURE_GAP, 0, 0).value));
     fixture_close(&f);
 }
 
