@@ -57,6 +57,8 @@ static const struct command COMMANDS[] = {
      "  --realisation R     this realisation (0)\n"
      "  --format FORMAT     npy, csv or xyz (npy)\n"
      "  -o FILE             write the height map there\n"
+     "  --mesh FILE.vtu     write the block of the model full, meshed on the surface\n"
+     "  --pressure P        ... pressed to p/(E* h'), with displacement, pressure, stress\n"
      "  --set PATH=VALUE    change the study; may be repeated\n"},
     {"characterise", "FILE", "parameters and summits of a height map in a file",
      command_characterise,

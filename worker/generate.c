@@ -1,11 +1,14 @@
-/* rugo generate STUDY.json: one surface of a study, to look at or to use elsewhere. */
+/* rugo generate STUDY.json: one surface of a study, or a block meshed on it, to look at or to use
+ * elsewhere. */
 #include "jobs/surface_case.h"
 #include "server/command.h"
 #include "server/options.h"
 #include "worker/characterisation.h"
 #include "worker/height_map.h"
 #include "worker/kinds.h"
+#include "worker/meshed_case.h"
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -17,7 +20,26 @@ struct options {
     const char **overrides;     /* owned, NULL-terminated; its strings are of argv */
     int64_t case_number, realisation;
     enum height_map_format format;
+    const char *mesh; /* NULL: the surface alone */
+    double pressure;  /* p/(E* h') on the mesh; 0: not pressed */
 };
+
+/* A mesh takes the place of a surface on standard output. */
+static bool writes_surface(const struct options *options) {
+    return options->mesh == NULL || options->output != NULL;
+}
+
+static bool read_pressure(struct options *options, const char *text) {
+    if (text == NULL)
+        return true;
+    char *stop;
+    options->pressure = strtod(text, &stop);
+    if (options->mesh == NULL)
+        return usage_error(NAME, "--pressure belongs to --mesh FILE");
+    if (stop == text || *stop != '\0' || !(options->pressure > 0 && isfinite(options->pressure)))
+        return usage_error(NAME, "--pressure %.40s is no number above 0", text);
+    return true;
+}
 
 /* The format asked for, or that of the output's name, or npy. */
 static bool choose_format(struct options *options, const char *name) {
@@ -35,21 +57,26 @@ static bool choose_format(struct options *options, const char *name) {
         options->format = height_map_format_of(options->output);
     if (options->format == HEIGHT_MAP_FORMATS)
         options->format = HEIGHT_MAP_NPY;
+    if (!writes_surface(options))
+        return true;
     if (options->output == NULL && options->format == HEIGHT_MAP_NPY && isatty(STDOUT_FILENO))
         return usage_error(NAME, "npy is not for a terminal: give -o FILE or --format");
     return true;
 }
 
 static bool read_options(int argc, char **argv, struct options *out) {
-    const char *format = NULL;
+    const char *format = NULL, *pressure = NULL;
     const struct option_row rows[] = {{"case", OPTION_INDEX, &out->case_number},
                                       {"realisation", OPTION_INDEX, &out->realisation},
                                       {"format", OPTION_TEXT, &format},
                                       {"o", OPTION_TEXT, &out->output},
                                       {"output", OPTION_TEXT, &out->output},
+                                      {"mesh", OPTION_TEXT, &out->mesh},
+                                      {"pressure", OPTION_TEXT, &pressure},
                                       {"set", OPTION_LIST, out->overrides},
                                       {NULL, OPTION_FLAG, NULL}};
-    return options_parse(argc, argv, rows, 1, 1, &out->study) && choose_format(out, format);
+    return options_parse(argc, argv, rows, 1, 1, &out->study) && read_pressure(out, pressure) &&
+           choose_format(out, format);
 }
 
 static int write_output(const struct options *options, const struct grid *grid, const double *z,
@@ -74,7 +101,8 @@ static const char *end_name(enum surface_end end) {
 /* Beside the surface on standard output, the characterisation goes to standard error. */
 static int characterise(const struct options *options, const struct surface_case *surface,
                         const struct surface_report *report, const double *z, struct error *err) {
-    FILE *file = options->output == NULL ? stderr : stdout;
+    bool beside = writes_surface(options) && options->output == NULL;
+    FILE *file = beside ? stderr : stdout;
     size_t mode_x = surface_case_band(surface);
     size_t mode_y = surface->dimension == 1 ? 0 : mode_x;
     if (!surface_case_exact(surface)) {
@@ -95,6 +123,15 @@ static int characterise(const struct options *options, const struct surface_case
     if (fflush(file) != 0 || ferror(file))
         return error_set(err, ERROR_SYSTEM, "cannot write the characterisation");
     return 0;
+}
+
+static int write_mesh(const struct options *options, const struct study *study, const double *z,
+                      struct error *err) {
+    if (strcmp(study->kind->name, "contact") != 0)
+        return error_set(err, ERROR_INPUT, "--mesh needs a study of kind contact, and this is %s",
+                         study->kind->name);
+    return meshed_case_write(options->mesh, study->cases[options->case_number].parameters, z,
+                             options->pressure, err);
 }
 
 static int generate(const struct options *options, const struct study *study, struct error *err) {
@@ -118,7 +155,9 @@ static int generate(const struct options *options, const struct study *study, st
     if (status == 0)
         status = generator_run(generator, key, z, &report, err);
     generator_destroy(&generator);
-    if (status == 0)
+    if (status == 0 && options->mesh != NULL)
+        status = write_mesh(options, study, z, err);
+    if (status == 0 && writes_surface(options))
         status = write_output(options, &surface.grid, z, err);
     if (status == 0)
         status = characterise(options, &surface, &report, z, err);
