@@ -2,71 +2,8 @@
  * touch; and what must hold for rough blocks: errors of discretisation that come true, theories on
  * their sides, the same curves in any units. */
 #include "core/theory/contact.h"
-#include "jobs/kind.h"
-#include "jobs/value.h"
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
+#include "tests/support/contact_document.h"
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-enum { SEED = 11 };
-
-/* The document of realisations 0 .. count - 1. */
-static cJSON *solve(const char *study, uint64_t count) {
-    const struct job_kind *kind = kind_find("contact");
-    struct job_runner *runner = NULL;
-    struct job_merger *merger = NULL;
-    struct job_result result = {0};
-    struct error err = {0};
-    cJSON *document = NULL, *parameters = cJSON_Parse(study);
-    assert_non_null(parameters);
-    if (kind->runner_create(&runner, parameters, NULL, SEED, 0, &err) != 0 ||
-        kind->merger_create(&merger, parameters, &err) != 0 ||
-        kind->run(runner, 0, count, NULL, &result, &err) != 0 ||
-        kind->merge(merger, &result, &err) != 0 || kind->curves(merger, &document, &err) != 0)
-        fail_msg("%s: %s", study, err.text);
-    job_result_clear(&result);
-    kind->runner_destroy(&runner);
-    kind->merger_destroy(&merger);
-    cJSON_Delete(parameters);
-    return document;
-}
-
-static bool text_is(const cJSON *object, const char *key, const char *text) {
-    const cJSON *value = value_at(object, key);
-    return cJSON_IsString(value) && strcmp(value->valuestring, text) == 0;
-}
-
-/* The first curve of that name: finest level. */
-static const cJSON *curve_of(const cJSON *document, const char *quantity, const char *series,
-                             const char *model) {
-    const cJSON *curve;
-    cJSON_ArrayForEach(curve, value_at(document, "/curves")) {
-        if (text_is(curve, "/quantity", quantity) && text_is(curve, "/series", series) &&
-            text_is(curve, "/model", model))
-            return curve;
-    }
-    fail_msg("no curve %s of %s, %s", quantity, series, model);
-    return NULL;
-}
-
-static int points(const cJSON *curve) {
-    return cJSON_GetArraySize(value_at(curve, "/x"));
-}
-
-static double at(const cJSON *curve, const char *key, int point) {
-    const cJSON *value = cJSON_GetArrayItem(value_at(curve, key), point);
-    return cJSON_IsNumber(value) ? value->valuedouble : NAN;
-}
-
-static void assert_near(double value, double expected, double tolerance, double load) {
-    if (!(fabs(value - expected) <= tolerance))
-        fail_msg("%.17g at load %g, expected %.17g within %g", value, load, expected, tolerance);
-}
 
 #define WAVE(contact)                                                                              \
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 1,"                    \

@@ -1,0 +1,71 @@
+/* Contact studies run in one go, and their curves. */
+#ifndef RUGO_TESTS_SUPPORT_CONTACT_DOCUMENT_H
+#define RUGO_TESTS_SUPPORT_CONTACT_DOCUMENT_H
+
+#include "jobs/kind.h"
+#include "jobs/value.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { CONTACT_SEED = 11 };
+
+/* The document of realisations 0 .. count - 1. */
+static inline cJSON *solve(const char *study, uint64_t count) {
+    const struct job_kind *kind = kind_find("contact");
+    struct job_runner *runner = NULL;
+    struct job_merger *merger = NULL;
+    struct job_result result = {0};
+    struct error err = {0};
+    cJSON *document = NULL, *parameters = cJSON_Parse(study);
+    assert_non_null(parameters);
+    if (kind->runner_create(&runner, parameters, NULL, CONTACT_SEED, 0, &err) != 0 ||
+        kind->merger_create(&merger, parameters, &err) != 0 ||
+        kind->run(runner, 0, count, NULL, &result, &err) != 0 ||
+        kind->merge(merger, &result, &err) != 0 || kind->curves(merger, &document, &err) != 0)
+        fail_msg("%s: %s", study, err.text);
+    job_result_clear(&result);
+    kind->runner_destroy(&runner);
+    kind->merger_destroy(&merger);
+    cJSON_Delete(parameters);
+    return document;
+}
+
+static inline bool text_is(const cJSON *object, const char *key, const char *text) {
+    const cJSON *value = value_at(object, key);
+    return cJSON_IsString(value) && strcmp(value->valuestring, text) == 0;
+}
+
+/* The first curve of that name: finest level. */
+static inline const cJSON *curve_of(const cJSON *document, const char *quantity, const char *series,
+                                    const char *model) {
+    const cJSON *curve;
+    cJSON_ArrayForEach(curve, value_at(document, "/curves")) {
+        if (text_is(curve, "/quantity", quantity) && text_is(curve, "/series", series) &&
+            text_is(curve, "/model", model))
+            return curve;
+    }
+    fail_msg("no curve %s of %s, %s", quantity, series, model);
+    return NULL;
+}
+
+static inline int points(const cJSON *curve) {
+    return cJSON_GetArraySize(value_at(curve, "/x"));
+}
+
+static inline double at(const cJSON *curve, const char *key, int point) {
+    const cJSON *value = cJSON_GetArrayItem(value_at(curve, key), point);
+    return cJSON_IsNumber(value) ? value->valuedouble : NAN;
+}
+
+static inline void assert_near(double value, double expected, double tolerance, double load) {
+    if (!(fabs(value - expected) <= tolerance))
+        fail_msg("%.17g at load %g, expected %.17g within %g", value, load, expected, tolerance);
+}
+
+#endif
