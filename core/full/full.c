@@ -17,14 +17,14 @@ struct full {
     struct mesh *mesh;
     struct newton newton;
     struct compliance *compliance;
-    struct contact *linear;    /* the guess of what touches */
-    double *z;                 /* heights, mean 0, in steps */
-    double *pressure, *gap;    /* face: what is told */
-    double *kept;              /* displacements of the last load that went well */
-    double *told;              /* displacements, in the user's unit */
-    bool *kept_active, *guess; /* face: its active set; the linear model's for it */
-    double load;               /* that load; 0: lifted off */
-    double rms;                /* height, in steps */
+    struct contact *linear;           /* the guess of what touches */
+    double *z;                        /* heights, mean 0, in steps */
+    double *pressure, *gap, *opening; /* face: what is told */
+    double *kept;                     /* displacements of the last load that went well */
+    double *told;                     /* displacements, in the user's unit */
+    bool *kept_active, *guess;        /* face: its active set; the linear model's for it */
+    double load;                      /* that load; 0: lifted off */
+    double rms;                       /* height, in steps */
 };
 
 static int options_check(const struct full_options *options, struct error *err) {
@@ -42,11 +42,13 @@ static int arrays_create(struct full *f, struct error *err) {
     f->z = array_create(face, sizeof *f->z);
     f->pressure = array_create(face, sizeof *f->pressure);
     f->gap = array_create(face, sizeof *f->gap);
+    f->opening = array_create(face, sizeof *f->opening);
     f->kept_active = array_create(face, sizeof *f->kept_active);
     f->guess = array_create(face, sizeof *f->guess);
     f->kept = array_create(freedoms, sizeof *f->kept);
     f->told = array_create(freedoms, sizeof *f->told);
-    if (!f->z || !f->pressure || !f->gap || !f->kept_active || !f->guess || !f->kept || !f->told)
+    if (!f->z || !f->pressure || !f->gap || !f->opening || !f->kept_active || !f->guess ||
+        !f->kept || !f->told)
         return error_memory(err, 2 * freedoms * sizeof(double), "finite elements");
     return 0;
 }
@@ -55,10 +57,6 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
                 const struct full_options *options, struct error *err) {
     *out = NULL;
     int status = options_check(options, err);
-    if (status == 0 && block->weighting != GAP_DUAL)
-        status = error_set(err, ERROR_INPUT,
-                           "gap weighting %d is not offered on the true geometry; allowed: dual",
-                           (int)block->weighting);
     if (status != 0)
         return status;
     struct full *f = array_create(1, sizeof *f);
@@ -77,7 +75,7 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
     if (status == 0)
         status = contact_create(&f->linear, f->compliance, &loose, err);
     if (status == 0)
-        status = newton_create(&f->newton, f->mesh, &solid, err);
+        status = newton_create(&f->newton, f->mesh, &solid, block->weighting, options->solver, err);
     if (status == 0)
         status = arrays_create(f, err);
     if (status != 0)
@@ -101,6 +99,7 @@ void full_destroy(struct full **full) {
     free(f->z);
     free(f->pressure);
     free(f->gap);
+    free(f->opening);
     free(f->kept_active);
     free(f->guess);
     free(f->kept);
@@ -133,6 +132,7 @@ static int take_heights(struct full *f, const double *z, struct error *err) {
 
 static void lift(struct full *f) {
     f->load = 0;
+    f->newton.evaluated = false;
     memset(f->kept, 0, mesh_freedoms(f->mesh) * sizeof *f->kept);
     memset(f->newton.u, 0, mesh_freedoms(f->mesh) * sizeof *f->newton.u);
     for (size_t node = 0; node < f->mesh->face; node++)
@@ -178,6 +178,7 @@ static void keep(struct full *f, double load) {
 }
 
 static void restore(struct full *f) {
+    f->newton.evaluated = false;
     memcpy(f->newton.u, f->kept, mesh_freedoms(f->mesh) * sizeof *f->kept);
     memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
 }
@@ -193,6 +194,8 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
         predict(f, next);
         status = newton_settle(&f->newton, next, end, err);
         report->newton += end->iterations;
+        report->linear += end->linear;
+        report->factored += end->factored;
         report->changes += end->changes;
         report->cycles += end->cycles;
         if (status == 0) {
@@ -206,11 +209,11 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
             report->cuts++;
             step /= 2;
             if (fabs(step) < f->options.least_step * fabs(whole) || whole == 0)
-                return error_set(err, ERROR_NUMERIC,
-                                 "contact on the true geometry under a mean pressure of %g E* was "
-                                 "reached up to %g E* only; steepest slope %.3g, worst element "
-                                 "%.2g; the next step of %.2g E* found no equilibrium",
-                                 goal, f->load, f->mesh->slope, f->mesh->quality, 2 * step);
+                return error_context(err,
+                                     "contact on the true geometry under a mean pressure of %g E* "
+                                     "was reached up to %g E* only (steepest slope %.3g, worst "
+                                     "element %.2g); the next step of %.2g E* failed",
+                                     goal, f->load, f->mesh->slope, f->mesh->quality, 2 * step);
         }
     } while (f->load != goal || status != 0);
     return 0;
@@ -278,14 +281,15 @@ static void tell_report(const struct full *f, const struct newton_end *end,
 
 static int tell(struct full *f, const struct newton_end *end, struct contact_state *out,
                 struct error *err) {
-    const struct newton *n = &f->newton;
+    struct newton *n = &f->newton;
     size_t face = f->mesh->face;
+    newton_measure_gaps(n);
     struct sum gap = {0};
     for (size_t node = 0; node < face; node++) {
         double force = n->force[mesh_vertical(f->mesh, node)];
-        double g = newton_gap(n, node);
-        sum_add(&gap, g);
-        f->gap[node] = g * f->mesh->unit;
+        sum_add(&gap, n->gap[node]);
+        f->gap[node] = n->gap[node] * f->mesh->unit;
+        f->opening[node] = n->opening[node] * f->mesh->unit;
         /* In contact, if barely. */
         f->pressure[node] = n->active[node] ? fmax(DBL_MIN, force / newton_node_area(n)) : 0;
         out->nodes += n->active[node];
@@ -307,7 +311,7 @@ int full_press(struct full *f, double pressure, struct contact_state *out,
         return error_set(err, ERROR_INPUT, "mean pressure = %g; allowed: 0 or more, finite",
                          pressure);
     struct contact_state state = {
-        .pressure = pressure, .p = f->pressure, .gap = f->gap, .opening = f->gap};
+        .pressure = pressure, .p = f->pressure, .gap = f->gap, .opening = f->opening};
     struct full_report full_report = {0};
     struct newton_end end = {0};
     int status = 0;

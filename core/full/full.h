@@ -15,6 +15,7 @@
 
 struct full_options {
     enum kinematics kinematics;
+    enum equation_solver solver;
     double tolerance;      /* largest out-of-balance force over the largest contact force */
     size_t max_iterations; /* Newton's, a load step */
     double least_step;     /* of the pressure asked less that before: smaller ones are failure */
@@ -24,7 +25,9 @@ extern const struct full_options FULL_DEFAULTS;
 /* How the last load was solved; sums over its steps. */
 struct full_report {
     enum kinematics kinematics;
-    size_t newton;      /* iterations: factorisations */
+    size_t newton;      /* iterations */
+    size_t linear;      /* iterations of the linear equations */
+    size_t factored;    /* factorisations */
     size_t changes;     /* of single nodes of the active set */
     size_t cycles;      /* active sets that came back */
     size_t steps, cuts; /* load steps that went well, and that had to be made smaller */

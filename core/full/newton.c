@@ -8,19 +8,24 @@
 
 /* Force per gap that weighs the two in the choice of the active set: E* over a step. */
 static const double COMPLEMENTARITY = 1;
+/* Contact forces decide about the set once the residual, over the largest of them, is below this;
+ * one node at a time below the second. */
+static const double TRUSTED = 0.1, SETTLED = 1e-4;
+/* Residual left of the linear equations, when iterated. */
+static const double LINEAR_MOST = 1e-2, LINEAR_PART = 0.1, LINEAR_EXACT = 1e-10;
+static const double LINEAR_STIFFNESS = 1e-6;
 /* A step is halved so often at most. */
 enum { HALVINGS = 8 };
-/* Forces and gaps below these, over the largest force and over a step, are rounding. */
-static const double FORCE_ROUNDING = 1e-12, GAP_ROUNDING = 1e-12;
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
-                  struct error *err) {
-    *out = (struct newton){.mesh = mesh, .solid = *solid};
+                  enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
+    *out = (struct newton){.mesh = mesh, .solid = *solid, .solver = solver};
     size_t freedoms = mesh_freedoms(mesh);
-    double **const arrays[] = {&out->u, &out->force, &out->before, &out->change, &out->rest};
+    double **const arrays[] = {&out->u,    &out->force, &out->before, &out->change,
+                               &out->rest, &out->gap,   &out->opening};
     int status = stencil_create(&out->tangent, mesh, err);
     if (status == 0)
-        status = factor_create(&out->factor, mesh, err);
+        status = krylov_create(&out->krylov, mesh, solid, weighting, err);
     for (size_t a = 0; status == 0 && a < sizeof arrays / sizeof *arrays; a++) {
         *arrays[a] = array_create(freedoms, sizeof(double));
         if (*arrays[a] == NULL)
@@ -39,17 +44,22 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct soli
 void newton_clear(struct newton *n) {
     stencil_destroy(&n->tangent);
     factor_destroy(&n->factor);
+    krylov_destroy(&n->krylov);
     free(n->u);
     free(n->force);
     free(n->before);
     free(n->change);
     free(n->rest);
+    free(n->gap);
+    free(n->opening);
     free(n->active);
     *n = (struct newton){0};
 }
 
-double newton_gap(const struct newton *n, size_t node) {
-    return n->mesh->height[node] + n->u[mesh_vertical(n->mesh, node)] - n->flat;
+void newton_measure_gaps(struct newton *n) {
+    for (size_t node = 0; node < n->mesh->face; node++)
+        n->gap[node] = n->mesh->height[node] + n->u[mesh_vertical(n->mesh, node)] - n->flat;
+    krylov_weigh(n->krylov, n->gap, n->opening);
 }
 
 double newton_node_area(const struct newton *n) {
@@ -70,13 +80,10 @@ static double largest_force(const struct newton *n) {
 }
 
 /* How much a node contradicts its being in contact or not; 0 where it agrees. */
-static double contradiction(const struct newton *n, size_t node, double rounding) {
-    double gap = newton_gap(n, node), force = contact_force(n, node);
-    if (n->active[node]) {
-        double pull = COMPLEMENTARITY * gap - force;
-        return pull > rounding + COMPLEMENTARITY * GAP_ROUNDING ? pull : 0;
-    }
-    return gap < -GAP_ROUNDING ? -COMPLEMENTARITY * gap : 0;
+static double contradiction(const struct newton *n, size_t node, double least) {
+    double gap = COMPLEMENTARITY * n->opening[node];
+    double wrong = n->active[node] ? gap - contact_force(n, node) : -gap;
+    return wrong > least ? wrong : 0;
 }
 
 static size_t active_count(const struct newton *n) {
@@ -89,7 +96,7 @@ static size_t active_count(const struct newton *n) {
 static size_t nearest_node(const struct newton *n) {
     size_t nearest = 0;
     for (size_t node = 1; node < n->mesh->face; node++)
-        if (newton_gap(n, node) < newton_gap(n, nearest))
+        if (n->opening[node] < n->opening[nearest])
             nearest = node;
     return nearest;
 }
@@ -102,10 +109,10 @@ static void active_fill(struct newton *n) {
 
 /* Moves the nodes that contradict: all, or the worst alone. Returns how many. */
 static size_t active_update(struct newton *n, bool one) {
-    double rounding = FORCE_ROUNDING * largest_force(n), worst = 0;
+    double least = n->tolerance * largest_force(n), worst = 0;
     size_t changes = 0, which = 0;
     for (size_t node = 0; node < n->mesh->face; node++) {
-        double wrong = contradiction(n, node, rounding);
+        double wrong = contradiction(n, node, least);
         if (wrong > worst) {
             worst = wrong;
             which = node;
@@ -148,10 +155,10 @@ static bool memory_meets(struct memory *memory, uint64_t hash) {
 /* --- equilibrium --- */
 
 /* Out-of-balance forces, outer less inner; what the flat carries balances itself. Far side: the sum
- * at its first node, whose sideways are held. Returns the largest over all. */
+ * at its first node. Returns the largest over all. */
 static double residual(const struct newton *n, double pressure, double *out) {
     const struct mesh *mesh = n->mesh;
-    size_t d = (size_t)mesh->dimension, far_side = mesh->layers * mesh->face;
+    size_t far_side = mesh->layers * mesh->face;
     double largest = 0;
     struct sum far_force = {0};
     for (size_t f = 0; f < mesh_freedoms(mesh); f++)
@@ -163,8 +170,6 @@ static double residual(const struct newton *n, double pressure, double *out) {
         if (n->active[node])
             out[mesh_vertical(mesh, node)] = 0;
     }
-    for (size_t k = 0; k + 1 < d; k++)
-        out[far_side * d + k] = 0;
     out[mesh_vertical(mesh, far_side)] = sum_value(&far_force);
     for (size_t f = 0; f < mesh_freedoms(mesh); f++)
         largest = fmax(largest, fabs(out[f]));
@@ -174,7 +179,7 @@ static double residual(const struct newton *n, double pressure, double *out) {
 static void measure(const struct newton *n, struct newton_end *end) {
     end->inside = end->penetration = 0;
     for (size_t node = 0; node < n->mesh->face; node++) {
-        double gap = newton_gap(n, node);
+        double gap = n->opening[node];
         if (n->active[node])
             end->inside = fmax(end->inside, fabs(gap));
         else
@@ -182,44 +187,65 @@ static void measure(const struct newton *n, struct newton_end *end) {
     }
 }
 
-/* Potential energy of the block and the load. */
-static double potential(const struct newton *n, double energy, double pressure, const double *u) {
-    size_t far_side = n->mesh->layers * n->mesh->face;
-    return energy + pressure * newton_node_area(n) * (double)n->mesh->face *
-                        u[mesh_vertical(n->mesh, far_side)];
+/* Forces, tangent and energy at u. */
+static bool evaluate(struct newton *n) {
+    n->evaluated = stencil_evaluate(n->mesh, &n->solid, n->u, &n->energy, n->force, n->tangent);
+    return n->evaluated;
 }
 
-/* Newton's change for out-of-balance forces in change, which it replaces: nodes in contact go to
- * the flat. */
-static int newton_change(struct newton *n, struct error *err) {
-    const struct mesh *mesh = n->mesh;
-    size_t freedoms = mesh_freedoms(mesh);
-    int status = factor_run(n->factor, n->tangent, n->active, err);
+/* Potential energy of the block and the load. */
+static double potential(const struct newton *n, double pressure) {
+    size_t far_side = n->mesh->layers * n->mesh->face;
+    return n->energy + pressure * newton_node_area(n) * (double)n->mesh->face *
+                           n->u[mesh_vertical(n->mesh, far_side)];
+}
+
+/* Fill grows as n log n in profiles, as n^(4/3) in surfaces: a few GB here. */
+static bool factorable(const struct mesh *mesh) {
+    return mesh_freedoms(mesh) <= (mesh->dimension == 2 ? 3000000 : 120000);
+}
+
+/* The change asked for in change, which displacements replace. */
+static int solve_linear(struct newton *n, double tolerance, struct newton_end *end,
+                        struct error *err) {
+    struct equations equations = {.tangent = n->tangent, .active = n->active};
+    int status = ERROR_NUMERIC;
+    if (!n->factored) {
+        memcpy(n->rest, n->change, mesh_freedoms(n->mesh) * sizeof *n->rest);
+        status = krylov_solve(n->krylov, &equations, tolerance, n->change, &end->linear, err);
+        if (status != ERROR_NUMERIC || !factorable(n->mesh))
+            return status;
+        memcpy(n->change, n->rest, mesh_freedoms(n->mesh) * sizeof *n->rest);
+    }
+    status = n->factor == NULL ? factor_create(&n->factor, n->mesh, err) : 0;
+    if (status == 0)
+        status = factor_run(n->factor, n->tangent, n->active, err);
     if (status != 0)
         return status;
-    double *moved = n->before, *product = n->rest;
-    memset(moved, 0, freedoms * sizeof *moved);
-    bool any = false;
-    for (size_t node = 0; node < mesh->face; node++)
-        if (n->active[node]) {
-            moved[mesh_vertical(mesh, node)] = -newton_gap(n, node);
-            any = any || newton_gap(n, node) != 0;
-        }
-    if (any) {
-        stencil_apply(n->tangent, moved, product);
-        for (size_t f = 0; f < freedoms; f++)
-            n->change[f] -= product[f];
-    }
-    status = factor_solve(n->factor, n->change, err);
-    for (size_t node = 0; node < mesh->face; node++)
+    n->factored = true;
+    end->factored++;
+    equations.factor = n->factor;
+    return krylov_solve(n->krylov, &equations, tolerance, n->change, &end->linear, err);
+}
+
+/* Newton's change for the out-of-balance forces in change, which it replaces. off: how far off the
+ * start is, as the tolerance counts; about its square is what the next iteration will find, and no
+ * linear equations need be solved closer. */
+static int newton_change(struct newton *n, double off, struct newton_end *end, struct error *err) {
+    for (size_t node = 0; node < n->mesh->face; node++)
         if (n->active[node])
-            n->change[mesh_vertical(mesh, node)] = moved[mesh_vertical(mesh, node)];
-    return status;
+            n->change[mesh_vertical(n->mesh, node)] = -n->opening[node];
+    if (n->solver == SOLVER_FACTORED) /* exact, or so: Newton's own convergence shows */
+        return solve_linear(n, LINEAR_EXACT, end, err);
+    double tolerance = fmax(LINEAR_PART * off, LINEAR_PART * n->tolerance / off);
+    tolerance = fmin(tolerance, LINEAR_MOST);
+    return solve_linear(n, tolerance, end, err);
 }
 
 /* Where a step starts. */
 struct start {
     double residual, potential, inside;
+    double closed; /* gaps up to this are none */
 };
 
 /* Takes the longest of the step and its halves that turns no element inside out and, where nodes in
@@ -227,17 +253,17 @@ struct start {
 static int advance(struct newton *n, double pressure, const struct start *start,
                    struct error *err) {
     size_t freedoms = mesh_freedoms(n->mesh);
-    double energy, length = 1;
-    bool feasible = start->inside <= GAP_ROUNDING;
+    double length = 1;
+    bool feasible = start->inside <= start->closed;
     memcpy(n->before, n->u, freedoms * sizeof *n->before);
     int status = ERROR_NUMERIC;
     for (int halving = 0; status != 0 && halving < HALVINGS; halving++, length /= 2) {
         for (size_t f = 0; f < freedoms; f++)
             n->u[f] = n->before[f] + length * n->change[f];
-        if (!stencil_evaluate(n->mesh, &n->solid, n->u, &energy, n->force, NULL))
+        if (!evaluate(n))
             continue;
         if (!feasible || residual(n, pressure, n->rest) <= start->residual ||
-            potential(n, energy, pressure, n->u) < start->potential)
+            potential(n, pressure) < start->potential)
             status = 0;
     }
     return status == 0 ? 0
@@ -257,18 +283,20 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
     struct memory memory = {0};
     bool careful = false;
     *end = (struct newton_end){0};
+    n->factored = n->solver == SOLVER_FACTORED;
+    if (!n->evaluated && !evaluate(n))
+        return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
+    newton_measure_gaps(n);
     active_fill(n);
     memory_meets(&memory, active_hash(n));
     for (size_t iteration = 0;; iteration++) {
         struct start start;
-        double energy;
-        if (!stencil_evaluate(n->mesh, &n->solid, n->u, &energy, n->force, n->tangent))
-            return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
+        newton_measure_gaps(n);
         double largest = fmax(largest_force(n), pressure * newton_node_area(n));
         start.residual = residual(n, pressure, n->change);
         bool settled = start.residual <= n->tolerance * largest;
         size_t changes = 0;
-        if (iteration > 0 && (!careful || start.residual <= 1e-4 * largest))
+        if (iteration > 0 && start.residual <= (careful ? SETTLED : TRUSTED) * largest)
             changes = active_update(n, careful);
         if (changes > 0) {
             end->changes += changes;
@@ -280,17 +308,19 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
         }
         measure(n, end);
         start.inside = end->inside;
-        start.potential = potential(n, energy, pressure, n->u);
+        start.closed = n->tolerance * largest / COMPLEMENTARITY;
+        start.potential = potential(n, pressure);
         end->residual = start.residual / largest;
         remember_residual(end, end->residual, changes > 0);
-        if (iteration > 0 && changes == 0 && settled && end->inside <= GAP_ROUNDING)
+        if (iteration > 0 && changes == 0 && settled && start.inside <= start.closed)
             return 0;
         if (iteration == n->max_iterations)
             return error_set(err, ERROR_NUMERIC,
                              "%zu iterations of Newton's left %.2g of the largest force", iteration,
                              end->residual);
         end->iterations++;
-        int status = newton_change(n, err);
+        int status = newton_change(n, fmax(end->residual, start.inside * COMPLEMENTARITY / largest),
+                                   end, err);
         if (status == 0)
             status = advance(n, pressure, &start, err);
         if (status != 0)
@@ -300,14 +330,14 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
 
 int newton_compliance(struct newton *n, double *out, struct error *err) {
     const struct mesh *mesh = n->mesh;
+    struct newton_end ignored = {0};
     memset(n->change, 0, mesh_freedoms(mesh) * sizeof *n->change);
-    for (size_t node = 0; node < mesh->face; node++)
-        n->change[mesh_vertical(mesh, mesh->layers * mesh->face + node)] = -newton_node_area(n);
-    int status = factor_solve(n->factor, n->change, err);
+    n->change[mesh_vertical(mesh, mesh->layers * mesh->face)] =
+        -newton_node_area(n) * (double)mesh->face;
+    int status = solve_linear(n, LINEAR_STIFFNESS, &ignored, err);
     struct sum gap = {0};
     for (size_t node = 0; status == 0 && node < mesh->face; node++)
-        if (!n->active[node])
-            sum_add(&gap, n->change[mesh_vertical(mesh, node)]);
+        sum_add(&gap, n->change[mesh_vertical(mesh, node)]);
     *out = -sum_value(&gap) / (double)mesh->face;
     return status;
 }

@@ -9,17 +9,29 @@
 #define RUGO_CORE_FULL_NEWTON_H
 
 #include "core/full/factor.h"
+#include "core/full/krylov.h"
 
 enum { NEWTON_HISTORY = 64 };
+
+/* How the linear equations of a step are solved: by iterations with the flat block, and where they
+ * fail and the mesh is not too big (newton_factors) with a factorisation for the rest of the load;
+ * or always with a factorisation. */
+enum equation_solver { SOLVER_ITERATED, SOLVER_FACTORED };
 
 struct newton {
     const struct mesh *mesh; /* borrowed */
     struct solid solid;
     struct stencil *tangent; /* owned, as all below */
-    struct factor *factor;
-    double *u;                      /* mesh_freedoms: displacements */
-    double *force;                  /* inner forces: those of the contact on the face */
+    enum equation_solver solver;
+    struct factor *factor; /* NULL until one is needed */
+    bool factored;         /* factor is of the last tangent, and takes the rest of the load */
+    struct krylov *krylov;
+    double *u;     /* mesh_freedoms: displacements; who changes them clears evaluated */
+    double *force; /* inner forces: those of the contact on the face */
+    double energy;
+    bool evaluated;                 /* force, energy and tangent are those of u */
     double *before, *change, *rest; /* scratch */
+    double *gap, *opening;          /* face, at u: at the nodes and weighted */
     bool *active;                   /* face */
     double flat;                    /* vertical position of the flat */
     double tolerance;               /* largest residual, over the largest contact force */
@@ -27,12 +39,15 @@ struct newton {
 };
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
-                  struct error *err);
+                  enum gap_weighting weighting, enum equation_solver solver, struct error *err);
+
 void newton_clear(struct newton *newton);
 
 /* How an equilibrium was reached. */
 struct newton_end {
-    size_t iterations;  /* factorisations */
+    size_t iterations;  /* Newton's */
+    size_t linear;      /* iterations of the linear equations */
+    size_t factored;    /* factorisations */
     size_t changes;     /* of single nodes of the active set */
     size_t cycles;      /* active sets that came back and had to be taken apart node by node */
     double residual;    /* largest, over the largest contact force */
@@ -46,11 +61,11 @@ struct newton_end {
  * active. ERROR_NUMERIC leaves u and the set of no use. */
 int newton_settle(struct newton *newton, double pressure, struct newton_end *end,
                   struct error *err);
-/* Gap of a node of the face to the flat. */
-double newton_gap(const struct newton *newton, size_t node);
+/* Fills gap and opening. */
+void newton_measure_gaps(struct newton *newton);
 /* D of every node, and its sum. */
 double newton_node_area(const struct newton *newton);
-/* -d(mean gap)/d(pressure) >= 0 by the last tangent; uses the scratch. */
+/* -d(mean gap)/d(pressure) >= 0 by the tangent at u. */
 int newton_compliance(struct newton *newton, double *out, struct error *err);
 
 #endif

@@ -1,0 +1,264 @@
+#include "core/full/krylov.h"
+#include "core/vectors.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BASIS = 24, RESTARTS = 2, LANES = 8 };
+/* Of the contact forces within the preconditioner. */
+static const double SUPPORT_TOLERANCE = 1e-3;
+
+struct krylov {
+    const struct mesh *mesh; /* borrowed */
+    struct flat *flat;
+    struct support support;
+    size_t freedoms;
+    double *basis[BASIS + 1]; /* orthonormal residuals */
+    double *direction[BASIS]; /* preconditioned */
+    double *load, *moved;
+    double *face, *target, *forces;      /* of the face */
+    double hessenberg[BASIS + 1][BASIS]; /* turned to upper triangular */
+    double cosine[BASIS], sine[BASIS], right[BASIS + 1];
+};
+
+int krylov_create(struct krylov **out, const struct mesh *mesh, const struct solid *solid,
+                  enum gap_weighting weighting, struct error *err) {
+    *out = NULL;
+    struct krylov *k = array_create(1, sizeof *k);
+    if (k == NULL)
+        return error_memory(err, sizeof *k, "conjugate directions");
+    k->mesh = mesh;
+    k->freedoms = mesh_freedoms(mesh);
+    int status = flat_create(&k->flat, mesh, solid, err);
+    if (status == 0)
+        status = support_create(&k->support, mesh, k->flat, weighting, err);
+    for (size_t b = 0; status == 0 && b < 2 * BASIS + 1; b++) {
+        double **array = b <= BASIS ? &k->basis[b] : &k->direction[b - BASIS - 1];
+        *array = array_create(k->freedoms, sizeof(double));
+        if (*array == NULL)
+            status = error_memory(err, k->freedoms * sizeof(double), "conjugate directions");
+    }
+    double **const others[] = {&k->face, &k->target, &k->forces, &k->load, &k->moved};
+    for (size_t a = 0; status == 0 && a < 5; a++) {
+        *others[a] = array_create(a < 3 ? mesh->face : k->freedoms, sizeof(double));
+        if (*others[a] == NULL)
+            status = error_memory(err, k->freedoms * sizeof(double), "conjugate directions");
+    }
+    if (status != 0)
+        krylov_destroy(&k);
+    *out = k;
+    return status;
+}
+
+void krylov_destroy(struct krylov **krylov) {
+    struct krylov *k = *krylov;
+    if (k == NULL)
+        return;
+    for (size_t b = 0; b <= BASIS; b++)
+        free(k->basis[b]);
+    for (size_t b = 0; b < BASIS; b++)
+        free(k->direction[b]);
+    free(k->face);
+    free(k->target);
+    free(k->forces);
+    free(k->load);
+    free(k->moved);
+    support_clear(&k->support);
+    flat_destroy(&k->flat);
+    free(k);
+    *krylov = NULL;
+}
+
+void krylov_weigh(const struct krylov *k, const double *in, double *out) {
+    support_weigh(&k->support, in, out);
+}
+
+/* --- vectors --- */
+
+WIDE_VECTORS static double dot(size_t n, const double *a, const double *b) {
+    double lanes[LANES] = {0}, sum = 0;
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES)
+        for (size_t l = 0; l < LANES; l++)
+            lanes[l] += a[i + l] * b[i + l];
+    for (; i < n; i++)
+        sum += a[i] * b[i];
+    for (size_t l = 0; l < LANES; l++)
+        sum += lanes[l];
+    return sum;
+}
+
+WIDE_VECTORS static void add(size_t n, double factor, const double *x, double *y) {
+    for (size_t i = 0; i < n; i++)
+        y[i] += factor * x[i];
+}
+
+static void scale(size_t n, double factor, double *x) {
+    for (size_t i = 0; i < n; i++)
+        x[i] *= factor;
+}
+
+/* --- operator and preconditioner --- */
+
+/* Rows: forces; the sum of the far side's vertical ones at its first node; in contact the weighted
+ * face. */
+static void operate(struct krylov *k, const struct equations *equations, const double *x,
+                    double *y) {
+    const struct mesh *mesh = k->mesh;
+    size_t far_side = mesh->layers * mesh->face;
+    double sum = 0;
+    stencil_apply(equations->tangent, x, y);
+    for (size_t node = 0; node < mesh->face; node++) {
+        size_t vertical = mesh_vertical(mesh, far_side + node);
+        sum += y[vertical];
+        y[vertical] = 0;
+        k->face[node] = x[mesh_vertical(mesh, node)];
+    }
+    y[mesh_vertical(mesh, far_side)] = sum;
+    support_weigh(&k->support, k->face, k->face);
+    for (size_t node = 0; node < mesh->face; node++)
+        if (equations->active[node])
+            y[mesh_vertical(mesh, node)] = k->face[node];
+}
+
+/* x: displacements by the tangent's factorisation, nodes in contact going where they are told. */
+static int precondition_factored(struct krylov *k, const struct equations *equations,
+                                 const double *r, double *x, struct error *err) {
+    const struct mesh *mesh = k->mesh;
+    const bool *active = equations->active;
+    memset(k->moved, 0, k->freedoms * sizeof *k->moved);
+    for (size_t node = 0; node < mesh->face; node++)
+        if (active[node])
+            k->moved[mesh_vertical(mesh, node)] = r[mesh_vertical(mesh, node)];
+    stencil_apply(equations->tangent, k->moved, x);
+    for (size_t f = 0; f < k->freedoms; f++)
+        x[f] = r[f] - x[f];
+    int status = factor_solve(equations->factor, x, err);
+    for (size_t node = 0; node < mesh->face; node++)
+        if (active[node])
+            x[mesh_vertical(mesh, node)] = r[mesh_vertical(mesh, node)];
+    return status;
+}
+
+/* x: the flat block's displacements under r. */
+static void precondition_flat(struct krylov *k, const bool *active, double *r, double *x) {
+    const struct mesh *mesh = k->mesh;
+    double sum = 0;
+    for (size_t node = 0; node < mesh->face; node++) {
+        size_t vertical = mesh_vertical(mesh, node);
+        k->target[node] = r[vertical];
+        if (active[node])
+            r[vertical] = 0;
+    }
+    for (size_t node = 0; node < mesh->nodes; node++)
+        sum += r[mesh_vertical(mesh, node)];
+    flat_load(k->flat, r);
+    flat_face(k->flat, k->face);
+    support_weigh(&k->support, k->face, k->face);
+    double shift =
+        support_solve(&k->support, active, k->face, k->target, -sum, SUPPORT_TOLERANCE, k->forces);
+    flat_displace(k->flat, k->forces, x);
+    for (size_t node = 0; node < mesh->nodes; node++)
+        x[mesh_vertical(mesh, node)] += shift;
+    for (size_t node = 0; node < mesh->face; node++)
+        if (active[node])
+            r[mesh_vertical(mesh, node)] = k->target[node];
+}
+
+/* --- minimal residuals --- */
+
+/* Givens' rotations bring column c to triangular form. Returns the residual's size. */
+static double rotate(struct krylov *k, size_t c) {
+    double(*h)[BASIS] = k->hessenberg;
+    for (size_t a = 0; a < c; a++) {
+        double upper = h[a][c], lower = h[a + 1][c];
+        h[a][c] = k->cosine[a] * upper + k->sine[a] * lower;
+        h[a + 1][c] = k->cosine[a] * lower - k->sine[a] * upper;
+    }
+    double size = hypot(h[c][c], h[c + 1][c]);
+    k->cosine[c] = h[c][c] / size;
+    k->sine[c] = h[c + 1][c] / size;
+    h[c][c] = size;
+    k->right[c + 1] = -k->sine[c] * k->right[c];
+    k->right[c] *= k->cosine[c];
+    return fabs(k->right[c + 1]);
+}
+
+static void combine(struct krylov *k, size_t count, double *x) {
+    double factor[BASIS];
+    for (size_t a = count; a-- > 0;) {
+        factor[a] = k->right[a];
+        for (size_t b = a + 1; b < count; b++)
+            factor[a] -= k->hessenberg[a][b] * factor[b];
+        factor[a] /= k->hessenberg[a][a];
+    }
+    for (size_t a = 0; a < count; a++)
+        add(k->freedoms, factor[a], k->direction[a], x);
+}
+
+/* From the residual in basis 0, of size *left: adds to x, and tells the size left. */
+static int cycle(struct krylov *k, const struct equations *equations, double goal, double *x,
+                 double *left, size_t *iterations, struct error *err) {
+    size_t n = k->freedoms, c = 0;
+    scale(n, 1 / *left, k->basis[0]);
+    k->right[0] = *left;
+    for (double size = 1; c<BASIS && * left> goal && size > 0; c++) {
+        double *next = k->basis[c + 1];
+        int status = 0;
+        if (equations->factor != NULL)
+            status = precondition_factored(k, equations, k->basis[c], k->direction[c], err);
+        else
+            precondition_flat(k, equations->active, k->basis[c], k->direction[c]);
+        if (status != 0)
+            return status;
+        operate(k, equations, k->direction[c], next);
+        for (size_t a = 0; a <= c; a++) {
+            k->hessenberg[a][c] = dot(n, next, k->basis[a]);
+            add(n, -k->hessenberg[a][c], k->basis[a], next);
+        }
+        size = sqrt(dot(n, next, next));
+        k->hessenberg[c + 1][c] = size;
+        if (size > 0)
+            scale(n, 1 / size, next);
+        *left = rotate(k, c);
+    }
+    combine(k, c, x);
+    *iterations += c;
+    return 0;
+}
+
+/* The block floats sideways: its far side's first node goes back to its place. */
+static void hold(const struct krylov *k, double *x) {
+    size_t d = (size_t)k->mesh->dimension, held = k->mesh->layers * k->mesh->face * d;
+    for (size_t axis = 0; axis + 1 < d; axis++) {
+        double drift = x[held + axis];
+        for (size_t node = 0; node < k->mesh->nodes; node++)
+            x[node * d + axis] -= drift;
+    }
+}
+
+int krylov_solve(struct krylov *k, const struct equations *equations, double tolerance, double *x,
+                 size_t *iterations, struct error *err) {
+    size_t n = k->freedoms;
+    double first = sqrt(dot(n, x, x)), left = first;
+    memcpy(k->load, x, n * sizeof *x);
+    memcpy(k->basis[0], x, n * sizeof *x);
+    memset(x, 0, n * sizeof *x);
+    for (int restart = 0; restart < RESTARTS && left > tolerance * first; restart++) {
+        if (restart > 0) {
+            operate(k, equations, x, k->basis[0]);
+            for (size_t i = 0; i < n; i++)
+                k->basis[0][i] = k->load[i] - k->basis[0][i];
+            left = sqrt(dot(n, k->basis[0], k->basis[0]));
+        }
+        int status = cycle(k, equations, tolerance * first, x, &left, iterations, err);
+        if (status != 0)
+            return status;
+    }
+    hold(k, x);
+    if (!(left <= tolerance * first))
+        return error_set(err, ERROR_NUMERIC,
+                         "the linear equations of a step of Newton's were solved to %.2g only",
+                         left / first);
+    return 0;
+}

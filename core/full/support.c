@@ -1,0 +1,133 @@
+#include "core/full/support.h"
+#include <fftw3.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+enum { ITERATIONS_MOST = 200 };
+
+/* (1, 4, 1)/6 in one direction. */
+static double weight_symbol(size_t mode, size_t n) {
+    return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
+}
+
+static void fill_symbols(struct support *s, const struct mesh *mesh, const struct flat *flat) {
+    const double *compliance = flat_compliance(flat);
+    for (size_t k = 0; k < (mesh->nx / 2 + 1) * mesh->ny; k++) {
+        double weight = 1;
+        if (s->weight != NULL) {
+            weight = weight_symbol(k / mesh->ny, mesh->nx);
+            if (mesh->dimension == 3)
+                weight *= weight_symbol(k % mesh->ny, mesh->ny);
+            s->weight[k] = weight;
+        }
+        s->soft[k] = compliance[k] * weight;
+        s->stiff[k] = s->soft[k] > 0 ? 1 / s->soft[k] : 0;
+    }
+}
+
+int support_create(struct support *out, const struct mesh *mesh, const struct flat *flat,
+                   enum gap_weighting weighting, struct error *err) {
+    *out = (struct support){.face = mesh->face};
+    struct grid grid = {mesh->nx, mesh->ny, (double)mesh->nx, (double)mesh->ny * mesh->across};
+    size_t waves = (mesh->nx / 2 + 1) * mesh->ny;
+    double **const arrays[] = {&out->r,    &out->old,   &out->t,     &out->w,
+                               &out->soft, &out->stiff, &out->weight};
+    size_t count = sizeof arrays / sizeof *arrays - (weighting == GAP_DUAL);
+    int status = transform_create(&out->transform, &grid, mesh->nx / 2, mesh->ny / 2, err);
+    for (size_t a = 0; status == 0 && a < count; a++) {
+        *arrays[a] = fftw_alloc_real(a < 4 ? mesh->face : waves);
+        if (*arrays[a] == NULL)
+            status = error_memory(err, waves * sizeof(double), "the contact's support");
+    }
+    if (status == 0)
+        fill_symbols(out, mesh, flat);
+    else
+        support_clear(out);
+    return status;
+}
+
+void support_clear(struct support *s) {
+    double *const arrays[] = {s->r, s->old, s->t, s->w, s->soft, s->stiff, s->weight};
+    for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
+        fftw_free(arrays[a]);
+    transform_destroy(&s->transform);
+    *s = (struct support){0};
+}
+
+void support_weigh(const struct support *s, const double *in, double *out) {
+    if (s->weight != NULL)
+        transform_filter(s->transform, s->weight, 1, in, out);
+    else if (in != out)
+        memcpy(out, in, s->face * sizeof *out);
+}
+
+static double mean_active(size_t n, const bool *active, const double *x) {
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        if (active[i]) {
+            sum += x[i];
+            count++;
+        }
+    return count > 0 ? sum / (double)count : 0;
+}
+
+static void restrict_to(size_t n, const bool *active, double shift, double *x) {
+    for (size_t i = 0; i < n; i++)
+        x[i] = active[i] ? x[i] - shift : 0;
+}
+
+static double dot(size_t n, const double *a, const double *b) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* Out of what is left to move: r, mean 0 in the set. Returns that mean, the shift. */
+static double settle_shift(struct support *s, const bool *active) {
+    double shift = mean_active(s->face, active, s->r);
+    restrict_to(s->face, active, shift, s->r);
+    return shift;
+}
+
+double support_solve(struct support *s, const bool *active, const double *face,
+                     const double *target, double sum, double tolerance, double *forces) {
+    size_t n = s->face, count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += active[i];
+    for (size_t i = 0; i < n; i++)
+        forces[i] = active[i] ? sum / (double)count : 0;
+    transform_filter(s->transform, s->soft, 1, forces, s->w);
+    for (size_t i = 0; i < n; i++)
+        s->r[i] = target[i] - face[i] - s->w[i];
+    double shift = settle_shift(s, active);
+    double first = dot(n, s->r, s->r), energy = 0;
+    memset(s->t, 0, n * sizeof *s->t);
+    memset(s->old, 0, n * sizeof *s->old);
+    for (int iteration = 0; iteration < ITERATIONS_MOST; iteration++) {
+        if (!(dot(n, s->r, s->r) > tolerance * tolerance * first))
+            break;
+        transform_filter(s->transform, s->stiff, 1, s->r, s->w);
+        restrict_to(n, active, mean_active(n, active, s->w), s->w);
+        double next = dot(n, s->w, s->r), change = next - dot(n, s->w, s->old);
+        double beta = energy > 0 ? fmax(0, change / energy) : 0;
+        energy = next;
+        for (size_t i = 0; i < n; i++)
+            s->t[i] = s->w[i] + beta * s->t[i];
+        transform_filter(s->transform, s->soft, 1, s->t, s->w);
+        double curvature = dot(n, s->t, s->w);
+        if (!(curvature > 0))
+            break;
+        double step = dot(n, s->r, s->t) / curvature;
+        memcpy(s->old, s->r, n * sizeof *s->r);
+        for (size_t i = 0; i < n; i++) {
+            forces[i] += step * s->t[i];
+            s->r[i] -= active[i] ? step * s->w[i] : 0;
+        }
+        shift += settle_shift(s, active);
+    }
+    return shift;
+}
