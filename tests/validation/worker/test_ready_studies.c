@@ -37,7 +37,10 @@ static void ready_studies(void **state) {
                    {"gaussian-nayak", 5, 8192, 1000},
                    {"weibull-statistics", 40, 1024, 1000},
                    {"nayak-hurst", 18, 2400, 1000},
-                   {"nayak-hurst-continuous", 18, 2430, 1000}};
+                   {"nayak-hurst-continuous", 18, 2430, 1000},
+                   {"rce-weibull-2d-full", 20, 512, 20},
+                   {"rce-slope", 6, 256, 20},
+                   {"rce-3d-full", 2, 16, 10}};
     for (size_t a = 0; a < sizeof studies / sizeof *studies; a++) {
         struct study *study = study_of(studies[a].name);
         double seconds = 0;
