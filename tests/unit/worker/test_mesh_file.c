@@ -26,8 +26,10 @@ static void attribute(const char *tag, const char *name, char out[NAME]) {
     char key[NAME];
     snprintf(key, sizeof key, " %s=\"", name);
     const char *at = strstr(tag, key);
-    if (at == NULL || at > end)
+    if (at == NULL || at > end) {
         fail_msg("no %s in %.60s", name, tag);
+        return;
+    }
     at += strlen(key);
     size_t length = strcspn(at, "\"");
     assert_true(length < NAME);
@@ -63,7 +65,7 @@ static void read_array(struct parsed *parsed, const char *tag) {
 
 /* Every tag is closed by its own, in order. */
 static void parse_tags(struct parsed *parsed) {
-    const char *open[DEEP];
+    char open[DEEP][NAME] = {""};
     size_t depth = 0;
     assert_int_equal(strncmp(parsed->text, "<?xml version=\"1.0\"?>\n<!-- ", 27), 0);
     const char *at = strstr(parsed->text, "-->");
@@ -72,10 +74,12 @@ static void parse_tags(struct parsed *parsed) {
         size_t length = strcspn(at + 1, " >");
         if (at[1] == '/') {
             assert_true(depth-- > 0);
+            assert_true(length - 1 == strlen(open[depth]));
             assert_int_equal(strncmp(at + 2, open[depth], length - 1), 0);
         } else {
             assert_true(depth < DEEP);
-            open[depth++] = at + 1;
+            assert_true(length < NAME);
+            snprintf(open[depth++], NAME, "%.*s", (int)length, at + 1);
             if (strncmp(at, "<Piece ", 7) == 0) {
                 parsed->points = size_attribute(at, "NumberOfPoints");
                 parsed->cells = size_attribute(at, "NumberOfCells");
@@ -117,8 +121,10 @@ static const struct array *find(const struct parsed *parsed, const char *name) {
 static const struct array *array_of(const struct parsed *parsed, const char *name,
                                     size_t components, size_t count) {
     const struct array *array = find(parsed, name);
-    if (array == NULL)
+    if (array == NULL) {
         fail_msg("no array %s", name);
+        return NULL;
+    }
     assert_int_equal(array->components, components);
     assert_int_equal(array->count, components * count);
     return array;
@@ -192,9 +198,11 @@ static void one_file(struct grid grid, enum kinematics kinematics) {
     struct full *full = NULL;
     double z[64];
     size_t n = grid_points(&grid);
-    for (size_t i = 0; i < n; i++)
-        z[i] = SLOPE / (2 * M_PI) * cos(2 * M_PI * (double)(i % grid.nx) / (double)grid.nx) *
-               cos(2 * M_PI * (double)(i / grid.nx) / (double)grid.ny);
+    for (size_t i = 0; i < n; i++) {
+        size_t column = i % grid.nx, row = i / grid.nx;
+        z[i] = SLOPE / (2 * M_PI) * cos(2 * M_PI * (double)column / (double)grid.nx) *
+               cos(2 * M_PI * (double)row / (double)grid.ny);
+    }
     options.kinematics = kinematics;
     struct mesh_step step = {.solid = solid_of(block.poisson, kinematics), .unit = SLOPE};
     if (full_create(&full, &grid, &block, &options, &err) != 0 || full_begin(full, z, &err) != 0 ||
