@@ -108,6 +108,20 @@ void full_destroy(struct full **full) {
     *full = NULL;
 }
 
+double full_bytes(const struct grid *grid, const struct block *block) {
+    struct mesh *mesh = NULL;
+    if (mesh_create(&mesh, grid, block, NULL) != 0)
+        return NAN;
+    enum { VECTORS = 7, FACES = 6 }; /* newton.h and this file: mesh_freedoms, face */
+    double d = mesh->dimension, freedoms = (double)mesh_freedoms(mesh);
+    double stencil = d * pow(3, d) * freedoms;
+    double bytes = sizeof(double) * (stencil + VECTORS * freedoms + FACES * (double)mesh->face +
+                                     (double)mesh->nodes) +
+                   krylov_bytes(mesh) + contact_bytes(grid) + compliance_bytes(grid, block);
+    mesh_destroy(&mesh);
+    return bytes;
+}
+
 /* Heights of mean 0, in steps. */
 static int take_heights(struct full *f, const double *z, struct error *err) {
     size_t n = f->mesh->face;

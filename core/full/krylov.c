@@ -69,6 +69,14 @@ void krylov_destroy(struct krylov **krylov) {
     *krylov = NULL;
 }
 
+double krylov_bytes(const struct mesh *mesh) {
+    double d = mesh->dimension, levels = (double)mesh->layers + 1;
+    double waves = ((double)mesh->nx / 2 + 1) * (double)mesh->ny;
+    double flat = levels * waves * (2 * d * d + 2 * d);
+    return sizeof(double) * ((2 * BASIS + 3) * (double)mesh_freedoms(mesh) + flat +
+                             8 * (double)mesh->face + 8 * waves);
+}
+
 void krylov_weigh(const struct krylov *k, const double *in, double *out) {
     support_weigh(&k->support, in, out);
 }

@@ -19,6 +19,9 @@ int krylov_create(struct krylov **out, const struct mesh *mesh, const struct sol
                   enum gap_weighting weighting, struct error *err);
 void krylov_destroy(struct krylov **krylov);
 
+/* Of an object for this mesh. */
+double krylov_bytes(const struct mesh *mesh);
+
 /* The weighted values of the face's nodes. */
 void krylov_weigh(const struct krylov *krylov, const double *in, double *out);
 /* What is to be solved; borrows all. */

@@ -200,9 +200,9 @@ static double potential(const struct newton *n, double pressure) {
                            n->u[mesh_vertical(n->mesh, far_side)];
 }
 
-/* Fill grows as n log n in profiles, as n^(4/3) in surfaces: a few GB here. */
+/* Some ten seconds a factorisation with the reference BLAS, and a GB. */
 static bool factorable(const struct mesh *mesh) {
-    return mesh_freedoms(mesh) <= (mesh->dimension == 2 ? 3000000 : 120000);
+    return mesh_freedoms(mesh) <= (mesh->dimension == 2 ? 500000 : 20000);
 }
 
 /* The change asked for in change, which displacements replace. */
