@@ -66,30 +66,10 @@ static int read_height(const struct contact_case *study, const struct case_reade
     return status;
 }
 
-/* All models of a case weight the gap alike, so that their differences are those of the models. */
-static enum gap_weighting read_weighting(size_t n, const size_t *models,
-                                         const struct case_reader *reader) {
-    static const char path[] = "/contact/gap_weighting";
-    size_t chosen[2];
-    bool layered = false, full = false, given = case_choices(reader, path, chosen) == 1;
-    for (size_t m = 0; m < n; m++) {
-        layered = layered || models[m] == MODEL_LAYERED;
-        full = full || models[m] == MODEL_FULL;
-    }
-    if (given && full && chosen[0] != GAP_DUAL)
-        fault_add(reader->faults, path, "beside the model full it can only be \"dual\"");
-    if (given && !full && !layered && n > 0 && chosen[0] == GAP_DUAL)
-        fault_add(reader->faults, path,
-                  "\"dual\" belongs to finite elements, and no such model is asked for");
-    if (given)
-        return (enum gap_weighting)chosen[0];
-    return full ? GAP_DUAL : GAP_STANDARD;
-}
-
 /* What the finite elements on the true geometry ask of the surface: its slopes matter. */
-static int check_full(const struct contact_case *study, const struct case_reader *reader,
-                      struct error *err) {
-    const struct surface_case *surface = &study->surface;
+static int read_full(struct contact_case *out, const struct case_reader *reader,
+                     struct error *err) {
+    const struct surface_case *surface = &out->surface;
     double rms_height, rms_slope;
     if (surface->grid.nx == 0)
         return 0;
@@ -105,6 +85,7 @@ static int check_full(const struct contact_case *study, const struct case_reader
                   "RMS slope %.4g: the model full can mesh surfaces up to about %g, whose steepest "
                   "edges are three times as steep",
                   rms_slope, FULL_SLOPE_MOST);
+    out->rms_slope = rms_slope;
     return status;
 }
 
@@ -116,7 +97,7 @@ static int read_blocks(struct contact_case *out, const struct case_reader *reade
     bool elements = false;
     out->model_count = case_choices(reader, "/contact/model", models);
     out->kinematics = (enum kinematics)case_choice(reader, "/contact/kinematics");
-    enum gap_weighting weighting = read_weighting(out->model_count, models, reader);
+    size_t weighting = case_choice(reader, "/contact/gap_weighting");
     int status = read_height(out, reader, &height, err);
     if (status != 0)
         return status;
@@ -129,12 +110,15 @@ static int read_blocks(struct contact_case *out, const struct case_reader *reade
                                                   : deep         ? INFINITY
                                                                  : 1.5 * out->surface.grid.lx,
                                         .layer_growth = growth,
-                                        .weighting = weighting};
+                                        .weighting = (enum gap_weighting)weighting};
     }
     if (elements && isinf(height))
         fault_add(reader->faults, "/contact/block_height",
                   "only a halfspace can be infinite, and a block of finite elements is asked for");
-    return contact_case_full(out) < out->model_count ? check_full(out, reader, err) : 0;
+    if (!elements && out->model_count > 0 && weighting == GAP_DUAL)
+        fault_add(reader->faults, "/contact/gap_weighting",
+                  "\"dual\" belongs to finite elements, and no such model is asked for");
+    return contact_case_full(out) < out->model_count ? read_full(out, reader, err) : 0;
 }
 
 static void check_rising(const struct case_reader *reader, const char *path, size_t n,

@@ -30,7 +30,8 @@ struct contact_case {
     size_t band;                 /* highest wave number of a realisation on its own grid */
     size_t model_count;
     struct block blocks[CONTACT_MODELS]; /* one a model, in the order given */
-    enum kinematics kinematics;          /* of the model full */
+    enum kinematics kinematics;          /* of the model full, as the next */
+    double rms_slope;                    /* of the prescribed spectrum; where full is a model */
     size_t level_count;
     struct contact_level levels[CONTACT_LEVELS_MOST]; /* rising: the last is the finest */
     size_t load_count;

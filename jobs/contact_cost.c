@@ -35,13 +35,15 @@ static double level_seconds(const struct contact_case *study, const struct grid 
     return 1e-9 * nanoseconds * points * load_transforms(study, grid) * (double)study->load_count;
 }
 
-/* Newton's iterations a load of evenly spaced ones, and time of one; as measured. */
+/* Of all loads. */
 static double full_seconds(const struct contact_case *study, size_t model,
                            const struct grid *grid) {
-    double freedoms = contact_full_freedoms(grid, &study->blocks[model]);
-    double iterations = 2.5 * (double)study->load_count + 8;
-    double nanoseconds = grid_is_profile(grid) ? 4500 : 7e4;
-    return 1e-9 * nanoseconds * freedoms * iterations;
+    struct contact_full_size size = contact_full_size(study, model, grid);
+    bool profile = grid_is_profile(grid);
+    double nanoseconds = profile ? 330 + 36 * size.linear : 2700 + 80 * size.linear;
+    if (size.factored)
+        nanoseconds = profile ? 5000 : 7e4;
+    return 1e-9 * nanoseconds * size.freedoms * size.newton * (double)study->load_count;
 }
 
 /* Standard deviation of the fraction over itself: a cell of n longest waves holds about n^d

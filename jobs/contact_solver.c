@@ -1,14 +1,17 @@
 #include "jobs/contact_solver.h"
+#include <math.h>
 #include <stdlib.h>
 
-/* A freedom of the finite elements with its rows of the stiffness and of what it is solved by; as
- * measured. */
-static const double PROFILE_BYTES = 1400, SURFACE_BYTES = 6500;
+/* Beyond these the equations are factorised, where the mesh allows it (core/full/newton.h). */
+static const double LINEAR_MOST = 20, SURFACE_FACTORED = 20000;
+/* An iteration of Newton's on a freedom takes as long as so many transforms on a point. */
+static const double PROFILE_TRANSFORMS = 115, SURFACE_TRANSFORMS = 580;
 
 /* One of linear and full. */
 struct contact_solver {
     struct contact *linear;
     struct full *full;
+    double transforms; /* that its work is worth */
     struct full_report report;
 };
 
@@ -29,6 +32,8 @@ int contact_solver_create(struct contact_solver **out, const struct contact_case
         struct full_options options = FULL_DEFAULTS;
         options.kinematics = study->kinematics;
         options.tolerance = study->tolerance;
+        solver->transforms =
+            grid_is_profile(&compliance->grid) ? PROFILE_TRANSFORMS : SURFACE_TRANSFORMS;
         status =
             full_create(&solver->full, &compliance->grid, &study->blocks[model], &options, err);
     } else {
@@ -52,19 +57,32 @@ void contact_solver_destroy(struct contact_solver **solver) {
     *solver = NULL;
 }
 
-double contact_full_freedoms(const struct grid *grid, const struct block *block) {
-    double thickness[LAYERS_MOST];
-    size_t layers = block_layers(grid, block, thickness), axes = grid_is_profile(grid) ? 2 : 3;
-    return layers == 0 ? 0 : (double)((layers + 1) * axes) * (double)grid_points(grid);
+struct contact_full_size contact_full_size(const struct contact_case *study, size_t model,
+                                           const struct grid *grid) {
+    const struct block *block = &study->blocks[model];
+    double thickness[LAYERS_MOST], slope = study->rms_slope;
+    bool profile = grid_is_profile(grid);
+    size_t layers = block_layers(grid, block, thickness), axes = profile ? 2 : 3;
+    double stiff = pow(0.4 / (1 - 2 * block->poisson), 0.4); /* 1 at 0.3 */
+    struct contact_full_size size = {.newton = 2 + (profile ? 0.22 : 0.5) * log2((double)grid->nx),
+                                     .linear = 2 + 16 * slope * (1 + slope) * stiff};
+    if (layers > 0)
+        size.freedoms = (double)((layers + 1) * axes) * (double)grid_points(grid);
+    size.factored = size.linear > LINEAR_MOST && (profile || size.freedoms <= SURFACE_FACTORED);
+    return size;
 }
 
 double contact_solver_bytes(const struct contact_case *study, size_t model,
                             const struct grid *grid) {
     double bytes = contact_bytes(grid);
-    if (contact_case_is_full(study, model))
-        bytes += (grid_is_profile(grid) ? PROFILE_BYTES : SURFACE_BYTES) *
-                 contact_full_freedoms(grid, &study->blocks[model]);
-    return bytes;
+    if (!contact_case_is_full(study, model))
+        return bytes;
+    struct contact_full_size size = contact_full_size(study, model, grid);
+    bool profile = grid_is_profile(grid);
+    double each = (profile ? 300 : 770) + 24 * fmin(size.linear, LINEAR_MOST);
+    if (size.factored)
+        each += profile ? 1300 : 6500;
+    return bytes + each * size.freedoms;
 }
 
 int contact_solver_begin(struct contact_solver *s, const double *z, struct error *err) {
@@ -74,10 +92,10 @@ int contact_solver_begin(struct contact_solver *s, const double *z, struct error
 int contact_solver_press(struct contact_solver *s, double pressure, struct contact_state *out,
                          const struct full_report **report, struct error *err) {
     *report = s->full != NULL ? &s->report : NULL;
-    return s->full != NULL ? full_press(s->full, pressure, out, &s->report, err)
-                           : contact_press(s->linear, pressure, out, err);
-}
-
-struct full *contact_solver_full(struct contact_solver *s) {
-    return s->full;
+    if (s->full == NULL)
+        return contact_press(s->linear, pressure, out, err);
+    int status = full_press(s->full, pressure, out, &s->report, err);
+    if (status == 0)
+        out->work *= s->transforms;
+    return status;
 }
