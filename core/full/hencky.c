@@ -227,6 +227,18 @@ INLINE void moduli_finite(int d, const struct solid *solid, const struct straine
         }
 }
 
+/* Normal moduli of the energy in logarithms alone; of each pair of shears the largest cross term
+ * that leaves them positive. */
+INLINE void moduli_convex(int d, const struct solid *solid, struct principal_moduli *out) {
+    for (int p = 0; p < d; p++)
+        for (int q = 0; q < d; q++) {
+            double most = sqrt(fmax(0, out->along[p][q]) * fmax(0, out->along[q][p]));
+            out->normal[p][q] = (p == q ? 2 * solid->shear : 0) + solid->local;
+            out->along[p][q] = fmax(0, out->along[p][q]);
+            out->cross[p][q] = copysign(fmin(fabs(out->cross[p][q]), most), out->cross[p][q]);
+        }
+}
+
 INLINE void moduli_small(int d, const struct solid *solid, struct principal_moduli *out) {
     for (int p = 0; p < d; p++)
         for (int q = 0; q < d; q++) {
@@ -242,6 +254,8 @@ INLINE void moduli_of(int d, const struct solid *solid, const struct strained *p
         moduli_small(d, solid, &m);
     else
         moduli_finite(d, solid, point, pull, &m);
+    if (solid->convex && solid->kinematics != KINEMATICS_SMALL)
+        moduli_convex(d, solid, &m);
     /* The dyad of axes p and q as a row, and the rows that it is multiplied with, summed. */
     double dyad[9][9], factor[9][9];
     for (int p = 0; p < d; p++)

@@ -19,6 +19,8 @@ struct solid {
     enum kinematics kinematics;
     double shear;       /* Lame's mu, in E* as the next */
     double local, mean; /* parts of Lame's lambda: of the dilatation here, of its element's mean */
+    bool convex;        /* moduli lack what stress can make negative in them: no tangent any more,
+                           but a step along them leads downhill */
 };
 /* Split as the layered model's. */
 struct solid solid_of(double poisson, enum kinematics kinematics);

@@ -220,6 +220,12 @@ static int solve_linear(struct newton *n, double tolerance, struct newton_end *e
     status = n->factor == NULL ? factor_create(&n->factor, n->mesh, err) : 0;
     if (status == 0)
         status = factor_run(n->factor, n->tangent, n->active, err);
+    if (status == ERROR_NUMERIC) { /* far from balance, stress may outweigh stiffness */
+        n->solid.convex = true;
+        bool made = evaluate(n);
+        n->solid.convex = false;
+        status = made ? factor_run(n->factor, n->tangent, n->active, err) : status;
+    }
     if (status != 0)
         return status;
     n->factored = true;

@@ -186,6 +186,33 @@ static void a_rotation_turns_the_stress(void **state) {
         }
 }
 
+/* Convex moduli: those of the tangent where there is no stress, and no negative energy in any
+ * direction under any. */
+static void convex_moduli_lead_downhill(void **state) {
+    (void)state;
+    for (uint64_t draw = 0; draw < 200; draw++) {
+        int d = 2 + (int)(draw % 2);
+        struct solid solid = solid_of(0.3, KINEMATICS[draw / 2 % 2]), convex = solid;
+        double h[3][3], g[3][3], moduli[9][9], energy = 0;
+        convex.convex = true;
+        random_gradient(draw, draw < 4 ? 0 : 0.3, h);
+        random_gradient(2000 + draw, 1, g);
+        struct strained point = strain(d, &convex, h);
+        solid_moduli(d, &convex, &point, draw < 4 ? 0 : 0.5 * (double)(draw % 7) - 1.5, moduli);
+        for (int m = 0; m < d * d; m++)
+            for (int n = 0; n < d * d; n++)
+                energy += moduli[m][n] * g[m / d][m % d] * g[n / d][n % d];
+        assert_true(energy > -1e-12);
+        if (draw < 4) {
+            double tangent[9][9];
+            solid_moduli(d, &solid, &point, 0, tangent);
+            for (int m = 0; m < d * d; m++)
+                for (int n = 0; n < d * d; n++)
+                    check_close(moduli[m][n], tangent[m][n], 1e-14);
+        }
+    }
+}
+
 static void what_is_inside_out_is_refused(void **state) {
     (void)state;
     struct solid solid = solid_of(0.3, KINEMATICS_HENCKY);
@@ -206,6 +233,7 @@ int main(void) {
         cmocka_unit_test(moduli_are_the_second_derivative),
         cmocka_unit_test(equal_stretches_are_no_exception),
         cmocka_unit_test(a_rotation_turns_the_stress),
+        cmocka_unit_test(convex_moduli_lead_downhill),
         cmocka_unit_test(what_is_inside_out_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
