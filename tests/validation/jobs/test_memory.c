@@ -12,14 +12,24 @@
 #include <cmocka.h>
 
 static const struct {
-    const char *name, *parameters;
+    const char *kind, *name, *parameters;
 } CASES[] = {
-    {"Gaussian, 8192 x 8192", "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 128}}"},
-    {"Weibull, 2048 x 2048",
+    {"statistics", "Gaussian, 8192 x 8192",
+     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 128}}"},
+    {"statistics", "Weibull, 2048 x 2048",
      "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 32,"
      " \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 2, \"max_iterations\": 5}}}"},
-    {"Gaussian, refined, 2048 x 2048", "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 32},"
-                                       " \"statistics\": {\"summits\": \"refined\"}}"},
+    {"statistics", "Gaussian, refined, 2048 x 2048",
+     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 32},"
+     " \"statistics\": {\"summits\": \"refined\"}}"},
+    {"contact", "full, profile of 4096",
+     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 64,"
+     " \"rms_slope\": 0.1}, \"contact\": {\"model\": \"full\","
+     " \"pressures\": {\"values\": [0.05]}}}"},
+    {"contact", "full, surface of 48 x 48",
+     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
+     " \"points_per_wavelength\": 6, \"rms_slope\": 0.1}, \"contact\": {\"model\": \"full\","
+     " \"layer_growth\": 1.3, \"pressures\": {\"values\": [0.1]}}}"},
 };
 
 static int run_one(const struct job_kind *kind, const cJSON *parameters) {
@@ -35,8 +45,8 @@ static int run_one(const struct job_kind *kind, const cJSON *parameters) {
 
 static void stated_memory(void **state) {
     (void)state;
-    const struct job_kind *kind = kind_find("statistics");
     for (size_t a = 0; a < sizeof CASES / sizeof *CASES; a++) {
+        const struct job_kind *kind = kind_find(CASES[a].kind);
         struct fault_list faults = {0};
         struct job_estimate estimate = {0};
         struct rusage usage;
