@@ -1,4 +1,5 @@
 #include "core/full/element.h"
+#include "core/vectors.h"
 #include <math.h>
 #include <string.h>
 
@@ -171,9 +172,16 @@ INLINE void forces(int d, const struct element_shape *shape, const struct field 
             }
 }
 
-/* Adds one Gauss point: gradient . moduli . gradient, for nodes a <= b. */
+/* Of nodes a and b, [b][i][j][a]: the innermost loops run over a. */
+typedef double blocks[ELEMENT_NODES][3][3][ELEMENT_NODES];
+
+/* Adds one Gauss point: gradient . moduli . gradient. */
 INLINE void stiffness_add(int d, double weight, double gradient[8][3], double moduli[9][9],
-                          double (*stiffness)[ELEMENT_FREEDOMS]) {
+                          blocks out) {
+    double across[3][ELEMENT_NODES] = {{0}};
+    for (int a = 0; a < 1 << d; a++)
+        for (int k = 0; k < d; k++)
+            across[k][a] = gradient[a][k];
     for (int b = 0; b < 1 << d; b++) {
         double t[9][3] = {{0}};
         for (int ik = 0; ik < d * d; ik++)
@@ -183,13 +191,13 @@ INLINE void stiffness_add(int d, double weight, double gradient[8][3], double mo
                     sum += moduli[ik][j * d + l] * gradient[b][l];
                 t[ik][j] = weight * sum;
             }
-        for (int a = 0; a <= b; a++)
-            for (int i = 0; i < d; i++)
-                for (int j = 0; j < d; j++) {
+        for (int i = 0; i < d; i++)
+            for (int j = 0; j < d; j++)
+                for (int a = 0; a < 1 << d; a++) {
                     double sum = 0;
                     for (int k = 0; k < d; k++)
-                        sum += gradient[a][k] * t[i * d + k][j];
-                    stiffness[a * d + i][b * d + j] += sum;
+                        sum += across[k][a] * t[i * d + k][j];
+                    out[b][i][j][a] += sum;
                 }
     }
 }
@@ -198,21 +206,25 @@ INLINE void stiffnesses(int d, const struct solid *solid, const struct element_s
                         struct field *f, const struct bulk *bulk,
                         double (*stiffness)[ELEMENT_FREEDOMS]) {
     bool small = solid->kinematics == KINEMATICS_SMALL;
-
-    int freedoms = d << d;
-    for (int m = 0; m < freedoms; m++)
-        for (int n = 0; n < freedoms; n++)
-            stiffness[m][n] =
-                bulk->stiffness / shape->volume * f->bulk[m / d][m % d] * f->bulk[n / d][n % d];
+    blocks sum;
+    for (int b = 0; b < 1 << d; b++)
+        for (int i = 0; i < d; i++)
+            for (int j = 0; j < d; j++)
+                for (int a = 0; a < 1 << d; a++)
+                    sum[b][i][j][a] =
+                        bulk->stiffness / shape->volume * f->bulk[a][i] * f->bulk[b][j];
     for (int q = 0; q < 1 << d; q++) {
         double moduli[9][9];
         double pull = small ? 0 : bulk->pull * (1 + f->point[q].dilatation);
         solid_moduli(d, solid, &f->point[q], pull, moduli);
-        stiffness_add(d, shape->weight[q], f->gradient[q], moduli, stiffness);
+        stiffness_add(d, shape->weight[q], f->gradient[q], moduli, sum);
     }
-    for (int m = 0; m < freedoms; m++)
-        for (int n = 0; n < m; n++)
-            stiffness[m][n] = stiffness[n][m];
+    for (int b = 0; b < 1 << d; b++)
+        for (int a = 0; a <= b; a++)
+            for (int i = 0; i < d; i++)
+                for (int j = 0; j < d; j++)
+                    stiffness[a * d + i][b * d + j] = stiffness[b * d + j][a * d + i] =
+                        sum[b][i][j][a];
 }
 
 INLINE bool evaluate(int d, const struct solid *solid, const struct element_shape *shape,
@@ -234,9 +246,10 @@ INLINE bool evaluate(int d, const struct solid *solid, const struct element_shap
     return true;
 }
 
-bool element_evaluate(int dimension, const struct solid *solid, const struct element_shape *shape,
-                      double u[8][3], double *energy, double *force,
-                      double (*stiffness)[ELEMENT_FREEDOMS]) {
+WIDE_VECTORS bool element_evaluate(int dimension, const struct solid *solid,
+                                   const struct element_shape *shape, double u[8][3],
+                                   double *energy, double *force,
+                                   double (*stiffness)[ELEMENT_FREEDOMS]) {
     return dimension == 2 ? evaluate(2, solid, shape, u, energy, force, stiffness)
                           : evaluate(3, solid, shape, u, energy, force, stiffness);
 }

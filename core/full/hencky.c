@@ -1,5 +1,6 @@
 #include "core/full/hencky.h"
 #include "core/contact/layered.h"
+#include "core/vectors.h"
 #include <math.h>
 
 #define INLINE static inline __attribute__((always_inline))
@@ -283,8 +284,8 @@ INLINE void moduli_of(int d, const struct solid *solid, const struct strained *p
         }
 }
 
-void solid_moduli(int dimension, const struct solid *solid, const struct strained *point,
-                  double pull, double moduli[9][9]) {
+WIDE_VECTORS void solid_moduli(int dimension, const struct solid *solid,
+                               const struct strained *point, double pull, double moduli[9][9]) {
     if (dimension == 2)
         moduli_of(2, solid, point, pull, moduli);
     else

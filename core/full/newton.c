@@ -241,10 +241,9 @@ static int newton_change(struct newton *n, double off, struct newton_end *end, s
     for (size_t node = 0; node < n->mesh->face; node++)
         if (n->active[node])
             n->change[mesh_vertical(n->mesh, node)] = -n->opening[node];
-    if (n->solver == SOLVER_FACTORED) /* exact, or so: Newton's own convergence shows */
-        return solve_linear(n, LINEAR_EXACT, end, err);
-    double tolerance = fmax(LINEAR_PART * off, LINEAR_PART * n->tolerance / off);
-    tolerance = fmin(tolerance, LINEAR_MOST);
+    /* Factored: exact, or so, that Newton's own convergence shows. */
+    double quadratic = n->solver == SOLVER_FACTORED ? LINEAR_EXACT : LINEAR_PART * off;
+    double tolerance = fmin(fmax(quadratic, LINEAR_PART * n->tolerance / off), LINEAR_MOST);
     return solve_linear(n, tolerance, end, err);
 }
 
@@ -285,50 +284,65 @@ static void remember_residual(struct newton_end *end, double value, bool changed
     end->unchanged++;
 }
 
+/* One go: what is known of u and the set, before a step from there. */
+struct round {
+    struct start start;
+    double largest; /* contact force, or the mean one */
+    size_t changes; /* of the set, just made */
+};
+
+/* Gaps and forces at u; from the second go on, what they say of the set. A set that was there
+ * before would go on coming back: from then on it changes a node at a time, and only near balance.
+ */
+static struct round look(struct newton *n, double pressure, bool first, struct memory *memory,
+                         struct newton_end *end) {
+    struct round round = {.largest = 0};
+    newton_measure_gaps(n);
+    round.largest = fmax(largest_force(n), pressure * newton_node_area(n));
+    round.start.residual = residual(n, pressure, n->change);
+    bool careful = end->cycles > 0;
+    if (!first && round.start.residual <= (careful ? SETTLED : TRUSTED) * round.largest)
+        round.changes = active_update(n, careful);
+    if (round.changes > 0) {
+        end->changes += round.changes;
+        round.start.residual = residual(n, pressure, n->change);
+        if (memory_meets(memory, active_hash(n)) && !careful)
+            end->cycles++;
+    }
+    measure(n, end);
+    round.start.inside = end->inside;
+    round.start.closed = n->tolerance * round.largest / COMPLEMENTARITY;
+    round.start.potential = potential(n, pressure);
+    end->residual = round.start.residual / round.largest;
+    remember_residual(end, end->residual, round.changes > 0);
+    return round;
+}
+
 int newton_settle(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
     struct memory memory = {0};
-    bool careful = false;
     *end = (struct newton_end){0};
     n->factored = n->solver == SOLVER_FACTORED;
     if (!n->evaluated && !evaluate(n))
         return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
     newton_measure_gaps(n);
     active_fill(n);
-    memory_meets(&memory, active_hash(n));
-    for (size_t iteration = 0;; iteration++) {
-        struct start start;
-        newton_measure_gaps(n);
-        double largest = fmax(largest_force(n), pressure * newton_node_area(n));
-        start.residual = residual(n, pressure, n->change);
-        bool settled = start.residual <= n->tolerance * largest;
-        size_t changes = 0;
-        if (iteration > 0 && start.residual <= (careful ? SETTLED : TRUSTED) * largest)
-            changes = active_update(n, careful);
-        if (changes > 0) {
-            end->changes += changes;
-            start.residual = residual(n, pressure, n->change);
-            if (memory_meets(&memory, active_hash(n)) && !careful) {
-                careful = true;
-                end->cycles++;
-            }
-        }
-        measure(n, end);
-        start.inside = end->inside;
-        start.closed = n->tolerance * largest / COMPLEMENTARITY;
-        start.potential = potential(n, pressure);
-        end->residual = start.residual / largest;
-        remember_residual(end, end->residual, changes > 0);
-        if (iteration > 0 && changes == 0 && settled && start.inside <= start.closed)
+    (void)memory_meets(&memory, active_hash(n));
+    for (;;) {
+        bool first = end->iterations == 0;
+        struct round round = look(n, pressure, first, &memory, end);
+        const struct start *start = &round.start;
+        if (!first && round.changes == 0 && end->residual <= n->tolerance &&
+            start->inside <= start->closed)
             return 0;
-        if (iteration == n->max_iterations)
+        if (end->iterations == n->max_iterations)
             return error_set(err, ERROR_NUMERIC,
-                             "%zu iterations of Newton's left %.2g of the largest force", iteration,
-                             end->residual);
+                             "%zu iterations of Newton's left %.2g of the largest force",
+                             end->iterations, end->residual);
         end->iterations++;
-        int status = newton_change(n, fmax(end->residual, start.inside * COMPLEMENTARITY / largest),
-                                   end, err);
+        double off = fmax(end->residual, start->inside * COMPLEMENTARITY / round.largest);
+        int status = newton_change(n, off, end, err);
         if (status == 0)
-            status = advance(n, pressure, &start, err);
+            status = advance(n, pressure, start, err);
         if (status != 0)
             return status;
     }

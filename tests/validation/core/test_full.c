@@ -230,8 +230,9 @@ static void solvers_agree(void **state) {
     }
 }
 
-/* From a residual r near the solution the next is at most r^2 (measured 0.05 to 0.2 of it), down to
- * rounding; the last three steps, at several loads of a profile of RMS slope 0.2. */
+/* From a residual r near the solution the next is at most r^2 (measured 0.05 to 0.2 of it), or a
+ * tenth of the solver's tolerance, 1e-9, to which the linear equations are solved; the last three
+ * steps, at several loads of a profile of RMS slope 0.2. */
 static void newton_converges_quadratically(void **state) {
     (void)state;
     struct pressed p;
@@ -244,7 +245,7 @@ static void newton_converges_quadratically(void **state) {
         assert_true(p.report.unchanged >= 2);
         for (size_t k = 0; k + 2 < p.report.unchanged && k < 3; k++)
             assert_true(last[-(ptrdiff_t)k] <=
-                        last[-(ptrdiff_t)k - 1] * last[-(ptrdiff_t)k - 1] + 1e-11);
+                        last[-(ptrdiff_t)k - 1] * last[-(ptrdiff_t)k - 1] + 2e-10);
     }
     close_both(&p);
 }
