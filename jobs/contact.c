@@ -1,9 +1,9 @@
 /* The kind "contact": rough elastic blocks pressed on a rigid flat, by linear models. */
+#include "jobs/block.h"
 #include "jobs/case_document.h"
 #include "jobs/contact_curves.h"
 #include "jobs/contact_scalars.h"
 #include "jobs/contact_scene.h"
-#include "jobs/kind.h"
 #include <stdlib.h>
 
 static int check(const cJSON *parameters, struct fault_list *faults, struct job_estimate *estimate,
@@ -119,79 +119,60 @@ static int runner_create(struct job_runner **out, const cJSON *parameters,
     return status;
 }
 
-/* Asks between loads, which may take minutes, as between realisations. */
-struct stop_question {
+/* A block of realisations being run. Whether to stop is asked between loads, which may take
+ * minutes, as between realisations. */
+struct batch {
+    struct job_runner *runner;
     const struct job_control *control; /* may be NULL */
-    uint64_t done;
+    uint64_t done;                     /* realisations */
+    struct contact_tally tally;
 };
 
 static int is_stopped(void *context) {
-    const struct stop_question *question = context;
-    const struct job_control *control = question->control;
-    return control != NULL && control->poll != NULL &&
-           control->poll(control->context, question->done) != 0;
+    const struct batch *batch = context;
+    return block_stopped(batch->control, batch->done);
 }
 
-static int run_one(struct job_runner *runner, uint64_t realisation,
-                   const struct stop_question *question, struct contact_tally *tally,
-                   double *scalars, struct error *err) {
+static int realise(void *context, uint64_t realisation, uint64_t done, double *scalars,
+                   struct error *err) {
+    struct batch *batch = context;
+    struct job_runner *runner = batch->runner;
     const struct grid *grid = &runner->study.surface.grid;
     struct surface_report report = {0};
     struct roughness roughness;
     struct moments moments = runner->moments;
-    struct stop_question asked = *question;
+    batch->done = done;
     runner->key.realisation = realisation;
     int status = generator_run(runner->generator, runner->key, runner->z, &report, err);
     if (status == 0 && !surface_case_exact(&runner->study.surface))
         status = roughness_spectral(grid, runner->z, &moments, err);
     if (status == 0)
-        status = contact_scene_solve(runner->scene, runner->z, tally, is_stopped, &asked, err);
+        status =
+            contact_scene_solve(runner->scene, runner->z, &batch->tally, is_stopped, batch, err);
     if (status != 0)
         return error_context(err, "realisation %llu", (unsigned long long)realisation);
     roughness_measure(grid, runner->z, &roughness);
-    status = contact_scalars_measure(tally, &roughness, moments.nayak_alpha, &report, scalars, err);
-    contact_tally_add(tally);
+    status = contact_scalars_measure(&batch->tally, &roughness, moments.nayak_alpha, &report,
+                                     scalars, err);
+    contact_tally_add(&batch->tally);
     return status;
 }
 
-static int run_all(struct job_runner *runner, const struct job_control *control,
-                   struct contact_tally *tally, struct job_result *result, struct error *err) {
-    for (uint64_t r = 0; r < result->count; r++) {
-        struct stop_question question = {control, r};
-        if (is_stopped(&question))
-            return error_set(err, ERROR_STOPPED, "stopped after %llu of %llu realisations",
-                             (unsigned long long)r, (unsigned long long)result->count);
-        int status = run_one(runner, result->first + r, &question, tally,
-                             result->scalars + r * CONTACT_SCALAR_COUNT, err);
-        if (status != 0)
-            return status;
-    }
-    return contact_tally_encode(tally, &result->data, &result->size, err);
+static int encode(void *context, unsigned char **data, size_t *size, struct error *err) {
+    struct batch *batch = context;
+    return contact_tally_encode(&batch->tally, data, size, err);
 }
 
 static int run(struct job_runner *runner, uint64_t first, uint64_t count,
                const struct job_control *control, struct job_result *out, struct error *err) {
-    double start = job_clock();
-    struct job_result result = {
-        .first = first, .count = count, .scalar_count = CONTACT_SCALAR_COUNT};
-    struct contact_tally tally;
-    if (count == 0 || count > UINT64_MAX - first)
-        return error_set(err, ERROR_INPUT, "a block needs at least one realisation");
-    int status = contact_tally_create(&tally, &runner->study, err);
+    struct batch batch = {.runner = runner, .control = control};
+    const struct block_work work = {&batch, CONTACT_SCALAR_COUNT, realise, encode};
+    int status = contact_tally_create(&batch.tally, &runner->study, err);
     if (status != 0)
         return status;
-    size_t row = CONTACT_SCALAR_COUNT * sizeof(double);
-    result.scalars = array_create((size_t)count, row);
-    status = result.scalars != NULL ? run_all(runner, control, &tally, &result, err)
-                                    : error_memory(err, (size_t)count * row, "scalars");
-    contact_tally_clear(&tally);
-    if (status != 0) {
-        job_result_clear(&result);
-        return status;
-    }
-    result.seconds = job_clock() - start;
-    *out = result;
-    return 0;
+    status = block_run(&work, first, count, control, out, err);
+    contact_tally_clear(&batch.tally);
+    return status;
 }
 
 /* --- merging --- */

@@ -1,6 +1,6 @@
 /* The kind "statistics": summit statistics, spectra and roughness of random surfaces. */
+#include "jobs/block.h"
 #include "jobs/case_document.h"
-#include "jobs/kind.h"
 #include "jobs/statistics_curves.h"
 #include "jobs/statistics_scalars.h"
 #include "jobs/statistics_spectra.h"
@@ -84,27 +84,34 @@ static int runner_create(struct job_runner **out, const cJSON *parameters,
     return status;
 }
 
-static int run_one(struct job_runner *runner, uint64_t realisation, struct statistics_tally *tally,
-                   double *scalars, struct error *err) {
+/* A block of realisations being run. */
+struct batch {
+    struct job_runner *runner;
+    struct statistics_tally tally;
+};
+
+static int realise(void *context, uint64_t realisation, uint64_t done, double *scalars,
+                   struct error *err) {
+    struct batch *batch = context;
+    struct job_runner *runner = batch->runner;
     const struct grid *grid = &runner->study.surface.grid;
     struct surface_report report = {0};
     struct roughness roughness;
     struct moments moments = runner->moments;
+    (void)done;
     runner->key.realisation = realisation;
     int status = generator_run(runner->generator, runner->key, runner->z, &report, err);
     if (status == 0)
         status = summits_find(runner->finder, runner->z, &runner->summits, err);
     if (status == 0)
-        status = spectra_measure(&runner->spectra, grid, runner->z, tally, err);
+        status = spectra_measure(&runner->spectra, grid, runner->z, &batch->tally, err);
     if (status == 0 && !surface_case_exact(&runner->study.surface))
         status = roughness_spectral(grid, runner->z, &moments, err);
-    if (status != 0) {
-        error_context(err, "realisation %llu", (unsigned long long)realisation);
-        return status;
-    }
+    if (status != 0)
+        return error_context(err, "realisation %llu", (unsigned long long)realisation);
     roughness_measure(grid, runner->z, &roughness);
-    statistics_tally_heights(tally, grid_points(grid), runner->z);
-    statistics_tally_summits(tally, &runner->summits);
+    statistics_tally_heights(&batch->tally, grid_points(grid), runner->z);
+    statistics_tally_summits(&batch->tally, &runner->summits);
     statistics_scalars_measure(&runner->study, &runner->moments,
                                &(struct realisation_measures){.roughness = &roughness,
                                                               .moments = &moments,
@@ -114,44 +121,23 @@ static int run_one(struct job_runner *runner, uint64_t realisation, struct stati
     return 0;
 }
 
-static int run_all(struct job_runner *runner, const struct job_control *control,
-                   struct statistics_tally *tally, struct job_result *result, struct error *err) {
-    for (uint64_t r = 0; r < result->count; r++) {
-        if (control != NULL && control->poll != NULL && control->poll(control->context, r) != 0)
-            return error_set(err, ERROR_STOPPED, "stopped after %llu of %llu realisations",
-                             (unsigned long long)r, (unsigned long long)result->count);
-        int status =
-            run_one(runner, result->first + r, tally, result->scalars + r * SCALAR_COUNT, err);
-        if (status != 0)
-            return status;
-    }
-    return statistics_tally_encode(tally, &result->data, &result->size, err);
+static int encode(void *context, unsigned char **data, size_t *size, struct error *err) {
+    struct batch *batch = context;
+    return statistics_tally_encode(&batch->tally, data, size, err);
 }
 
 static int run(struct job_runner *runner, uint64_t first, uint64_t count,
                const struct job_control *control, struct job_result *out, struct error *err) {
-    double start = job_clock();
-    struct job_result result = {.first = first, .count = count, .scalar_count = SCALAR_COUNT};
-    struct statistics_tally tally;
-    if (count == 0 || count > UINT64_MAX - first)
-        return error_set(err, ERROR_INPUT, "a block needs at least one realisation");
+    struct batch batch = {.runner = runner};
+    const struct block_work work = {&batch, SCALAR_COUNT, realise, encode};
     int status =
-        statistics_tally_create(&tally, &runner->study, &runner->moments, runner->spectra.densities,
-                                runner->spectra.correlations, err);
+        statistics_tally_create(&batch.tally, &runner->study, &runner->moments,
+                                runner->spectra.densities, runner->spectra.correlations, err);
     if (status != 0)
         return status;
-    result.scalars = array_create((size_t)count, SCALAR_COUNT * sizeof(double));
-    status = result.scalars != NULL
-                 ? run_all(runner, control, &tally, &result, err)
-                 : error_memory(err, (size_t)count * SCALAR_COUNT * sizeof(double), "scalars");
-    statistics_tally_clear(&tally);
-    if (status != 0) {
-        job_result_clear(&result);
-        return status;
-    }
-    result.seconds = job_clock() - start;
-    *out = result;
-    return 0;
+    status = block_run(&work, first, count, control, out, err);
+    statistics_tally_clear(&batch.tally);
+    return status;
 }
 
 struct job_merger {
