@@ -120,13 +120,9 @@ static int run_all(struct error *err) {
     for (int k = 0; !status && k < 3; k++) {
         printf("profiles of 512 points by slope, %s\n", KINEMATICS[k]);
         options.kinematics = (enum kinematics)k;
-        for (size_t s = 0; !status && s < 4; s++) {
+        size_t slopes = k == KINEMATICS_ST_VENANT ? 2 : 4; /* beyond, it gives way in compression */
+        for (size_t s = 0; !status && s < slopes; s++)
             status = profile(512, SLOPES[s], options, err);
-            if (status == ERROR_NUMERIC) {
-                printf("%s\n", err->text);
-                status = 0;
-            }
-        }
     }
     printf("double sine, height 0.02, 5 loads to 0.7 p* (the general program: 32 x 32 in 213 s)\n");
     for (size_t n = 16; !status && n <= 64; n *= 2)
