@@ -119,27 +119,35 @@ int contact_level_sample(const struct contact_case *study, const struct contact_
     return 0;
 }
 
+/* What areas on the undeformed face are worth in the present configuration: 1 where strains are
+ * small, and where nothing touches. */
+static double present(const struct full_report *report) {
+    bool finite = report != NULL && report->kinematics != KINEMATICS_SMALL;
+    return finite && isfinite(report->stretch) ? report->stretch : 1;
+}
+
 /* Measures of a solved load into a cell. */
 static void measure(struct contact_scene *scene, size_t model, size_t level,
                     const struct contact_state *state, const struct full_report *report,
                     struct contact_tally *tally, size_t cell) {
     double points = (double)grid_points(&scene->study->levels[level].grid);
     double stiffness = state->stiffness * scene->rms_height / scene->rms_slope;
+    double now = present(report);
     struct contact_area area;
     struct patches patches;
     contact_area(scene->areas[model][level], state->p, state->opening, &area);
     patches_find(scene->finders[level], state->p, &patches, NULL);
     const double values[MEASURE_COUNT] = {
-        [MEASURE_NODES] = area.nodes,
-        [MEASURE_EDGES] = area.edges,
-        [MEASURE_PERIMETER] = area.perimeter,
+        [MEASURE_NODES] = now * area.nodes,
+        [MEASURE_EDGES] = now * area.edges,
+        [MEASURE_PERIMETER] = now * area.perimeter,
         [MEASURE_GAP] = state->mean_gap / scene->rms_height,
-        [MEASURE_NODES_LOWER] = area.lower,
-        [MEASURE_NODES_UPPER] = area.upper,
+        [MEASURE_NODES_LOWER] = now * area.lower,
+        [MEASURE_NODES_UPPER] = now * area.upper,
         [MEASURE_STIFFNESS] = stiffness < STIFFNESS_MOST ? stiffness : NAN,
         [MEASURE_PATCHES] = (double)patches.count,
-        [MEASURE_PATCH_MEAN] = patches.mean / points,
-        [MEASURE_PATCH_LARGEST] = (double)patches.largest / points,
+        [MEASURE_PATCH_MEAN] = now * patches.mean / points,
+        [MEASURE_PATCH_LARGEST] = now * (double)patches.largest / points,
         [MEASURE_ITERATIONS] = (double)state->iterations,
         [MEASURE_WORK] = state->work / points,
         [MEASURE_VIOLATION] = state->violation,
