@@ -17,7 +17,8 @@
 
 #include "core/surface/grid.h"
 
-/* From the simplest to the most complete. MODEL_FULL is that of core/full, and has no compliance. */
+/* From the simplest to the most complete. MODEL_FULL is that of core/full, and has no compliance.
+ */
 enum contact_model { MODEL_HALFSPACE, MODEL_LAYERED, MODEL_FULL };
 /* Weighting of the gap by the mortar functions of the finite elements: the standard ones (Petrov-
  * Galerkin, as the reference) average it over neighbours by (1, 4, 1)/6 in each direction; the dual
