@@ -208,7 +208,8 @@ static bool append_others(struct workshop *shop) {
         {"work", NULL, "points x transforms", MEASURE_WORK, 1}};
     static const struct row FULL[] = {
         {"stretch", NULL, "contact area now/undeformed", MEASURE_STRETCH, 1},
-        {"load_cuts", NULL, "load steps made smaller", MEASURE_CUTS, 1}};
+        {"load_cuts", NULL, "load steps made smaller", MEASURE_CUTS, 1},
+        {"set_changes", NULL, "changes of single nodes of the active set", MEASURE_CHANGES, 1}};
     size_t full = contact_case_full(shop->study);
     bool done = true;
     for (size_t a = 0; a < sizeof rows / sizeof *rows && done; a++)

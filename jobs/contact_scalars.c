@@ -18,6 +18,7 @@ const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1] = {
     [CONTACT_SCALAR_FULL_LOAD_REACHED] = "full_load_reached",
     [CONTACT_SCALAR_FULL_ITERATIONS] = "full_iterations",
     [CONTACT_SCALAR_FULL_CUTS] = "full_load_cuts",
+    [CONTACT_SCALAR_FULL_CHANGES] = "full_set_changes",
     [CONTACT_SCALAR_FULL_BALANCE] = "full_force_balance",
     [CONTACT_SCALAR_FULL_PENETRATION] = "full_penetration",
     [CONTACT_SCALAR_FULL_STRETCH] = "full_stretch",
@@ -69,6 +70,7 @@ static void measure_full(struct contact_tally *tally, double *out) {
     out[CONTACT_SCALAR_FULL_LOAD_REACHED] = solved > 0 ? study->loads[solved - 1] : 0;
     out[CONTACT_SCALAR_FULL_ITERATIONS] = sum_of(n, iterations);
     out[CONTACT_SCALAR_FULL_CUTS] = sum_of(n, finest_values(tally, MEASURE_CUTS, full));
+    out[CONTACT_SCALAR_FULL_CHANGES] = sum_of(n, finest_values(tally, MEASURE_CHANGES, full));
     out[CONTACT_SCALAR_FULL_BALANCE] = largest_of(n, finest_values(tally, MEASURE_BALANCE, full));
     out[CONTACT_SCALAR_FULL_PENETRATION] =
         largest_of(n, finest_values(tally, MEASURE_PENETRATION, full));

@@ -20,6 +20,7 @@ enum contact_scalar {
     CONTACT_SCALAR_FULL_LOAD_REACHED, /* the last with values; 0: no mesh, or no equilibrium */
     CONTACT_SCALAR_FULL_ITERATIONS,   /* Newton's, of all loads, as the cuts */
     CONTACT_SCALAR_FULL_CUTS,
+    CONTACT_SCALAR_FULL_CHANGES, /* of single nodes of the active set, of all loads */
     CONTACT_SCALAR_FULL_BALANCE, /* largest, as the penetration, which is in RMS heights */
     CONTACT_SCALAR_FULL_PENETRATION,
     CONTACT_SCALAR_FULL_STRETCH, /* at the last load reached */
