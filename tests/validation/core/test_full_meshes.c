@@ -35,7 +35,7 @@ static void fill(double *z, size_t points, size_t rows) {
 
 /* A profile, or its extrusion over THICK rows. */
 static struct curve press(double growth, size_t points, size_t rows) {
-    double z[THICK * POINTS > FINER ? THICK * POINTS : FINER];
+    double z[THICK * POINTS > FINER ? THICK * POINTS : FINER] = {0};
     struct curve curve = {{0}, {0}};
     struct grid grid = {.nx = points, .ny = rows, .lx = 1, .ly = (double)rows / (double)points};
     struct block block = {.model = MODEL_LAYERED,
