@@ -97,6 +97,7 @@ static int read_blocks(struct contact_case *out, const struct case_reader *reade
     bool elements = false;
     out->model_count = case_choices(reader, "/contact/model", models);
     out->kinematics = (enum kinematics)case_choice(reader, "/contact/kinematics");
+    out->transition_depth = case_number(reader, "/contact/transition_depth");
     size_t weighting = case_choice(reader, "/contact/gap_weighting");
     int status = read_height(out, reader, &height, err);
     if (status != 0)

@@ -11,7 +11,7 @@
 #include "jobs/surface_case.h"
 
 /* Table of the kind: the rows of /surface/..., then those of /contact/.... */
-enum { CONTACT_PARAMETER_COUNT = SURFACE_PARAMETER_COUNT + 15 };
+enum { CONTACT_PARAMETER_COUNT = SURFACE_PARAMETER_COUNT + 16 };
 extern const struct parameter CONTACT_PARAMETERS[];
 
 enum { CONTACT_MODELS = 3, CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000 };
@@ -30,7 +30,8 @@ struct contact_case {
     size_t band;                 /* highest wave number of a realisation on its own grid */
     size_t model_count;
     struct block blocks[CONTACT_MODELS]; /* one a model, in the order given */
-    enum kinematics kinematics;          /* of the model full, as the next */
+    enum kinematics kinematics;          /* of the model full, as the next two */
+    double transition_depth;             /* full.h */
     double rms_slope;                    /* of the prescribed spectrum; where full is a model */
     size_t level_count;
     struct contact_level levels[CONTACT_LEVELS_MOST]; /* rising: the last is the finest */

@@ -22,6 +22,14 @@ struct block contact_linear_block(const struct block *block) {
     return linear;
 }
 
+struct full_options contact_full_options(const struct contact_case *study) {
+    struct full_options options = FULL_DEFAULTS;
+    options.kinematics = study->kinematics;
+    options.transition = study->transition_depth;
+    options.tolerance = study->tolerance;
+    return options;
+}
+
 int contact_solver_create(struct contact_solver **out, const struct contact_case *study,
                           size_t model, const struct compliance *compliance, struct error *err) {
     struct contact_solver *solver = array_create(1, sizeof *solver);
@@ -29,9 +37,7 @@ int contact_solver_create(struct contact_solver **out, const struct contact_case
     if (solver == NULL)
         status = error_memory(err, sizeof *solver, "a contact solver");
     else if (contact_case_is_full(study, model)) {
-        struct full_options options = FULL_DEFAULTS;
-        options.kinematics = study->kinematics;
-        options.tolerance = study->tolerance;
+        struct full_options options = contact_full_options(study);
         solver->transforms =
             grid_is_profile(&compliance->grid) ? PROFILE_TRANSFORMS : SURFACE_TRANSFORMS;
         status =
@@ -60,14 +66,13 @@ void contact_solver_destroy(struct contact_solver **solver) {
 struct contact_full_size contact_full_size(const struct contact_case *study, size_t model,
                                            const struct grid *grid) {
     const struct block *block = &study->blocks[model];
-    double thickness[LAYERS_MOST], slope = study->rms_slope;
+    struct full_options options = contact_full_options(study);
+    double slope = study->rms_slope;
     bool profile = grid_is_profile(grid);
-    size_t layers = block_layers(grid, block, thickness), axes = profile ? 2 : 3;
     double stiff = pow(0.4 / (1 - 2 * block->poisson), 0.4); /* 1 at 0.3 */
-    struct contact_full_size size = {.newton = 2 + (profile ? 0.22 : 0.5) * log2((double)grid->nx),
+    struct contact_full_size size = {.freedoms = (double)full_freedoms(grid, block, &options),
+                                     .newton = 2 + (profile ? 0.22 : 0.5) * log2((double)grid->nx),
                                      .linear = 2 + 16 * slope * (1 + slope) * stiff};
-    if (layers > 0)
-        size.freedoms = (double)((layers + 1) * axes) * (double)grid_points(grid);
     size.factored = size.linear > LINEAR_MOST && (profile || size.freedoms <= SURFACE_FACTORED);
     return size;
 }

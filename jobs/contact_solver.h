@@ -4,6 +4,9 @@
 
 #include "jobs/contact_case.h"
 
+/* What the study asks of the model full. */
+struct full_options contact_full_options(const struct contact_case *study);
+
 /* How large and how hard the equations of the model full are on a grid: its cost is made of these.
  * Fitted to profiles of 64 to 2048 points and surfaces of 8 x 8 to 64 x 64, RMS slopes 0.01 to 0.7,
  * Poisson's ratios 0.3 to 0.4999. */

@@ -9,7 +9,6 @@ struct writer {
     FILE *file;
     const struct mesh *mesh;
     const struct mesh_step *step; /* may be NULL */
-    size_t columns, rows;         /* of points, the last ones images of the first */
 };
 
 static void array_open(const struct writer *w, const char *type, const char *name, int components,
@@ -24,46 +23,92 @@ static void array_close(const struct writer *w) {
     fputs("        </DataArray>\n", w->file);
 }
 
-/* --- points --- */
+/* --- points ---
+ *
+ * A plane a level, of its nodes, the last ones of a row and column images of the first. Where
+ * columns widen, one more behind it: of the narrower columns' corners, which lie between its nodes.
+ */
 
-/* A vector along the mesh's axes, as one in space. */
-static void put_vector(const struct writer *w, const double *vector) {
-    fprintf(w->file, "%.9g %.9g %.9g\n", vector[0], vector[1],
-            w->mesh->dimension == 3 ? vector[2] : 0);
+struct point {
+    double x, y; /* in steps */
+    size_t count, node[4];
+};
+
+/* Of a level whose nodes are `wide` columns apart. */
+static struct point point_of(const struct mesh *mesh, size_t k, size_t wide, size_t j, size_t i) {
+    const struct level *level = &mesh->level[k];
+    double width = (double)(level->width / wide);
+    struct point point = {.x = (double)i * width, .y = (double)j * width * mesh->across};
+    for (size_t back = 0; back <= j % wide; back++)
+        for (size_t right = 0; right <= i % wide; right++)
+            point.node[point.count++] = level->first + (j / wide + back) % level->ny * level->nx +
+                                        (i / wide + right) % level->nx;
+    return point;
 }
 
-static void put_position(const struct writer *w, size_t node, size_t j, size_t i) {
+static double mean_at(const struct point *point, const double *field, size_t components,
+                      size_t component) {
+    double sum = 0;
+    for (size_t a = 0; a < point->count; a++)
+        sum += field[point->node[a] * components + component];
+    return sum / (double)point->count;
+}
+
+static void put_position(const struct writer *w, const struct point *point) {
     const struct mesh *mesh = w->mesh;
-    double position[3] = {(double)i * mesh->unit, (double)j * mesh->across * mesh->unit, 0};
-    position[mesh->dimension - 1] = mesh->height[node] * mesh->unit;
-    put_vector(w, position);
+    double up = mean_at(point, mesh->height, 1, 0) * mesh->unit;
+    if (mesh->dimension == 2)
+        fprintf(w->file, "%.9g %.9g 0\n", point->x * mesh->unit, up);
+    else
+        fprintf(w->file, "%.9g %.9g %.9g\n", point->x * mesh->unit, point->y * mesh->unit, up);
 }
 
-static void put_displacement(const struct writer *w, size_t node, size_t j, size_t i) {
-    (void)j;
-    (void)i;
-    put_vector(w, w->step->u + node * (size_t)w->mesh->dimension);
+static void put_displacement(const struct writer *w, const struct point *point) {
+    double u[3] = {0};
+    size_t d = (size_t)w->mesh->dimension;
+    for (size_t k = 0; k < d; k++)
+        u[k] = mean_at(point, w->step->u, d, k);
+    fprintf(w->file, "%.9g %.9g %.9g\n", u[0], u[1], u[2]);
 }
 
-static void put_pressure(const struct writer *w, size_t node, size_t j, size_t i) {
-    (void)j;
-    (void)i;
-    fprintf(w->file, "%.9g\n", node < w->mesh->face ? w->step->face.p[node] / w->step->unit : 0);
+static void put_of_face(const struct writer *w, const struct point *point, const double *field,
+                        double unit) {
+    bool face = point->node[0] < w->mesh->face;
+    fprintf(w->file, "%.9g\n", face ? field[point->node[0]] / unit : 0);
 }
 
-static void put_gap(const struct writer *w, size_t node, size_t j, size_t i) {
-    (void)j;
-    (void)i;
-    fprintf(w->file, "%.9g\n", node < w->mesh->face ? w->step->face.gap[node] : 0);
+static void put_pressure(const struct writer *w, const struct point *point) {
+    put_of_face(w, point, w->step->face.p, w->step->unit);
+}
+
+static void put_gap(const struct writer *w, const struct point *point) {
+    put_of_face(w, point, w->step->face.gap, 1);
+}
+
+static size_t plane_columns(const struct mesh *mesh, size_t level) {
+    return mesh->level[level].nx + 1;
+}
+static size_t plane_rows(const struct mesh *mesh, size_t level) {
+    return mesh->dimension == 3 ? mesh->level[level].ny + 1 : 1;
+}
+/* Points of a level, with those behind them. */
+static size_t plane_points(const struct mesh *mesh, size_t level) {
+    size_t points = plane_columns(mesh, level) * plane_rows(mesh, level);
+    if (level > 0 && mesh_widens(mesh, level - 1))
+        points += plane_columns(mesh, level - 1) * plane_rows(mesh, level - 1);
+    return points;
 }
 
 static void each_point(const struct writer *w,
-                       void (*put)(const struct writer *w, size_t node, size_t j, size_t i)) {
+                       void (*put)(const struct writer *w, const struct point *point)) {
     const struct mesh *mesh = w->mesh;
-    for (size_t level = 0; level <= mesh->layers; level++)
-        for (size_t j = 0; j < w->rows; j++)
-            for (size_t i = 0; i < w->columns; i++)
-                put(w, level * mesh->face + j % mesh->ny * mesh->nx + i % mesh->nx, j, i);
+    for (size_t k = 0; k <= mesh->layers; k++)
+        for (size_t wide = 1; wide <= (k > 0 && mesh_widens(mesh, k - 1) ? 2 : 1); wide++)
+            for (size_t j = 0; j < plane_rows(mesh, k + 1 - wide); j++)
+                for (size_t i = 0; i < plane_columns(mesh, k + 1 - wide); i++) {
+                    struct point point = point_of(mesh, k, wide, j, i);
+                    put(w, &point);
+                }
 }
 
 static void write_points(const struct writer *w) {
@@ -89,21 +134,29 @@ static void write_points(const struct writer *w) {
 
 /* --- elements --- */
 
+/* Where it is, and its number before those of its layer's upper and lower side. */
+struct cell {
+    size_t layer, j, i, upper, lower;
+};
+
 /* VTK goes around each face; the mesh counts in binary (element.h). */
-static void put_corners(const struct writer *w, size_t layer, size_t j, size_t i) {
+static void put_corners(const struct writer *w, const struct cell *cell) {
     static const int AROUND[] = {0, 1, 3, 2, 4, 5, 7, 6};
     bool profile = w->mesh->dimension == 2;
     for (int corner = 0; corner < 1 << w->mesh->dimension; corner++) {
         int a = AROUND[corner], deep = profile ? a >> 1 : a >> 2, back = profile ? 0 : a >> 1 & 1;
-        size_t row = (layer + (size_t)deep) * w->rows + j + (size_t)back;
-        fprintf(w->file, "%zu ", row * w->columns + i + (size_t)(a & 1));
+        size_t row = (cell->j + (size_t)back) * plane_columns(w->mesh, cell->layer);
+        fprintf(w->file, "%zu ",
+                (deep ? cell->lower : cell->upper) + row + cell->i + (size_t)(a & 1));
     }
     fputc('\n', w->file);
 }
 
-static void put_quality(const struct writer *w, size_t layer, size_t j, size_t i) {
+static void put_quality(const struct writer *w, const struct cell *cell) {
     double position[8][3];
-    mesh_position(w->mesh, layer, j, i, position);
+    struct mesh_element element;
+    mesh_element(w->mesh, cell->layer, cell->j, cell->i, &element);
+    mesh_position(w->mesh, &element, position);
     fprintf(w->file, "%.4g\n", element_quality(w->mesh->dimension, position));
 }
 
@@ -132,14 +185,17 @@ static bool element_stress(const struct writer *w, double position[8][3], double
     return true;
 }
 
-static void put_stress(const struct writer *w, size_t layer, size_t j, size_t i) {
+static void put_stress(const struct writer *w, const struct cell *cell) {
     const struct mesh *mesh = w->mesh;
     size_t d = (size_t)mesh->dimension;
+    struct mesh_element element;
     double position[8][3], u[8][3] = {{0}}, s[3][3] = {{0}};
-    mesh_position(mesh, layer, j, i, position);
-    for (int a = 0; a < 1 << mesh->dimension; a++)
+    mesh_element(mesh, cell->layer, cell->j, cell->i, &element);
+    mesh_position(mesh, &element, position);
+    mesh_corners(mesh, &element, w->step->u, d, u);
+    for (size_t a = 0; a < (size_t)1 << d; a++)
         for (size_t k = 0; k < d; k++)
-            u[a][k] = w->step->u[mesh_node(mesh, layer, j, i, a) * d + k] / mesh->unit;
+            u[a][k] /= mesh->unit;
     /* No equilibrium has elements inside out; a state that is none leaves zeros. */
     (void)element_stress(w, position, u, s);
     double shear = (s[0][1] + s[1][0]) / 2;
@@ -151,16 +207,24 @@ static void put_stress(const struct writer *w, size_t layer, size_t j, size_t i)
 }
 
 static void each_element(const struct writer *w,
-                         void (*put)(const struct writer *w, size_t layer, size_t j, size_t i)) {
-    for (size_t layer = 0; layer < w->mesh->layers; layer++)
-        for (size_t j = 0; j < w->mesh->ny; j++)
-            for (size_t i = 0; i < w->mesh->nx; i++)
-                put(w, layer, j, i);
+                         void (*put)(const struct writer *w, const struct cell *cell)) {
+    const struct mesh *mesh = w->mesh;
+    size_t first = 0;
+    for (size_t k = 0; k < mesh->layers; k++) {
+        size_t next = first + plane_points(mesh, k);
+        size_t hanging =
+            mesh_widens(mesh, k) ? plane_columns(mesh, k + 1) * plane_rows(mesh, k + 1) : 0;
+        struct cell cell = {.layer = k, .upper = first, .lower = next + hanging};
+        for (cell.j = 0; cell.j < mesh->level[k].ny; cell.j++)
+            for (cell.i = 0; cell.i < mesh->level[k].nx; cell.i++)
+                put(w, &cell);
+        first = next;
+    }
 }
 
 static void write_elements(const struct writer *w) {
     bool profile = w->mesh->dimension == 2;
-    size_t elements = w->mesh->layers * w->mesh->face, corners = profile ? 4 : 8;
+    size_t elements = w->mesh->elements, corners = profile ? 4 : 8;
     fputs("      <Cells>\n", w->file);
     array_open(w, "Int64", "connectivity", 1, "");
     each_element(w, put_corners);
@@ -197,15 +261,17 @@ static void write_element_data(const struct writer *w) {
 
 int mesh_file_write(FILE *file, const char *title, const struct mesh *mesh,
                     const struct mesh_step *step, struct error *err) {
-    struct writer w = {file, mesh, step, mesh->nx + 1, mesh->dimension == 3 ? mesh->ny + 1 : 1};
-    size_t points = (mesh->layers + 1) * w.rows * w.columns;
+    struct writer w = {file, mesh, step};
+    size_t points = 0;
+    for (size_t level = 0; level <= mesh->layers; level++)
+        points += plane_points(mesh, level);
     errno = 0;
     fprintf(file,
             "<?xml version=\"1.0\"?>\n<!-- %s -->\n"
             "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
             "  <UnstructuredGrid>\n"
             "    <Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n",
-            title, points, mesh->layers * mesh->face);
+            title, points, mesh->elements);
     write_points(&w);
     write_elements(&w);
     write_element_data(&w);

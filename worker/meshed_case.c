@@ -49,9 +49,7 @@ static int meshed_open(struct meshed *out, const cJSON *parameters, const double
     out->z = array_create(points, sizeof *out->z);
     if (out->z == NULL)
         return error_memory(err, points * sizeof *out->z, "a surface");
-    struct full_options options = FULL_DEFAULTS;
-    options.kinematics = study->kinematics;
-    options.tolerance = study->tolerance;
+    struct full_options options = contact_full_options(study);
     status = read_slope(out, err);
     if (status == 0)
         status = contact_level_sample(study, finest, z, out->z, err);

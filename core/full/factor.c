@@ -18,7 +18,7 @@ struct factor {
 
 static void number_unknowns(struct factor *f) {
     const struct mesh *mesh = f->mesh;
-    size_t d = (size_t)mesh->dimension, far_side = mesh->layers * mesh->face * d;
+    size_t d = (size_t)mesh->dimension, far_side = mesh_far_side(mesh) * d;
     int count = 0, common = HELD;
     for (size_t freedom = 0; freedom < mesh_freedoms(mesh); freedom++) {
         bool vertical = freedom % d == d - 1;
@@ -34,8 +34,8 @@ static void number_unknowns(struct factor *f) {
 
 int factor_create(struct factor **out, const struct mesh *mesh, struct error *err) {
     *out = NULL;
-    size_t freedoms = mesh_freedoms(mesh);
-    size_t slots = mesh->dimension == 2 ? 9 : 27, d = (size_t)mesh->dimension;
+    size_t freedoms = mesh_freedoms(mesh), d = (size_t)mesh->dimension;
+    size_t entries = freedoms * (mesh->dimension == 2 ? 6 : 18) * d + mesh->face;
     struct factor *f = array_create(1, sizeof *f);
     if (f == NULL)
         return error_memory(err, sizeof *f, "a factorisation");
@@ -48,12 +48,12 @@ int factor_create(struct factor **out, const struct mesh *mesh, struct error *er
     int status = 0;
     if (f->unknown != NULL && f->held != NULL) {
         number_unknowns(f);
-        f->triplet = cholmod_allocate_triplet(f->unknowns, f->unknowns, freedoms * slots * d, -1,
-                                              CHOLMOD_REAL, &f->common);
+        f->triplet = cholmod_allocate_triplet(f->unknowns, f->unknowns, entries, -1, CHOLMOD_REAL,
+                                              &f->common);
         f->load = cholmod_allocate_dense(f->unknowns, 1, f->unknowns, CHOLMOD_REAL, &f->common);
     }
     if (f->triplet == NULL || f->load == NULL) {
-        status = error_memory(err, freedoms * slots * d * 16, "a factorisation");
+        status = error_memory(err, entries * 16, "a factorisation");
         factor_destroy(&f);
     }
     *out = f;
@@ -74,28 +74,42 @@ void factor_destroy(struct factor **factor) {
     *factor = NULL;
 }
 
-/* The lower half; entries of one place are summed. Zeros stay, so that the pattern does. */
-static void fill(struct factor *f, const struct stencil *tangent) {
-    const struct mesh *mesh = f->mesh;
-    size_t d = (size_t)mesh->dimension, count = 0;
+/* Entries of one block: of freedoms r0.. by c0... The matrix takes the lower half; blocks of a
+ * level with itself come both ways, those between levels once. */
+static size_t fill_block(struct factor *f, size_t r0, size_t c0, bool twice, const double *value,
+                         size_t count) {
+    size_t d = (size_t)f->mesh->dimension;
     int *row = f->triplet->i, *column = f->triplet->j;
     double *entry = f->triplet->x;
-    for (size_t node = 0; node < mesh->nodes; node++)
-        for (size_t slot = 0; slot < tangent->slots; slot++) {
-            size_t other = stencil_neighbour(mesh, node, slot);
-            const double *value = tangent->values + (node * tangent->slots + slot) * d * d;
-            for (size_t i = 0; other != SIZE_MAX && i < d; i++)
-                for (size_t j = 0; j < d; j++) {
-                    int r = f->unknown[node * d + i], c = f->unknown[other * d + j];
-                    if (c == HELD || r < c)
-                        continue;
-                    row[count] = r;
-                    column[count] = c;
-                    bool kept = !f->held[r] && !f->held[c];
-                    /* In a cell of 2 columns a node meets itself only in the middle slot. */
-                    bool self = node == other && i == j;
-                    entry[count++] = kept ? value[i * d + j] : self ? 1 : 0;
-                }
+    for (size_t i = 0; i < d; i++)
+        for (size_t j = 0; j < d; j++) {
+            int r = f->unknown[r0 + i], c = f->unknown[c0 + j];
+            if (r == HELD || c == HELD || (twice && r < c))
+                continue;
+            row[count] = r < c ? c : r;
+            column[count] = r < c ? r : c;
+            entry[count++] = f->held[r] || f->held[c] ? 0 : value[i * d + j];
+        }
+    return count;
+}
+
+/* Entries of one place are summed. Zeros stay, so that the pattern does. */
+static void fill(struct factor *f, const struct stencil *tangent) {
+    const struct mesh *mesh = f->mesh;
+    size_t d = (size_t)mesh->dimension, count = 0, node = 0, neighbour[STENCIL_MOST];
+    for (size_t level = 0; level <= mesh->layers; level++)
+        for (size_t j = 0; j < mesh->level[level].ny; j++)
+            for (size_t i = 0; i < mesh->level[level].nx; i++, node++) {
+                stencil_neighbours(mesh, level, j, i, neighbour);
+                for (size_t slot = 0; slot < tangent->slots && neighbour[slot] != SIZE_MAX; slot++)
+                    count =
+                        fill_block(f, node * d, neighbour[slot] * d, slot < tangent->slots / 2,
+                                   tangent->values + (node * tangent->slots + slot) * d * d, count);
+            }
+    for (size_t u = 0; u < f->unknowns; u++)
+        if (f->held[u]) {
+            ((int *)f->triplet->i)[count] = ((int *)f->triplet->j)[count] = (int)u;
+            ((double *)f->triplet->x)[count++] = 1;
         }
     f->triplet->nnz = count;
 }

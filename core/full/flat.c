@@ -9,25 +9,104 @@ static const double PI = 3.14159265358979323846;
 
 #define INLINE static inline __attribute__((always_inline))
 
-/* Arrays by wave hold `waves` values in the layout of transform.h, innermost. */
+enum { ZONES_MOST = 32 };
+
+/* Arrays by wave hold a level's waves in the layout of transform.h, innermost; levels follow one
+ * another. */
 struct flat {
     const struct mesh *mesh; /* borrowed */
-    struct transform *transform;
-    size_t d, waves;
+    size_t d;
+    struct transform *transform[ZONES_MOST]; /* by how often columns have doubled */
+    size_t *before;   /* [level]: waves of the levels above; the last, of all */
     double *inverse;  /* [level][i*d + j][wave]: of the level's pivot, which holds all below it */
     double *coupling; /* [level][i*d + j][wave]: row of the level, column of the next */
     double *field;    /* [level][i][2][wave]: real and imaginary parts of forces, displacements */
-    double *plane;    /* face: one component of one level */
+    double *passed, *folded; /* [i][2][wave]: between levels of unlike columns */
+    double *plane;           /* face: one component of one level */
 };
 
+static size_t level_waves(const struct level *level) {
+    return (level->nx / 2 + 1) * level->ny;
+}
+static size_t waves_at(const struct flat *f, size_t level) {
+    return level_waves(&f->mesh->level[level]);
+}
 static double *inverse_at(const struct flat *f, size_t level) {
-    return f->inverse + level * f->d * f->d * f->waves;
+    return f->inverse + f->before[level] * f->d * f->d;
 }
 static double *coupling_at(const struct flat *f, size_t level) {
-    return f->coupling + level * f->d * f->d * f->waves;
+    return f->coupling + f->before[level] * f->d * f->d;
 }
 static double *field_at(const struct flat *f, size_t level, size_t i) {
-    return f->field + (level * f->d + i) * 2 * f->waves;
+    return f->field + 2 * (f->before[level] * f->d + i * waves_at(f, level));
+}
+static size_t zone_of(const struct level *level) {
+    size_t zone = 0;
+    while (level->width >> zone > 1)
+        zone++;
+    return zone;
+}
+static struct transform *transform_at(const struct flat *f, size_t level) {
+    return f->transform[zone_of(&f->mesh->level[level])];
+}
+
+/* --- unlike columns ---
+ *
+ * Half as many nodes tell only half (a quarter) of the waves apart: on the level below, wave k is
+ * the same as its aliases. Corners between the nodes are means, so that a wave there moves its
+ * aliases k above by (1 + cos k)/2 in each direction. A wave that is an alias of one of the other
+ * half plane is that one's mirror image: complex conjugate, sideways with the other sign. */
+
+/* The wave of the next level that a level's wave is an alias of. */
+static size_t wave_below(const struct level *level, size_t wave, bool *mirrored) {
+    const struct level *below = level + 1;
+    size_t mx = wave / level->ny, row = wave % level->ny;
+    *mirrored = mx > below->nx / 2;
+    if (*mirrored) {
+        mx = below->nx - mx;
+        row = level->ny - row;
+    }
+    return mx * below->ny + row % below->ny;
+}
+
+/* A level's field as its corners' on the level above it sees it: passed. */
+static void unfold(struct flat *f, size_t level) {
+    const struct level *above = &f->mesh->level[level - 1];
+    size_t n = waves_at(f, level - 1), wide = waves_at(f, level);
+    bool mirrored;
+    for (size_t i = 0; i < f->d; i++) {
+        const double *from = field_at(f, level, i);
+        double *to = f->passed + 2 * i * n, sign = i == f->d - 1 ? 1 : -1;
+        for (size_t wave = 0; wave < n; wave++) {
+            size_t below = wave_below(above, wave, &mirrored);
+            to[wave] = from[below] * (mirrored ? sign : 1);
+            to[n + wave] = from[wide + below] * (mirrored ? -sign : 1);
+        }
+    }
+}
+
+/* The transpose: passed, of the level above, summed over aliases: folded. */
+static void fold(struct flat *f, size_t level) {
+    const struct level *above = &f->mesh->level[level - 1], *here = above + 1;
+    size_t n = waves_at(f, level - 1), wide = waves_at(f, level);
+    for (size_t i = 0; i < f->d; i++) {
+        const double *from = f->passed + 2 * i * n;
+        double *to = f->folded + 2 * i * wide, sign = i == f->d - 1 ? 1 : -1;
+        memset(to, 0, 2 * wide * sizeof *to);
+        for (size_t wave = 0; wave < n; wave++) {
+            size_t mx = wave / above->ny, row = wave % above->ny;
+            if (2 * mx <= here->nx) {
+                size_t alias = mx * here->ny + row % here->ny;
+                to[alias] += from[wave];
+                to[wide + alias] += from[n + wave];
+            }
+            if (2 * mx >= here->nx) {
+                size_t alias = (here->nx - mx) * here->ny + (above->ny - row) % here->ny;
+                to[alias] += sign * from[wave];
+                to[wide + alias] -= sign * from[n + wave];
+            }
+        }
+    }
 }
 
 /* --- elimination --- */
@@ -38,16 +117,18 @@ struct layer {
     double block[2][2][9][3][3];
 };
 
-static void layer_make(const struct mesh *mesh, const struct solid *solid, double thickness,
+static void layer_make(const struct mesh *mesh, const struct solid *solid, size_t layer,
                        struct layer *out) {
     int d = mesh->dimension;
+    const struct level *level = &mesh->level[layer];
+    double width = (double)level->width;
     double position[8][3], u[8][3] = {{0}}, stiffness[ELEMENT_FREEDOMS][ELEMENT_FREEDOMS];
     struct element_shape shape;
     memset(out, 0, sizeof *out);
     for (int a = 0; a < 1 << d; a++) {
-        position[a][0] = a & 1;
-        position[a][1] = (a >> 1 & 1) * mesh->across;
-        position[a][d - 1] = (a >> (d - 1) & 1) * thickness;
+        position[a][0] = (a & 1) * width;
+        position[a][1] = (a >> 1 & 1) * width * mesh->across;
+        position[a][d - 1] = (a >> (d - 1) & 1) * (level[1].depth - level->depth);
     }
     /* A brick at rest: nothing to fail. */
     (void)element_shape_make(d, position, &shape);
@@ -68,9 +149,10 @@ struct phases {
     double cosine[9], sine[9];
 };
 
-static struct phases phases_of(const struct mesh *mesh, size_t mx, size_t row) {
+static struct phases phases_of(const struct level *level, size_t mx, size_t row) {
     struct phases phases;
-    double x = 2 * PI * (double)mx / (double)mesh->nx, y = 2 * PI * (double)row / (double)mesh->ny;
+    double x = 2 * PI * (double)mx / (double)level->nx;
+    double y = 2 * PI * (double)row / (double)level->ny;
     for (int slot = 0; slot < 9; slot++) {
         int along = slot % 3 - 1, across = slot / 3 - 1;
         double phase = x * along + y * across;
@@ -124,50 +206,91 @@ static void hold_far_side(int d, bool mean, double pivot[3][3]) {
         }
 }
 
-static void eliminate(struct flat *f, const struct layer *layers, size_t wave, size_t mx,
-                      size_t row) {
+/* What a wave of corners is of the nodes' that they hang on. */
+static double hanging(int d, const struct phases *phases) {
+    double along = (1 + phases->cosine[5]) / 2, across = (1 + phases->cosine[7]) / 2;
+    return d == 2 ? along : along * across;
+}
+
+/* out += factor * symbol */
+static void symbol_add(int d, double block[9][3][3], const struct phases *phases, double factor,
+                       double out[3][3]) {
+    double value[3][3];
+    symbol(d, block, phases, value);
+    for (int i = 0; i < d; i++)
+        for (int j = 0; j < d; j++)
+            out[i][j] += factor * value[i][j];
+}
+
+/* Adds the lower side of the layer above a level: that of all aliases, which are `share` times as
+ * many nodes. */
+static void add_above(const struct flat *f, struct layer *layer, size_t level, size_t mx,
+                      size_t row, double share, double pivot[3][3]) {
     int d = f->mesh->dimension;
-    size_t last = f->mesh->layers;
-    bool mean = mx == 0 && row == 0;
-    struct phases phases = phases_of(f->mesh, mx, row);
-    double pivot[3][3], near[3][3], between[3][3], inverse[3][3];
-    for (size_t level = last + 1; level-- > 0;) {
-        memset(pivot, 0, sizeof pivot);
-        if (level < last) {
-            const double *below = inverse_at(f, level + 1);
-            struct layer layer = layers[level];
-            symbol(d, layer.block[0][0], &phases, pivot);
-            symbol(d, layer.block[0][1], &phases, between);
-            for (int i = 0; level + 1 == last && !mean && i < d; i++)
-                between[i][d - 1] = 0;
-            for (int i = 0; i < d; i++)
-                for (int j = 0; j < d; j++) {
-                    coupling_at(f, level)[(size_t)(i * d + j) * f->waves + wave] = between[i][j];
-                    for (int k = 0; k < d; k++)
-                        for (int l = 0; l < d; l++)
-                            pivot[i][j] -= between[i][k] * between[j][l] *
-                                           below[(size_t)(k * d + l) * f->waves + wave];
+    const struct level *above = &f->mesh->level[level - 1], *here = above + 1;
+    for (size_t y = row; y < above->ny; y += here->ny)
+        for (size_t x = mx; x < above->nx; x += here->nx) {
+            struct phases phases = phases_of(above, x, y);
+            double corners = here->nx == above->nx ? 1 : hanging(d, &phases);
+            symbol_add(d, layer->block[1][1], &phases, share * corners * corners, pivot);
+        }
+}
+
+/* Couples a level to the next, of which it takes up the inverse: exact on like columns. On unlike
+ * ones aliases are taken apart, though the level below ties them together; short waves do not reach
+ * that deep (that is why columns may be wide there). */
+static void couple(const struct flat *f, struct layer *layer, size_t level, size_t wave,
+                   double share, double pivot[3][3]) {
+    int d = f->mesh->dimension;
+    const struct level *here = &f->mesh->level[level];
+    size_t n = waves_at(f, level), next = waves_at(f, level + 1), below = wave;
+    bool mirrored = false, wide = mesh_widens(f->mesh, level);
+    struct phases phases = phases_of(here, wave / here->ny, wave % here->ny);
+    double between[3][3] = {{0}};
+    if (wide)
+        below = wave_below(here, wave, &mirrored);
+    symbol_add(d, layer->block[0][0], &phases, 1, pivot);
+    symbol_add(d, layer->block[0][1], &phases, wide ? hanging(d, &phases) : 1, between);
+    for (int i = 0; level + 1 == f->mesh->layers && below != 0 && i < d; i++)
+        between[i][d - 1] = 0; /* the far side moves as one */
+    for (int i = 0; i < d; i++)
+        for (int j = 0; j < d; j++) {
+            coupling_at(f, level)[(size_t)(i * d + j) * n + wave] = between[i][j];
+            for (int k = 0; k < d; k++)
+                for (int l = 0; l < d; l++) {
+                    bool turned = mirrored && (k == d - 1) != (l == d - 1);
+                    pivot[i][j] -= (turned ? -share : share) * between[i][k] * between[j][l] *
+                                   inverse_at(f, level + 1)[(size_t)(k * d + l) * next + below];
                 }
         }
-        if (level > 0) {
-            struct layer layer = layers[level - 1];
-            symbol(d, layer.block[1][1], &phases, near);
-            for (int i = 0; i < d; i++)
-                for (int j = 0; j < d; j++)
-                    pivot[i][j] += near[i][j];
-        }
-        if (level == last)
-            hold_far_side(d, mean, pivot);
-        if (level == 0 && mean) /* floats: whatever carries the load tells where it is */
-            for (int i = 0; i < d; i++)
-                pivot[i][d - 1] = pivot[d - 1][i] = i == d - 1;
-        invert(d, pivot, inverse);
-        if (level == 0 && mean)
-            inverse[d - 1][d - 1] = 0;
-        for (int i = 0; i < d; i++)
-            for (int j = 0; j < d; j++)
-                inverse_at(f, level)[(size_t)(i * d + j) * f->waves + wave] = inverse[i][j];
-    }
+}
+
+/* Nodes of a level for each of the next. */
+static double share_of(const struct mesh *mesh, size_t level) {
+    return mesh_widens(mesh, level) ? 1 << (mesh->dimension - 1) : 1;
+}
+
+static void eliminate(struct flat *f, struct layer *layers, size_t level, size_t wave) {
+    const struct mesh *mesh = f->mesh;
+    int d = mesh->dimension;
+    size_t last = mesh->layers, n = waves_at(f, level), rows = mesh->level[level].ny;
+    double pivot[3][3] = {{0}}, inverse[3][3];
+    if (level < last)
+        couple(f, &layers[level], level, wave, share_of(mesh, level), pivot);
+    if (level > 0)
+        add_above(f, &layers[level - 1], level, wave / rows, wave % rows, share_of(mesh, level - 1),
+                  pivot);
+    if (level == last)
+        hold_far_side(d, wave == 0, pivot);
+    bool floats = level == 0 && wave == 0; /* whatever carries the load tells where it is */
+    for (int i = 0; floats && i < d; i++)
+        pivot[i][d - 1] = pivot[d - 1][i] = i == d - 1;
+    invert(d, pivot, inverse);
+    if (floats)
+        inverse[d - 1][d - 1] = 0;
+    for (int i = 0; i < d; i++)
+        for (int j = 0; j < d; j++)
+            inverse_at(f, level)[(size_t)(i * d + j) * n + wave] = inverse[i][j];
 }
 
 static int eliminate_all(struct flat *f, const struct solid *solid, struct error *err) {
@@ -176,11 +299,58 @@ static int eliminate_all(struct flat *f, const struct solid *solid, struct error
     if (layers == NULL)
         return error_memory(err, mesh->layers * sizeof *layers, "the flat block");
     for (size_t k = 0; k < mesh->layers; k++)
-        layer_make(mesh, solid, mesh->depth[k + 1] - mesh->depth[k], &layers[k]);
-    for (size_t wave = 0; wave < f->waves; wave++)
-        eliminate(f, layers, wave, wave / mesh->ny, wave % mesh->ny);
+        layer_make(mesh, solid, k, &layers[k]);
+    for (size_t level = mesh->layers + 1; level-- > 0;)
+        for (size_t wave = 0; wave < waves_at(f, level); wave++)
+            eliminate(f, layers, level, wave);
     free(layers);
     return 0;
+}
+
+/* Waves of all levels. */
+static size_t all_waves(const struct mesh *mesh) {
+    size_t waves = 0;
+    for (size_t level = 0; level <= mesh->layers; level++)
+        waves += level_waves(&mesh->level[level]);
+    return waves;
+}
+
+double flat_bytes(const struct mesh *mesh) {
+    double d = mesh->dimension, one = (double)level_waves(&mesh->level[0]);
+    return sizeof(double) * ((2 * d * d + 2 * d) * (double)all_waves(mesh) + 4 * d * one +
+                             (double)mesh->face + 2 * one);
+}
+
+static int arrays_create(struct flat *f, struct error *err) {
+    const struct mesh *mesh = f->mesh;
+    size_t d = f->d, waves = all_waves(mesh), one = level_waves(&mesh->level[0]);
+    f->before = array_create(mesh->layers + 2, sizeof *f->before);
+    f->inverse = array_create(waves * d * d, sizeof *f->inverse);
+    f->coupling = array_create(waves * d * d, sizeof *f->coupling);
+    f->field = array_create(waves * d * 2, sizeof *f->field);
+    f->passed = array_create(one * d * 2, sizeof *f->passed);
+    f->folded = array_create(one * d * 2, sizeof *f->folded);
+    f->plane = array_create(mesh->face, sizeof *f->plane);
+    if (!f->before || !f->inverse || !f->coupling || !f->field || !f->passed || !f->folded ||
+        !f->plane)
+        return error_memory(err, (size_t)flat_bytes(mesh), "the flat block");
+    for (size_t level = 0; level <= mesh->layers; level++)
+        f->before[level + 1] = f->before[level] + waves_at(f, level);
+    return 0;
+}
+
+static int transforms_create(struct flat *f, struct error *err) {
+    const struct mesh *mesh = f->mesh;
+    int status = 0;
+    for (size_t k = 0; status == 0 && k <= mesh->layers; k++) {
+        const struct level *level = &mesh->level[k];
+        struct grid grid = {level->nx, level->ny, (double)level->nx,
+                            (double)level->ny * mesh->across};
+        struct transform **transform = &f->transform[zone_of(level)];
+        if (*transform == NULL)
+            status = transform_create(transform, &grid, level->nx / 2, level->ny / 2, err);
+    }
+    return status;
 }
 
 int flat_create(struct flat **out, const struct mesh *mesh, const struct solid *solid,
@@ -189,21 +359,11 @@ int flat_create(struct flat **out, const struct mesh *mesh, const struct solid *
     struct flat *f = array_create(1, sizeof *f);
     if (f == NULL)
         return error_memory(err, sizeof *f, "the flat block");
-    size_t d = (size_t)mesh->dimension, levels = mesh->layers + 1;
-    struct grid grid = {mesh->nx, mesh->ny, (double)mesh->nx, (double)mesh->ny * mesh->across};
     f->mesh = mesh;
-    f->d = d;
-    f->waves = (mesh->nx / 2 + 1) * mesh->ny;
-    f->inverse = array_create(levels * d * d * f->waves, sizeof *f->inverse);
-    f->coupling = array_create(levels * d * d * f->waves, sizeof *f->coupling);
-    f->field = array_create(levels * d * 2 * f->waves, sizeof *f->field);
-    f->plane = array_create(mesh->face, sizeof *f->plane);
-    int status = 0;
-    if (!f->inverse || !f->coupling || !f->field || !f->plane)
-        status = error_memory(err, levels * d * (2 * d + 2) * f->waves * sizeof(double),
-                              "the flat block");
+    f->d = (size_t)mesh->dimension;
+    int status = arrays_create(f, err);
     if (status == 0)
-        status = transform_create(&f->transform, &grid, mesh->nx / 2, mesh->ny / 2, err);
+        status = transforms_create(f, err);
     if (status == 0)
         status = eliminate_all(f, solid, err);
     if (status != 0)
@@ -216,40 +376,46 @@ void flat_destroy(struct flat **flat) {
     struct flat *f = *flat;
     if (f == NULL)
         return;
-    transform_destroy(&f->transform);
+    for (size_t zone = 0; zone < ZONES_MOST; zone++)
+        transform_destroy(&f->transform[zone]);
+    free(f->before);
     free(f->inverse);
     free(f->coupling);
     free(f->field);
+    free(f->passed);
+    free(f->folded);
     free(f->plane);
     free(f);
     *flat = NULL;
 }
 
 const double *flat_compliance(const struct flat *f) {
-    return inverse_at(f, 0) + (f->d * f->d - 1) * f->waves;
+    return inverse_at(f, 0) + (f->d * f->d - 1) * waves_at(f, 0);
 }
 
 /* --- waves in and out --- */
 
 /* A component's plane into the field. Its spectrum s stands for X and Y as -i s. */
 static void plane_in(struct flat *f, size_t level, size_t i) {
-    double *re = field_at(f, level, i), *im = re + f->waves;
-    transform_forward(f->transform, f->plane);
-    const double complex *s = transform_spectrum(f->transform);
+    size_t n = waves_at(f, level);
+    double *re = field_at(f, level, i), *im = re + n;
+    transform_forward(transform_at(f, level), f->plane);
+    const double complex *s = transform_spectrum(transform_at(f, level));
     bool vertical = i == f->d - 1;
-    for (size_t k = 0; k < f->waves; k++) {
+    for (size_t k = 0; k < n; k++) {
         re[k] = vertical ? creal(s[k]) : cimag(s[k]);
         im[k] = vertical ? cimag(s[k]) : -creal(s[k]);
     }
 }
 
 static void plane_out(struct flat *f, size_t level, size_t i) {
-    const double *re = field_at(f, level, i), *im = re + f->waves;
-    double complex *s = transform_spectrum(f->transform);
+    size_t n = waves_at(f, level);
+    const double *re = field_at(f, level, i), *im = re + n;
+    double complex *s = transform_spectrum(transform_at(f, level));
     bool vertical = i == f->d - 1;
-    for (size_t k = 0; k < f->waves; k++)
+    for (size_t k = 0; k < n; k++)
         s[k] = vertical ? re[k] + im[k] * I : -im[k] + re[k] * I;
-    transform_inverse(f->transform, f->plane);
+    transform_inverse(transform_at(f, level), f->plane);
 }
 
 /* y -= a x, a one real value a wave, x and y real and imaginary parts. */
@@ -280,12 +446,12 @@ WIDE_VECTORS static void pivot_three(size_t n, const double *a, double *x, doubl
         }
 }
 
-static void pivot_apply(struct flat *f, size_t level) {
+static void pivot_apply(struct flat *f, size_t level, double *field) {
+    size_t n = waves_at(f, level);
     if (f->d == 2)
-        pivot_two(f->waves, inverse_at(f, level), field_at(f, level, 0), field_at(f, level, 1));
+        pivot_two(n, inverse_at(f, level), field, field + 2 * n);
     else
-        pivot_three(f->waves, inverse_at(f, level), field_at(f, level, 0), field_at(f, level, 1),
-                    field_at(f, level, 2));
+        pivot_three(n, inverse_at(f, level), field, field + 2 * n, field + 4 * n);
 }
 
 void flat_load(struct flat *f, const double *forces) {
@@ -293,27 +459,35 @@ void flat_load(struct flat *f, const double *forces) {
     size_t d = f->d, last = mesh->layers;
     for (size_t level = 0; level <= last; level++)
         for (size_t i = 0; i < d; i++) {
-            for (size_t node = 0; node < mesh->face; node++)
-                f->plane[node] = forces[(level * mesh->face + node) * d + i];
+            const double *force = forces + mesh->level[level].first * d + i;
+            for (size_t node = 0; node < level_nodes(&mesh->level[level]); node++)
+                f->plane[node] = force[node * d];
             plane_in(f, level, i);
         }
     double *far_side = field_at(f, last, d - 1);
-    for (size_t k = 1; k < f->waves; k++)
-        far_side[k] = far_side[f->waves + k] = 0;
+    size_t wide = waves_at(f, last);
+    for (size_t k = 1; k < wide; k++)
+        far_side[k] = far_side[wide + k] = 0;
     for (size_t level = last; level > 0; level--) {
         /* Below, the field keeps the displacements under its own load alone. */
-        pivot_apply(f, level);
+        size_t n = waves_at(f, level - 1);
+        const double *field = field_at(f, level, 0);
+        pivot_apply(f, level, field_at(f, level, 0));
+        if (mesh_widens(mesh, level - 1)) {
+            unfold(f, level);
+            field = f->passed;
+        }
         for (size_t i = 0; i < d; i++)
             for (size_t j = 0; j < d; j++)
-                subtract(f->waves, coupling_at(f, level - 1) + (i * d + j) * f->waves,
-                         field_at(f, level, j), field_at(f, level - 1, i));
+                subtract(n, coupling_at(f, level - 1) + (i * d + j) * n, field + 2 * j * n,
+                         field_at(f, level - 1, i));
     }
 }
 
 /* Z of pivot times forces of the face; flat_displace still needs these. */
 void flat_face(struct flat *f, double *vertical) {
-    size_t n = f->waves, d = f->d;
-    double complex *s = transform_spectrum(f->transform);
+    size_t n = waves_at(f, 0), d = f->d;
+    double complex *s = transform_spectrum(f->transform[0]);
     for (size_t k = 0; k < n; k++)
         s[k] = 0;
     for (size_t j = 0; j < d; j++) {
@@ -321,7 +495,7 @@ void flat_face(struct flat *f, double *vertical) {
         for (size_t k = 0; k < n; k++)
             s[k] += a[k] * x[k] + a[k] * x[n + k] * I;
     }
-    transform_inverse(f->transform, vertical);
+    transform_inverse(f->transform[0], vertical);
 }
 
 /* The next level's displacements less pivot times coupling^T times this level's. */
@@ -349,24 +523,52 @@ WIDE_VECTORS static void descend_three(size_t n, const double *pivot, const doub
     descend(3, n, pivot, coupling, above, below);
 }
 
+/* passed = coupling^T times a level's displacements. */
+WIDE_VECTORS static void pull(size_t d, size_t n, const double *coupling, const double *above,
+                              double *passed) {
+    memset(passed, 0, 2 * d * n * sizeof *passed);
+    for (size_t j = 0; j < d; j++)
+        for (size_t i = 0; i < d; i++)
+            for (size_t part = 0; part < 2; part++)
+                for (size_t k = 0; k < n; k++)
+                    passed[(2 * j + part) * n + k] +=
+                        coupling[(i * d + j) * n + k] * above[(2 * i + part) * n + k];
+}
+
+/* The next level's displacements, on wider columns. */
+static void descend_wider(struct flat *f, size_t level) {
+    size_t n = 2 * f->d * waves_at(f, level + 1);
+    double share = share_of(f->mesh, level), *below = field_at(f, level + 1, 0);
+    pull(f->d, waves_at(f, level), coupling_at(f, level), field_at(f, level, 0), f->passed);
+    fold(f, level + 1);
+    pivot_apply(f, level + 1, f->folded);
+    for (size_t k = 0; k < n; k++)
+        below[k] -= share * f->folded[k];
+}
+
 void flat_displace(struct flat *f, const double *vertical, double *displacements) {
     const struct mesh *mesh = f->mesh;
-    size_t d = f->d, n = f->waves;
+    size_t d = f->d, n = waves_at(f, 0);
     double *re = field_at(f, 0, d - 1);
-    transform_forward(f->transform, vertical);
-    const double complex *s = transform_spectrum(f->transform);
+    transform_forward(f->transform[0], vertical);
+    const double complex *s = transform_spectrum(f->transform[0]);
     for (size_t k = 0; k < n; k++) {
         re[k] += creal(s[k]);
         re[n + k] += cimag(s[k]);
     }
-    pivot_apply(f, 0);
+    pivot_apply(f, 0, field_at(f, 0, 0));
     for (size_t level = 0; level < mesh->layers; level++)
-        (d == 2 ? descend_two : descend_three)(n, inverse_at(f, level + 1), coupling_at(f, level),
-                                               field_at(f, level, 0), field_at(f, level + 1, 0));
+        if (mesh_widens(mesh, level))
+            descend_wider(f, level);
+        else
+            (d == 2 ? descend_two : descend_three)(waves_at(f, level), inverse_at(f, level + 1),
+                                                   coupling_at(f, level), field_at(f, level, 0),
+                                                   field_at(f, level + 1, 0));
     for (size_t level = 0; level <= mesh->layers; level++)
         for (size_t i = 0; i < d; i++) {
+            double *displacement = displacements + mesh->level[level].first * d + i;
             plane_out(f, level, i);
-            for (size_t node = 0; node < mesh->face; node++)
-                displacements[(level * mesh->face + node) * d + i] = f->plane[node];
+            for (size_t node = 0; node < level_nodes(&mesh->level[level]); node++)
+                displacement[node * d] = f->plane[node];
         }
 }

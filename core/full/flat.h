@@ -2,7 +2,9 @@
  *
  * Equal columns make the stiffness fall apart into a block-tridiagonal system in depth a wave
  * vector (as in core/contact/layered.c, which keeps the face alone). With sideways displacements i
- * X and i Y it is real; it is eliminated from the far side up, once. The far side has one vertical
+ * X and i Y it is real; it is eliminated from the far side up, once. Where columns widen, waves and
+ * their aliases meet: there the inverse is approximate in what short waves do so deep, and exact to
+ * exp(-pi depth) (depth in columns) for forces on the face. The far side has one vertical
  * displacement; sideways, and vertically where nothing is in contact, the block floats: the mean
  * of its far side, and of its face, is left 0. */
 #ifndef RUGO_CORE_FULL_FLAT_H
@@ -16,6 +18,7 @@ struct flat;
 int flat_create(struct flat **out, const struct mesh *mesh, const struct solid *solid,
                 struct error *err);
 void flat_destroy(struct flat **flat);
+double flat_bytes(const struct mesh *mesh);
 
 /* Vertical displacement of the face over force a node, a value a wave in the layout of transform.h;
  * 0 for the mean. Borrowed. */

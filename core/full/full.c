@@ -6,6 +6,7 @@
 #include <string.h>
 
 const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
+                                           .transition = 6,
                                            .tolerance = 1e-9,
                                            .max_iterations = 60,
                                            .least_step = 1.0 / 64};
@@ -69,7 +70,7 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
     loose.tolerance = 1e-5;
     f->grid = *grid;
     f->options = *options;
-    status = mesh_create(&f->mesh, grid, block, err);
+    status = mesh_create(&f->mesh, grid, block, options->transition, err);
     if (status == 0)
         status = compliance_create(&f->compliance, grid, &linear, err);
     if (status == 0)
@@ -108,16 +109,27 @@ void full_destroy(struct full **full) {
     *full = NULL;
 }
 
-double full_bytes(const struct grid *grid, const struct block *block) {
+size_t full_freedoms(const struct grid *grid, const struct block *block,
+                     const struct full_options *options) {
     struct mesh *mesh = NULL;
-    if (mesh_create(&mesh, grid, block, NULL) != 0)
+    struct error ignored;
+    if (mesh_create(&mesh, grid, block, options->transition, &ignored) != 0)
+        return 0;
+    size_t freedoms = mesh_freedoms(mesh);
+    mesh_destroy(&mesh);
+    return freedoms;
+}
+
+double full_bytes(const struct grid *grid, const struct block *block,
+                  const struct full_options *options) {
+    struct mesh *mesh = NULL;
+    if (mesh_create(&mesh, grid, block, options->transition, NULL) != 0)
         return NAN;
     enum { VECTORS = 7, FACES = 6 }; /* newton.h and this file: mesh_freedoms, face */
-    double d = mesh->dimension, freedoms = (double)mesh_freedoms(mesh);
-    double stencil = d * pow(3, d) * freedoms;
-    double bytes = sizeof(double) * (stencil + VECTORS * freedoms + FACES * (double)mesh->face +
-                                     (double)mesh->nodes) +
-                   krylov_bytes(mesh) + contact_bytes(grid) + compliance_bytes(grid, block);
+    double bytes = sizeof(double) * (VECTORS * (double)mesh_freedoms(mesh) +
+                                     FACES * (double)mesh->face + (double)mesh->nodes) +
+                   stencil_bytes(mesh) + krylov_bytes(mesh) + contact_bytes(grid) +
+                   compliance_bytes(grid, block);
     mesh_destroy(&mesh);
     return bytes;
 }
@@ -244,11 +256,12 @@ static double sideways(const struct full *f, size_t node, size_t axis) {
  * of its diagonals. */
 static double cell_stretch(const struct full *f, size_t j, size_t i) {
     const struct mesh *m = f->mesh;
-    size_t right = (i + 1) % m->nx, back = (j + 1) % m->ny;
-    size_t a = j * m->nx + i, b = j * m->nx + right;
+    size_t nx = m->level[0].nx, ny = m->level[0].ny;
+    size_t right = (i + 1) % nx, back = (j + 1) % ny;
+    size_t a = j * nx + i, b = j * nx + right;
     if (m->dimension == 2)
         return 1 + sideways(f, b, 0) - sideways(f, a, 0);
-    size_t c = back * m->nx + i, e = back * m->nx + right;
+    size_t c = back * nx + i, e = back * nx + right;
     double x1 = 1 + sideways(f, e, 0) - sideways(f, a, 0);
     double y1 = m->across + sideways(f, e, 1) - sideways(f, a, 1);
     double x2 = -1 + sideways(f, c, 0) - sideways(f, b, 0);
@@ -262,13 +275,13 @@ static double contact_stretch(const struct full *f) {
     const struct mesh *m = f->mesh;
     const bool *active = f->newton.active;
     struct sum now = {0};
-    size_t corners = 0;
-    for (size_t j = 0; j < m->ny; j++)
-        for (size_t i = 0; i < m->nx; i++) {
-            size_t right = (i + 1) % m->nx, back = (j + 1) % m->ny;
-            int touching = active[j * m->nx + i] + active[j * m->nx + right];
+    size_t corners = 0, nx = m->level[0].nx, ny = m->level[0].ny;
+    for (size_t j = 0; j < ny; j++)
+        for (size_t i = 0; i < nx; i++) {
+            size_t right = (i + 1) % nx, back = (j + 1) % ny;
+            int touching = active[j * nx + i] + active[j * nx + right];
             if (m->dimension == 3)
-                touching += active[back * m->nx + i] + active[back * m->nx + right];
+                touching += active[back * nx + i] + active[back * nx + right];
             corners += (size_t)touching;
             sum_add(&now, touching * cell_stretch(f, j, i));
         }

@@ -16,6 +16,7 @@
 struct full_options {
     enum kinematics kinematics;
     enum equation_solver solver;
+    double transition;     /* of the columns (mesh.h) */
     double tolerance;      /* largest out-of-balance force over the largest contact force */
     size_t max_iterations; /* Newton's, a load step */
     double least_step;     /* of the pressure asked less that before: smaller ones are failure */
@@ -48,10 +49,14 @@ struct full;
 int full_create(struct full **out, const struct grid *grid, const struct block *block,
                 const struct full_options *options, struct error *err);
 void full_destroy(struct full **full);
+/* Of the mesh; 0 where there is none for the block. */
+size_t full_freedoms(const struct grid *grid, const struct block *block,
+                     const struct full_options *options);
 /* Memory of a solver whose equations are iterated; NaN where there is no mesh for the block. A
  * factorisation, where one is needed, takes some 10 times as much in addition on a surface, 3 times
  * in a profile. */
-double full_bytes(const struct grid *grid, const struct block *block);
+double full_bytes(const struct grid *grid, const struct block *block,
+                  const struct full_options *options);
 
 /* Meshes the block of a surface (copies; any height of its mean), lifted off. ERROR_INPUT for a
  * surface that is not finite or too steep. */

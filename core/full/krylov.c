@@ -70,11 +70,9 @@ void krylov_destroy(struct krylov **krylov) {
 }
 
 double krylov_bytes(const struct mesh *mesh) {
-    double d = mesh->dimension, levels = (double)mesh->layers + 1;
-    double waves = ((double)mesh->nx / 2 + 1) * (double)mesh->ny;
-    double flat = levels * waves * (2 * d * d + 2 * d);
-    return sizeof(double) * ((2 * BASIS + 3) * (double)mesh_freedoms(mesh) + flat +
-                             8 * (double)mesh->face + 8 * waves);
+    double waves = (double)((mesh->level[0].nx / 2 + 1) * mesh->level[0].ny);
+    return flat_bytes(mesh) + sizeof(double) * ((2 * BASIS + 3) * (double)mesh_freedoms(mesh) +
+                                                7 * (double)mesh->face + 5 * waves);
 }
 
 void krylov_weigh(const struct krylov *k, const double *in, double *out) {
@@ -113,16 +111,16 @@ static void scale(size_t n, double factor, double *x) {
 static void operate(struct krylov *k, const struct equations *equations, const double *x,
                     double *y) {
     const struct mesh *mesh = k->mesh;
-    size_t far_side = mesh->layers * mesh->face;
+    size_t far_side = mesh_far_side(mesh);
     double sum = 0;
     stencil_apply(equations->tangent, x, y);
-    for (size_t node = 0; node < mesh->face; node++) {
-        size_t vertical = mesh_vertical(mesh, far_side + node);
-        sum += y[vertical];
-        y[vertical] = 0;
-        k->face[node] = x[mesh_vertical(mesh, node)];
+    for (size_t node = far_side; node < mesh->nodes; node++) {
+        sum += y[mesh_vertical(mesh, node)];
+        y[mesh_vertical(mesh, node)] = 0;
     }
     y[mesh_vertical(mesh, far_side)] = sum;
+    for (size_t node = 0; node < mesh->face; node++)
+        k->face[node] = x[mesh_vertical(mesh, node)];
     support_weigh(&k->support, k->face, k->face);
     for (size_t node = 0; node < mesh->face; node++)
         if (equations->active[node])
@@ -237,7 +235,7 @@ static int cycle(struct krylov *k, const struct equations *equations, double goa
 
 /* The block floats sideways: its far side's first node goes back to its place. */
 static void hold(const struct krylov *k, double *x) {
-    size_t d = (size_t)k->mesh->dimension, held = k->mesh->layers * k->mesh->face * d;
+    size_t d = (size_t)k->mesh->dimension, held = mesh_far_side(k->mesh) * d;
     for (size_t axis = 0; axis + 1 < d; axis++) {
         double drift = x[held + axis];
         for (size_t node = 0; node < k->mesh->nodes; node++)

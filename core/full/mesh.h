@@ -1,49 +1,84 @@
 /* The mesh of a rough block: a column of elements a grid cell, layers that grow with depth as the
- * layered model's (block_layers), the lower face on the surface. Sides are periodic: a node stands
- * for all its images.
+ * layered model's (block_layers), the lower face on the surface. Deeper down, where short waves
+ * have died out, columns are twice as wide, and twice again: an element above such a level has the
+ * wide column's nodes on its lower side and its corners on the lines between them, so that
+ * displacements stay continuous (hanging nodes). Sides are periodic: a node stands for all its
+ * images.
  *
- * Lengths in steps along x (dx = 1). Node level*face + j*nx + i, level 0 on the face; its vertical
- * position is depth[level] - z * factor, the factor falling smoothly from 1 to 0 over the fine
- * zone: 40 RMS heights as the reference's, where the block is high enough. */
+ * Lengths in steps along x (dx = 1). Node level.first + j*level.nx + i, level 0 on the face; its
+ * vertical position is level.depth - z * factor, the factor falling smoothly from 1 to 0 over the
+ * fine zone: 40 RMS heights as the reference's, where the block is high enough. */
 #ifndef RUGO_CORE_FULL_MESH_H
 #define RUGO_CORE_FULL_MESH_H
 
 #include "core/contact/compliance.h"
 
-struct mesh {
-    int dimension; /* 2: profiles */
-    size_t nx, ny; /* columns */
-    size_t face;   /* nodes a level: nx*ny */
-    size_t layers; /* levels less 1 */
-    size_t nodes;
-    double across;  /* dy/dx; 1 in profiles */
-    double unit;    /* dx, the grid's length */
-    double *depth;  /* owned: layers + 1 levels of the flat mesh */
-    double *height; /* owned: nodes, reference positions upward from the mean face */
-    double slope;   /* steepest edge of the face */
-    double quality; /* of the worst element (element_quality) */
+struct level {
+    size_t nx, ny; /* nodes, and columns of the layer below */
+    size_t width;  /* of its columns: 1, 2, 4, ... steps */
+    size_t first;  /* node */
+    double depth;  /* of the flat mesh */
 };
 
-/* A flat face. ERROR_INPUT for a grid or block out of range (compliance.h); ERROR_MEMORY. */
+struct mesh {
+    int dimension; /* 2: profiles */
+    size_t face;   /* nodes of level 0: nx*ny */
+    size_t layers; /* levels less 1 */
+    size_t nodes, elements;
+    double across;       /* dy/dx; 1 in profiles */
+    double unit;         /* dx, the grid's length */
+    struct level *level; /* owned: layers + 1 */
+    double *height;      /* owned: nodes, reference positions upward from the mean face */
+    double slope;        /* steepest edge of the face */
+    double quality;      /* of the worst element (element_quality) */
+};
+
+/* A flat face. transition: depth, in their widths, from which columns are twice as wide, as long as
+ * their numbers are even and at least 4 are left; INFINITY: all are equal. ERROR_INPUT for a grid
+ * or block out of range (compliance.h) or a transition below 1; ERROR_MEMORY. */
 int mesh_create(struct mesh **out, const struct grid *grid, const struct block *block,
-                struct error *err);
+                double transition, struct error *err);
 void mesh_destroy(struct mesh **mesh);
 /* Puts the face on a surface of mean 0, z[face] in steps. ERROR_INPUT for one too steep or too high
  * for the block; the mesh is of no use then until the next call. */
 int mesh_shape(struct mesh *mesh, const double *z, struct error *err);
 
-/* Node a (element.h) of the element over column cell of the layer; side 1 of the last axis is the
- * deeper one. */
-size_t mesh_node(const struct mesh *mesh, size_t layer, size_t j, size_t i, int a);
-/* Reference positions of its nodes, from its own corner sideways. */
-void mesh_position(const struct mesh *mesh, size_t layer, size_t j, size_t i,
+/* Whether the level below the layer has wider columns. */
+static inline bool mesh_widens(const struct mesh *mesh, size_t layer) {
+    return mesh->level[layer].width != mesh->level[layer + 1].width;
+}
+
+/* Element over column (j, i) of a layer's upper level. */
+struct mesh_element {
+    /* Node a as in element.h, side 1 of the last axis the deeper one; where the columns below are
+     * wider, the deeper ones are those of the whole wide column. */
+    size_t node[8];
+    bool hangs;          /* so that the deeper corners lie between them: */
+    double weight[4][4]; /* of deeper node b in deeper corner a */
+    double side[3];      /* lengths of the columns along x and y */
+};
+void mesh_element(const struct mesh *mesh, size_t layer, size_t j, size_t i,
+                  struct mesh_element *out);
+/* A nodal field's values at the element's corners: field[node*components + k]. */
+void mesh_corners(const struct mesh *mesh, const struct mesh_element *element, const double *field,
+                  size_t components, double out[8][3]);
+/* Reference positions of the corners, from the element's own first one sideways. */
+void mesh_position(const struct mesh *mesh, const struct mesh_element *element,
                    double position[8][3]);
+
 static inline size_t mesh_freedoms(const struct mesh *mesh) {
     return mesh->nodes * (size_t)mesh->dimension;
 }
 /* Freedom of a node's vertical displacement. */
 static inline size_t mesh_vertical(const struct mesh *mesh, size_t node) {
     return (node + 1) * (size_t)mesh->dimension - 1;
+}
+/* First node of the far side: it and all behind it. */
+static inline size_t mesh_far_side(const struct mesh *mesh) {
+    return mesh->level[mesh->layers].first;
+}
+static inline size_t level_nodes(const struct level *level) {
+    return level->nx * level->ny;
 }
 
 #endif

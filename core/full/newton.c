@@ -158,18 +158,19 @@ static bool memory_meets(struct memory *memory, uint64_t hash) {
  * at its first node. Returns the largest over all. */
 static double residual(const struct newton *n, double pressure, double *out) {
     const struct mesh *mesh = n->mesh;
-    size_t far_side = mesh->layers * mesh->face;
+    size_t far_side = mesh_far_side(mesh);
     double largest = 0;
     struct sum far_force = {0};
     for (size_t f = 0; f < mesh_freedoms(mesh); f++)
         out[f] = -n->force[f];
-    for (size_t node = 0; node < mesh->face; node++) {
-        size_t vertical = mesh_vertical(mesh, far_side + node);
-        sum_add(&far_force, out[vertical] - pressure * newton_node_area(n));
-        out[vertical] = 0;
+    sum_add(&far_force, -pressure * newton_node_area(n) * (double)mesh->face);
+    for (size_t node = far_side; node < mesh->nodes; node++) {
+        sum_add(&far_force, out[mesh_vertical(mesh, node)]);
+        out[mesh_vertical(mesh, node)] = 0;
+    }
+    for (size_t node = 0; node < mesh->face; node++)
         if (n->active[node])
             out[mesh_vertical(mesh, node)] = 0;
-    }
     out[mesh_vertical(mesh, far_side)] = sum_value(&far_force);
     for (size_t f = 0; f < mesh_freedoms(mesh); f++)
         largest = fmax(largest, fabs(out[f]));
@@ -195,7 +196,7 @@ static bool evaluate(struct newton *n) {
 
 /* Potential energy of the block and the load. */
 static double potential(const struct newton *n, double pressure) {
-    size_t far_side = n->mesh->layers * n->mesh->face;
+    size_t far_side = mesh_far_side(n->mesh);
     return n->energy + pressure * newton_node_area(n) * (double)n->mesh->face *
                            n->u[mesh_vertical(n->mesh, far_side)];
 }
@@ -352,8 +353,7 @@ int newton_compliance(struct newton *n, double *out, struct error *err) {
     const struct mesh *mesh = n->mesh;
     struct newton_end ignored = {0};
     memset(n->change, 0, mesh_freedoms(mesh) * sizeof *n->change);
-    n->change[mesh_vertical(mesh, mesh->layers * mesh->face)] =
-        -newton_node_area(n) * (double)mesh->face;
+    n->change[mesh_vertical(mesh, mesh_far_side(mesh))] = -newton_node_area(n) * (double)mesh->face;
     int status = solve_linear(n, LINEAR_STIFFNESS, &ignored, err);
     struct sum gap = {0};
     for (size_t node = 0; status == 0 && node < mesh->face; node++)

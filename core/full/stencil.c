@@ -1,5 +1,6 @@
 #include "core/full/stencil.h"
 #include "core/sum.h"
+#include "core/vectors.h"
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,12 +8,11 @@
 #define INLINE static inline __attribute__((always_inline))
 
 static size_t slot_count(const struct mesh *mesh) {
-    return mesh->dimension == 2 ? 9 : 27;
+    return mesh->dimension == 2 ? 6 : 18;
 }
 
-static size_t value_count(const struct stencil *stencil) {
-    size_t d = (size_t)stencil->mesh->dimension;
-    return stencil->mesh->nodes * stencil->slots * d * d;
+static size_t value_count(const struct mesh *mesh) {
+    return mesh_freedoms(mesh) * slot_count(mesh) * (size_t)mesh->dimension;
 }
 
 int stencil_create(struct stencil **out, const struct mesh *mesh, struct error *err) {
@@ -22,11 +22,10 @@ int stencil_create(struct stencil **out, const struct mesh *mesh, struct error *
         return error_memory(err, sizeof *stencil, "a stiffness matrix");
     stencil->mesh = mesh;
     stencil->slots = slot_count(mesh);
-    size_t count = value_count(stencil);
-    stencil->values = array_create(count, sizeof *stencil->values);
+    stencil->values = array_create(value_count(mesh), sizeof *stencil->values);
     if (stencil->values == NULL) {
         stencil_destroy(&stencil);
-        return error_memory(err, count * sizeof(double), "a stiffness matrix");
+        return error_memory(err, value_count(mesh) * sizeof(double), "a stiffness matrix");
     }
     *out = stencil;
     return 0;
@@ -40,109 +39,186 @@ void stencil_destroy(struct stencil **stencil) {
     *stencil = NULL;
 }
 
-/* Slots count one step back, none, one on: x fastest, the level slowest. */
-size_t stencil_neighbour(const struct mesh *mesh, size_t node, size_t slot) {
-    size_t level = node / mesh->face, j = node % mesh->face / mesh->nx, i = node % mesh->nx;
-    size_t up = mesh->dimension == 2 ? slot / 3 : slot / 9;
-    size_t row = mesh->dimension == 2 ? 0 : (j + mesh->ny + slot / 3 % 3 - 1) % mesh->ny;
-    if (level + up < 1 || level + up - 1 > mesh->layers)
-        return SIZE_MAX;
-    size_t column = (i + mesh->nx + slot % 3 - 1) % mesh->nx;
-    return (level + up - 1) * mesh->face + row * mesh->nx + column;
+double stencil_bytes(const struct mesh *mesh) {
+    return (double)value_count(mesh) * sizeof(double);
 }
 
-/* Slot of element node b as seen from its node a. */
-INLINE size_t slot_between(int d, int a, int b) {
-    int slot = 0, power = 1;
-    for (int k = 0; k < d; k++) {
-        slot += ((b >> k & 1) - (a >> k & 1) + 1) * power;
-        power *= 3;
-    }
-    return (size_t)slot;
+/* One step back, none and one on, x fastest, from row j, column i of a level. */
+INLINE void neighbours_of(int d, const struct level *level, size_t j, size_t i, size_t *out) {
+    const size_t column[3] = {i == 0 ? level->nx - 1 : i - 1, i, i + 1 == level->nx ? 0 : i + 1};
+    const size_t row[3] = {j == 0 ? level->ny - 1 : j - 1, j, j + 1 == level->ny ? 0 : j + 1};
+    for (size_t r = d == 2; r < (d == 2 ? 2 : 3); r++)
+        for (size_t c = 0; c < 3; c++)
+            *out++ = level->first + row[r] * level->nx + column[c];
 }
 
-INLINE void apply(size_t d, const struct stencil *stencil, const double *x, double *y) {
-    const struct mesh *mesh = stencil->mesh;
-    for (size_t node = 0; node < mesh->nodes; node++) {
-        double sum[3] = {0};
-        const double *value = stencil->values + node * stencil->slots * d * d;
-        for (size_t slot = 0; slot < stencil->slots; slot++, value += d * d) {
-            size_t other = stencil_neighbour(mesh, node, slot);
-            if (other == SIZE_MAX)
-                continue;
-            for (size_t i = 0; i < d; i++)
-                for (size_t j = 0; j < d; j++)
-                    sum[i] += value[i * d + j] * x[other * d + j];
-        }
+/* Below a node between two wide columns, the last slot in that direction counts as the first would:
+ * it is empty. */
+INLINE void neighbours(int d, const struct mesh *mesh, size_t level, size_t j, size_t i,
+                       size_t *out) {
+    const size_t half = d == 2 ? 3 : 9;
+    const struct level *upper = &mesh->level[level];
+    neighbours_of(d, upper, j, i, out);
+    if (level < mesh->layers) {
+        size_t wide = upper[1].width / upper->width;
+        neighbours_of(d, upper + 1, j / wide, i / wide, out + half);
+    } else
+        for (size_t slot = half; slot < 2 * half; slot++)
+            out[slot] = SIZE_MAX;
+}
+
+void stencil_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t i,
+                        size_t neighbour[STENCIL_MOST]) {
+    neighbours(mesh->dimension, mesh, level, j, i, neighbour);
+}
+
+/* y += value x[other] and, for neighbours below, their share of x[node]. */
+INLINE void apply_node(size_t d, size_t slots, const double *value, const size_t *neighbour,
+                       size_t node, const double *x, double *y) {
+    double sum[3] = {0}, here[3];
+    for (size_t i = 0; i < d; i++)
+        here[i] = x[node * d + i];
+    for (size_t slot = 0; slot < slots && neighbour[slot] != SIZE_MAX; slot++, value += d * d) {
+        const double *there = x + neighbour[slot] * d;
         for (size_t i = 0; i < d; i++)
-            y[node * d + i] = sum[i];
+            for (size_t j = 0; j < d; j++)
+                sum[i] += value[i * d + j] * there[j];
+        for (size_t j = 0; slot >= slots / 2 && j < d; j++)
+            for (size_t i = 0; i < d; i++)
+                y[neighbour[slot] * d + j] += value[i * d + j] * here[i];
     }
+    for (size_t i = 0; i < d; i++)
+        y[node * d + i] += sum[i];
 }
 
-void stencil_apply(const struct stencil *stencil, const double *x, double *y) {
+INLINE void apply(int d, const struct stencil *stencil, const double *x, double *y) {
+    const struct mesh *mesh = stencil->mesh;
+    const size_t slots = d == 2 ? 6 : 18, n = (size_t)d;
+    size_t neighbour[STENCIL_MOST], node = 0;
+    memset(y, 0, mesh_freedoms(mesh) * sizeof *y);
+    for (size_t level = 0; level <= mesh->layers; level++)
+        for (size_t j = 0; j < mesh->level[level].ny; j++)
+            for (size_t i = 0; i < mesh->level[level].nx; i++, node++) {
+                neighbours(d, mesh, level, j, i, neighbour);
+                apply_node(n, slots, stencil->values + node * slots * n * n, neighbour, node, x, y);
+            }
+}
+
+WIDE_VECTORS void stencil_apply(const struct stencil *stencil, const double *x, double *y) {
     if (stencil->mesh->dimension == 2)
         apply(2, stencil, x, y);
     else
         apply(3, stencil, x, y);
 }
 
-/* What an element gives. */
+/* --- assembly --- */
+
+/* What an element gives, by its corners. */
 struct contribution {
     double energy, force[ELEMENT_FREEDOMS], stiffness[ELEMENT_FREEDOMS][ELEMENT_FREEDOMS];
 };
 
-INLINE void scatter(int d, const size_t node[8], struct contribution *c, double *force,
+/* From its deeper corners to the nodes that they hang on, rows or columns alike: out_b = sum over a
+ * of weight_ab in_a, for values a step apart. */
+static void pass_on(size_t d, size_t sideways, const struct mesh_element *element, double *value,
+                    size_t step) {
+    for (size_t i = 0; i < d; i++) {
+        double corner[4];
+        double *lower = value + (sideways * d + i) * step;
+        for (size_t a = 0; a < sideways; a++)
+            corner[a] = lower[a * d * step];
+        for (size_t b = 0; b < sideways; b++) {
+            lower[b * d * step] = 0;
+            for (size_t a = 0; a < sideways; a++)
+                lower[b * d * step] += element->weight[a][b] * corner[a];
+        }
+    }
+}
+
+static void untie(size_t d, const struct mesh_element *element, struct contribution *c,
+                  bool stiffness) {
+    size_t sideways = (size_t)1 << (d - 1), freedoms = 2 * sideways * d;
+    pass_on(d, sideways, element, c->force, 1);
+    for (size_t f = 0; stiffness && f < freedoms; f++)
+        pass_on(d, sideways, element, c->stiffness[f], 1);
+    for (size_t f = 0; stiffness && f < freedoms; f++)
+        pass_on(d, sideways, element, &c->stiffness[0][f], ELEMENT_FREEDOMS);
+}
+
+/* Slot of element node b as seen from its node a, b not above it: steps sideways count in the
+ * columns of b's level. Within a wide column, a node of the level above stands for its first one
+ * unless it is the second column's second side. */
+INLINE size_t slot_between(int d, int a, int b, int parity) {
+    bool across = (a ^ b) >> (d - 1) & 1;
+    int slot = 0, power = 1;
+    for (int k = 0; k < d - 1; k++) {
+        int from = a >> k & 1 & (across ? parity >> k : 1);
+        slot += ((b >> k & 1) - from + 1) * power;
+        power *= 3;
+    }
+    return (size_t)(slot + (across ? power : 0));
+}
+
+/* parity: bit k tells whether the element is the second one of a wide column along axis k; all set
+ * where it has its own. */
+INLINE void scatter(int d, const size_t node[8], int parity, struct contribution *c, double *force,
                     struct stencil *tangent) {
-    size_t n = (size_t)d;
+    const size_t n = (size_t)d, slots = d == 2 ? 6 : 18;
     for (int a = 0; a < 1 << d; a++)
         for (size_t i = 0; i < n; i++)
             force[node[a] * n + i] += c->force[(size_t)a * n + i];
     if (tangent == NULL)
         return;
     for (int a = 0; a < 1 << d; a++)
-        for (int b = 0; b < 1 << d; b++) {
+        for (int b = a >> (d - 1) << (d - 1); b < 1 << d; b++) {
             double *value =
-                tangent->values + (node[a] * tangent->slots + slot_between(d, a, b)) * n * n;
+                tangent->values + (node[a] * slots + slot_between(d, a, b, parity)) * n * n;
             for (size_t i = 0; i < n; i++)
                 for (size_t j = 0; j < n; j++)
                     value[i * n + j] += c->stiffness[(size_t)a * n + i][(size_t)b * n + j];
         }
 }
 
-INLINE bool evaluate(int d, const struct mesh *mesh, const struct solid *solid, const double *u,
-                     double *energy, double *force, struct stencil *tangent) {
-    struct sum total = {0};
+INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct solid *solid, size_t layer,
+                           const double *u, struct sum *energy, double *force,
+                           struct stencil *tangent) {
+    struct mesh_element element;
     struct element_shape shape;
     struct contribution c;
     double position[8][3], moved[8][3];
-    size_t node[8];
-    for (size_t layer = 0; layer < mesh->layers; layer++)
-        for (size_t j = 0; j < mesh->ny; j++)
-            for (size_t i = 0; i < mesh->nx; i++) {
-                mesh_position(mesh, layer, j, i, position);
-                for (int a = 0; a < 1 << d; a++) {
-                    node[a] = mesh_node(mesh, layer, j, i, a);
-                    for (int k = 0; k < d; k++)
-                        moved[a][k] = u[node[a] * (size_t)d + (size_t)k];
-                }
-                if (!element_shape_make(d, position, &shape) ||
-                    !element_evaluate(d, solid, &shape, moved, energy ? &c.energy : NULL, c.force,
-                                      tangent ? c.stiffness : NULL))
-                    return false;
-                if (energy != NULL)
-                    sum_add(&total, c.energy);
-                scatter(d, node, &c, force, tangent);
-            }
-    if (energy != NULL)
-        *energy = sum_value(&total);
+    bool widens = mesh_widens(mesh, layer);
+    for (size_t j = 0; j < mesh->level[layer].ny; j++)
+        for (size_t i = 0; i < mesh->level[layer].nx; i++) {
+            mesh_element(mesh, layer, j, i, &element);
+            mesh_position(mesh, &element, position);
+            mesh_corners(mesh, &element, u, (size_t)d, moved);
+            if (!element_shape_make(d, position, &shape) ||
+                !element_evaluate(d, solid, &shape, moved, energy ? &c.energy : NULL, c.force,
+                                  tangent ? c.stiffness : NULL))
+                return false;
+            if (energy != NULL)
+                sum_add(energy, c.energy);
+            if (widens)
+                untie((size_t)d, &element, &c, tangent != NULL);
+            int parity = widens ? (int)(i % 2 + j % 2 * 2) : 3;
+            scatter(d, element.node, parity, &c, force, tangent);
+        }
     return true;
 }
 
 bool stencil_evaluate(const struct mesh *mesh, const struct solid *solid, const double *u,
                       double *energy, double *force, struct stencil *tangent) {
+    struct sum total = {0};
+    bool made = true;
     memset(force, 0, mesh_freedoms(mesh) * sizeof *force);
     if (tangent != NULL)
-        memset(tangent->values, 0, value_count(tangent) * sizeof *tangent->values);
-    return mesh->dimension == 2 ? evaluate(2, mesh, solid, u, energy, force, tangent)
-                                : evaluate(3, mesh, solid, u, energy, force, tangent);
+        memset(tangent->values, 0, value_count(mesh) * sizeof *tangent->values);
+    for (size_t layer = 0; made && layer < mesh->layers; layer++) {
+        struct sum *sum = energy != NULL ? &total : NULL;
+        made = mesh->dimension == 2 ? evaluate_layer(2, mesh, solid, layer, u, sum, force, tangent)
+                                    : evaluate_layer(3, mesh, solid, layer, u, sum, force, tangent);
+    }
+    if (energy != NULL)
+        *energy = sum_value(&total);
+    return made;
 }

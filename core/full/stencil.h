@@ -1,24 +1,29 @@
 /* Forces and tangent stiffness of a whole mesh. A node has neighbours only one step away in each
- * direction, so that the matrix is a stencil: no indices are stored. */
+ * direction, so that the matrix is a stencil: no indices are stored. It is symmetric; what a node
+ * feels of the level above is kept there. */
 #ifndef RUGO_CORE_FULL_STENCIL_H
 #define RUGO_CORE_FULL_STENCIL_H
 
 #include "core/full/element.h"
 #include "core/full/mesh.h"
 
+enum { STENCIL_MOST = 18 };
+
 /* values[((node*slots + slot)*d + i)*d + j]: force i of the node by displacement j of its
- * neighbour in the slot. Far side and held node are not treated yet (solver.h). */
+ * neighbour in the slot. Far side and held node are not treated yet (krylov.h, factor.h). */
 struct stencil {
     const struct mesh *mesh; /* borrowed */
-    size_t slots;            /* 3^dimension */
+    size_t slots;            /* 2 * 3^(dimension - 1): of its own level, then of the next */
     double *values;          /* owned */
 };
 
 int stencil_create(struct stencil **out, const struct mesh *mesh, struct error *err);
 void stencil_destroy(struct stencil **stencil);
+double stencil_bytes(const struct mesh *mesh);
 
-/* Neighbour of a node in a slot, or SIZE_MAX beyond the face or the far side. */
-size_t stencil_neighbour(const struct mesh *mesh, size_t node, size_t slot);
+/* Neighbours, by slot, of the node of a level in row j, column i; SIZE_MAX beyond the far side. */
+void stencil_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t i,
+                        size_t neighbour[STENCIL_MOST]);
 /* y = K x, both mesh_freedoms. */
 void stencil_apply(const struct stencil *stencil, const double *x, double *y);
 

@@ -14,12 +14,13 @@ static double weight_symbol(size_t mode, size_t n) {
 
 static void fill_symbols(struct support *s, const struct mesh *mesh, const struct flat *flat) {
     const double *compliance = flat_compliance(flat);
-    for (size_t k = 0; k < (mesh->nx / 2 + 1) * mesh->ny; k++) {
+    size_t nx = mesh->level[0].nx, ny = mesh->level[0].ny;
+    for (size_t k = 0; k < (nx / 2 + 1) * ny; k++) {
         double weight = 1;
         if (s->weight != NULL) {
-            weight = weight_symbol(k / mesh->ny, mesh->nx);
+            weight = weight_symbol(k / ny, nx);
             if (mesh->dimension == 3)
-                weight *= weight_symbol(k % mesh->ny, mesh->ny);
+                weight *= weight_symbol(k % ny, ny);
             s->weight[k] = weight;
         }
         s->soft[k] = compliance[k] * weight;
@@ -30,12 +31,12 @@ static void fill_symbols(struct support *s, const struct mesh *mesh, const struc
 int support_create(struct support *out, const struct mesh *mesh, const struct flat *flat,
                    enum gap_weighting weighting, struct error *err) {
     *out = (struct support){.face = mesh->face};
-    struct grid grid = {mesh->nx, mesh->ny, (double)mesh->nx, (double)mesh->ny * mesh->across};
-    size_t waves = (mesh->nx / 2 + 1) * mesh->ny;
+    size_t nx = mesh->level[0].nx, ny = mesh->level[0].ny, waves = (nx / 2 + 1) * ny;
+    struct grid grid = {nx, ny, (double)nx, (double)ny * mesh->across};
     double **const arrays[] = {&out->r,    &out->old,   &out->t,     &out->w,
                                &out->soft, &out->stiff, &out->weight};
     size_t count = sizeof arrays / sizeof *arrays - (weighting == GAP_DUAL);
-    int status = transform_create(&out->transform, &grid, mesh->nx / 2, mesh->ny / 2, err);
+    int status = transform_create(&out->transform, &grid, nx / 2, ny / 2, err);
     for (size_t a = 0; status == 0 && a < count; a++) {
         *arrays[a] = fftw_alloc_real(a < 4 ? mesh->face : waves);
         if (*arrays[a] == NULL)

@@ -33,15 +33,15 @@ static void fill_random(uint64_t draw, size_t n, double *x) {
 }
 
 /* A block of random heights up to rough steps, at rest. */
-static void open_work(struct work *w, struct grid grid, double poisson, double growth,
-                      double rough) {
+static void open_work(struct work *w, struct grid grid, double poisson, double growth, double rough,
+                      double transition) {
     struct error err = {0};
     struct block block = {.model = MODEL_LAYERED,
                           .poisson = poisson,
                           .height = 4 * grid_dx(&grid),
                           .layer_growth = growth};
     *w = (struct work){.solid = solid_of(poisson, KINEMATICS_HENCKY)};
-    if (mesh_create(&w->mesh, &grid, &block, &err) != 0 ||
+    if (mesh_create(&w->mesh, &grid, &block, transition, &err) != 0 ||
         stencil_create(&w->tangent, w->mesh, &err) != 0)
         fail_msg("%s", err.text);
     w->freedoms = mesh_freedoms(w->mesh);
@@ -69,11 +69,11 @@ static void close_work(struct work *w) {
 /* The far side's vertical rows become their sum at its first node. */
 static void sum_far_side(const struct mesh *mesh, double *forces) {
     double sum = 0;
-    for (size_t node = mesh->nodes - mesh->face; node < mesh->nodes; node++) {
+    for (size_t node = mesh_far_side(mesh); node < mesh->nodes; node++) {
         sum += forces[mesh_vertical(mesh, node)];
         forces[mesh_vertical(mesh, node)] = 0;
     }
-    forces[mesh_vertical(mesh, mesh->nodes - mesh->face)] = sum;
+    forces[mesh_vertical(mesh, mesh_far_side(mesh))] = sum;
 }
 
 /* Forces that no side has to carry: each component's sum is 0. */
@@ -97,9 +97,9 @@ static void waves_invert_the_flat_block(void **state) {
         struct work w;
         struct error err = {0};
         struct flat *flat = NULL;
-        open_work(&w, GRIDS[c % GRIDS_COUNT], POISSON[c / GRIDS_COUNT], 1.3, 0);
+        open_work(&w, GRIDS[c % GRIDS_COUNT], POISSON[c / GRIDS_COUNT], 1.3, 0, INFINITY);
         assert_int_equal(flat_create(&flat, w.mesh, &w.solid, &err), 0);
-        size_t face = w.mesh->face, far_side = w.mesh->nodes - face;
+        size_t face = w.mesh->face, far_side = mesh_far_side(w.mesh);
         double *vertical = numbers(face), *nothing = numbers(face);
         fill_balanced(c, w.mesh, w.force);
         flat_load(flat, w.force);
@@ -155,7 +155,7 @@ static void rough_blocks_are_solved(void **state) {
         enum gap_weighting weighting = c / GRIDS_COUNT % 2 == 0 ? GAP_DUAL : GAP_STANDARD;
         bool factored = c / GRIDS_COUNT / 2 % 2 == 1, *active;
         size_t spacing = c / GRIDS_COUNT / 4 == 0 ? 3 : 1, iterations = 0;
-        open_work(&w, *grid, 0.3, 1.3, 0.1);
+        open_work(&w, *grid, 0.3, 1.3, 0.1, INFINITY);
         assert_int_equal(krylov_create(&krylov, w.mesh, &w.solid, weighting, &err), 0);
         assert_int_equal(factor_create(&factor, w.mesh, &err), 0);
         active = array_create(w.mesh->face, sizeof *active);
@@ -184,13 +184,13 @@ static void a_rough_mesh_passes_the_patch_test(void **state) {
     (void)state;
     for (size_t c = 0; c < GRIDS_COUNT; c++) {
         struct work w;
-        open_work(&w, GRIDS[c], 0.3, 1.3, 0.2);
+        open_work(&w, GRIDS[c], 0.3, 1.3, 0.2, INFINITY);
         const struct mesh *mesh = w.mesh;
         for (size_t node = 0; node < mesh->nodes; node++)
             w.x[mesh_vertical(mesh, node)] = -0.1 * mesh->height[node];
         assert_true(stencil_evaluate(mesh, &w.solid, w.x, NULL, w.y, NULL));
         size_t d = (size_t)mesh->dimension;
-        for (size_t f = mesh->face * d; f < (mesh->nodes - mesh->face) * d; f++)
+        for (size_t f = mesh->face * d; f < (mesh_far_side(mesh)) * d; f++)
             check_close(w.y[f], 0, 1e-13);
         assert_true(mesh->quality > 0.6 && mesh->quality < 1);
         close_work(&w);
@@ -204,13 +204,13 @@ static void bad_meshes_are_refused(void **state) {
     struct error err = {0};
     struct grid grid = {8, 1, 8, 1};
     struct block block = {.poisson = 0.3, .height = 0, .layer_growth = 1.2};
-    assert_int_equal(mesh_create(&mesh, &grid, &block, &err), ERROR_INPUT);
+    assert_int_equal(mesh_create(&mesh, &grid, &block, INFINITY, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "block height"));
     block.height = 1e9;
     block.layer_growth = 1;
-    assert_int_equal(mesh_create(&mesh, &grid, &block, &err), ERROR_INPUT);
+    assert_int_equal(mesh_create(&mesh, &grid, &block, INFINITY, &err), ERROR_INPUT);
     assert_null(mesh);
-    open_work(&w, grid, 0.3, 1.3, 0);
+    open_work(&w, grid, 0.3, 1.3, 0, INFINITY);
     w.z[3] = 7; /* steeper than any mesh */
     assert_int_equal(mesh_shape(w.mesh, w.z, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "steepest slope"));

@@ -21,7 +21,7 @@ static void open_work(struct work *w, struct grid grid, enum gap_weighting weigh
     struct solid solid = solid_of(block.poisson, KINEMATICS_HENCKY);
     double mean = 0, highest = -INFINITY;
     *w = (struct work){0};
-    if (mesh_create(&w->mesh, &grid, &block, &err) != 0 ||
+    if (mesh_create(&w->mesh, &grid, &block, INFINITY, &err) != 0 ||
         newton_create(&w->newton, w->mesh, &solid, weighting, SOLVER_ITERATED, &err) != 0)
         fail_msg("%s", err.text);
     size_t face = w->mesh->face;

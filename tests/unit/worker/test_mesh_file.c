@@ -172,7 +172,8 @@ static void check_mesh(const struct parsed *parsed, const struct grid *grid) {
 
 /* The far side's layer, where the field is even, carries the load over the cell as it is now: all
  * layers do, but stresses of one elsewhere are far from even. */
-static void check_step(const struct parsed *parsed, const struct grid *grid, double load) {
+static void check_step(const struct parsed *parsed, const struct grid *grid, size_t deepest,
+                       double load) {
     size_t n = grid_points(grid), components = grid_is_profile(grid) ? 3 : 6;
     size_t up = grid_is_profile(grid) ? 1 : 2;
     const struct array *stress = array_of(parsed, "stress", components, parsed->cells);
@@ -180,8 +181,8 @@ static void check_step(const struct parsed *parsed, const struct grid *grid, dou
     (void)array_of(parsed, "displacement", 3, parsed->points);
     (void)array_of(parsed, "gap", 1, parsed->points);
     double far_side = 0, face = 0;
-    for (size_t e = parsed->cells - n; e < parsed->cells; e++)
-        far_side += stress->values[e * components + up] / (double)n;
+    for (size_t e = parsed->cells - deepest; e < parsed->cells; e++)
+        far_side += stress->values[e * components + up] / (double)deepest;
     size_t columns = grid->nx + 1;
     for (size_t j = 0; j < grid->ny; j++)
         for (size_t i = 0; i < grid->nx; i++)
@@ -190,13 +191,13 @@ static void check_step(const struct parsed *parsed, const struct grid *grid, dou
     check_relative(-far_side, load, 1e-3); /* strain of the cell's width: slope squared */
 }
 
-static void one_file(struct grid grid, enum kinematics kinematics) {
+static void one_file(struct grid grid, enum kinematics kinematics, size_t widenings) {
     static const double SLOPE = 0.05, LOAD = 0.2;
     struct block block = {MODEL_FULL, 0.3, HEIGHT, 1.3, GAP_DUAL};
     struct full_options options = FULL_DEFAULTS;
     struct error err = {0};
     struct full *full = NULL;
-    double z[64];
+    double z[128];
     size_t n = grid_points(&grid);
     for (size_t i = 0; i < n; i++) {
         size_t column = i % grid.nx, row = i / grid.nx;
@@ -209,16 +210,18 @@ static void one_file(struct grid grid, enum kinematics kinematics) {
         full_press(full, LOAD * SLOPE, &step.face, NULL, &err) != 0)
         fail_msg("%s", err.text);
     step.u = full_displacement(full);
+    const struct mesh *mesh = full_mesh(full);
+    assert_int_equal(mesh->level[mesh->layers].width, 1 << widenings);
     for (int pressed = 0; pressed < 2; pressed++) {
         FILE *file = tmpfile();
         assert_non_null(file);
-        if (mesh_file_write(file, "a test", full_mesh(full), pressed ? &step : NULL, &err) != 0)
+        if (mesh_file_write(file, "a test", mesh, pressed ? &step : NULL, &err) != 0)
             fail_msg("%s", err.text);
         struct parsed parsed = parse(file);
-        assert_int_equal(parsed.cells, full_mesh(full)->layers * n);
+        assert_int_equal(parsed.cells, mesh->elements);
         check_mesh(&parsed, &grid);
         if (pressed)
-            check_step(&parsed, &grid, LOAD);
+            check_step(&parsed, &grid, level_nodes(&mesh->level[mesh->layers - 1]), LOAD);
         else
             assert_true(find(&parsed, "stress") == NULL && find(&parsed, "pressure") == NULL);
         parsed_clear(&parsed);
@@ -230,8 +233,9 @@ static void one_file(struct grid grid, enum kinematics kinematics) {
 static void meshes_and_steps(void **state) {
     (void)state;
     for (int k = KINEMATICS_HENCKY; k <= KINEMATICS_SMALL; k++) {
-        one_file((struct grid){16, 1, 1, 1}, (enum kinematics)k);
-        one_file((struct grid){6, 5, 1, 0.8}, (enum kinematics)k);
+        one_file((struct grid){20, 1, 1, 1}, (enum kinematics)k, 2);
+        one_file((struct grid){6, 5, 1, 0.8}, (enum kinematics)k, 0);
+        one_file((struct grid){10, 8, 1, 0.8}, (enum kinematics)k, 1);
     }
 }
 
@@ -244,7 +248,7 @@ static void a_full_disk_is_told(void **state) {
     FILE *file = fopen("/dev/full", "wb");
     if (file == NULL)
         skip();
-    assert_int_equal(mesh_create(&mesh, &grid, &block, &err), 0);
+    assert_int_equal(mesh_create(&mesh, &grid, &block, INFINITY, &err), 0);
     assert_int_equal(mesh_file_write(file, "a test", mesh, NULL, &err), ERROR_SYSTEM);
     assert_non_null(strstr(err.text, "cannot write the mesh"));
     mesh_destroy(&mesh);
