@@ -84,9 +84,9 @@ double contact_solver_bytes(const struct contact_case *study, size_t model,
         return bytes;
     struct contact_full_size size = contact_full_size(study, model, grid);
     bool profile = grid_is_profile(grid);
-    double each = (profile ? 300 : 770) + 24 * fmin(size.linear, LINEAR_MOST);
+    double each = (profile ? 245 : 540) + 24 * fmin(size.linear, LINEAR_MOST);
     if (size.factored)
-        each += profile ? 1300 : 6500;
+        each += profile ? 900 : 6500;
     return bytes + each * size.freedoms;
 }
 

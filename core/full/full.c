@@ -6,7 +6,7 @@
 #include <string.h>
 
 const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
-                                           .transition = 6,
+                                           .transition = 8,
                                            .tolerance = 1e-9,
                                            .max_iterations = 60,
                                            .least_step = 1.0 / 64};

@@ -22,10 +22,8 @@ struct pressed {
 };
 
 static void open_with(struct pressed *p, struct grid grid, struct block block,
-                      enum equation_solver solver) {
+                      struct full_options options) {
     struct error err = {0};
-    struct full_options options = FULL_DEFAULTS;
-    options.solver = solver;
     scene_open(&p->scene, grid, block, 1e-11);
     p->full = NULL;
     if (full_create(&p->full, &grid, &block, &options, &err) != 0)
@@ -33,7 +31,7 @@ static void open_with(struct pressed *p, struct grid grid, struct block block,
 }
 
 static void open_both(struct pressed *p, struct grid grid, struct block block) {
-    open_with(p, grid, block, SOLVER_ITERATED);
+    open_with(p, grid, block, FULL_DEFAULTS);
 }
 
 static void close_both(struct pressed *p) {
@@ -60,7 +58,6 @@ static void check_answer(const struct pressed *p) {
     check_relative(mean_of(n, p->state.p), p->state.pressure, 1e-7);
     check_close(p->report.balance, 0, 1e-7);
     assert_true(p->report.residual <= 1e-9 && p->report.penetration <= 1e-8);
-    assert_true(p->state.stiffness > 0);
 }
 
 static void press_both(struct pressed *p, double pressure) {
@@ -69,6 +66,7 @@ static void press_both(struct pressed *p, double pressure) {
     if (full_press(p->full, pressure, &p->state, &p->report, &err) != 0)
         fail_msg("%s", err.text);
     check_answer(p);
+    assert_true(p->state.stiffness > 0);
 }
 
 static struct grid line(size_t n) {
@@ -173,10 +171,12 @@ static void small_slopes_are_layered(void **state) {
         const struct grid *grid = &GRIDS[c % 3];
         struct block block = BLOCK;
         double before = NAN;
+        struct full_options options = FULL_DEFAULTS;
+        options.transition = INFINITY;
         block.weighting = c < 3 ? GAP_DUAL : GAP_STANDARD;
         for (double slope = 1e-4; slope < 2e-2; slope *= 10) {
             struct pressed p;
-            open_both(&p, *grid, block);
+            open_with(&p, *grid, block, options);
             if (grid->ny == 1)
                 fill_rough(&p.scene, slope);
             else
@@ -198,17 +198,20 @@ static void small_slopes_are_layered(void **state) {
     }
 }
 
-/* The same equations by iterations and by factorisation, of both weightings. What may differ is the
+/* The same equations by iterations and by factorisation, of both weightings, with columns that
+ * widen. What may differ is the
  * solver's tolerance, 1e-9 of the largest force, times a few. */
 static void solvers_agree(void **state) {
     (void)state;
-    static const struct grid GRIDS[] = {{64, 1, 1, 1}, {8, 10, 1, 1}};
+    static const struct grid GRIDS[] = {{64, 1, 1, 1}, {10, 8, 1, 1}};
     for (size_t c = 0; c < 4; c++) {
         struct pressed p[2];
         struct block block = BLOCK;
         block.weighting = c < 2 ? GAP_DUAL : GAP_STANDARD;
         for (size_t s = 0; s < 2; s++) {
-            open_with(&p[s], GRIDS[c % 2], block, s == 0 ? SOLVER_ITERATED : SOLVER_FACTORED);
+            struct full_options options = FULL_DEFAULTS;
+            options.solver = s == 0 ? SOLVER_ITERATED : SOLVER_FACTORED;
+            open_with(&p[s], GRIDS[c % 2], block, options);
             if (c % 2 == 0)
                 fill_rough(&p[s].scene, 0.2);
             else
@@ -236,7 +239,9 @@ static void solvers_agree(void **state) {
 static void newton_converges_quadratically(void **state) {
     (void)state;
     struct pressed p;
-    open_with(&p, line(128), BLOCK, SOLVER_FACTORED);
+    struct full_options options = FULL_DEFAULTS;
+    options.solver = SOLVER_FACTORED;
+    open_with(&p, line(128), BLOCK, options);
     fill_rough(&p.scene, 0.2);
     begin_both(&p);
     for (double load = 0.05; load < 0.35; load += 0.05) {
@@ -380,7 +385,8 @@ static void stiff_profiles_find_their_answer(void **state) {
 }
 
 /* An answer at each load, or a failure that says how far it came and leaves the solver there, ready
- * for a load that it can take. */
+ * for a load that it can take. Under loads of E* the last valley may fold up into a crease (Biot
+ * 1963), which opens as the load grows: the stiffness has any sign. */
 static void failures_name_the_load_reached(void **state) {
     (void)state;
     struct pressed p;
