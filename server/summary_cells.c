@@ -80,6 +80,16 @@ void print_swept(const cJSON *one, const char *const *names, size_t count, FILE 
     }
 }
 
+const char *model_text(const cJSON *curve, char *out, size_t size) {
+    const char *model = text_of(curve, "model", "-");
+    const char *kinematics = text_of(curve, "kinematics", NULL);
+    if (kinematics)
+        snprintf(out, size, "%s (%s)", model, kinematics);
+    else
+        snprintf(out, size, "%s", model);
+    return out;
+}
+
 static bool ends_with(const char *text, const char *end) {
     size_t length = strlen(text), tail = strlen(end);
     return length >= tail && strcmp(text + length - tail, end) == 0;

@@ -98,9 +98,10 @@ static void files_hold_every_curve(void **state) {
                                  "x,y,standard_error,discretisation_error,model_error,persson",
                                  NULL});
     shell("one.db", "$RUGO curves --db $DB --format csv $ID");
-    check_shown((const char *[]){"case,quantity,series,model,level,pressure,x,x2,y,standard_error,"
+    check_shown((const char *[]){"case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
+                                 "standard_error,"
                                  "discretisation_error,model_error,theory_persson",
-                                 "\n0,contact_pressure_pdf,,layered,8,0.1,", NULL});
+                                 "\n0,contact_pressure_pdf,,layered,,8,0.1,", NULL});
 }
 
 int main(void) {
