@@ -183,7 +183,13 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
     struct contact_solver *solver = scene->solvers[model][level];
     struct contact_state state;
     const struct full_report *report;
+    const struct mesh *mesh = contact_solver_mesh(solver);
+    bool finest = level + 1 == study->level_count;
     int status = contact_solver_begin(solver, scene->z, err);
+    if (status == 0 && finest && mesh != NULL) {
+        tally->slope = mesh->slope;
+        tally->quality = mesh->quality;
+    }
     for (size_t k = 0; k < study->load_count && status == 0; k++) {
         if (stopper->stop(stopper->context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
@@ -195,7 +201,7 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
         else
             measure(scene, model, level, &state, report, tally,
                     contact_case_cell(study, model, level, k));
-        if (status == 0 && level + 1 == study->level_count)
+        if (status == 0 && finest)
             count_pressures(scene, model, k, state.p, tally);
     }
     bool unsolved = status == ERROR_NUMERIC || status == ERROR_INPUT;

@@ -89,6 +89,10 @@ int contact_solver_begin(struct contact_solver *s, const double *z, struct error
     return s->full != NULL ? full_begin(s->full, z, err) : contact_begin(s->linear, z, err);
 }
 
+const struct mesh *contact_solver_mesh(const struct contact_solver *s) {
+    return s->full != NULL ? full_mesh(s->full) : NULL;
+}
+
 int contact_solver_press(struct contact_solver *s, double pressure, struct contact_state *out,
                          const struct full_report **report, struct error *err) {
     *report = s->full != NULL ? &s->report : NULL;

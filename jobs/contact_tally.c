@@ -49,6 +49,7 @@ static void values_begin(struct contact_tally *tally) {
     size_t n = MEASURE_COUNT * contact_case_cells(tally->study);
     for (size_t a = 0; a < n; a++)
         tally->values[a] = NAN;
+    tally->slope = tally->quality = NAN;
 }
 
 int contact_tally_create(struct contact_tally *out, const struct contact_case *study,

@@ -53,6 +53,7 @@ struct contact_tally {
     struct tally pressures;    /* finest level: by model, load of pdf_loads, bin with under- and
                                   overflow;    points that are open are in none */
     double *values;            /* owned: the realisation under way, by measure and cell */
+    double slope, quality;     /* the same: finest mesh of the model full (mesh.h); NaN without */
     uint64_t *bin;             /* owned: scratch, zero in between */
 };
 int contact_tally_create(struct contact_tally *out, const struct contact_case *study,
