@@ -33,7 +33,7 @@ double contact_scene_bytes(const struct contact_case *study);
  * ERROR_STOPPED. ERROR_NUMERIC names model, level and load.
  *
  * Where the model full finds no mesh or no equilibrium, the realisation has no values of it on that
- * level from that load on: that is no error. */
+ * level from that load on: that is no error, but a note of the tally. */
 int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
                         int (*stop)(void *context), void *context, struct error *err);
 

@@ -26,4 +26,7 @@ const char *model_text(const cJSON *curve, char *out, size_t size);
 /* Whether a series is a bracket of another one, and no estimate: nodes_lower, nodes_upper. */
 bool is_bracket(const cJSON *curve);
 
+/* Notes of an array of cases, at most so many of them; nothing where there are none. */
+void print_notes(const cJSON *cases, size_t most, FILE *file);
+
 #endif

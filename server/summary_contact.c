@@ -4,7 +4,7 @@
 #include "server/summary_cells.h"
 #include <string.h>
 
-enum { TABLES_MOST = 4, LOADS_SHOWN = 10, MODELS_MOST = 4, THEORIES_MOST = 8 };
+enum { TABLES_MOST = 4, LOADS_SHOWN = 10, MODELS_MOST = 4, THEORIES_MOST = 8, NOTES_SHOWN = 3 };
 
 /* The finest curve of each model, of the first estimator of the case. */
 struct areas {
@@ -245,4 +245,5 @@ void summary_of_contact(const cJSON *cases, const cJSON *costs, FILE *file) {
         "\nload: p/(E* h'_rms); area: A/A0, +- one standard error; mesh %: error from the limit of "
         "the levels, model %: of the limit from that of the most complete model\n",
         file);
+    print_notes(cases, NOTES_SHOWN, file);
 }

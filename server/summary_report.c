@@ -37,7 +37,7 @@ static void cases_table(const cJSON *cases, const char *const *varied, size_t va
 
 /* --- a row a series: model, level, estimator --- */
 
-enum { TABLES_MOST = 4, SERIES_MOST = 64, ERROR_COUNT = 4 };
+enum { TABLES_MOST = 4, SERIES_MOST = 64, ERROR_COUNT = 4, NOTES_SHOWN = 40 };
 static const char *const ERRORS[ERROR_COUNT] = {"statistical_error", "discretisation_error",
                                                 "model_error", "total_error"};
 
@@ -157,4 +157,5 @@ void summary_of_report(const cJSON *report, FILE *file) {
             text_of(report, "study", "-"));
     cases_table(cases, varied, varied_count, file);
     print_all_series(cases, varied, varied_count, file);
+    print_notes(cases, NOTES_SHOWN, file);
 }

@@ -165,6 +165,7 @@ static bool put_errors(cJSON *report, const cJSON *main, double seconds, const c
 static bool put_document(cJSON *report, const struct case_cost *cost, const cJSON *document) {
     const cJSON *curves = field_at(document, "curves");
     return put_errors(report, main_curve(curves), cost->seconds, curves) &&
+           put_copy(report, "notes", document) &&
            field_put(report, "curves", curve_reports(curves, cost->seconds)) &&
            field_put(report, "scalars", scalar_reports(field_at(document, "scalars")));
 }

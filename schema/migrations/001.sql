@@ -131,6 +131,11 @@ CREATE VIEW curve_points AS
     SELECT s.public AS study, c.case_number AS "case", c.quantity, c.series, p.x, p.y, p.standard_error,
            p.x2, c.model, c.kinematics, c.level, c.pressure, p.discretisation_error, p.model_error
     FROM study s JOIN curve c ON c.study_id = s.id JOIN point p ON p.curve_id = c.id;
+-- The first notes of a case (jobs/notes.h), as published.
+CREATE VIEW case_notes AS
+    SELECT s.public AS study, p.case_number AS "case", n.value ->> 'realisation' AS realisation,
+           n.value ->> 'text' AS note
+    FROM study s JOIN published p ON p.study_id = s.id, json_each(p.document, '$.notes.kept') n;
 CREATE VIEW realisation_scalars AS
     SELECT s.public AS study, j.case_number AS "case", j.first + one.key AS realisation,
            (SELECT json_group_object(n.value, one.value -> ('$[' || n.key || ']'))
