@@ -119,8 +119,8 @@ static int runner_create(struct job_runner **out, const cJSON *parameters,
     return status;
 }
 
-/* A block of realisations being run. Whether to stop is asked between loads, which may take
- * minutes, as between realisations. */
+/* A block of realisations being run. Whether to stop is asked between and within loads, which
+ * may take minutes, as between realisations. */
 struct batch {
     struct job_runner *runner;
     const struct job_control *control; /* may be NULL */

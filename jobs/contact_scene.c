@@ -185,7 +185,7 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
     const struct full_report *report;
     const struct mesh *mesh = contact_solver_mesh(solver);
     bool finest = level + 1 == study->level_count;
-    int status = contact_solver_begin(solver, scene->z, err);
+    int status = contact_solver_begin(solver, scene->z, stopper->stop, stopper->context, err);
     if (status == 0 && finest && mesh != NULL) {
         tally->slope = mesh->slope;
         tally->quality = mesh->quality;

@@ -53,6 +53,10 @@ void full_destroy(struct full **full);
  * in a profile. */
 double full_bytes(const struct grid *grid, const struct block *block);
 
+/* stop is asked before each iteration of Newton's from now on; non-zero ends full_press with
+ * ERROR_STOPPED, which leaves the solver as a load not reached does. NULL, as it begins: not. */
+void full_set_stop(struct full *full, int (*stop)(void *context), void *context);
+
 /* Meshes the block of a surface (copies; any height of its mean), lifted off. ERROR_INPUT for a
  * surface that is not finite or too steep. */
 int full_begin(struct full *full, const double *z, struct error *err);

@@ -462,6 +462,37 @@ static void stopping(void **state) {
     kind()->runner_destroy(&runner);
 }
 
+static int stop_at_number(void *context, uint64_t done) {
+    int *left = context;
+    (void)done;
+    return (*left)-- == 0;
+}
+
+/* A load of the model full asks before each iteration of Newton's: wherever it is stopped, nothing
+ * comes out, no failure is told of, and the same runner gives the whole block afterwards. */
+static void stopping_within_a_load(void **state) {
+    (void)state;
+    struct job_runner *runner = runner_of(STEEP, NULL);
+    struct job_result whole = run(runner, 0, 2), result = {0};
+    struct error err = {0};
+    int step = 1;
+    for (int number = 0;; number += step, step += 7) {
+        int left = number;
+        const struct job_control control = {stop_at_number, &left};
+        int status = kind()->run(runner, 0, 2, &control, &result, &err);
+        if (status == 0)
+            break;
+        assert_int_equal(status, ERROR_STOPPED);
+        assert_null(result.data);
+    }
+    assert_true(step > 7 * 7); /* far more questions than realisations, levels and loads: 38 */
+    assert_int_equal(result.size, whole.size);
+    assert_memory_equal(result.data, whole.data, whole.size);
+    job_result_clear(&whole);
+    job_result_clear(&result);
+    kind()->runner_destroy(&runner);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_split_and_order),
@@ -473,6 +504,7 @@ int main(void) {
         cmocka_unit_test(failures_are_told),
         cmocka_unit_test(no_realisation_yet),
         cmocka_unit_test(stopping),
+        cmocka_unit_test(stopping_within_a_load),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
