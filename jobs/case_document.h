@@ -1,13 +1,12 @@
-/* The document of one case: {"realisations", "scalars", "curves"} of interface.md. */
+/* The document of one case: {"realisations", "scalars", "curves"} of interface.md, and "notes"
+ * where there are any. */
 #ifndef RUGO_JOBS_CASE_DOCUMENT_H
 #define RUGO_JOBS_CASE_DOCUMENT_H
 
-#include "core/error.h"
-#include <cjson/cJSON.h>
-#include <stdint.h>
+#include "jobs/notes.h"
 
-/* Takes scalars and curves, also where it fails. Caller deletes *out. */
-int case_document(uint64_t realisations, cJSON *scalars, cJSON *curves, cJSON **out,
-                  struct error *err);
+/* notes: NULL for none. Takes scalars and curves, also where it fails. Caller deletes *out. */
+int case_document(uint64_t realisations, cJSON *scalars, cJSON *curves, const struct notes *notes,
+                  cJSON **out, struct error *err);
 
 #endif

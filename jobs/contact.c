@@ -119,8 +119,8 @@ static int runner_create(struct job_runner **out, const cJSON *parameters,
     return status;
 }
 
-/* A block of realisations being run. Whether to stop is asked between loads, which may take
- * minutes, as between realisations. */
+/* A block of realisations being run. Whether to stop is asked between and within loads, which
+ * may take minutes, as between realisations. */
 struct batch {
     struct job_runner *runner;
     const struct job_control *control; /* may be NULL */
@@ -142,7 +142,7 @@ static int realise(void *context, uint64_t realisation, uint64_t done, double *s
     struct roughness roughness;
     struct moments moments = runner->moments;
     batch->done = done;
-    runner->key.realisation = realisation;
+    runner->key.realisation = batch->tally.realisation = realisation;
     int status = generator_run(runner->generator, runner->key, runner->z, &report, err);
     if (status == 0 && !surface_case_exact(&runner->study.surface))
         status = roughness_spectral(grid, runner->z, &moments, err);
@@ -216,7 +216,7 @@ static int merger_create(struct job_merger **out, const cJSON *parameters, struc
     return status;
 }
 
-/* Whether the scalars and the tally of a block tell of the same realisations. */
+/* Whether the scalars, the tally and the notes of a block tell of the same realisations. */
 static int check_block(const struct job_result *result, const struct contact_tally *tally,
                        struct error *err) {
     const struct contact_case *study = tally->study;
@@ -226,7 +226,10 @@ static int check_block(const struct job_result *result, const struct contact_tal
     for (size_t k = 0; k < study->load_count; k++)
         tallied += contact_tally_total(tally, MEASURE_ITERATIONS,
                                        contact_case_cell(study, 0, study->level_count - 1, k));
-    if (tally->realisations != result->count || !(scalars == tallied))
+    bool within = true;
+    for (size_t n = 0; n < notes_kept(&tally->notes); n++)
+        within = within && tally->notes.kept[n].realisation - result->first < result->count;
+    if (tally->realisations != result->count || !(scalars == tallied) || !within)
         return error_set(err, ERROR_INPUT,
                          "the partial result does not belong to the scalars beside it");
     return 0;
@@ -274,7 +277,7 @@ static int curves(struct job_merger *merger, cJSON **out, struct error *err) {
         cJSON_Delete(scalars);
         return status;
     }
-    return case_document(merger->realisations.count, scalars, list, out, err);
+    return case_document(merger->realisations.count, scalars, list, &merger->tally.notes, out, err);
 }
 
 const struct job_kind CONTACT_KIND = {

@@ -22,6 +22,8 @@ const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1] = {
     [CONTACT_SCALAR_FULL_BALANCE] = "full_force_balance",
     [CONTACT_SCALAR_FULL_PENETRATION] = "full_penetration",
     [CONTACT_SCALAR_FULL_STRETCH] = "full_stretch",
+    [CONTACT_SCALAR_FULL_SLOPE] = "full_steepest_slope",
+    [CONTACT_SCALAR_FULL_QUALITY] = "full_mesh_quality",
     [CONTACT_SCALAR_RMS_HEIGHT] = "rms_height",
     [CONTACT_SCALAR_RMS_SLOPE] = "rms_slope",
     [CONTACT_SCALAR_NAYAK_ALPHA] = "nayak_alpha",
@@ -60,7 +62,7 @@ static double largest_of(size_t n, const double *values) {
 static void measure_full(struct contact_tally *tally, double *out) {
     const struct contact_case *study = tally->study;
     size_t full = contact_case_full(study), n = study->load_count, solved = 0;
-    for (size_t a = CONTACT_SCALAR_FULL_LOAD_REACHED; a <= CONTACT_SCALAR_FULL_STRETCH; a++)
+    for (size_t a = CONTACT_SCALAR_FULL_LOAD_REACHED; a <= CONTACT_SCALAR_FULL_QUALITY; a++)
         out[a] = NAN;
     if (full == study->model_count)
         return;
@@ -76,6 +78,8 @@ static void measure_full(struct contact_tally *tally, double *out) {
         largest_of(n, finest_values(tally, MEASURE_PENETRATION, full));
     if (solved > 0)
         out[CONTACT_SCALAR_FULL_STRETCH] = finest_values(tally, MEASURE_STRETCH, full)[solved - 1];
+    out[CONTACT_SCALAR_FULL_SLOPE] = tally->slope;
+    out[CONTACT_SCALAR_FULL_QUALITY] = tally->quality;
 }
 
 /* Fits of the fraction against the load. */
@@ -147,7 +151,7 @@ int contact_scalars_json(const struct contact_case *study, const struct moments 
     theories(study, moments, theory);
     bool full = contact_case_full(study) < study->model_count;
     for (size_t a = 0; a < CONTACT_SCALAR_COUNT && done; a++) {
-        bool of_full = a >= CONTACT_SCALAR_FULL_LOAD_REACHED && a <= CONTACT_SCALAR_FULL_STRETCH;
+        bool of_full = a >= CONTACT_SCALAR_FULL_LOAD_REACHED && a <= CONTACT_SCALAR_FULL_QUALITY;
         if (of_full && !full)
             continue;
         realisations_column(realisations, a, column);

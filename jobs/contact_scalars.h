@@ -24,6 +24,8 @@ enum contact_scalar {
     CONTACT_SCALAR_FULL_BALANCE, /* largest, as the penetration, which is in RMS heights */
     CONTACT_SCALAR_FULL_PENETRATION,
     CONTACT_SCALAR_FULL_STRETCH, /* at the last load reached */
+    CONTACT_SCALAR_FULL_SLOPE,   /* steepest edge of the face; none without a mesh, as the next */
+    CONTACT_SCALAR_FULL_QUALITY, /* least Jacobian over edges of the undeformed elements */
     CONTACT_SCALAR_RMS_HEIGHT,   /* by finite differences, as the slope */
     CONTACT_SCALAR_RMS_SLOPE,
     CONTACT_SCALAR_NAYAK_ALPHA, /* spectral */

@@ -183,7 +183,13 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
     struct contact_solver *solver = scene->solvers[model][level];
     struct contact_state state;
     const struct full_report *report;
-    int status = contact_solver_begin(solver, scene->z, err);
+    const struct mesh *mesh = contact_solver_mesh(solver);
+    bool finest = level + 1 == study->level_count;
+    int status = contact_solver_begin(solver, scene->z, stopper->stop, stopper->context, err);
+    if (status == 0 && finest && mesh != NULL) {
+        tally->slope = mesh->slope;
+        tally->quality = mesh->quality;
+    }
     for (size_t k = 0; k < study->load_count && status == 0; k++) {
         if (stopper->stop(stopper->context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
@@ -195,11 +201,29 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
         else
             measure(scene, model, level, &state, report, tally,
                     contact_case_cell(study, model, level, k));
-        if (status == 0 && level + 1 == study->level_count)
+        if (status == 0 && finest)
             count_pressures(scene, model, k, state.p, tally);
     }
+    return status;
+}
+
+/* Where the model full finds no answer, a note tells why. */
+static int solve_model(struct contact_scene *scene, size_t model, size_t level,
+                       struct contact_tally *tally, const struct stopper *stopper,
+                       struct error *err) {
+    const struct contact_case *study = scene->study;
+    struct error why = {0};
+    int status = solve_loads(scene, model, level, tally, stopper, &why);
+    if (status == 0)
+        return 0;
+    error_context(&why, "model %s, level %g", CONTACT_MODEL_NAMES[study->blocks[model].model],
+                  study->levels[level].points);
     bool unsolved = status == ERROR_NUMERIC || status == ERROR_INPUT;
-    return unsolved && contact_case_is_full(study, model) ? 0 : status;
+    if (unsolved && contact_case_is_full(study, model)) {
+        notes_add(&tally->notes, tally->realisation, why.text);
+        return 0;
+    }
+    return error_set(err, status, "%s", why.text);
 }
 
 int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
@@ -209,12 +233,8 @@ int contact_scene_solve(struct contact_scene *scene, const double *z, struct con
     int status = 0;
     for (size_t l = 0; l < study->level_count && status == 0; l++) {
         status = contact_level_sample(study, &study->levels[l], z, scene->z, err);
-        for (size_t m = 0; m < study->model_count && status == 0; m++) {
-            status = solve_loads(scene, m, l, tally, &stopper, err);
-            if (status != 0 && status != ERROR_STOPPED)
-                error_context(err, "model %s, level %g",
-                              CONTACT_MODEL_NAMES[study->blocks[m].model], study->levels[l].points);
-        }
+        for (size_t m = 0; m < study->model_count && status == 0; m++)
+            status = solve_model(scene, m, l, tally, &stopper, err);
     }
     return status;
 }

@@ -29,11 +29,11 @@ void contact_scene_destroy(struct contact_scene **scene);
 double contact_scene_bytes(const struct contact_case *study);
 
 /* Solves every level, model and load of one realisation, z on the own grid of the case, into the
- * tally's values. stop is asked before each load; non-zero ends it with
- * ERROR_STOPPED. ERROR_NUMERIC names model, level and load.
+ * tally's values. stop is asked before each load, and by the model full before each iteration of
+ * Newton's; non-zero ends it with ERROR_STOPPED. ERROR_NUMERIC names model, level and load.
  *
  * Where the model full finds no mesh or no equilibrium, the realisation has no values of it on that
- * level from that load on: that is no error. */
+ * level from that load on: that is no error, but a note of the tally. */
 int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
                         int (*stop)(void *context), void *context, struct error *err);
 

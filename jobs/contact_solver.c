@@ -90,8 +90,16 @@ double contact_solver_bytes(const struct contact_case *study, size_t model,
     return bytes + each * size.freedoms;
 }
 
-int contact_solver_begin(struct contact_solver *s, const double *z, struct error *err) {
-    return s->full != NULL ? full_begin(s->full, z, err) : contact_begin(s->linear, z, err);
+int contact_solver_begin(struct contact_solver *s, const double *z, int (*stop)(void *context),
+                         void *context, struct error *err) {
+    if (s->full == NULL)
+        return contact_begin(s->linear, z, err);
+    full_set_stop(s->full, stop, context);
+    return full_begin(s->full, z, err);
+}
+
+const struct mesh *contact_solver_mesh(const struct contact_solver *s) {
+    return s->full != NULL ? full_mesh(s->full) : NULL;
 }
 
 int contact_solver_press(struct contact_solver *s, double pressure, struct contact_state *out,

@@ -32,8 +32,12 @@ void contact_solver_destroy(struct contact_solver **solver);
 double contact_solver_bytes(const struct contact_case *study, size_t model,
                             const struct grid *grid);
 
-/* Takes a surface of the grid and lifts it off: nothing is left of the last one. */
-int contact_solver_begin(struct contact_solver *solver, const double *z, struct error *err);
+/* Takes a surface of the grid and lifts it off: nothing is left of the last one. stop is asked
+ * within the loads of the model full (full_set_stop), until the next surface. */
+int contact_solver_begin(struct contact_solver *solver, const double *z, int (*stop)(void *context),
+                         void *context, struct error *err);
+/* Of the surface begun; NULL for linear models. */
+const struct mesh *contact_solver_mesh(const struct contact_solver *solver);
 /* As contact_press and full_press, with the work of both in transforms. *report: NULL for linear
  * models, or of the solver. */
 int contact_solver_press(struct contact_solver *solver, double pressure, struct contact_state *out,

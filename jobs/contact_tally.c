@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { FORMAT_KIND = 0x434f, FORMAT_VERSION = 2 }; /* "CO" */
+enum { FORMAT_KIND = 0x434f, FORMAT_VERSION = 3 }; /* "CO" */
 enum { SCALE_BITS_MOST = 16 };
 
 static size_t bins_of(const struct contact_case *study) {
@@ -49,6 +49,7 @@ static void values_begin(struct contact_tally *tally) {
     size_t n = MEASURE_COUNT * contact_case_cells(tally->study);
     for (size_t a = 0; a < n; a++)
         tally->values[a] = NAN;
+    tally->slope = tally->quality = NAN;
 }
 
 int contact_tally_create(struct contact_tally *out, const struct contact_case *study,
@@ -221,6 +222,7 @@ int contact_tally_encode(const struct contact_tally *tally, unsigned char **data
     }
     tally_total_put(&bytes, &tally->points);
     tally_put(&bytes, &tally->pressures);
+    notes_put(&bytes, &tally->notes);
     bytes_seal(&bytes);
     if (bytes.failed) {
         bytes_clear(&bytes);
@@ -252,6 +254,17 @@ static bool count_fits(const struct contact_tally *tally, enum contact_measure m
     return count[cell] == tally->realisations;
 }
 
+/* Realisations and levels that the model full did not bring to the last load: a note each. */
+static uint64_t unsolved(const struct contact_tally *tally) {
+    const struct contact_case *study = tally->study;
+    size_t full = contact_case_full(study), last = study->load_count - 1;
+    uint64_t count = 0;
+    for (size_t l = 0; l < study->level_count && full < study->model_count; l++)
+        count +=
+            contact_tally_valueless(tally, MEASURE_NODES, contact_case_cell(study, full, l, last));
+    return count;
+}
+
 /* Whether the counts can be, and no load has more points than there are. */
 static bool adds_up(const struct contact_tally *tally) {
     size_t bins = bins_of(tally->study);
@@ -272,7 +285,8 @@ static bool adds_up(const struct contact_tally *tally) {
         if (sum > tally->points.sum)
             return false;
     }
-    return tally->points.realisations == tally->realisations;
+    return tally->points.realisations == tally->realisations &&
+           tally->notes.count == unsolved(tally);
 }
 
 int contact_tally_decode(struct contact_tally *tally, const unsigned char *data, size_t size,
@@ -293,6 +307,7 @@ int contact_tally_decode(struct contact_tally *tally, const unsigned char *data,
     }
     tally_total_get(&reader, &tally->points);
     tally_get(&reader, &tally->pressures);
+    notes_get(&reader, &tally->notes);
     if (reader.failed || reader.at != reader.end)
         return refuse(err, "is malformed");
     return adds_up(tally) ? 0 : refuse(err, "does not add up");
@@ -306,4 +321,5 @@ void contact_tally_merge(struct contact_tally *into, const struct contact_tally 
     }
     tally_total_merge(&into->points, &from->points);
     tally_merge(&into->pressures, &from->pressures);
+    notes_merge(&into->notes, &from->notes);
 }

@@ -8,6 +8,7 @@
 #define RUGO_JOBS_CONTACT_TALLY_H
 
 #include "jobs/contact_case.h"
+#include "jobs/notes.h"
 #include "jobs/tally.h"
 
 enum contact_measure {
@@ -52,7 +53,10 @@ struct contact_tally {
     struct tally_total points; /* of the finest level */
     struct tally pressures;    /* finest level: by model, load of pdf_loads, bin with under- and
                                   overflow;    points that are open are in none */
+    struct notes notes;        /* why the model full has no values, a realisation and level */
+    uint64_t realisation;      /* the one under way, for these */
     double *values;            /* owned: the realisation under way, by measure and cell */
+    double slope, quality;     /* the same: finest mesh of the model full (mesh.h); NaN without */
     uint64_t *bin;             /* owned: scratch, zero in between */
 };
 int contact_tally_create(struct contact_tally *out, const struct contact_case *study,

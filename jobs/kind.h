@@ -32,7 +32,8 @@ struct job_result {
 };
 void job_result_clear(struct job_result *result);
 
-/* Asked between realisations: how many of the block are done; non-zero stops with ERROR_STOPPED. */
+/* Asked between realisations, and again and again within one that may take long: how many of the
+ * block are done; non-zero stops with ERROR_STOPPED. */
 struct job_control {
     int (*poll)(void *context, uint64_t done);
     void *context;

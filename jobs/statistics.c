@@ -240,7 +240,7 @@ static int curves(struct job_merger *merger, cJSON **out, struct error *err) {
         cJSON_Delete(scalars);
         return status;
     }
-    return case_document(merger->realisations.count, scalars, list, out, err);
+    return case_document(merger->realisations.count, scalars, list, NULL, out, err);
 }
 
 const struct job_kind STATISTICS_KIND = {

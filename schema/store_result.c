@@ -228,22 +228,23 @@ static int insert_points(struct store *store, int64_t curve, const cJSON *docume
     return status;
 }
 
+static const char *text_of(const cJSON *object, const char *name, const char *otherwise) {
+    const cJSON *value = cJSON_GetObjectItemCaseSensitive(object, name);
+    return cJSON_IsString(value) ? value->valuestring : otherwise;
+}
+
 static int insert_curve(const struct target *target, const cJSON *document, struct error *err) {
-    const cJSON *quantity = cJSON_GetObjectItemCaseSensitive(document, "quantity");
-    const cJSON *series = cJSON_GetObjectItemCaseSensitive(document, "series");
-    const cJSON *model = cJSON_GetObjectItemCaseSensitive(document, "model");
     sqlite3_stmt *statement = NULL;
-    int status =
-        store_query(target->store, &statement, err,
-                    "INSERT INTO curve (study_id, case_number, quantity, series, model, level, "
-                    "pressure) VALUES (?, ?, ?, ?, ?, ?6, ?7)",
-                    "iittt", target->study, target->case_number,
-                    cJSON_IsString(quantity) ? quantity->valuestring : "",
-                    cJSON_IsString(series) ? series->valuestring : "",
-                    cJSON_IsString(model) ? model->valuestring : NULL);
+    int status = store_query(
+        target->store, &statement, err,
+        "INSERT INTO curve (study_id, case_number, quantity, series, model, kinematics, "
+        "level, pressure) VALUES (?, ?, ?, ?, ?, ?, ?7, ?8)",
+        "iitttt", target->study, target->case_number, text_of(document, "quantity", ""),
+        text_of(document, "series", ""), text_of(document, "model", NULL),
+        text_of(document, "kinematics", NULL));
     if (!status &&
-        (bind_number(statement, 6, cJSON_GetObjectItemCaseSensitive(document, "level")) ||
-         bind_number(statement, 7, cJSON_GetObjectItemCaseSensitive(document, "pressure"))))
+        (bind_number(statement, 7, cJSON_GetObjectItemCaseSensitive(document, "level")) ||
+         bind_number(statement, 8, cJSON_GetObjectItemCaseSensitive(document, "pressure"))))
         status = store_error(target->store, err);
     if (!status)
         status = run_bound(target->store, statement, err);

@@ -5,6 +5,7 @@
 
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <stdbool.h>
 
 /* All borrow from the document; object may be NULL. */
 static inline const cJSON *member(const cJSON *object, const char *name) {
@@ -24,6 +25,12 @@ static inline const char *text_of(const cJSON *object, const char *name, const c
 static inline double number_of(const cJSON *object, const char *name) {
     const cJSON *value = member(object, name);
     return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
+}
+
+/* Whether both have the same member, or both none. */
+static inline bool same_member(const cJSON *a, const cJSON *b, const char *name) {
+    const cJSON *one = member(a, name), *other = member(b, name);
+    return one ? cJSON_Compare(one, other, true) : !other;
 }
 
 #endif

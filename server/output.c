@@ -107,13 +107,13 @@ static void write_curve(FILE *file, const cJSON *curve) {
     }
 }
 
-/* "case-3-contact_area-edges-layered-8.csv" */
+/* "case-3-contact_area-edges-full-hencky-8.csv" */
 static void curve_name(const cJSON *one, const cJSON *curve, char *name, size_t size) {
     const cJSON *level = member(curve, "level");
     int used = snprintf(name, size, "case-%.0f-%.60s", member(one, "case")->valuedouble,
                         text_of(curve, "quantity", ""));
-    static const char *const PARTS[] = {"series", "model"};
-    for (size_t p = 0; p < 2; p++)
+    static const char *const PARTS[] = {"series", "model", "kinematics"};
+    for (size_t p = 0; p < sizeof PARTS / sizeof *PARTS; p++)
         if (*text_of(curve, PARTS[p], ""))
             used +=
                 snprintf(name + used, size - (size_t)used, "-%.40s", text_of(curve, PARTS[p], ""));

@@ -15,11 +15,6 @@ struct choosing {
     int narrow;
 };
 
-static bool same(const cJSON *a, const cJSON *b, const char *name) {
-    const cJSON *one = member(a, name), *other = member(b, name);
-    return one ? cJSON_Compare(one, other, true) : !other;
-}
-
 /* No matrices. */
 static bool is_candidate(const struct choosing *choosing, const cJSON *curve) {
     return strcmp(text_of(curve, "quantity", ""), choosing->quantity) == 0 &&
@@ -28,8 +23,8 @@ static bool is_candidate(const struct choosing *choosing, const cJSON *curve) {
 }
 
 static bool same_series(const cJSON *a, const cJSON *b) {
-    return same(a, b, "quantity") && same(a, b, "series") && same(a, b, "model") &&
-           same(a, b, "pressure");
+    return same_member(a, b, "quantity") && same_member(a, b, "series") &&
+           same_member(a, b, "model") && same_member(a, b, "pressure");
 }
 
 /* Levels of the same series that are finer. */
@@ -44,8 +39,8 @@ static bool is_kept(const struct choosing *choosing, const cJSON *one, const cJS
     int narrow = choosing->narrow;
     return is_candidate(choosing, curve) && (narrow < KEEP_ESTIMATES || !is_bracket(curve)) &&
            (narrow < KEEP_FINEST || finer_levels(one, curve) == 0) &&
-           (narrow < KEEP_SERIES || same(curve, choosing->first, "series")) &&
-           (narrow < KEEP_MODEL || same(curve, choosing->first, "model"));
+           (narrow < KEEP_SERIES || same_member(curve, choosing->first, "series")) &&
+           (narrow < KEEP_MODEL || same_member(curve, choosing->first, "model"));
 }
 
 /* That of an earlier line of the series, or a new one. */
@@ -99,7 +94,7 @@ __attribute__((format(printf, 2, 3))) static void append(char label[PLOT_LABEL_S
 
 /* Says what a step that left something out has kept. */
 static void note(struct plot_choice *choice, const struct choosing *choosing, size_t before) {
-    char *text = choice->left_out;
+    char *text = choice->left_out, model[64];
     if (choosing->narrow == KEEP_ESTIMATES)
         append(text, "without brackets");
     else if (choosing->narrow == KEEP_FINEST)
@@ -107,7 +102,7 @@ static void note(struct plot_choice *choice, const struct choosing *choosing, si
     else if (choosing->narrow == KEEP_SERIES)
         append(text, "%.40s", text_of(choosing->first, "series", ""));
     else if (choosing->narrow == KEEP_MODEL)
-        append(text, "%.40s", text_of(choosing->first, "model", ""));
+        append(text, "%s", model_text(choosing->first, model, sizeof model));
     else
         append(text, "first %d of %zu curves", PLOT_LINES, before);
 }
@@ -142,7 +137,7 @@ static bool varies(const cJSON *cases, const cJSON *parameter) {
 /* Whether the lines differ in a member of their curves. */
 static bool lines_differ(const struct plot_choice *choice, const char *name) {
     for (size_t n = 1; n < choice->count; n++)
-        if (!same(choice->lines[n].curve, choice->lines[0].curve, name))
+        if (!same_member(choice->lines[n].curve, choice->lines[0].curve, name))
             return true;
     return false;
 }
@@ -150,6 +145,7 @@ static bool lines_differ(const struct plot_choice *choice, const char *name) {
 void plot_label(const struct plot_choice *choice, size_t line, char label[PLOT_LABEL_SIZE]) {
     const cJSON *one = choice->lines[line].one, *curve = choice->lines[line].curve;
     const char *series = text_of(curve, "series", "");
+    char model[64];
     label[0] = 0;
     for (const cJSON *p = first_of(one, "parameters"); p; p = p->next) {
         const char *slash = strrchr(p->string, '/');
@@ -162,8 +158,8 @@ void plot_label(const struct plot_choice *choice, size_t line, char label[PLOT_L
     }
     if (lines_differ(choice, "pressure"))
         append(label, "at %.4g", number_of(curve, "pressure"));
-    if (lines_differ(choice, "model"))
-        append(label, "%s", text_of(curve, "model", ""));
+    if (lines_differ(choice, "model") || member(curve, "kinematics"))
+        append(label, "%s", model_text(curve, model, sizeof model));
     if (*series)
         append(label, "%s", series);
     if (lines_differ(choice, "level"))

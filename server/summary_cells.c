@@ -80,6 +80,16 @@ void print_swept(const cJSON *one, const char *const *names, size_t count, FILE 
     }
 }
 
+const char *model_text(const cJSON *curve, char *out, size_t size) {
+    const char *model = text_of(curve, "model", "-");
+    const char *kinematics = text_of(curve, "kinematics", NULL);
+    if (kinematics)
+        snprintf(out, size, "%s (%s)", model, kinematics);
+    else
+        snprintf(out, size, "%s", model);
+    return out;
+}
+
 static bool ends_with(const char *text, const char *end) {
     size_t length = strlen(text), tail = strlen(end);
     return length >= tail && strcmp(text + length - tail, end) == 0;
@@ -88,4 +98,20 @@ static bool ends_with(const char *text, const char *end) {
 bool is_bracket(const cJSON *curve) {
     const char *series = text_of(curve, "series", "");
     return ends_with(series, "_lower") || ends_with(series, "_upper");
+}
+
+void print_notes(const cJSON *cases, size_t most, FILE *file) {
+    double count = 0, shown = 0;
+    for (const cJSON *one = cases->child; one; one = one->next)
+        count += fmax(number_of(member(one, "notes"), "count"), 0);
+    if (count > 0)
+        fprintf(file, "\nnotes: %.0f\n", count);
+    for (const cJSON *one = cases->child; one; one = one->next) {
+        const cJSON *note = first_of(member(one, "notes"), "kept");
+        for (; note && shown < (double)most; note = note->next, shown++)
+            fprintf(file, "case %.0f, realisation %.0f: %s\n", number_of(one, "case"),
+                    number_of(note, "realisation"), text_of(note, "text", "-"));
+    }
+    if (shown < count)
+        fprintf(file, "and %.0f more\n", count - shown);
 }

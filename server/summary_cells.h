@@ -21,7 +21,12 @@ void measured_cell(struct text_table *table, double value, double error);
 void percent_cell(struct text_table *table, double share);
 /* "hurst 0.8, dimension 2", each followed by a comma and a space. */
 void print_swept(const cJSON *one, const char *const *names, size_t count, FILE *file);
+/* "layered", or "full (hencky)" where the model has several kinematics; "-" without one. */
+const char *model_text(const cJSON *curve, char *out, size_t size);
 /* Whether a series is a bracket of another one, and no estimate: nodes_lower, nodes_upper. */
 bool is_bracket(const cJSON *curve);
+
+/* Notes of an array of cases, at most so many of them; nothing where there are none. */
+void print_notes(const cJSON *cases, size_t most, FILE *file);
 
 #endif

@@ -4,7 +4,7 @@
 #include "server/summary_cells.h"
 #include <string.h>
 
-enum { TABLES_MOST = 4, LOADS_SHOWN = 10, MODELS_MOST = 4, THEORIES_MOST = 8 };
+enum { TABLES_MOST = 4, LOADS_SHOWN = 10, MODELS_MOST = 4, THEORIES_MOST = 8, NOTES_SHOWN = 3 };
 
 /* The finest curve of each model, of the first estimator of the case. */
 struct areas {
@@ -68,10 +68,11 @@ static void error_cell(struct text_table *table, double error, double value) {
 }
 
 static void area_heading(const struct areas *areas, struct text_table *table) {
+    char model[64];
     table_cell(table, "load");
     for (size_t m = 0; m < areas->model_count; m++) {
         table_fold(table);
-        table_cell(table, "%s", text_of(areas->curves[m], "model", "area"));
+        table_cell(table, "%s", model_text(areas->curves[m], model, sizeof model));
         table_cell(table, "mesh %%");
         if (areas->model_count > 1)
             table_cell(table, "model %%");
@@ -115,12 +116,13 @@ static void case_table(const cJSON *one, const struct areas *areas, FILE *file) 
     size_t columns = 1 + (areas->model_count > 1 ? 3 : 2) * areas->model_count;
     struct text_table table = {.columns = columns + areas->theory_count};
     int loads = load_count(areas), shown = loads < LOADS_SHOWN ? loads : LOADS_SHOWN;
+    char model[64];
     area_heading(areas, &table);
     for (int n = 0; n < shown; n++)
         area_row(areas, shown > 1 ? n * (loads - 1) / (shown - 1) : 0, &table);
     table_print(&table, file);
     table_clear(&table);
-    fprintf(file, "%s: ", text_of(areas->curves[0], "model", "fits"));
+    fprintf(file, "%s: ", model_text(areas->curves[0], model, sizeof model));
     print_scalar(one, "kappa", file);
     fputs(", ", file);
     print_scalar(one, "erf_kappa", file);
@@ -243,4 +245,5 @@ void summary_of_contact(const cJSON *cases, const cJSON *costs, FILE *file) {
         "\nload: p/(E* h'_rms); area: A/A0, +- one standard error; mesh %: error from the limit of "
         "the levels, model %: of the limit from that of the most complete model\n",
         file);
+    print_notes(cases, NOTES_SHOWN, file);
 }

@@ -37,7 +37,7 @@ static void cases_table(const cJSON *cases, const char *const *varied, size_t va
 
 /* --- a row a series: model, level, estimator --- */
 
-enum { TABLES_MOST = 4, SERIES_MOST = 64, ERROR_COUNT = 4 };
+enum { TABLES_MOST = 4, SERIES_MOST = 64, ERROR_COUNT = 4, NOTES_SHOWN = 40 };
 static const char *const ERRORS[ERROR_COUNT] = {"statistical_error", "discretisation_error",
                                                 "model_error", "total_error"};
 
@@ -52,14 +52,14 @@ struct series_list {
     struct series rows[SERIES_MOST];
 };
 
-static bool same(const cJSON *a, const cJSON *b, const char *name) {
-    return cJSON_Compare(member(a, name), member(b, name), true);
+static bool same_series(const cJSON *a, const cJSON *b) {
+    return same_member(a, b, "model") && same_member(a, b, "kinematics") &&
+           same_member(a, b, "level") && same_member(a, b, "series");
 }
 
 static struct series *series_find(struct series_list *list, const cJSON *entry) {
     for (size_t s = 0; s < list->count; s++)
-        if (same(list->rows[s].entry, entry, "model") &&
-            same(list->rows[s].entry, entry, "level") && same(list->rows[s].entry, entry, "series"))
+        if (same_series(list->rows[s].entry, entry))
             return &list->rows[s];
     if (list->count == SERIES_MOST)
         return NULL;
@@ -98,11 +98,12 @@ static void series_table(const struct series_list *list, FILE *file) {
                                            "model %",       "total %"};
     enum { HEADING_COUNT = sizeof HEADINGS / sizeof *HEADINGS };
     struct text_table table = {.columns = HEADING_COUNT};
+    char model[64];
     for (size_t h = 0; h < HEADING_COUNT; h++)
         table_cell(&table, "%s", HEADINGS[h]);
     for (size_t s = 0; s < list->count; s++) {
         const struct series *series = &list->rows[s];
-        table_cell(&table, "%s", text_of(series->entry, "model", "-"));
+        table_cell(&table, "%s", model_text(series->entry, model, sizeof model));
         table_number(&table, number_of(series->entry, "level"));
         table_cell(&table, "%s", text_of(series->entry, "series", "-"));
         table_cell(&table, "%.3g", series->seconds / series->realisations);
@@ -156,4 +157,5 @@ void summary_of_report(const cJSON *report, FILE *file) {
             text_of(report, "study", "-"));
     cases_table(cases, varied, varied_count, file);
     print_all_series(cases, varied, varied_count, file);
+    print_notes(cases, NOTES_SHOWN, file);
 }

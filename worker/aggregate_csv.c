@@ -122,7 +122,8 @@ static void place_next(struct place *place, size_t theories) {
 /* One line: the curve, its point (x2 NULL but in a matrix), its values. */
 static void put_line(FILE *file, const cJSON *number, const cJSON *curve, const cJSON *x,
                      const cJSON *x2, const struct place *place, size_t theories) {
-    static const char *const labels[] = {"quantity", "series", "model", "level", "pressure"};
+    static const char *const labels[] = {"quantity",   "series", "model",
+                                         "kinematics", "level",  "pressure"};
     put_number(file, number);
     for (size_t n = 0; n < sizeof labels / sizeof *labels; n++) {
         fputc(',', file);
@@ -170,7 +171,7 @@ int aggregate_csv(const cJSON *curves, char **out, struct error *err) {
         return error_set(err, ERROR_MEMORY, "no memory left for a table");
     }
     theories_collect(&theories, curves);
-    fputs("case,quantity,series,model,level,pressure,x,x2", file);
+    fputs("case,quantity,series,model,kinematics,level,pressure,x,x2", file);
     for (size_t n = 0; n < VALUES; n++) {
         fprintf(file, ",%s", VALUE_KEYS[n]);
     }

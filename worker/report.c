@@ -59,7 +59,8 @@ static bool put_curve_errors(cJSON *report, const cJSON *curves, const cJSON *cu
 }
 
 static cJSON *curve_report(const cJSON *curves, const cJSON *curve, double seconds) {
-    static const char *const PLACE[] = {"quantity", "series", "model", "level", "pressure"};
+    static const char *const PLACE[] = {"quantity",   "series", "model",
+                                        "kinematics", "level",  "pressure"};
     cJSON *report = cJSON_CreateObject();
     bool complete = report != NULL;
     for (size_t n = 0; n < sizeof PLACE / sizeof *PLACE; n++) {
@@ -141,7 +142,7 @@ static bool put_cost(cJSON *report, const struct case_cost *cost) {
 
 /* Of the main curve; without one, of nothing. */
 static bool put_errors(cJSON *report, const cJSON *main, double seconds, const cJSON *curves) {
-    static const char *const PLACE[] = {"series", "model", "level"};
+    static const char *const PLACE[] = {"series", "model", "kinematics", "level"};
     const cJSON *quantity = field_at(main, "quantity");
     bool complete = field_put(report, "main_curve",
                               quantity ? cJSON_Duplicate(quantity, true) : cJSON_CreateNull());
@@ -164,6 +165,7 @@ static bool put_errors(cJSON *report, const cJSON *main, double seconds, const c
 static bool put_document(cJSON *report, const struct case_cost *cost, const cJSON *document) {
     const cJSON *curves = field_at(document, "curves");
     return put_errors(report, main_curve(curves), cost->seconds, curves) &&
+           put_copy(report, "notes", document) &&
            field_put(report, "curves", curve_reports(curves, cost->seconds)) &&
            field_put(report, "scalars", scalar_reports(field_at(document, "scalars")));
 }

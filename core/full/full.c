@@ -134,6 +134,11 @@ double full_bytes(const struct grid *grid, const struct block *block,
     return bytes;
 }
 
+void full_set_stop(struct full *f, int (*stop)(void *context), void *context) {
+    f->newton.stop = stop;
+    f->newton.context = context;
+}
+
 /* Heights of mean 0, in steps. */
 static int take_heights(struct full *f, const double *z, struct error *err) {
     size_t n = f->mesh->face;

@@ -58,6 +58,10 @@ size_t full_freedoms(const struct grid *grid, const struct block *block,
 double full_bytes(const struct grid *grid, const struct block *block,
                   const struct full_options *options);
 
+/* stop is asked before each iteration of Newton's from now on; non-zero ends full_press with
+ * ERROR_STOPPED, which leaves the solver as a load not reached does. NULL, as it begins: not. */
+void full_set_stop(struct full *full, int (*stop)(void *context), void *context);
+
 /* Meshes the block of a surface (copies; any height of its mean), lifted off. ERROR_INPUT for a
  * surface that is not finite or too steep. */
 int full_begin(struct full *full, const double *z, struct error *err);

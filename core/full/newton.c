@@ -339,6 +339,9 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
             return error_set(err, ERROR_NUMERIC,
                              "%zu iterations of Newton's left %.2g of the largest force",
                              end->iterations, end->residual);
+        if (n->stop != NULL && n->stop(n->context) != 0)
+            return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of Newton's",
+                             end->iterations);
         end->iterations++;
         double off = fmax(end->residual, start->inside * COMPLEMENTARITY / round.largest);
         int status = newton_change(n, off, end, err);

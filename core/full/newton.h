@@ -36,6 +36,8 @@ struct newton {
     double flat;                    /* vertical position of the flat */
     double tolerance;               /* largest residual, over the largest contact force */
     size_t max_iterations;
+    int (*stop)(void *context); /* asked before each iteration; NULL: not */
+    void *context;
 };
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
@@ -58,7 +60,8 @@ struct newton_end {
 };
 
 /* From u and the active set given, which should be a good guess; at least one node is taken as
- * active. ERROR_NUMERIC leaves u and the set of no use. */
+ * active. ERROR_NUMERIC, and ERROR_STOPPED where stop gave non-zero, leave u and the set of no use.
+ */
 int newton_settle(struct newton *newton, double pressure, struct newton_end *end,
                   struct error *err);
 /* Fills gap and opening. */

@@ -102,6 +102,7 @@ CREATE TABLE curve (
     quantity TEXT NOT NULL,
     series TEXT NOT NULL,
     model TEXT,
+    kinematics TEXT,                       -- of strain: of the model full alone
     level REAL,
     pressure REAL
 );
@@ -128,8 +129,13 @@ CREATE VIEW case_scalars AS
     FROM scalar c JOIN study s ON s.id = c.study_id;
 CREATE VIEW curve_points AS
     SELECT s.public AS study, c.case_number AS "case", c.quantity, c.series, p.x, p.y, p.standard_error,
-           p.x2, c.model, c.level, c.pressure, p.discretisation_error, p.model_error
+           p.x2, c.model, c.kinematics, c.level, c.pressure, p.discretisation_error, p.model_error
     FROM study s JOIN curve c ON c.study_id = s.id JOIN point p ON p.curve_id = c.id;
+-- The first notes of a case (jobs/notes.h), as published.
+CREATE VIEW case_notes AS
+    SELECT s.public AS study, p.case_number AS "case", n.value ->> 'realisation' AS realisation,
+           n.value ->> 'text' AS note
+    FROM study s JOIN published p ON p.study_id = s.id, json_each(p.document, '$.notes.kept') n;
 CREATE VIEW realisation_scalars AS
     SELECT s.public AS study, j.case_number AS "case", j.first + one.key AS realisation,
            (SELECT json_group_object(n.value, one.value -> ('$[' || n.key || ']'))

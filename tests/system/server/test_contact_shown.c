@@ -17,6 +17,11 @@ static int setup(void **state) {
     (void)state;
     spit("pressed.json", PRESSED("0.8"));
     spit("many.json", PRESSED("[0.2,0.3,0.4,0.5,0.6]"));
+    spit("steep.json",
+         "{\"name\":\"steep\",\"kind\":\"contact\",\"seed\":3,\"realisations\":8,\"surface\":{"
+         "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":2,\"length_ratio\":2,"
+         "\"points_per_wavelength\":6,\"rms_slope\":1.9},\"contact\":{\"model\":[\"full\","
+         "\"layered\"],\"block_height\":{\"lengths\":1},\"pressures\":{\"to\":0.5,\"steps\":3}}}");
     spit("wave.json",
          "{\"name\":\"wave\",\"kind\":\"contact\",\"realisations\":2,\"surface\":{\"dimension\":1,"
          "\"hurst\":0.8,"
@@ -98,9 +103,30 @@ static void files_hold_every_curve(void **state) {
                                  "x,y,standard_error,discretisation_error,model_error,persson",
                                  NULL});
     shell("one.db", "$RUGO curves --db $DB --format csv $ID");
-    check_shown((const char *[]){"case,quantity,series,model,level,pressure,x,x2,y,standard_error,"
+    check_shown((const char *[]){"case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
+                                 "standard_error,"
                                  "discretisation_error,model_error,theory_persson",
-                                 "\n0,contact_pressure_pdf,,layered,8,0.1,", NULL});
+                                 "\n0,contact_pressure_pdf,,layered,,8,0.1,", NULL});
+}
+
+/* Its kinematics stand beside every number of the model full, and where it found no answer, why. */
+static void the_model_full_is_told_apart(void **state) {
+    (void)state;
+    shell("steep.db", "$RUGO run --db $DB --out steep steep.json && ls steep");
+    check_shown((const char *[]){
+        "  full (hencky)  ", "\nfull (hencky): kappa ", "\nnotes: ", "\ncase 0, realisation ",
+        ": model full, level 6: load ", " was reached up to ", " E* only (steepest slope ",
+        "case-0-contact_area-edges-full-hencky-6.csv\n", NULL});
+    shell("steep.db", "$RUGO report --db $DB $ID");
+    check_shown((const char *[]){"\nfull (hencky)      6  edges", " was reached up to ", NULL});
+    shell("steep.db", "$RUGO report --db $DB --format json $ID");
+    check_shown((const char *[]){"\"model\":\"full\",\"kinematics\":\"hencky\",\"level\":6",
+                                 "\"notes\":{\"count\":", NULL});
+    shell("steep.db", "$RUGO curves --db $DB $ID");
+    check_shown((const char *[]){"\"notes\":{\"count\":", " was reached up to ", NULL});
+    shell("steep.db", "$RUGO curves --db $DB --format csv $ID");
+    check_shown((const char *[]){"\n0,contact_area,edges,full,hencky,6,,",
+                                 "\n0,mean_gap,,layered,,", NULL});
 }
 
 int main(void) {
@@ -109,6 +135,7 @@ int main(void) {
         cmocka_unit_test(many_cases_have_a_row_each),
         cmocka_unit_test(the_report_tells_what_each_part_buys),
         cmocka_unit_test(files_hold_every_curve),
+        cmocka_unit_test(the_model_full_is_told_apart),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }

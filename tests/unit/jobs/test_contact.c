@@ -355,6 +355,36 @@ static void against_each_realisation(void **state) {
     cJSON_Delete(document);
 }
 
+/* Each realisation and level that the model full did not bring to the last load has a note, which
+ * names the load reached; notes of other realisations, or too few, are refused. */
+static void failures_are_told(void **state) {
+    (void)state;
+    struct job_runner *runner = runner_of(STEEP, NULL);
+    struct job_merger *merger = merger_of(STEEP);
+    struct job_result result = run(runner, 0, REALISATIONS), moved = result;
+    moved.first = REALISATIONS;
+    assert_refused(merger, &moved, "does not belong to the scalars");
+    merge(merger, &result);
+    cJSON *document = curves_of(merger);
+    double valueless = 0;
+    for (double level = 3; level <= 6; level += 3)
+        valueless +=
+            at(curve_of(document, "contact_area", "nodes", "full", level), "/valueless", 2);
+    assert_true(valueless > 0);
+    assert_near(value_at(document, "/notes/count")->valuedouble, valueless, 0);
+    const char *text =
+        cJSON_GetStringValue(value_at(value_at(document, "/notes/kept")->child, "/text"));
+    assert_non_null(strstr(text, "model full, level "));
+    assert_non_null(strstr(text, " was reached up to "));
+    cJSON_Delete(document);
+    document = document_of(LEVELS, 1);
+    assert_null(value_at(document, "/notes"));
+    cJSON_Delete(document);
+    job_result_clear(&result);
+    kind()->merger_destroy(&merger);
+    kind()->runner_destroy(&runner);
+}
+
 /* What must be true of any solution, and what full contact leaves without a value. */
 static void curves_make_sense(void **state) {
     (void)state;
@@ -432,12 +462,49 @@ static void stopping(void **state) {
     kind()->runner_destroy(&runner);
 }
 
+static int stop_at_number(void *context, uint64_t done) {
+    int *left = context;
+    (void)done;
+    return (*left)-- == 0;
+}
+
+/* A load of the model full asks before each iteration of Newton's: wherever it is stopped, nothing
+ * comes out, no failure is told of, and the same runner gives the whole block afterwards. */
+static void stopping_within_a_load(void **state) {
+    (void)state;
+    struct job_runner *runner = runner_of(STEEP, NULL);
+    struct job_result whole = run(runner, 0, 2), result = {0};
+    struct error err = {0};
+    int step = 1;
+    for (int number = 0;; number += step, step += 7) {
+        int left = number;
+        const struct job_control control = {stop_at_number, &left};
+        int status = kind()->run(runner, 0, 2, &control, &result, &err);
+        if (status == 0)
+            break;
+        assert_int_equal(status, ERROR_STOPPED);
+        assert_null(result.data);
+    }
+    assert_true(step > 7 * 7); /* far more questions than realisations, levels and loads: 38 */
+    assert_int_equal(result.size, whole.size);
+    assert_memory_equal(result.data, whole.data, whole.size);
+    job_result_clear(&whole);
+    job_result_clear(&result);
+    kind()->runner_destroy(&runner);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_split_and_order), cmocka_unit_test(foreign_and_damaged),
-        cmocka_unit_test(malicious),           cmocka_unit_test(against_each_realisation),
-        cmocka_unit_test(curves_make_sense),   cmocka_unit_test(pressures_are_those_in_contact),
-        cmocka_unit_test(no_realisation_yet),  cmocka_unit_test(stopping),
+        cmocka_unit_test(any_split_and_order),
+        cmocka_unit_test(foreign_and_damaged),
+        cmocka_unit_test(malicious),
+        cmocka_unit_test(against_each_realisation),
+        cmocka_unit_test(curves_make_sense),
+        cmocka_unit_test(pressures_are_those_in_contact),
+        cmocka_unit_test(failures_are_told),
+        cmocka_unit_test(no_realisation_yet),
+        cmocka_unit_test(stopping),
+        cmocka_unit_test(stopping_within_a_load),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -321,11 +321,13 @@ static void results_and_views(void **state) {
     struct case_info info;
     assert_int_equal(store_case(store, id, 0, &info, NULL), 0);
     cJSON *curves = cJSON_Parse(
-        "{\"scalars\":{\"m0\":{\"value\":1,\"standard_error\":0.5}},\"curves\":[{\"quantity\":"
+        "{\"notes\":{\"count\":1,\"kept\":[{\"realisation\":7,\"text\":\"why\"}]},"
+        "\"scalars\":{\"m0\":{\"value\":1,\"standard_error\":0.5}},\"curves\":[{\"quantity\":"
         "\"q\",\"series\":\"\",\"x\":[1,2],\"y\":[3,null],\"standard_error\":[0.1,null]},"
         "{\"quantity\":\"joint\",\"series\":\"s\",\"x\":[1,2],\"x2\":[8,9],\"y\":[[0,5],[0,0]],"
         "\"standard_error\":[[0,1],[0,0]]},{\"quantity\":\"area\",\"series\":\"edges\",\"model\":"
-        "\"layered\",\"level\":8,\"pressure\":0.5,\"x\":[1,2],\"y\":[3,4],\"standard_error\":[0,0],"
+        "\"full\",\"kinematics\":\"hencky\",\"level\":8,\"pressure\":0.5,\"x\":[1,2],\"y\":[3,4],"
+        "\"standard_error\":[0,0],"
         "\"discretisation_error\":[0.25,null],\"model_error\":[null,-2]}]}");
     assert_int_equal(store_publish(store, id, 0, info.revision, curves, NULL), 0);
     assert_int_equal(store_publish(store, id, 0, info.revision - 1, curves, NULL),
@@ -358,10 +360,12 @@ static void results_and_views(void **state) {
                "quantity = 'joint'",
                "1.0:9.0:5.0:1.0");
     check_text("copy.db",
-               "SELECT group_concat(model || level || '@' || pressure || ':' || "
+               "SELECT group_concat(model || kinematics || level || '@' || pressure "
+               "|| ':' || "
                "coalesce(discretisation_error, 'none') || ':' || coalesce(model_error, 'none')) "
                "FROM curve_points WHERE quantity = 'area'",
-               "layered8.0@0.5:0.25:none,layered8.0@0.5:none:-2.0");
+               "fullhencky8.0@0.5:0.25:none,fullhencky8.0@0.5:none:-2.0");
+    check_text("copy.db", "SELECT \"case\" || realisation || note FROM case_notes", "07why");
     check_text("copy.db", "SELECT name || value || standard_error FROM case_scalars", "m01.00.5");
     check_text("copy.db",
                "SELECT count(*) || group_concat(DISTINCT worker || host || attempts) FROM job_log",

@@ -82,6 +82,26 @@ static void a_choice_narrows_as_far_as_it_must(void **state) {
     }
 }
 
+/* Where strains are finite, their kinematics are named, even where all lines have the same. */
+static void kinematics_are_named(void **state) {
+    (void)state;
+    cJSON *document = cJSON_Parse("{\"cases\":[{\"case\":0,\"curves\":[]}]}");
+    cJSON *one = cJSON_GetObjectItem(document, "cases")->child;
+    cJSON *curves = cJSON_GetObjectItem(one, "curves");
+    struct plot_choice choice;
+    char label[PLOT_LABEL_SIZE];
+    add_curve(curves, "contact_area", "edges", "full", 4, 0);
+    cJSON_AddStringToObject(curves->child, "kinematics", "hencky");
+    plot_choose(&choice, document, "contact_area", NULL);
+    plot_label(&choice, 0, label);
+    assert_string_equal(label, "full (hencky), edges");
+    add_curve(curves, "contact_area", "edges", "layered", 4, 0);
+    plot_choose(&choice, document, "contact_area", NULL);
+    plot_label(&choice, 1, label);
+    assert_string_equal(label, "layered, edges");
+    cJSON_Delete(document);
+}
+
 /* Patches in the cell and patches per wave have no axis in common. */
 static void one_unit_a_picture(void **state) {
     (void)state;
@@ -154,6 +174,7 @@ static void a_picture_names_what_it_draws(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_choice_narrows_as_far_as_it_must),
+        cmocka_unit_test(kinematics_are_named),
         cmocka_unit_test(one_unit_a_picture),
         cmocka_unit_test(a_picture_names_what_it_draws),
     };

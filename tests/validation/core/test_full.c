@@ -422,6 +422,43 @@ static void failures_name_the_load_reached(void **state) {
     close_both(&p);
 }
 
+static int stop_at(void *context) {
+    size_t *questions = context;
+    return --*questions == 0;
+}
+
+/* Stopped before any iteration of the second load, the solver keeps the first, and goes on from
+ * there to the answer that it gives undisturbed, bit for bit. */
+static void a_stopped_load_is_taken_up_again(void **state) {
+    (void)state;
+    struct pressed p;
+    struct error err = {0};
+    double expected[64];
+    open_both(&p, line(64), BLOCK);
+    fill_rough(&p.scene, 0.5);
+    begin_both(&p);
+    press_both(&p, 0.05);
+    press_both(&p, 0.15);
+    memcpy(expected, p.state.p, sizeof expected);
+    size_t iterations = p.report.newton;
+    assert_true(iterations > 2);
+    for (size_t n = 1; n <= iterations; n++) {
+        size_t questions = n;
+        begin_both(&p);
+        press_both(&p, 0.05);
+        full_set_stop(p.full, stop_at, &questions);
+        assert_int_equal(full_press(p.full, 0.15, &p.state, &p.report, &err), ERROR_STOPPED);
+        assert_true(p.report.reached >= 0.05 && p.report.reached < 0.15);
+        bool whole = p.report.reached == 0.05;
+        full_set_stop(p.full, NULL, NULL);
+        press_both(&p, 0.15);
+        check_answer(&p);
+        if (whole)
+            assert_memory_equal(p.state.p, expected, sizeof expected);
+    }
+    close_both(&p);
+}
+
 /* What each kinematics leaves out vanishes with the slope; at slope 0.1 St Venant's solid, softer
  * when compressed, touches more than Hencky's: 0.631 instead of 0.565 of 512 nodes, as a general FE
  * program finds with it (0.637). */
@@ -471,6 +508,7 @@ int main(void) {
         cmocka_unit_test(plateaus_and_twins_touch_at_once),
         cmocka_unit_test(stiff_profiles_find_their_answer),
         cmocka_unit_test(failures_name_the_load_reached),
+        cmocka_unit_test(a_stopped_load_is_taken_up_again),
         cmocka_unit_test(st_venant_touches_more_than_hencky),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

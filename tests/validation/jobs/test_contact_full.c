@@ -86,6 +86,12 @@ static void what_the_model_tells(void **state) {
     assert_near(scalar(document, "/scalars/full_penetration/value"), 0, 1e-6, 0);
     assert_near(scalar(document, "/scalars/full_stretch/value"),
                 at(stretch, "/y", points(stretch) - 1), 1e-12, 0);
+    /* The Jacobian of a column sheared by the steepest slope s, over its edges, is 1/sqrt(1 + s^2);
+     * layers thinned by the heights take somewhat more. */
+    double slope = scalar(document, "/scalars/full_steepest_slope/value");
+    double quality = scalar(document, "/scalars/full_mesh_quality/value");
+    assert_true(slope > scalar(document, "/scalars/rms_slope/value") && slope < 2);
+    assert_true(quality > 0.5 && quality < 1 / sqrt(1 + slope * slope) + 0.01);
     cJSON_Delete(document);
 }
 

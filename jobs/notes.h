@@ -1,0 +1,35 @@
+/* What a kind says about single realisations in words, as why one has no values. The first
+ * NOTES_MOST of a case are kept, in the order of realisations, and all are counted: any split into
+ * blocks and any order of merging keeps the same. */
+#ifndef RUGO_JOBS_NOTES_H
+#define RUGO_JOBS_NOTES_H
+
+#include "core/error.h"
+#include "jobs/bytes.h"
+#include <cjson/cJSON.h>
+
+enum { NOTES_MOST = 20, NOTE_SIZE = sizeof((struct error *)0)->text };
+struct note {
+    uint64_t realisation;
+    char text[NOTE_SIZE]; /* printable ASCII */
+};
+struct notes { /* initialise with {0} */
+    uint64_t count;
+    struct note kept[NOTES_MOST]; /* the first notes_kept, realisations rising or the same */
+};
+static inline size_t notes_kept(const struct notes *notes) {
+    return notes->count < NOTES_MOST ? (size_t)notes->count : NOTES_MOST;
+}
+
+/* realisation: that of the last note or a later one. Other characters are replaced. */
+void notes_add(struct notes *notes, uint64_t realisation, const char *text);
+/* Of other realisations. */
+void notes_merge(struct notes *into, const struct notes *from);
+
+void notes_put(struct bytes *bytes, const struct notes *notes);
+/* Fails the reader where they are not what notes_put makes. */
+void notes_get(struct byte_reader *reader, struct notes *notes);
+/* {"count": n, "kept": [{"realisation", "text"}, ...]}; caller deletes. NULL: out of memory. */
+cJSON *notes_json(const struct notes *notes);
+
+#endif
