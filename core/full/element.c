@@ -229,7 +229,7 @@ INLINE void stiffnesses(int d, const struct solid *solid, const struct element_s
 
 INLINE bool evaluate(int d, const struct solid *solid, const struct element_shape *shape,
                      double u[8][3], double *energy, double *force,
-                     double (*stiffness)[ELEMENT_FREEDOMS]) {
+                     double (*stiffness)[ELEMENT_FREEDOMS], struct element_bulk *out) {
     struct field f;
     if (!field_make(d, solid, shape, u, &f))
         return false;
@@ -243,13 +243,19 @@ INLINE bool evaluate(int d, const struct solid *solid, const struct element_shap
         forces(d, shape, &f, &bulk, force);
     if (stiffness != NULL)
         stiffnesses(d, solid, shape, &f, &bulk, stiffness);
+    if (out != NULL) {
+        out->stiffness = bulk.stiffness / shape->volume;
+        for (int a = 0; a < 1 << d; a++)
+            for (int i = 0; i < d; i++)
+                out->gradient[a * d + i] = f.bulk[a][i];
+    }
     return true;
 }
 
 WIDE_VECTORS bool element_evaluate(int dimension, const struct solid *solid,
                                    const struct element_shape *shape, double u[8][3],
                                    double *energy, double *force,
-                                   double (*stiffness)[ELEMENT_FREEDOMS]) {
-    return dimension == 2 ? evaluate(2, solid, shape, u, energy, force, stiffness)
-                          : evaluate(3, solid, shape, u, energy, force, stiffness);
+                                   double (*stiffness)[ELEMENT_FREEDOMS], struct element_bulk *out) {
+    return dimension == 2 ? evaluate(2, solid, shape, u, energy, force, stiffness, out)
+                          : evaluate(3, solid, shape, u, energy, force, stiffness, out);
 }

@@ -27,10 +27,16 @@ bool element_shape_make(int dimension, double position[8][3], struct element_sha
  * element folded there. */
 double element_quality(int dimension, double position[8][3]);
 
-/* Displacements u[a][k]; force and stiffness by freedom a*dimension + k. energy, force, stiffness:
- * NULL where not wanted. False when a Gauss point is turned inside out. */
+/* What the mean dilatation adds to an element's stiffness: stiffness times the dyad of gradient. */
+struct element_bulk {
+    double gradient[ELEMENT_FREEDOMS]; /* dv/du by freedom */
+    double stiffness;                  /* E*, over the volume */
+};
+
+/* Displacements u[a][k]; force and stiffness by freedom a*dimension + k. energy, force, stiffness,
+ * bulk: NULL where not wanted. False when a Gauss point is turned inside out. */
 bool element_evaluate(int dimension, const struct solid *solid, const struct element_shape *shape,
                       double u[8][3], double *energy, double *force,
-                      double (*stiffness)[ELEMENT_FREEDOMS]);
+                      double (*stiffness)[ELEMENT_FREEDOMS], struct element_bulk *out);
 
 #endif

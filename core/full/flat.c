@@ -118,7 +118,7 @@ struct layer {
 };
 
 static void layer_make(const struct mesh *mesh, const struct solid *solid, size_t layer,
-                       struct layer *out) {
+                       struct layer *out, struct element_bulk *bulk) {
     int d = mesh->dimension;
     const struct level *level = &mesh->level[layer];
     double width = (double)level->width;
@@ -132,7 +132,7 @@ static void layer_make(const struct mesh *mesh, const struct solid *solid, size_
     }
     /* A brick at rest: nothing to fail. */
     (void)element_shape_make(d, position, &shape);
-    (void)element_evaluate(d, solid, &shape, u, NULL, NULL, stiffness);
+    (void)element_evaluate(d, solid, &shape, u, NULL, NULL, stiffness, bulk);
     for (int a = 0; a < 1 << d; a++)
         for (int b = 0; b < 1 << d; b++) {
             int along = (b & 1) - (a & 1) + 1;
@@ -293,13 +293,14 @@ static void eliminate(struct flat *f, struct layer *layers, size_t level, size_t
             inverse_at(f, level)[(size_t)(i * d + j) * n + wave] = inverse[i][j];
 }
 
-static int eliminate_all(struct flat *f, const struct solid *solid, struct error *err) {
+static int eliminate_all(struct flat *f, const struct solid *solid, struct bulk *bulk,
+                         struct error *err) {
     const struct mesh *mesh = f->mesh;
     struct layer *layers = array_create(mesh->layers, sizeof *layers);
     if (layers == NULL)
         return error_memory(err, mesh->layers * sizeof *layers, "the flat block");
     for (size_t k = 0; k < mesh->layers; k++)
-        layer_make(mesh, solid, k, &layers[k]);
+        layer_make(mesh, solid, k, &layers[k], bulk != NULL ? &bulk->element[k] : NULL);
     for (size_t level = mesh->layers + 1; level-- > 0;)
         for (size_t wave = 0; wave < waves_at(f, level); wave++)
             eliminate(f, layers, level, wave);
@@ -354,7 +355,7 @@ static int transforms_create(struct flat *f, struct error *err) {
 }
 
 int flat_create(struct flat **out, const struct mesh *mesh, const struct solid *solid,
-                struct error *err) {
+                struct bulk *bulk, struct error *err) {
     *out = NULL;
     struct flat *f = array_create(1, sizeof *f);
     if (f == NULL)
@@ -365,7 +366,7 @@ int flat_create(struct flat **out, const struct mesh *mesh, const struct solid *
     if (status == 0)
         status = transforms_create(f, err);
     if (status == 0)
-        status = eliminate_all(f, solid, err);
+        status = eliminate_all(f, solid, bulk, err);
     if (status != 0)
         flat_destroy(&f);
     *out = f;

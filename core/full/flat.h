@@ -10,13 +10,13 @@
 #ifndef RUGO_CORE_FULL_FLAT_H
 #define RUGO_CORE_FULL_FLAT_H
 
-#include "core/full/element.h"
-#include "core/full/mesh.h"
+#include "core/full/bulk.h"
 
 struct flat;
 
+/* bulk: filled, of the layers; may be NULL. */
 int flat_create(struct flat **out, const struct mesh *mesh, const struct solid *solid,
-                struct error *err);
+                struct bulk *bulk, struct error *err);
 void flat_destroy(struct flat **flat);
 double flat_bytes(const struct mesh *mesh);
 

@@ -128,7 +128,7 @@ double full_bytes(const struct grid *grid, const struct block *block,
     enum { VECTORS = 7, FACES = 6 }; /* newton.h and this file: mesh_freedoms, face */
     double bytes = sizeof(double) * (VECTORS * (double)mesh_freedoms(mesh) +
                                      FACES * (double)mesh->face + (double)mesh->nodes) +
-                   stencil_bytes(mesh) + krylov_bytes(mesh) + contact_bytes(grid) +
+                   stencil_bytes(mesh, false) + krylov_bytes(mesh) + contact_bytes(grid) +
                    compliance_bytes(grid, block);
     mesh_destroy(&mesh);
     return bytes;

@@ -4,7 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BASIS = 24, RESTARTS = 2, LANES = 8 };
+enum { BASIS = 24, RESTARTS = 10, LANES = 8 };
+/* A restart that leaves more than this of the residual is the last one. */
+static const double STALLED = 0.5;
+/* Bulk over shear modulus from which pressures are unknowns of their own. */
+static const double BULK_LEAST = 10;
 /* Of the contact forces within the preconditioner. */
 static const double SUPPORT_TOLERANCE = 1e-3;
 
@@ -12,10 +16,11 @@ struct krylov {
     const struct mesh *mesh; /* borrowed */
     struct flat *flat;
     struct support support;
-    size_t freedoms;
+    struct bulk *bulk; /* of the flat block; NULL where pressures are no unknowns */
+    size_t freedoms, unknowns; /* the pressures of elements follow the displacements */
     double *basis[BASIS + 1]; /* orthonormal residuals */
     double *direction[BASIS]; /* preconditioned */
-    double *load, *moved;
+    double *load, *moved, *solution;
     double *face, *target, *forces;      /* of the face */
     double hessenberg[BASIS + 1][BASIS]; /* turned to upper triangular */
     double cosine[BASIS], sine[BASIS], right[BASIS + 1];
@@ -23,26 +28,30 @@ struct krylov {
 
 int krylov_create(struct krylov **out, const struct mesh *mesh, const struct solid *solid,
                   enum gap_weighting weighting, struct error *err) {
+    bool bulk = krylov_needs_bulk(solid);
     *out = NULL;
     struct krylov *k = array_create(1, sizeof *k);
     if (k == NULL)
-        return error_memory(err, sizeof *k, "conjugate directions");
+        return error_memory(err, sizeof *k, "residuals");
     k->mesh = mesh;
     k->freedoms = mesh_freedoms(mesh);
-    int status = flat_create(&k->flat, mesh, solid, err);
+    k->unknowns = k->freedoms + (bulk ? mesh->elements : 0);
+    int status = bulk ? bulk_create(&k->bulk, mesh, true, err) : 0;
+    if (status == 0)
+        status = flat_create(&k->flat, mesh, solid, k->bulk, err);
     if (status == 0)
         status = support_create(&k->support, mesh, k->flat, weighting, err);
     for (size_t b = 0; status == 0 && b < 2 * BASIS + 1; b++) {
         double **array = b <= BASIS ? &k->basis[b] : &k->direction[b - BASIS - 1];
-        *array = array_create(k->freedoms, sizeof(double));
+        *array = array_create(k->unknowns, sizeof(double));
         if (*array == NULL)
-            status = error_memory(err, k->freedoms * sizeof(double), "conjugate directions");
+            status = error_memory(err, k->unknowns * sizeof(double), "residuals");
     }
-    double **const others[] = {&k->face, &k->target, &k->forces, &k->load, &k->moved};
-    for (size_t a = 0; status == 0 && a < 5; a++) {
-        *others[a] = array_create(a < 3 ? mesh->face : k->freedoms, sizeof(double));
+    double **const others[] = {&k->face, &k->target, &k->forces, &k->load, &k->moved, &k->solution};
+    for (size_t a = 0; status == 0 && a < 6; a++) {
+        *others[a] = array_create(a < 3 ? mesh->face : k->unknowns, sizeof(double));
         if (*others[a] == NULL)
-            status = error_memory(err, k->freedoms * sizeof(double), "conjugate directions");
+            status = error_memory(err, k->unknowns * sizeof(double), "residuals");
     }
     if (status != 0)
         krylov_destroy(&k);
@@ -63,6 +72,8 @@ void krylov_destroy(struct krylov **krylov) {
     free(k->forces);
     free(k->load);
     free(k->moved);
+    free(k->solution);
+    bulk_destroy(&k->bulk);
     support_clear(&k->support);
     flat_destroy(&k->flat);
     free(k);
@@ -73,6 +84,10 @@ double krylov_bytes(const struct mesh *mesh) {
     double waves = (double)((mesh->level[0].nx / 2 + 1) * mesh->level[0].ny);
     return flat_bytes(mesh) + sizeof(double) * ((2 * BASIS + 3) * (double)mesh_freedoms(mesh) +
                                                 7 * (double)mesh->face + 5 * waves);
+}
+
+bool krylov_needs_bulk(const struct solid *solid) {
+    return solid->mean > BULK_LEAST * solid->shear;
 }
 
 void krylov_weigh(const struct krylov *k, const double *in, double *out) {
@@ -106,6 +121,11 @@ static void scale(size_t n, double factor, double *x) {
 
 /* --- operator and preconditioner --- */
 
+/* A factorisation is of the displacements' equations alone. */
+static size_t unknowns_of(const struct krylov *k, const struct equations *equations) {
+    return equations->factor != NULL ? k->freedoms : k->unknowns;
+}
+
 /* Rows: forces; the sum of the far side's vertical ones at its first node; in contact the weighted
  * face. */
 static void operate(struct krylov *k, const struct equations *equations, const double *x,
@@ -114,6 +134,10 @@ static void operate(struct krylov *k, const struct equations *equations, const d
     size_t far_side = mesh_far_side(mesh);
     double sum = 0;
     stencil_apply(equations->tangent, x, y);
+    if (unknowns_of(k, equations) > k->freedoms) {
+        bulk_relax(equations->tangent->bulk, x, x + k->freedoms, y + k->freedoms);
+        bulk_push(equations->tangent->bulk, y + k->freedoms, 1, y);
+    }
     for (size_t node = far_side; node < mesh->nodes; node++) {
         sum += y[mesh_vertical(mesh, node)];
         y[mesh_vertical(mesh, node)] = 0;
@@ -146,19 +170,22 @@ static int precondition_factored(struct krylov *k, const struct equations *equat
     return status;
 }
 
-/* x: the flat block's displacements under r. */
-static void precondition_flat(struct krylov *k, const bool *active, double *r, double *x) {
+/* x: the flat block's displacements and pressures under r. */
+static void precondition_flat(struct krylov *k, const bool *active, const double *r, double *x) {
     const struct mesh *mesh = k->mesh;
     double sum = 0;
+    memcpy(k->moved, r, k->freedoms * sizeof *r);
     for (size_t node = 0; node < mesh->face; node++) {
         size_t vertical = mesh_vertical(mesh, node);
         k->target[node] = r[vertical];
         if (active[node])
-            r[vertical] = 0;
+            k->moved[vertical] = 0;
     }
+    if (k->bulk != NULL)
+        bulk_push(k->bulk, r + k->freedoms, -1, k->moved);
     for (size_t node = 0; node < mesh->nodes; node++)
-        sum += r[mesh_vertical(mesh, node)];
-    flat_load(k->flat, r);
+        sum += k->moved[mesh_vertical(mesh, node)];
+    flat_load(k->flat, k->moved);
     flat_face(k->flat, k->face);
     support_weigh(&k->support, k->face, k->face);
     double shift =
@@ -166,9 +193,14 @@ static void precondition_flat(struct krylov *k, const bool *active, double *r, d
     flat_displace(k->flat, k->forces, x);
     for (size_t node = 0; node < mesh->nodes; node++)
         x[mesh_vertical(mesh, node)] += shift;
-    for (size_t node = 0; node < mesh->face; node++)
-        if (active[node])
-            r[mesh_vertical(mesh, node)] = k->target[node];
+    /* The pressure is p = r + k v. */
+    if (k->bulk != NULL) {
+        for (size_t e = k->freedoms; e < k->unknowns; e++)
+            x[e] = -r[e];
+        bulk_relax(k->bulk, x, x + k->freedoms, x + k->freedoms);
+        for (size_t e = k->freedoms; e < k->unknowns; e++)
+            x[e] = -x[e];
+    }
 }
 
 /* --- minimal residuals --- */
@@ -190,7 +222,7 @@ static double rotate(struct krylov *k, size_t c) {
     return fabs(k->right[c + 1]);
 }
 
-static void combine(struct krylov *k, size_t count, double *x) {
+static void combine(struct krylov *k, size_t n, size_t count, double *x) {
     double factor[BASIS];
     for (size_t a = count; a-- > 0;) {
         factor[a] = k->right[a];
@@ -199,13 +231,13 @@ static void combine(struct krylov *k, size_t count, double *x) {
         factor[a] /= k->hessenberg[a][a];
     }
     for (size_t a = 0; a < count; a++)
-        add(k->freedoms, factor[a], k->direction[a], x);
+        add(n, factor[a], k->direction[a], x);
 }
 
 /* From the residual in basis 0, of size *left: adds to x, and tells the size left. */
 static int cycle(struct krylov *k, const struct equations *equations, double goal, double *x,
                  double *left, size_t *iterations, struct error *err) {
-    size_t n = k->freedoms, c = 0;
+    size_t n = unknowns_of(k, equations), c = 0;
     scale(n, 1 / *left, k->basis[0]);
     k->right[0] = *left;
     for (double size = 1; c<BASIS && * left> goal && size > 0; c++) {
@@ -228,7 +260,7 @@ static int cycle(struct krylov *k, const struct equations *equations, double goa
             scale(n, 1 / size, next);
         *left = rotate(k, c);
     }
-    combine(k, c, x);
+    combine(k, n, c, x);
     *iterations += c;
     return 0;
 }
@@ -245,22 +277,28 @@ static void hold(const struct krylov *k, double *x) {
 
 int krylov_solve(struct krylov *k, const struct equations *equations, double tolerance, double *x,
                  size_t *iterations, struct error *err) {
-    size_t n = k->freedoms;
-    double first = sqrt(dot(n, x, x)), left = first;
-    memcpy(k->load, x, n * sizeof *x);
-    memcpy(k->basis[0], x, n * sizeof *x);
-    memset(x, 0, n * sizeof *x);
+    size_t n = unknowns_of(k, equations);
+    double first = sqrt(dot(k->freedoms, x, x)), left = first;
+    memset(k->load, 0, n * sizeof *k->load);
+    memset(k->solution, 0, n * sizeof *k->solution);
+    memcpy(k->load, x, k->freedoms * sizeof *x);
+    memcpy(k->basis[0], k->load, n * sizeof *x);
+    double before = INFINITY;
     for (int restart = 0; restart < RESTARTS && left > tolerance * first; restart++) {
         if (restart > 0) {
-            operate(k, equations, x, k->basis[0]);
+            operate(k, equations, k->solution, k->basis[0]);
             for (size_t i = 0; i < n; i++)
                 k->basis[0][i] = k->load[i] - k->basis[0][i];
             left = sqrt(dot(n, k->basis[0], k->basis[0]));
         }
-        int status = cycle(k, equations, tolerance * first, x, &left, iterations, err);
+        if (!(left <= STALLED * before))
+            break;
+        before = left;
+        int status = cycle(k, equations, tolerance * first, k->solution, &left, iterations, err);
         if (status != 0)
             return status;
     }
+    memcpy(x, k->solution, k->freedoms * sizeof *x);
     hold(k, x);
     if (!(left <= tolerance * first))
         return error_set(err, ERROR_NUMERIC,

@@ -22,6 +22,9 @@ void krylov_destroy(struct krylov **krylov);
 /* Of an object for this mesh. */
 double krylov_bytes(const struct mesh *mesh);
 
+/* Whether the tangent has to tell its bulk part apart. */
+bool krylov_needs_bulk(const struct solid *solid);
+
 /* The weighted values of the face's nodes. */
 void krylov_weigh(const struct krylov *krylov, const double *in, double *out);
 /* What is to be solved; borrows all. */

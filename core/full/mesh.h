@@ -62,6 +62,9 @@ void mesh_element(const struct mesh *mesh, size_t layer, size_t j, size_t i,
 /* A nodal field's values at the element's corners: field[node*components + k]. */
 void mesh_corners(const struct mesh *mesh, const struct mesh_element *element, const double *field,
                   size_t components, double out[8][3]);
+/* The transpose: adds the corners' share, e.g. of forces, to a nodal field; corner is spoilt. */
+void mesh_corners_add(const struct mesh *mesh, const struct mesh_element *element,
+                      double corner[8][3], size_t components, double *field);
 /* Reference positions of the corners, from the element's own first one sideways. */
 void mesh_position(const struct mesh *mesh, const struct mesh_element *element,
                    double position[8][3]);

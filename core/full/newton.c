@@ -23,7 +23,7 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct soli
     size_t freedoms = mesh_freedoms(mesh);
     double **const arrays[] = {&out->u,    &out->force, &out->before, &out->change,
                                &out->rest, &out->gap,   &out->opening};
-    int status = stencil_create(&out->tangent, mesh, err);
+    int status = stencil_create(&out->tangent, mesh, krylov_needs_bulk(solid), err);
     if (status == 0)
         status = krylov_create(&out->krylov, mesh, solid, weighting, err);
     for (size_t a = 0; status == 0 && a < sizeof arrays / sizeof *arrays; a++) {

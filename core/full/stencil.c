@@ -15,7 +15,7 @@ static size_t value_count(const struct mesh *mesh) {
     return mesh_freedoms(mesh) * slot_count(mesh) * (size_t)mesh->dimension;
 }
 
-int stencil_create(struct stencil **out, const struct mesh *mesh, struct error *err) {
+int stencil_create(struct stencil **out, const struct mesh *mesh, bool bulk, struct error *err) {
     *out = NULL;
     struct stencil *stencil = array_create(1, sizeof *stencil);
     if (stencil == NULL)
@@ -27,20 +27,24 @@ int stencil_create(struct stencil **out, const struct mesh *mesh, struct error *
         stencil_destroy(&stencil);
         return error_memory(err, value_count(mesh) * sizeof(double), "a stiffness matrix");
     }
+    int status = bulk ? bulk_create(&stencil->bulk, mesh, false, err) : 0;
+    if (status != 0)
+        stencil_destroy(&stencil);
     *out = stencil;
-    return 0;
+    return status;
 }
 
 void stencil_destroy(struct stencil **stencil) {
     if (*stencil == NULL)
         return;
+    bulk_destroy(&(*stencil)->bulk);
     free((*stencil)->values);
     free(*stencil);
     *stencil = NULL;
 }
 
-double stencil_bytes(const struct mesh *mesh) {
-    return (double)value_count(mesh) * sizeof(double);
+double stencil_bytes(const struct mesh *mesh, bool bulk) {
+    return (double)value_count(mesh) * sizeof(double) + (bulk ? bulk_bytes(mesh, false) : 0);
 }
 
 /* One step back, none and one on, x fastest, from row j, column i of a level. */
@@ -179,9 +183,10 @@ INLINE void scatter(int d, const size_t node[8], int parity, struct contribution
         }
 }
 
+/* bulk: of the layer's first element; may be NULL. */
 INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct solid *solid, size_t layer,
                            const double *u, struct sum *energy, double *force,
-                           struct stencil *tangent) {
+                           struct stencil *tangent, struct element_bulk *bulk) {
     struct mesh_element element;
     struct element_shape shape;
     struct contribution c;
@@ -194,8 +199,9 @@ INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct solid *s
             mesh_corners(mesh, &element, u, (size_t)d, moved);
             if (!element_shape_make(d, position, &shape) ||
                 !element_evaluate(d, solid, &shape, moved, energy ? &c.energy : NULL, c.force,
-                                  tangent ? c.stiffness : NULL))
+                                  tangent ? c.stiffness : NULL, bulk))
                 return false;
+            bulk += bulk != NULL;
             if (energy != NULL)
                 sum_add(energy, c.energy);
             if (widens)
@@ -213,10 +219,14 @@ bool stencil_evaluate(const struct mesh *mesh, const struct solid *solid, const 
     memset(force, 0, mesh_freedoms(mesh) * sizeof *force);
     if (tangent != NULL)
         memset(tangent->values, 0, value_count(mesh) * sizeof *tangent->values);
+    struct element_bulk *bulk =
+        tangent != NULL && tangent->bulk != NULL ? tangent->bulk->element : NULL;
     for (size_t layer = 0; made && layer < mesh->layers; layer++) {
         struct sum *sum = energy != NULL ? &total : NULL;
-        made = mesh->dimension == 2 ? evaluate_layer(2, mesh, solid, layer, u, sum, force, tangent)
-                                    : evaluate_layer(3, mesh, solid, layer, u, sum, force, tangent);
+        made = mesh->dimension == 2 ? evaluate_layer(2, mesh, solid, layer, u, sum, force, tangent, bulk)
+                                    : evaluate_layer(3, mesh, solid, layer, u, sum, force, tangent, bulk);
+        if (bulk != NULL)
+            bulk += level_nodes(&mesh->level[layer]);
     }
     if (energy != NULL)
         *energy = sum_value(&total);

@@ -4,8 +4,7 @@
 #ifndef RUGO_CORE_FULL_STENCIL_H
 #define RUGO_CORE_FULL_STENCIL_H
 
-#include "core/full/element.h"
-#include "core/full/mesh.h"
+#include "core/full/bulk.h"
 
 enum { STENCIL_MOST = 18 };
 
@@ -15,11 +14,13 @@ struct stencil {
     const struct mesh *mesh; /* borrowed */
     size_t slots;            /* 2 * 3^(dimension - 1): of its own level, then of the next */
     double *values;          /* owned */
+    struct bulk *bulk;       /* owned: part of the values; NULL: not told apart */
 };
 
-int stencil_create(struct stencil **out, const struct mesh *mesh, struct error *err);
+/* bulk: whether it is. */
+int stencil_create(struct stencil **out, const struct mesh *mesh, bool bulk, struct error *err);
 void stencil_destroy(struct stencil **stencil);
-double stencil_bytes(const struct mesh *mesh);
+double stencil_bytes(const struct mesh *mesh, bool bulk);
 
 /* Neighbours, by slot, of the node of a level in row j, column i; SIZE_MAX beyond the far side. */
 void stencil_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t i,

@@ -48,7 +48,7 @@ static void open_work(struct work *w, struct grid grid, double poisson, double g
                           .layer_growth = growth};
     *w = (struct work){.solid = solid_of(poisson, KINEMATICS_HENCKY)};
     if (mesh_create(&w->mesh, &grid, &block, transition, &err) != 0 ||
-        stencil_create(&w->tangent, w->mesh, &err) != 0)
+        stencil_create(&w->tangent, w->mesh, bulk, &err) != 0)
         fail_msg("%s", err.text);
     w->freedoms = mesh_freedoms(w->mesh);
     w->z = numbers(w->mesh->face);
@@ -104,7 +104,7 @@ static void waves_invert_the_flat_block(void **state) {
         struct error err = {0};
         struct flat *flat = NULL;
         open_work(&w, GRIDS[c % GRIDS_COUNT], POISSON[c / GRIDS_COUNT], 1.3, 0, EQUAL);
-        assert_int_equal(flat_create(&flat, w.mesh, &w.solid, &err), 0);
+        assert_int_equal(flat_create(&flat, w.mesh, &w.solid, NULL, &err), 0);
         size_t face = w.mesh->face, far_side = mesh_far_side(w.mesh);
         double *vertical = numbers(face), *nothing = numbers(face);
         fill_balanced(c, w.mesh, w.force);
