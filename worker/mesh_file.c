@@ -169,7 +169,7 @@ static bool element_stress(const struct writer *w, double position[8][3], double
     double force[ELEMENT_FREEDOMS];
     struct element_shape shape, now;
     if (!element_shape_make(d, position, &shape) ||
-        !element_evaluate(d, solid, &shape, u, NULL, force, NULL, NULL))
+        !element_evaluate(d, solid, &shape, u, NULL, NULL, force, NULL, NULL))
         return false;
     for (int a = 0; a < nodes && solid->kinematics != KINEMATICS_SMALL; a++)
         for (int k = 0; k < d; k++)

@@ -32,7 +32,7 @@ double bulk_bytes(const struct mesh *mesh, bool flat) {
     return (double)count_of(mesh, flat) * sizeof(struct element_bulk);
 }
 
-/* Of one element: its volume's change. */
+/* Of one element. */
 static double volume_of(const struct mesh *mesh, const struct mesh_element *element,
                         const struct element_bulk *bulk, const double *u) {
     size_t d = (size_t)mesh->dimension;
@@ -44,7 +44,8 @@ static double volume_of(const struct mesh *mesh, const struct mesh_element *elem
     return sum;
 }
 
-void bulk_relax(const struct bulk *bulk, const double *u, const double *p, double *out) {
+void bulk_bind(const struct bulk *bulk, const double *u, double factor, const double *p,
+               double *out) {
     const struct mesh *mesh = bulk->mesh;
     struct mesh_element element;
     size_t e = 0;
@@ -53,7 +54,7 @@ void bulk_relax(const struct bulk *bulk, const double *u, const double *p, doubl
             for (size_t i = 0; i < mesh->level[layer].nx; i++, e++) {
                 const struct element_bulk *own = &bulk->element[bulk->flat ? layer : e];
                 mesh_element(mesh, layer, j, i, &element);
-                out[e] = p[e] - own->stiffness * volume_of(mesh, &element, own, u);
+                out[e] = p[e] + factor * own->stiffness * volume_of(mesh, &element, own, u);
             }
 }
 

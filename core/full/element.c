@@ -143,18 +143,22 @@ INLINE bool field_make(int d, const struct solid *solid, const struct element_sh
     return f->growth > -1;
 }
 
-/* Energy of the mean dilatation over V, its derivative by v (a pressure outward), and the second
- * one times V. */
+/* Of the mean dilatation: its energy over V, the pull outward and what it adds to the stiffness,
+ * times V, all by v; the slope of its strain (ln theta, small: theta - 1) by theta, and the
+ * pressure that it makes. */
 struct bulk {
-    double energy, pull, stiffness;
+    double energy, pull, stiffness, slope, bound;
 };
 
-INLINE struct bulk bulk_of(const struct solid *solid, double growth) {
-    if (solid->kinematics == KINEMATICS_SMALL)
-        return (struct bulk){solid->mean / 2 * growth * growth, solid->mean * growth, solid->mean};
-    double logarithm = log1p(growth), theta = 1 + growth;
-    return (struct bulk){solid->mean / 2 * logarithm * logarithm, solid->mean * logarithm / theta,
-                         solid->mean * (1 - logarithm) / (theta * theta)};
+INLINE struct bulk bulk_of(const struct solid *solid, double growth, const double *pressure) {
+    bool small = solid->kinematics == KINEMATICS_SMALL;
+    double strain = small ? growth : log1p(growth), slope = small ? 1 : 1 / (1 + growth);
+    double bound = solid->mean * strain, p = pressure != NULL ? *pressure : bound;
+    return (struct bulk){.energy = bound * strain / 2,
+                         .pull = p * slope,
+                         .stiffness = (solid->mean - (small ? 0 : p)) * slope * slope,
+                         .slope = slope,
+                         .bound = bound};
 }
 
 INLINE void forces(int d, const struct element_shape *shape, const struct field *f,
@@ -228,12 +232,12 @@ INLINE void stiffnesses(int d, const struct solid *solid, const struct element_s
 }
 
 INLINE bool evaluate(int d, const struct solid *solid, const struct element_shape *shape,
-                     double u[8][3], double *energy, double *force,
+                     double u[8][3], const double *pressure, double *energy, double *force,
                      double (*stiffness)[ELEMENT_FREEDOMS], struct element_bulk *out) {
     struct field f;
     if (!field_make(d, solid, shape, u, &f))
         return false;
-    struct bulk bulk = bulk_of(solid, f.growth);
+    struct bulk bulk = bulk_of(solid, f.growth, pressure);
     if (energy != NULL) {
         *energy = shape->volume * bulk.energy;
         for (int q = 0; q < 1 << d; q++)
@@ -244,18 +248,20 @@ INLINE bool evaluate(int d, const struct solid *solid, const struct element_shap
     if (stiffness != NULL)
         stiffnesses(d, solid, shape, &f, &bulk, stiffness);
     if (out != NULL) {
-        out->stiffness = bulk.stiffness / shape->volume;
+        out->stiffness = solid->mean / shape->volume;
+        out->bound = bulk.bound;
         for (int a = 0; a < 1 << d; a++)
             for (int i = 0; i < d; i++)
-                out->gradient[a * d + i] = f.bulk[a][i];
+                out->gradient[a * d + i] = bulk.slope * f.bulk[a][i];
     }
     return true;
 }
 
 WIDE_VECTORS bool element_evaluate(int dimension, const struct solid *solid,
                                    const struct element_shape *shape, double u[8][3],
-                                   double *energy, double *force,
-                                   double (*stiffness)[ELEMENT_FREEDOMS], struct element_bulk *out) {
-    return dimension == 2 ? evaluate(2, solid, shape, u, energy, force, stiffness, out)
-                          : evaluate(3, solid, shape, u, energy, force, stiffness, out);
+                                   const double *pressure, double *energy, double *force,
+                                   double (*stiffness)[ELEMENT_FREEDOMS],
+                                   struct element_bulk *bulk) {
+    return dimension == 2 ? evaluate(2, solid, shape, u, pressure, energy, force, stiffness, bulk)
+                          : evaluate(3, solid, shape, u, pressure, energy, force, stiffness, bulk);
 }

@@ -27,16 +27,20 @@ bool element_shape_make(int dimension, double position[8][3], struct element_sha
  * element folded there. */
 double element_quality(int dimension, double position[8][3]);
 
-/* What the mean dilatation adds to an element's stiffness: stiffness times the dyad of gradient. */
+/* An element's pressure as an unknown p (E*, outward) of its own, bound by p = mean ln theta
+ * (small: mean (theta - 1)) in balance alone. */
 struct element_bulk {
-    double gradient[ELEMENT_FREEDOMS]; /* dv/du by freedom */
-    double stiffness;                  /* E*, over the volume */
+    double gradient[ELEMENT_FREEDOMS]; /* of V ln theta by freedom: the forces of p = 1 */
+    double stiffness;                  /* mean/V: pressure by V ln theta */
+    double bound;                      /* mean ln theta */
 };
 
 /* Displacements u[a][k]; force and stiffness by freedom a*dimension + k. energy, force, stiffness,
- * bulk: NULL where not wanted. False when a Gauss point is turned inside out. */
+ * bulk: NULL where not wanted. pressure: NULL where it is bound; force and stiffness are those of p
+ * otherwise, the latter with p eliminated: stiffness of bulk times the dyad of its gradient
+ * included. False when a Gauss point is turned inside out. */
 bool element_evaluate(int dimension, const struct solid *solid, const struct element_shape *shape,
-                      double u[8][3], double *energy, double *force,
-                      double (*stiffness)[ELEMENT_FREEDOMS], struct element_bulk *out);
+                      double u[8][3], const double *pressure, double *energy, double *force,
+                      double (*stiffness)[ELEMENT_FREEDOMS], struct element_bulk *bulk);
 
 #endif

@@ -132,7 +132,7 @@ static void layer_make(const struct mesh *mesh, const struct solid *solid, size_
     }
     /* A brick at rest: nothing to fail. */
     (void)element_shape_make(d, position, &shape);
-    (void)element_evaluate(d, solid, &shape, u, NULL, NULL, stiffness, bulk);
+    (void)element_evaluate(d, solid, &shape, u, NULL, NULL, NULL, stiffness, bulk);
     for (int a = 0; a < 1 << d; a++)
         for (int b = 0; b < 1 << d; b++) {
             int along = (b & 1) - (a & 1) + 1;

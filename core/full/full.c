@@ -46,7 +46,7 @@ static int arrays_create(struct full *f, struct error *err) {
     f->opening = array_create(face, sizeof *f->opening);
     f->kept_active = array_create(face, sizeof *f->kept_active);
     f->guess = array_create(face, sizeof *f->guess);
-    f->kept = array_create(freedoms, sizeof *f->kept);
+    f->kept = array_create(newton_unknowns(&f->newton), sizeof *f->kept);
     f->told = array_create(freedoms, sizeof *f->told);
     if (!f->z || !f->pressure || !f->gap || !f->opening || !f->kept_active || !f->guess ||
         !f->kept || !f->told)
@@ -164,8 +164,8 @@ static int take_heights(struct full *f, const double *z, struct error *err) {
 static void lift(struct full *f) {
     f->load = 0;
     f->newton.evaluated = false;
-    memset(f->kept, 0, mesh_freedoms(f->mesh) * sizeof *f->kept);
-    memset(f->newton.u, 0, mesh_freedoms(f->mesh) * sizeof *f->newton.u);
+    memset(f->kept, 0, newton_unknowns(&f->newton) * sizeof *f->kept);
+    memset(f->newton.u, 0, newton_unknowns(&f->newton) * sizeof *f->newton.u);
     for (size_t node = 0; node < f->mesh->face; node++)
         f->newton.active[node] = f->kept_active[node] = f->guess[node] = false;
 }
@@ -201,7 +201,7 @@ static void keep(struct full *f, double load) {
     struct error ignored;
     size_t face = f->mesh->face;
     f->load = load;
-    memcpy(f->kept, f->newton.u, mesh_freedoms(f->mesh) * sizeof *f->kept);
+    memcpy(f->kept, f->newton.u, newton_unknowns(&f->newton) * sizeof *f->kept);
     memcpy(f->kept_active, f->newton.active, face * sizeof *f->kept_active);
     bool known = contact_press(f->linear, load, &state, &ignored) == 0;
     for (size_t node = 0; known && node < face; node++)
@@ -210,7 +210,7 @@ static void keep(struct full *f, double load) {
 
 static void restore(struct full *f) {
     f->newton.evaluated = false;
-    memcpy(f->newton.u, f->kept, mesh_freedoms(f->mesh) * sizeof *f->kept);
+    memcpy(f->newton.u, f->kept, newton_unknowns(&f->newton) * sizeof *f->kept);
     memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
 }
 

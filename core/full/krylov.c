@@ -16,11 +16,11 @@ struct krylov {
     const struct mesh *mesh; /* borrowed */
     struct flat *flat;
     struct support support;
-    struct bulk *bulk; /* of the flat block; NULL where pressures are no unknowns */
+    struct bulk *bulk;         /* of the flat block; NULL where pressures are no unknowns */
     size_t freedoms, unknowns; /* the pressures of elements follow the displacements */
-    double *basis[BASIS + 1]; /* orthonormal residuals */
-    double *direction[BASIS]; /* preconditioned */
-    double *load, *moved, *solution;
+    double *basis[BASIS + 1];  /* orthonormal residuals */
+    double *direction[BASIS];  /* preconditioned */
+    double *load, *moved, *pressures;
     double *face, *target, *forces;      /* of the face */
     double hessenberg[BASIS + 1][BASIS]; /* turned to upper triangular */
     double cosine[BASIS], sine[BASIS], right[BASIS + 1];
@@ -47,7 +47,8 @@ int krylov_create(struct krylov **out, const struct mesh *mesh, const struct sol
         if (*array == NULL)
             status = error_memory(err, k->unknowns * sizeof(double), "residuals");
     }
-    double **const others[] = {&k->face, &k->target, &k->forces, &k->load, &k->moved, &k->solution};
+    double **const others[] = {&k->face, &k->target, &k->forces,
+                               &k->load, &k->moved,  &k->pressures};
     for (size_t a = 0; status == 0 && a < 6; a++) {
         *others[a] = array_create(a < 3 ? mesh->face : k->unknowns, sizeof(double));
         if (*others[a] == NULL)
@@ -72,7 +73,7 @@ void krylov_destroy(struct krylov **krylov) {
     free(k->forces);
     free(k->load);
     free(k->moved);
-    free(k->solution);
+    free(k->pressures);
     bulk_destroy(&k->bulk);
     support_clear(&k->support);
     flat_destroy(&k->flat);
@@ -135,7 +136,7 @@ static void operate(struct krylov *k, const struct equations *equations, const d
     double sum = 0;
     stencil_apply(equations->tangent, x, y);
     if (unknowns_of(k, equations) > k->freedoms) {
-        bulk_relax(equations->tangent->bulk, x, x + k->freedoms, y + k->freedoms);
+        bulk_bind(equations->tangent->bulk, x, -1, x + k->freedoms, y + k->freedoms);
         bulk_push(equations->tangent->bulk, y + k->freedoms, 1, y);
     }
     for (size_t node = far_side; node < mesh->nodes; node++) {
@@ -193,14 +194,8 @@ static void precondition_flat(struct krylov *k, const bool *active, const double
     flat_displace(k->flat, k->forces, x);
     for (size_t node = 0; node < mesh->nodes; node++)
         x[mesh_vertical(mesh, node)] += shift;
-    /* The pressure is p = r + k v. */
-    if (k->bulk != NULL) {
-        for (size_t e = k->freedoms; e < k->unknowns; e++)
-            x[e] = -r[e];
-        bulk_relax(k->bulk, x, x + k->freedoms, x + k->freedoms);
-        for (size_t e = k->freedoms; e < k->unknowns; e++)
-            x[e] = -x[e];
-    }
+    if (k->bulk != NULL)
+        bulk_bind(k->bulk, x, 1, r + k->freedoms, x + k->freedoms);
 }
 
 /* --- minimal residuals --- */
@@ -275,18 +270,25 @@ static void hold(const struct krylov *k, double *x) {
     }
 }
 
+/* Takes the pressures out of the forces x, where the displacements are solved for alone. */
+static void eliminate_pressures(struct krylov *k, const struct equations *equations, double *x) {
+    memcpy(k->pressures, x + k->freedoms, (k->unknowns - k->freedoms) * sizeof *x);
+    bulk_push(equations->tangent->bulk, k->pressures, -1, x);
+}
+
 int krylov_solve(struct krylov *k, const struct equations *equations, double tolerance, double *x,
                  size_t *iterations, struct error *err) {
     size_t n = unknowns_of(k, equations);
-    double first = sqrt(dot(k->freedoms, x, x)), left = first;
-    memset(k->load, 0, n * sizeof *k->load);
-    memset(k->solution, 0, n * sizeof *k->solution);
-    memcpy(k->load, x, k->freedoms * sizeof *x);
-    memcpy(k->basis[0], k->load, n * sizeof *x);
-    double before = INFINITY;
+    bool eliminated = n < k->unknowns;
+    if (eliminated)
+        eliminate_pressures(k, equations, x);
+    double first = sqrt(dot(n, x, x)), left = first, before = INFINITY;
+    memcpy(k->load, x, n * sizeof *x);
+    memcpy(k->basis[0], x, n * sizeof *x);
+    memset(x, 0, n * sizeof *x);
     for (int restart = 0; restart < RESTARTS && left > tolerance * first; restart++) {
         if (restart > 0) {
-            operate(k, equations, k->solution, k->basis[0]);
+            operate(k, equations, x, k->basis[0]);
             for (size_t i = 0; i < n; i++)
                 k->basis[0][i] = k->load[i] - k->basis[0][i];
             left = sqrt(dot(n, k->basis[0], k->basis[0]));
@@ -294,12 +296,13 @@ int krylov_solve(struct krylov *k, const struct equations *equations, double tol
         if (!(left <= STALLED * before))
             break;
         before = left;
-        int status = cycle(k, equations, tolerance * first, k->solution, &left, iterations, err);
+        int status = cycle(k, equations, tolerance * first, x, &left, iterations, err);
         if (status != 0)
             return status;
     }
-    memcpy(x, k->solution, k->freedoms * sizeof *x);
     hold(k, x);
+    if (eliminated)
+        bulk_bind(equations->tangent->bulk, x, 1, k->pressures, x + k->freedoms);
     if (!(left <= tolerance * first))
         return error_set(err, ERROR_NUMERIC,
                          "the linear equations of a step of Newton's were solved to %.2g only",

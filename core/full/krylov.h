@@ -2,10 +2,17 @@
  * Schultz 1986; flexible, Saad 1993), preconditioned by the flat block standing on the same nodes:
  * its stiffness is inverted exactly by waves (flat.h), its contact forces come from the face alone
  * (support.h). What is left to iterate is how far the rough block differs from the flat one: about
- * ten iterations at RMS slopes of 0.1, whatever the number of nodes.
+ * four iterations at RMS slopes of 0.1, whatever the number of nodes.
  *
- * Where that is too far, as it is for steep or nearly incompressible blocks, a factorisation of the
- * tangent itself (factor.h) takes the flat block's place. With the dual weighting it is exact. */
+ * Nearly incompressible blocks differ more: what keeps the volume of a flat element changes that of
+ * a rough one, by as much as the bulk modulus is large. There the pressure of each element is an
+ * unknown of its own, p - k v = 0 beside the forces (v the change of volume that displacements make,
+ * k the bulk modulus over the volume; Brezzi & Fortin 1991), in the flat block as in the rough one:
+ * they differ by their slopes again.
+ *
+ * Where even that is too far, as it is for steep blocks, a factorisation of the tangent itself
+ * (factor.h), of displacements alone, takes the flat block's place. With the dual weighting it is
+ * exact. */
 #ifndef RUGO_CORE_FULL_KRYLOV_H
 #define RUGO_CORE_FULL_KRYLOV_H
 
@@ -34,10 +41,10 @@ struct equations {
     struct factor *factor; /* of that tangent and set; NULL: the flat block serves */
 };
 
-/* x, mesh_freedoms: in, forces, with the far side's vertical ones at its first node, and on
- * vertical freedoms in contact the change asked of the weighted gap; out, displacements. Ends when
- * the residual is `tolerance` of what it was; ERROR_NUMERIC when it does not get there. Adds to
- * *iterations. */
+/* x, stencil_unknowns: in, forces, with the far side's vertical ones at its first node, and on
+ * vertical freedoms in contact the change asked of the weighted gap, and the excess of pressures;
+ * out, displacements and pressures. Ends when the residual is `tolerance` of what it was;
+ * ERROR_NUMERIC when it does not get there. Adds to *iterations. */
 int krylov_solve(struct krylov *krylov, const struct equations *equations, double tolerance,
                  double *x, size_t *iterations, struct error *err);
 

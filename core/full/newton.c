@@ -20,16 +20,15 @@ enum { HALVINGS = 8 };
 int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
     *out = (struct newton){.mesh = mesh, .solid = *solid, .solver = solver};
-    size_t freedoms = mesh_freedoms(mesh);
     double **const arrays[] = {&out->u,    &out->force, &out->before, &out->change,
                                &out->rest, &out->gap,   &out->opening};
     int status = stencil_create(&out->tangent, mesh, krylov_needs_bulk(solid), err);
     if (status == 0)
         status = krylov_create(&out->krylov, mesh, solid, weighting, err);
     for (size_t a = 0; status == 0 && a < sizeof arrays / sizeof *arrays; a++) {
-        *arrays[a] = array_create(freedoms, sizeof(double));
+        *arrays[a] = array_create(newton_unknowns(out), sizeof(double));
         if (*arrays[a] == NULL)
-            status = error_memory(err, freedoms * sizeof(double), "displacements");
+            status = error_memory(err, newton_unknowns(out) * sizeof(double), "displacements");
     }
     if (status == 0) {
         out->active = array_create(mesh->face, sizeof *out->active);
@@ -39,6 +38,10 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct soli
     if (status != 0)
         newton_clear(out);
     return status;
+}
+
+size_t newton_unknowns(const struct newton *n) {
+    return stencil_unknowns(n->tangent);
 }
 
 void newton_clear(struct newton *n) {
@@ -161,7 +164,7 @@ static double residual(const struct newton *n, double pressure, double *out) {
     size_t far_side = mesh_far_side(mesh);
     double largest = 0;
     struct sum far_force = {0};
-    for (size_t f = 0; f < mesh_freedoms(mesh); f++)
+    for (size_t f = 0; f < newton_unknowns(n); f++)
         out[f] = -n->force[f];
     sum_add(&far_force, -pressure * newton_node_area(n) * (double)mesh->face);
     for (size_t node = far_side; node < mesh->nodes; node++) {
@@ -172,7 +175,7 @@ static double residual(const struct newton *n, double pressure, double *out) {
         if (n->active[node])
             out[mesh_vertical(mesh, node)] = 0;
     out[mesh_vertical(mesh, far_side)] = sum_value(&far_force);
-    for (size_t f = 0; f < mesh_freedoms(mesh); f++)
+    for (size_t f = 0; f < newton_unknowns(n); f++)
         largest = fmax(largest, fabs(out[f]));
     return largest;
 }
@@ -188,9 +191,16 @@ static void measure(const struct newton *n, struct newton_end *end) {
     }
 }
 
-/* Forces, tangent and energy at u. */
+/* Forces, tangent and energy at u. Factorisations are for the displacements alone: pressures follow
+ * them there. */
 static bool evaluate(struct newton *n) {
+    size_t freedoms = mesh_freedoms(n->mesh);
+    n->tangent->bound = n->factored;
     n->evaluated = stencil_evaluate(n->mesh, &n->solid, n->u, &n->energy, n->force, n->tangent);
+    for (size_t f = freedoms; n->factored && n->evaluated && f < newton_unknowns(n); f++) {
+        n->u[f] -= n->force[f];
+        n->force[f] = 0;
+    }
     return n->evaluated;
 }
 
@@ -206,19 +216,10 @@ static bool factorable(const struct mesh *mesh) {
     return mesh_freedoms(mesh) <= (mesh->dimension == 2 ? 500000 : 20000);
 }
 
-/* The change asked for in change, which displacements replace. */
-static int solve_linear(struct newton *n, double tolerance, struct newton_end *end,
-                        struct error *err) {
-    struct equations equations = {.tangent = n->tangent, .active = n->active};
-    int status = ERROR_NUMERIC;
-    if (!n->factored) {
-        memcpy(n->rest, n->change, mesh_freedoms(n->mesh) * sizeof *n->rest);
-        status = krylov_solve(n->krylov, &equations, tolerance, n->change, &end->linear, err);
-        if (status != ERROR_NUMERIC || !factorable(n->mesh))
-            return status;
-        memcpy(n->change, n->rest, mesh_freedoms(n->mesh) * sizeof *n->rest);
-    }
-    status = n->factor == NULL ? factor_create(&n->factor, n->mesh, err) : 0;
+/* Displacements for the forces in change, which they replace. */
+static int solve_factored(struct newton *n, double tolerance, struct newton_end *end,
+                          struct error *err) {
+    int status = n->factor == NULL ? factor_create(&n->factor, n->mesh, err) : 0;
     if (status == 0)
         status = factor_run(n->factor, n->tangent, n->active, err);
     if (status == ERROR_NUMERIC) { /* far from balance, stress may outweigh stiffness */
@@ -229,9 +230,14 @@ static int solve_linear(struct newton *n, double tolerance, struct newton_end *e
     }
     if (status != 0)
         return status;
-    n->factored = true;
     end->factored++;
-    equations.factor = n->factor;
+    struct equations equations = {n->tangent, n->active, n->factor};
+    return krylov_solve(n->krylov, &equations, tolerance, n->change, &end->linear, err);
+}
+
+static int solve_iterated(struct newton *n, double tolerance, struct newton_end *end,
+                          struct error *err) {
+    struct equations equations = {n->tangent, n->active, NULL};
     return krylov_solve(n->krylov, &equations, tolerance, n->change, &end->linear, err);
 }
 
@@ -245,7 +251,7 @@ static int newton_change(struct newton *n, double off, struct newton_end *end, s
     /* Factored: exact, or so, that Newton's own convergence shows. */
     double quadratic = n->solver == SOLVER_FACTORED ? LINEAR_EXACT : LINEAR_PART * off;
     double tolerance = fmin(fmax(quadratic, LINEAR_PART * n->tolerance / off), LINEAR_MOST);
-    return solve_linear(n, tolerance, end, err);
+    return (n->factored ? solve_factored : solve_iterated)(n, tolerance, end, err);
 }
 
 /* Where a step starts. */
@@ -258,13 +264,13 @@ struct start {
  * contact already lie on the flat, brings the forces or the energy down. */
 static int advance(struct newton *n, double pressure, const struct start *start,
                    struct error *err) {
-    size_t freedoms = mesh_freedoms(n->mesh);
+    size_t unknowns = newton_unknowns(n);
     double length = 1;
     bool feasible = start->inside <= start->closed;
-    memcpy(n->before, n->u, freedoms * sizeof *n->before);
+    memcpy(n->before, n->u, unknowns * sizeof *n->before);
     int status = ERROR_NUMERIC;
     for (int halving = 0; status != 0 && halving < HALVINGS; halving++, length /= 2) {
-        for (size_t f = 0; f < freedoms; f++)
+        for (size_t f = 0; f < unknowns; f++)
             n->u[f] = n->before[f] + length * n->change[f];
         if (!evaluate(n))
             continue;
@@ -345,6 +351,11 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
         end->iterations++;
         double off = fmax(end->residual, start->inside * COMPLEMENTARITY / round.largest);
         int status = newton_change(n, off, end, err);
+        if (status == ERROR_NUMERIC && !n->factored && factorable(n->mesh)) {
+            n->factored = true;
+            if (evaluate(n))
+                continue;
+        }
         if (status == 0)
             status = advance(n, pressure, start, err);
         if (status != 0)
@@ -355,9 +366,14 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
 int newton_compliance(struct newton *n, double *out, struct error *err) {
     const struct mesh *mesh = n->mesh;
     struct newton_end ignored = {0};
-    memset(n->change, 0, mesh_freedoms(mesh) * sizeof *n->change);
-    n->change[mesh_vertical(mesh, mesh_far_side(mesh))] = -newton_node_area(n) * (double)mesh->face;
-    int status = solve_linear(n, LINEAR_STIFFNESS, &ignored, err);
+    int status = ERROR_NUMERIC;
+    for (int factored = n->factored; status == ERROR_NUMERIC && factored <= factorable(mesh);
+         factored++) {
+        memset(n->change, 0, newton_unknowns(n) * sizeof *n->change);
+        n->change[mesh_vertical(mesh, mesh_far_side(mesh))] =
+            -newton_node_area(n) * (double)mesh->face;
+        status = (factored ? solve_factored : solve_iterated)(n, LINEAR_STIFFNESS, &ignored, err);
+    }
     struct sum gap = {0};
     for (size_t node = 0; status == 0 && node < mesh->face; node++)
         sum_add(&gap, n->change[mesh_vertical(mesh, node)]);

@@ -26,8 +26,10 @@ struct newton {
     struct factor *factor; /* NULL until one is needed */
     bool factored;         /* factor is of the last tangent, and takes the rest of the load */
     struct krylov *krylov;
-    double *u;     /* mesh_freedoms: displacements; who changes them clears evaluated */
-    double *force; /* inner forces: those of the contact on the face */
+    double *u;     /* newton_unknowns: displacements, and pressures of elements where these are
+                      unknowns of their own (stencil.h); who changes them clears evaluated */
+    double *force; /* newton_unknowns: inner forces, those of the contact on the face, and what the
+                      pressures are beyond those of the dilatation */
     double energy;
     bool evaluated;                 /* force, energy and tangent are those of u */
     double *before, *change, *rest; /* scratch */
@@ -43,6 +45,7 @@ struct newton {
 int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err);
 
+size_t newton_unknowns(const struct newton *newton);
 void newton_clear(struct newton *newton);
 
 /* How an equilibrium was reached. */

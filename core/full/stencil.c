@@ -183,27 +183,38 @@ INLINE void scatter(int d, const size_t node[8], int parity, struct contribution
         }
 }
 
-/* bulk: of the layer's first element; may be NULL. */
+/* Of the layer's elements, from its first one on; NULL where pressures are bound. */
+struct pressures {
+    const double *pressure;
+    bool bound;
+    struct element_bulk *bulk;
+    double *force;
+};
+
 INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct solid *solid, size_t layer,
                            const double *u, struct sum *energy, double *force,
-                           struct stencil *tangent, struct element_bulk *bulk) {
+                           struct stencil *tangent, const struct pressures *own) {
     struct mesh_element element;
     struct element_shape shape;
     struct contribution c;
     double position[8][3], moved[8][3];
     bool widens = mesh_widens(mesh, layer);
+    size_t e = 0;
     for (size_t j = 0; j < mesh->level[layer].ny; j++)
-        for (size_t i = 0; i < mesh->level[layer].nx; i++) {
+        for (size_t i = 0; i < mesh->level[layer].nx; i++, e++) {
             mesh_element(mesh, layer, j, i, &element);
             mesh_position(mesh, &element, position);
             mesh_corners(mesh, &element, u, (size_t)d, moved);
             if (!element_shape_make(d, position, &shape) ||
-                !element_evaluate(d, solid, &shape, moved, energy ? &c.energy : NULL, c.force,
-                                  tangent ? c.stiffness : NULL, bulk))
+                !element_evaluate(d, solid, &shape, moved,
+                                  own && !own->bound ? &own->pressure[e] : NULL,
+                                  energy ? &c.energy : NULL, c.force, tangent ? c.stiffness : NULL,
+                                  own ? &own->bulk[e] : NULL))
                 return false;
-            bulk += bulk != NULL;
             if (energy != NULL)
                 sum_add(energy, c.energy);
+            if (own != NULL)
+                own->force[e] = own->pressure[e] - own->bulk[e].bound;
             if (widens)
                 untie((size_t)d, &element, &c, tangent != NULL);
             int parity = widens ? (int)(i % 2 + j % 2 * 2) : 3;
@@ -212,21 +223,31 @@ INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct solid *s
     return true;
 }
 
+size_t stencil_unknowns(const struct stencil *stencil) {
+    return mesh_freedoms(stencil->mesh) + (stencil->bulk != NULL ? stencil->mesh->elements : 0);
+}
+
 bool stencil_evaluate(const struct mesh *mesh, const struct solid *solid, const double *u,
                       double *energy, double *force, struct stencil *tangent) {
     struct sum total = {0};
-    bool made = true;
-    memset(force, 0, mesh_freedoms(mesh) * sizeof *force);
+    bool made = true, apart = tangent != NULL && tangent->bulk != NULL;
+    size_t freedoms = mesh_freedoms(mesh), first = 0;
+    memset(force, 0, freedoms * sizeof *force);
     if (tangent != NULL)
         memset(tangent->values, 0, value_count(mesh) * sizeof *tangent->values);
-    struct element_bulk *bulk =
-        tangent != NULL && tangent->bulk != NULL ? tangent->bulk->element : NULL;
     for (size_t layer = 0; made && layer < mesh->layers; layer++) {
         struct sum *sum = energy != NULL ? &total : NULL;
-        made = mesh->dimension == 2 ? evaluate_layer(2, mesh, solid, layer, u, sum, force, tangent, bulk)
-                                    : evaluate_layer(3, mesh, solid, layer, u, sum, force, tangent, bulk);
-        if (bulk != NULL)
-            bulk += level_nodes(&mesh->level[layer]);
+        struct pressures own = {.pressure = u + freedoms + first,
+                                .force = force + freedoms + first};
+        if (apart) {
+            own.bulk = tangent->bulk->element + first;
+            own.bound = tangent->bound;
+        }
+        made = mesh->dimension == 2 ? evaluate_layer(2, mesh, solid, layer, u, sum, force, tangent,
+                                                     apart ? &own : NULL)
+                                    : evaluate_layer(3, mesh, solid, layer, u, sum, force, tangent,
+                                                     apart ? &own : NULL);
+        first += level_nodes(&mesh->level[layer]);
     }
     if (energy != NULL)
         *energy = sum_value(&total);

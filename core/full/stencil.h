@@ -15,6 +15,7 @@ struct stencil {
     size_t slots;            /* 2 * 3^(dimension - 1): of its own level, then of the next */
     double *values;          /* owned */
     struct bulk *bulk;       /* owned: part of the values; NULL: not told apart */
+    bool bound; /* pressures are taken to be those of the dilatation, whatever is given */
 };
 
 /* bulk: whether it is. */
@@ -28,8 +29,13 @@ void stencil_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t 
 /* y = K x, both mesh_freedoms. */
 void stencil_apply(const struct stencil *stencil, const double *x, double *y);
 
-/* Energy (NULL: not wanted) and inner forces (mesh_freedoms) at displacements u, and the tangent
- * (NULL: not wanted). False when an element is turned inside out; the outputs are void then. */
+/* Displacements and, where the tangent tells the bulk apart, the pressures of the elements. */
+size_t stencil_unknowns(const struct stencil *stencil);
+
+/* Energy (NULL: not wanted) and inner forces at displacements u, both mesh_freedoms, and the
+ * tangent (NULL: not wanted; all forces of u alone). Where it tells the bulk apart u and force go
+ * on with stencil_unknowns: pressures of elements, and what they are beyond those of the
+ * dilatation. False when an element is turned inside out; the outputs are void then. */
 bool stencil_evaluate(const struct mesh *mesh, const struct solid *solid, const double *u,
                       double *energy, double *force, struct stencil *tangent);
 

@@ -57,7 +57,7 @@ static void patch_test(void **state) {
                 }
             }
             shape(d, position, &element);
-            assert_true(element_evaluate(d, &solid, &element, u, NULL, force, NULL, NULL));
+            assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, force, NULL, NULL));
             int middle = (1 << d) - 1 - e;
             for (int i = 0; i < d; i++) {
                 sum[i] += force[middle * d + i];
@@ -82,13 +82,13 @@ static void forces_and_stiffness_are_derivatives(void **state) {
         distorted(d, draw, 0.2, position);
         shape(d, position, &element);
         random_numbers(200 + draw, 24, draw < 6 ? 0 : 0.1, &u[0][0]);
-        assert_true(element_evaluate(d, &solid, &element, u, NULL, force, stiffness, NULL));
+        assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, force, stiffness, NULL));
         for (int n = 0; n < freedoms; n++) {
             double low, high, before[24], after[24], *freedom = &u[n / d][n % d];
             *freedom += STEP;
-            assert_true(element_evaluate(d, &solid, &element, u, &high, after, NULL, NULL));
+            assert_true(element_evaluate(d, &solid, &element, u, NULL, &high, after, NULL, NULL));
             *freedom -= 2 * STEP;
-            assert_true(element_evaluate(d, &solid, &element, u, &low, before, NULL, NULL));
+            assert_true(element_evaluate(d, &solid, &element, u, NULL, &low, before, NULL, NULL));
             *freedom += STEP;
             check_close((high - low) / (2 * STEP), force[n], 1e-7);
             for (int m = 0; m < freedoms; m++) {
@@ -118,8 +118,8 @@ static void a_rotated_element_gives_rotated_forces(void **state) {
                 for (int k = 0; k < d; k++)
                     turned[a][i] += r[i][k] * (position[a][k] + u[a][k]);
             }
-        assert_true(element_evaluate(d, &solid, &element, u, &energy, force, NULL, NULL));
-        assert_true(element_evaluate(d, &solid, &element, turned, &same, after, NULL, NULL));
+        assert_true(element_evaluate(d, &solid, &element, u, NULL, &energy, force, NULL, NULL));
+        assert_true(element_evaluate(d, &solid, &element, turned, NULL, &same, after, NULL, NULL));
         check_close(same, energy, 1e-13);
         for (int a = 0; a < 1 << d; a++)
             for (int i = 0; i < d; i++) {
@@ -161,9 +161,9 @@ static void inside_out_is_refused(void **state) {
     distorted(2, 0, 0, position);
     shape(2, position, &element);
     u[2][1] = u[3][1] = -1.01;
-    assert_false(element_evaluate(2, &solid, &element, u, NULL, force, NULL, NULL));
+    assert_false(element_evaluate(2, &solid, &element, u, NULL, NULL, force, NULL, NULL));
     u[2][1] = NAN;
-    assert_false(element_evaluate(2, &solid, &element, u, NULL, force, NULL, NULL));
+    assert_false(element_evaluate(2, &solid, &element, u, NULL, NULL, force, NULL, NULL));
 }
 
 int main(void) {

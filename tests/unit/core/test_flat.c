@@ -48,13 +48,14 @@ static void open_work(struct work *w, struct grid grid, double poisson, double g
                           .layer_growth = growth};
     *w = (struct work){.solid = solid_of(poisson, KINEMATICS_HENCKY)};
     if (mesh_create(&w->mesh, &grid, &block, transition, &err) != 0 ||
-        stencil_create(&w->tangent, w->mesh, bulk, &err) != 0)
+        stencil_create(&w->tangent, w->mesh, krylov_needs_bulk(&w->solid), &err) != 0)
         fail_msg("%s", err.text);
     w->freedoms = mesh_freedoms(w->mesh);
     w->z = numbers(w->mesh->face);
-    w->force = numbers(w->freedoms);
-    w->x = numbers(w->freedoms);
-    w->y = numbers(w->freedoms);
+    size_t unknowns = stencil_unknowns(w->tangent);
+    w->force = numbers(unknowns);
+    w->x = numbers(unknowns);
+    w->y = numbers(unknowns);
     fill_random(1, w->mesh->face, w->z);
     for (size_t i = 0; i < w->mesh->face; i++)
         w->z[i] *= rough;
@@ -185,17 +186,19 @@ static void rough_blocks_are_solved(void **state) {
 }
 
 /* Where aliases meet, short waves so deep make the inverse approximate: the iterations see to that:
- * 6 on flat blocks, where equal columns take 2, and 9 on rough ones. */
+ * 6 on flat blocks, where equal columns take 2, and 9 on rough ones; up to 150 in nearly
+ * incompressible ones, where the random forces here are at their worst. */
 static void blocks_of_widening_columns_are_solved(void **state) {
     (void)state;
-    static const double TOLERANCE = 1e-9;
-    for (size_t c = 0; c < 2 * WIDENING_COUNT; c++) {
+    for (size_t c = 0; c < 4 * WIDENING_COUNT; c++) {
         struct work w;
         struct error err = {0};
         struct krylov *krylov = NULL;
         size_t iterations = 0;
-        open_work(&w, WIDENING[c % WIDENING_COUNT], 0.3, 1.3, c < WIDENING_COUNT ? 0 : 0.1,
-                  TRANSITION);
+        bool stiff = c >= 2 * WIDENING_COUNT;
+        double tolerance = stiff ? 1e-5 : 1e-9;
+        open_work(&w, WIDENING[c % WIDENING_COUNT], stiff ? 0.4999 : 0.3, 1.3,
+                  c / WIDENING_COUNT % 2 == 0 ? 0 : 0.1, TRANSITION);
         assert_int_equal(w.mesh->level[w.mesh->layers].width, WIDEST[c % WIDENING_COUNT]);
         assert_int_equal(krylov_create(&krylov, w.mesh, &w.solid, GAP_STANDARD, &err), 0);
         bool *active = array_create(w.mesh->face, sizeof *active);
@@ -204,10 +207,10 @@ static void blocks_of_widening_columns_are_solved(void **state) {
         fill_balanced(c, w.mesh, w.force);
         memcpy(w.x, w.force, w.freedoms * sizeof *w.x);
         struct equations equations = {.tangent = w.tangent, .active = active};
-        if (krylov_solve(krylov, &equations, TOLERANCE, w.x, &iterations, &err) != 0)
+        if (krylov_solve(krylov, &equations, tolerance, w.x, &iterations, &err) != 0)
             fail_msg("%s", err.text);
-        check_solution(&w, krylov, active, TOLERANCE);
-        assert_in_range(iterations, 1, 12);
+        check_solution(&w, krylov, active, stiff ? 5 * tolerance : tolerance);
+        assert_in_range(iterations, 1, stiff ? 200 : 12);
         free(active);
         krylov_destroy(&krylov);
         close_work(&w);
@@ -315,6 +318,40 @@ static void tangents_are_those_of_the_energy(void **state) {
     }
 }
 
+/* Likewise with the pressures of nearly incompressible elements as unknowns of their own: forces
+ * and the pressures' bond by central differences. Moduli are up to 2e3. */
+static void pressures_are_bound_by_the_tangent(void **state) {
+    (void)state;
+    static const double STEP = 1e-5;
+    for (size_t c = 0; c < WIDENING_COUNT; c++) {
+        struct work w;
+        open_work(&w, WIDENING[c], 0.4999, 1.3, 0.2, TRANSITION);
+        size_t n = stencil_unknowns(w.tangent), first = w.freedoms;
+        assert_int_equal(n, first + w.mesh->elements);
+        double *along = numbers(n), *u = numbers(n), *forces[2] = {numbers(n), numbers(n)};
+        fill_random(2, n, u);
+        fill_random(3, n, along);
+        for (size_t f = 0; f < n; f++)
+            u[f] *= 0.05;
+        assert_true(stencil_evaluate(w.mesh, &w.solid, u, NULL, w.force, w.tangent));
+        stencil_apply(w.tangent, along, w.y);
+        bulk_bind(w.tangent->bulk, along, -1, along + first, w.y + first);
+        bulk_push(w.tangent->bulk, w.y + first, 1, w.y);
+        for (int side = 0; side < 2; side++) {
+            for (size_t f = 0; f < n; f++)
+                w.x[f] = u[f] + (side == 0 ? -STEP : STEP) * along[f];
+            assert_true(stencil_evaluate(w.mesh, &w.solid, w.x, NULL, forces[side], w.tangent));
+        }
+        for (size_t f = 0; f < n; f++)
+            check_close(w.y[f], (forces[1][f] - forces[0][f]) / (2 * STEP), 1e-4);
+        free(along);
+        free(u);
+        free(forces[0]);
+        free(forces[1]);
+        close_work(&w);
+    }
+}
+
 static void bad_meshes_are_refused(void **state) {
     (void)state;
     struct work w;
@@ -349,6 +386,7 @@ int main(void) {
         cmocka_unit_test(blocks_of_widening_columns_are_solved),
         cmocka_unit_test(rough_meshes_pass_the_patch_test),
         cmocka_unit_test(tangents_are_those_of_the_energy),
+        cmocka_unit_test(pressures_are_bound_by_the_tangent),
         cmocka_unit_test(bad_meshes_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
