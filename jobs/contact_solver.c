@@ -7,6 +7,9 @@ static const double LINEAR_MOST = 20, SURFACE_FACTORED = 20000;
 /* An iteration of Newton's on a freedom takes as long as so many transforms on a point. */
 static const double PROFILE_TRANSFORMS = 115, SURFACE_TRANSFORMS = 580;
 
+/* Of a factorisation, a freedom. */
+static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
+
 /* One of linear and full. */
 struct contact_solver {
     struct contact *linear;
@@ -69,25 +72,30 @@ struct contact_full_size contact_full_size(const struct contact_case *study, siz
     struct full_options options = contact_full_options(study);
     double slope = study->rms_slope;
     bool profile = grid_is_profile(grid);
-    double stiff = pow(0.4 / (1 - 2 * block->poisson), 0.4); /* 1 at 0.3 */
+    double over = 1 / (1 - 2 * block->poisson); /* bulk over shear modulus, about */
+    double steep = 16 * slope * (1 + slope) * pow(0.4 * fmin(over, 10), 0.4);
+    struct solid solid = solid_of(block->poisson, options.kinematics);
     struct contact_full_size size = {.freedoms = (double)full_freedoms(grid, block, &options),
                                      .newton = 2 + (profile ? 0.22 : 0.5) * log2((double)grid->nx),
-                                     .linear = 2 + 16 * slope * (1 + slope) * stiff};
+                                     .linear = 2 + steep,
+                                     .bulk = krylov_needs_bulk(&solid)};
     size.factored = size.linear > LINEAR_MOST && (profile || size.freedoms <= SURFACE_FACTORED);
+    if (size.bulk)
+        size.linear += 0.12 * pow(over, 0.55);
     return size;
 }
 
 double contact_solver_bytes(const struct contact_case *study, size_t model,
                             const struct grid *grid) {
-    double bytes = contact_bytes(grid);
     if (!contact_case_is_full(study, model))
-        return bytes;
+        return contact_bytes(grid);
     struct contact_full_size size = contact_full_size(study, model, grid);
-    bool profile = grid_is_profile(grid);
-    double each = (profile ? 245 : 540) + 24 * fmin(size.linear, LINEAR_MOST);
+    struct full_options options = contact_full_options(study);
+    double bytes = full_bytes(grid, &study->blocks[model], &options, 2 * size.linear);
     if (size.factored)
-        each += profile ? 900 : 6500;
-    return bytes + each * size.freedoms;
+        bytes +=
+            (grid_is_profile(grid) ? PROFILE_FACTOR_BYTES : SURFACE_FACTOR_BYTES) * size.freedoms;
+    return isnan(bytes) ? 0 : bytes;
 }
 
 int contact_solver_begin(struct contact_solver *s, const double *z, int (*stop)(void *context),

@@ -8,13 +8,14 @@
 struct full_options contact_full_options(const struct contact_case *study);
 
 /* How large and how hard the equations of the model full are on a grid: its cost is made of these.
- * Fitted to profiles of 64 to 2048 points and surfaces of 8 x 8 to 64 x 64, RMS slopes 0.01 to 0.7,
+ * Fitted to profiles of 64 to 8192 points and surfaces of 8 x 8 to 64 x 64, RMS slopes 0.01 to 0.7,
  * Poisson's ratios 0.3 to 0.4999. */
 struct contact_full_size {
     double freedoms; /* 0 where the block takes too many layers */
     double newton;   /* iterations a load, evenly spaced */
     double linear;   /* iterations of the linear equations in each of these */
     bool factored;   /* too many: they are factorised instead */
+    bool bulk;       /* with the pressures of nearly incompressible elements */
 };
 struct contact_full_size contact_full_size(const struct contact_case *study, size_t model,
                                            const struct grid *grid);

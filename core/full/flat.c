@@ -1,11 +1,11 @@
 #include "core/full/flat.h"
+#include "core/full/alias.h"
+#include "core/full/layer.h"
 #include "core/surface/transform.h"
 #include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double PI = 3.14159265358979323846;
 
 #define INLINE static inline __attribute__((always_inline))
 
@@ -25,9 +25,6 @@ struct flat {
     double *plane;           /* face: one component of one level */
 };
 
-static size_t level_waves(const struct level *level) {
-    return (level->nx / 2 + 1) * level->ny;
-}
 static size_t waves_at(const struct flat *f, size_t level) {
     return level_waves(&f->mesh->level[level]);
 }
@@ -50,130 +47,7 @@ static struct transform *transform_at(const struct flat *f, size_t level) {
     return f->transform[zone_of(&f->mesh->level[level])];
 }
 
-/* --- unlike columns ---
- *
- * Half as many nodes tell only half (a quarter) of the waves apart: on the level below, wave k is
- * the same as its aliases. Corners between the nodes are means, so that a wave there moves its
- * aliases k above by (1 + cos k)/2 in each direction. A wave that is an alias of one of the other
- * half plane is that one's mirror image: complex conjugate, sideways with the other sign. */
-
-/* The wave of the next level that a level's wave is an alias of. */
-static size_t wave_below(const struct level *level, size_t wave, bool *mirrored) {
-    const struct level *below = level + 1;
-    size_t mx = wave / level->ny, row = wave % level->ny;
-    *mirrored = mx > below->nx / 2;
-    if (*mirrored) {
-        mx = below->nx - mx;
-        row = level->ny - row;
-    }
-    return mx * below->ny + row % below->ny;
-}
-
-/* A level's field as its corners' on the level above it sees it: passed. */
-static void unfold(struct flat *f, size_t level) {
-    const struct level *above = &f->mesh->level[level - 1];
-    size_t n = waves_at(f, level - 1), wide = waves_at(f, level);
-    bool mirrored;
-    for (size_t i = 0; i < f->d; i++) {
-        const double *from = field_at(f, level, i);
-        double *to = f->passed + 2 * i * n, sign = i == f->d - 1 ? 1 : -1;
-        for (size_t wave = 0; wave < n; wave++) {
-            size_t below = wave_below(above, wave, &mirrored);
-            to[wave] = from[below] * (mirrored ? sign : 1);
-            to[n + wave] = from[wide + below] * (mirrored ? -sign : 1);
-        }
-    }
-}
-
-/* The transpose: passed, of the level above, summed over aliases: folded. */
-static void fold(struct flat *f, size_t level) {
-    const struct level *above = &f->mesh->level[level - 1], *here = above + 1;
-    size_t n = waves_at(f, level - 1), wide = waves_at(f, level);
-    for (size_t i = 0; i < f->d; i++) {
-        const double *from = f->passed + 2 * i * n;
-        double *to = f->folded + 2 * i * wide, sign = i == f->d - 1 ? 1 : -1;
-        memset(to, 0, 2 * wide * sizeof *to);
-        for (size_t wave = 0; wave < n; wave++) {
-            size_t mx = wave / above->ny, row = wave % above->ny;
-            if (2 * mx <= here->nx) {
-                size_t alias = mx * here->ny + row % here->ny;
-                to[alias] += from[wave];
-                to[wide + alias] += from[n + wave];
-            }
-            if (2 * mx >= here->nx) {
-                size_t alias = (here->nx - mx) * here->ny + (above->ny - row) % here->ny;
-                to[alias] += sign * from[wave];
-                to[wide + alias] -= sign * from[n + wave];
-            }
-        }
-    }
-}
-
 /* --- elimination --- */
-
-/* Stiffness of one layer between its sides (0 the upper), by the step sideways from one node to
- * another: -1, 0, 1 in x, then y. */
-struct layer {
-    double block[2][2][9][3][3];
-};
-
-static void layer_make(const struct mesh *mesh, const struct solid *solid, size_t layer,
-                       struct layer *out, struct element_bulk *bulk) {
-    int d = mesh->dimension;
-    const struct level *level = &mesh->level[layer];
-    double width = (double)level->width;
-    double position[8][3], u[8][3] = {{0}}, stiffness[ELEMENT_FREEDOMS][ELEMENT_FREEDOMS];
-    struct element_shape shape;
-    memset(out, 0, sizeof *out);
-    for (int a = 0; a < 1 << d; a++) {
-        position[a][0] = (a & 1) * width;
-        position[a][1] = (a >> 1 & 1) * width * mesh->across;
-        position[a][d - 1] = (a >> (d - 1) & 1) * (level[1].depth - level->depth);
-    }
-    /* A brick at rest: nothing to fail. */
-    (void)element_shape_make(d, position, &shape);
-    (void)element_evaluate(d, solid, &shape, u, NULL, NULL, NULL, stiffness, bulk);
-    for (int a = 0; a < 1 << d; a++)
-        for (int b = 0; b < 1 << d; b++) {
-            int along = (b & 1) - (a & 1) + 1;
-            int across = d == 2 ? 1 : (b >> 1 & 1) - (a >> 1 & 1) + 1;
-            double(*block)[3] = out->block[a >> (d - 1) & 1][b >> (d - 1) & 1][across * 3 + along];
-            for (int i = 0; i < d; i++)
-                for (int j = 0; j < d; j++)
-                    block[i][j] += stiffness[a * d + i][b * d + j];
-        }
-}
-
-/* cos and sin of a wave's phase over each step. */
-struct phases {
-    double cosine[9], sine[9];
-};
-
-static struct phases phases_of(const struct level *level, size_t mx, size_t row) {
-    struct phases phases;
-    double x = 2 * PI * (double)mx / (double)level->nx;
-    double y = 2 * PI * (double)row / (double)level->ny;
-    for (int slot = 0; slot < 9; slot++) {
-        int along = slot % 3 - 1, across = slot / 3 - 1;
-        double phase = x * along + y * across;
-        phases.cosine[slot] = cos(phase);
-        phases.sine[slot] = sin(phase);
-    }
-    return phases;
-}
-
-/* The symbol of one layer between two sides, real as the header says. */
-static void symbol(int d, double block[9][3][3], const struct phases *phases, double out[3][3]) {
-    for (int i = 0; i < d; i++)
-        for (int j = 0; j < d; j++) {
-            bool up = i == d - 1, right = j == d - 1;
-            out[i][j] = 0;
-            for (int slot = 0; slot < 9; slot++)
-                out[i][j] += block[slot][i][j] * (up == right ? phases->cosine[slot]
-                                                  : up        ? -phases->sine[slot]
-                                                              : phases->sine[slot]);
-        }
-}
 
 /* Inverse of a symmetric positive definite matrix, by Gauss and Jordan without pivoting. */
 static void invert(int d, double a[3][3], double out[3][3]) {
@@ -206,22 +80,6 @@ static void hold_far_side(int d, bool mean, double pivot[3][3]) {
         }
 }
 
-/* What a wave of corners is of the nodes' that they hang on. */
-static double hanging(int d, const struct phases *phases) {
-    double along = (1 + phases->cosine[5]) / 2, across = (1 + phases->cosine[7]) / 2;
-    return d == 2 ? along : along * across;
-}
-
-/* out += factor * symbol */
-static void symbol_add(int d, double block[9][3][3], const struct phases *phases, double factor,
-                       double out[3][3]) {
-    double value[3][3];
-    symbol(d, block, phases, value);
-    for (int i = 0; i < d; i++)
-        for (int j = 0; j < d; j++)
-            out[i][j] += factor * value[i][j];
-}
-
 /* Adds the lower side of the layer above a level: that of all aliases, which are `share` times as
  * many nodes. */
 static void add_above(const struct flat *f, struct layer *layer, size_t level, size_t mx,
@@ -231,8 +89,8 @@ static void add_above(const struct flat *f, struct layer *layer, size_t level, s
     for (size_t y = row; y < above->ny; y += here->ny)
         for (size_t x = mx; x < above->nx; x += here->nx) {
             struct phases phases = phases_of(above, x, y);
-            double corners = here->nx == above->nx ? 1 : hanging(d, &phases);
-            symbol_add(d, layer->block[1][1], &phases, share * corners * corners, pivot);
+            double corners = here->nx == above->nx ? 1 : phases_hanging(d, &phases);
+            layer_symbol_add(d, layer->block[1][1], &phases, share * corners * corners, pivot);
         }
 }
 
@@ -248,9 +106,10 @@ static void couple(const struct flat *f, struct layer *layer, size_t level, size
     struct phases phases = phases_of(here, wave / here->ny, wave % here->ny);
     double between[3][3] = {{0}};
     if (wide)
-        below = wave_below(here, wave, &mirrored);
-    symbol_add(d, layer->block[0][0], &phases, 1, pivot);
-    symbol_add(d, layer->block[0][1], &phases, wide ? hanging(d, &phases) : 1, between);
+        below = alias_below(here, wave, &mirrored);
+    layer_symbol_add(d, layer->block[0][0], &phases, 1, pivot);
+    layer_symbol_add(d, layer->block[0][1], &phases, wide ? phases_hanging(d, &phases) : 1,
+                     between);
     for (int i = 0; level + 1 == f->mesh->layers && below != 0 && i < d; i++)
         between[i][d - 1] = 0; /* the far side moves as one */
     for (int i = 0; i < d; i++)
@@ -475,7 +334,7 @@ void flat_load(struct flat *f, const double *forces) {
         const double *field = field_at(f, level, 0);
         pivot_apply(f, level, field_at(f, level, 0));
         if (mesh_widens(mesh, level - 1)) {
-            unfold(f, level);
+            alias_unfold(&mesh->level[level - 1], d, field, f->passed);
             field = f->passed;
         }
         for (size_t i = 0; i < d; i++)
@@ -541,7 +400,7 @@ static void descend_wider(struct flat *f, size_t level) {
     size_t n = 2 * f->d * waves_at(f, level + 1);
     double share = share_of(f->mesh, level), *below = field_at(f, level + 1, 0);
     pull(f->d, waves_at(f, level), coupling_at(f, level), field_at(f, level, 0), f->passed);
-    fold(f, level + 1);
+    alias_fold(&f->mesh->level[level], f->d, f->passed, f->folded);
     pivot_apply(f, level + 1, f->folded);
     for (size_t k = 0; k < n; k++)
         below[k] -= share * f->folded[k];

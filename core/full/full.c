@@ -121,15 +121,18 @@ size_t full_freedoms(const struct grid *grid, const struct block *block,
 }
 
 double full_bytes(const struct grid *grid, const struct block *block,
-                  const struct full_options *options) {
+                  const struct full_options *options, double iterations) {
     struct mesh *mesh = NULL;
     if (mesh_create(&mesh, grid, block, options->transition, NULL) != 0)
         return NAN;
-    enum { VECTORS = 7, FACES = 6 }; /* newton.h and this file: mesh_freedoms, face */
-    double bytes = sizeof(double) * (VECTORS * (double)mesh_freedoms(mesh) +
-                                     FACES * (double)mesh->face + (double)mesh->nodes) +
-                   stencil_bytes(mesh, false) + krylov_bytes(mesh) + contact_bytes(grid) +
-                   compliance_bytes(grid, block);
+    enum { VECTORS = 6, FACES = 8 }; /* newton.h and this file: unknowns, face */
+    struct solid solid = solid_of(block->poisson, options->kinematics);
+    bool bulk = krylov_needs_bulk(&solid);
+    double unknowns = (double)(mesh_freedoms(mesh) + (bulk ? mesh->elements : 0));
+    double bytes =
+        sizeof(double) * (VECTORS * unknowns + FACES * (double)mesh->face + (double)mesh->nodes) +
+        stencil_bytes(mesh, bulk) + krylov_bytes(mesh, &solid, iterations) + contact_bytes(grid) +
+        compliance_bytes(grid, block);
     mesh_destroy(&mesh);
     return bytes;
 }

@@ -52,11 +52,10 @@ void full_destroy(struct full **full);
 /* Of the mesh; 0 where there is none for the block. */
 size_t full_freedoms(const struct grid *grid, const struct block *block,
                      const struct full_options *options);
-/* Memory of a solver whose equations are iterated; NaN where there is no mesh for the block. A
- * factorisation, where one is needed, takes some 10 times as much in addition on a surface, 3 times
- * in a profile. */
+/* Memory of a solver that takes so many iterations of the linear equations in each of Newton's; NaN
+ * where there is no mesh for the block. A factorisation, where one is needed, is not in it. */
 double full_bytes(const struct grid *grid, const struct block *block,
-                  const struct full_options *options);
+                  const struct full_options *options, double iterations);
 
 /* stop is asked before each iteration of Newton's from now on; non-zero ends full_press with
  * ERROR_STOPPED, which leaves the solver as a load not reached does. NULL, as it begins: not. */

@@ -81,10 +81,15 @@ void krylov_destroy(struct krylov **krylov) {
     *krylov = NULL;
 }
 
-double krylov_bytes(const struct mesh *mesh) {
-    double waves = (double)((mesh->level[0].nx / 2 + 1) * mesh->level[0].ny);
-    return flat_bytes(mesh) + sizeof(double) * ((2 * BASIS + 3) * (double)mesh_freedoms(mesh) +
-                                                7 * (double)mesh->face + 5 * waves);
+double krylov_bytes(const struct mesh *mesh, const struct solid *solid, double iterations) {
+    enum { VECTORS = 3, FACES = 7, WAVES = 5 };
+    bool bulk = krylov_needs_bulk(solid);
+    size_t waves = (mesh->level[0].nx / 2 + 1) * mesh->level[0].ny;
+    double unknowns = (double)(mesh_freedoms(mesh) + (bulk ? mesh->elements : 0));
+    double vectors = 2 * fmin(iterations, BASIS) + 1 + VECTORS;
+    return flat_bytes(mesh) + (bulk ? bulk_bytes(mesh, true) : 0) +
+           sizeof(double) *
+               (vectors * unknowns + FACES * (double)mesh->face + WAVES * (double)waves);
 }
 
 bool krylov_needs_bulk(const struct solid *solid) {

@@ -6,9 +6,9 @@
  *
  * Nearly incompressible blocks differ more: what keeps the volume of a flat element changes that of
  * a rough one, by as much as the bulk modulus is large. There the pressure of each element is an
- * unknown of its own, p - k v = 0 beside the forces (v the change of volume that displacements make,
- * k the bulk modulus over the volume; Brezzi & Fortin 1991), in the flat block as in the rough one:
- * they differ by their slopes again.
+ * unknown of its own, p - k v = 0 beside the forces (v the change of volume that displacements
+ * make, k the bulk modulus over the volume; Brezzi & Fortin 1991), in the flat block as in the
+ * rough one: they differ by their slopes again.
  *
  * Where even that is too far, as it is for steep blocks, a factorisation of the tangent itself
  * (factor.h), of displacements alone, takes the flat block's place. With the dual weighting it is
@@ -26,8 +26,8 @@ int krylov_create(struct krylov **out, const struct mesh *mesh, const struct sol
                   enum gap_weighting weighting, struct error *err);
 void krylov_destroy(struct krylov **krylov);
 
-/* Of an object for this mesh. */
-double krylov_bytes(const struct mesh *mesh);
+/* Memory that is touched by so many iterations a linear step. */
+double krylov_bytes(const struct mesh *mesh, const struct solid *solid, double iterations);
 
 /* Whether the tangent has to tell its bulk part apart. */
 bool krylov_needs_bulk(const struct solid *solid);

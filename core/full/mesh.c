@@ -125,19 +125,24 @@ static double hanging_weight(size_t parity, int corner, int node) {
     return node == 1 ? at : 1 - at;
 }
 
+/* Row and column up to one beyond the last, which is the first. */
+static size_t level_node(const struct level *level, size_t j, size_t i) {
+    size_t row = j < level->ny ? j : 0, column = i < level->nx ? i : 0;
+    return level->first + row * level->nx + column;
+}
+
 void mesh_element(const struct mesh *mesh, size_t layer, size_t j, size_t i,
                   struct mesh_element *out) {
     const struct level *upper = &mesh->level[layer], *lower = upper + 1;
     int sideways = 1 << (mesh->dimension - 1);
-    size_t wide = lower->width / upper->width;
-    out->hangs = wide != 1;
+    *out = (struct mesh_element){.hangs = lower->width != upper->width};
     out->side[0] = (double)upper->width;
     out->side[1] = (double)upper->width * mesh->across;
     for (int a = 0; a < sideways; a++) {
         size_t right = (size_t)(a & 1), back = (size_t)(a >> 1 & 1);
-        out->node[a] = upper->first + (j + back) % upper->ny * upper->nx + (i + right) % upper->nx;
-        out->node[a + sideways] = lower->first + (j / wide + back) % lower->ny * lower->nx +
-                                  (i / wide + right) % lower->nx;
+        out->node[a] = level_node(upper, j + back, i + right);
+        out->node[a + sideways] =
+            level_node(lower, (j >> out->hangs) + back, (i >> out->hangs) + right);
     }
     for (int a = 0; out->hangs && a < sideways; a++)
         for (int b = 0; b < sideways; b++) {
@@ -155,7 +160,7 @@ void mesh_corners(const struct mesh *mesh, const struct mesh_element *element, c
             out[a][k] = field[element->node[a] * components + k];
     if (!element->hangs)
         return;
-    double lower[4][3];
+    double lower[4][3] = {{0}};
     memcpy(lower, out + sideways, sideways * sizeof *lower);
     for (size_t a = 0; a < sideways; a++)
         for (size_t k = 0; k < components; k++) {
@@ -168,7 +173,7 @@ void mesh_corners(const struct mesh *mesh, const struct mesh_element *element, c
 void mesh_corners_add(const struct mesh *mesh, const struct mesh_element *element,
                       double corner[8][3], size_t components, double *field) {
     size_t sideways = (size_t)1 << (mesh->dimension - 1);
-    double lower[4][3];
+    double lower[4][3] = {{0}};
     memcpy(lower, corner + sideways, sideways * sizeof *lower);
     for (size_t b = 0; element->hangs && b < sideways; b++)
         for (size_t k = 0; k < components; k++) {
@@ -183,7 +188,7 @@ void mesh_corners_add(const struct mesh *mesh, const struct mesh_element *elemen
 
 void mesh_position(const struct mesh *mesh, const struct mesh_element *element,
                    double position[8][3]) {
-    double height[8][3];
+    double height[8][3] = {{0}};
     mesh_corners(mesh, element, mesh->height, 1, height);
     for (int a = 0; a < 1 << mesh->dimension; a++) {
         position[a][0] = (a & 1) * element->side[0];

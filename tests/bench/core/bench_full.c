@@ -52,7 +52,8 @@ static int run_loads(const struct run *run, struct error *err) {
                1e6 * seconds / (double)mesh_freedoms(full_mesh(full)) / (double)sum.newton,
                sum.newton, sum.linear, sum.factored, sum.cuts, report.slope,
                (double)state.nodes / (double)points, report.stretch, state.stiffness,
-               1e-6 * full_bytes(&run->grid, &run->block, &run->options));
+               1e-6 * full_bytes(&run->grid, &run->block, &run->options,
+                                 (double)sum.linear / (double)sum.newton));
     full_destroy(&full);
     return status;
 }
