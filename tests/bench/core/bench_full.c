@@ -1,7 +1,8 @@
 /* Finite elements on the true geometry: the two rows that a general FE program with mortar contact
  * needs 61 s and 213 s for (2D: H = 0.8, ratio 8, RMS slope 0.1, 512 points, 10 loads to 0.3; 3D:
- * one double-sine period, 32 x 32 points, 5 loads to 0.7 p*), how time grows with the nodes, and
- * with the slope; beside each what Newton and the linear equations took. CPU time of one core. */
+ * one double-sine period, 32 x 32 points, 5 loads to 0.7 p*), how time grows with the nodes, with
+ * the slope and with Poisson's ratio, and what wider columns cost and save; beside each what Newton
+ * and the linear equations took. CPU time of one core. */
 #include "core/full/full.h"
 #include "core/surface/surface.h"
 #include <math.h>
@@ -47,11 +48,12 @@ static int run_loads(const struct run *run, struct error *err) {
     if (!status)
         printf("%5zu x %-4zu %8zu equations %8.2f s  %5.1f us an equation and step  %3zu steps of "
                "Newton's, %4zu linear, %2zu factored, %zu cuts  slope <= %.3f  fraction %.4f x "
-               "%.4f  stiffness %.4g  %5.0f MB\n",
+               "%.4f  mean gap %.5g  stiffness %.5g  %5.0f MB\n",
                run->grid.nx, run->grid.ny, mesh_freedoms(full_mesh(full)), seconds,
                1e6 * seconds / (double)mesh_freedoms(full_mesh(full)) / (double)sum.newton,
                sum.newton, sum.linear, sum.factored, sum.cuts, report.slope,
-               (double)state.nodes / (double)points, report.stretch, state.stiffness,
+               (double)state.nodes / (double)points, report.stretch, state.mean_gap,
+               state.stiffness,
                1e-6 * full_bytes(&run->grid, &run->block, &run->options,
                                  (double)sum.linear / (double)sum.newton));
     full_destroy(&full);
@@ -90,14 +92,16 @@ static int profile(size_t n, double slope, struct full_options options, struct e
     return status;
 }
 
-static int double_sine(size_t n, double height, struct error *err) {
-    struct run run = {
-        .grid = {n, n, 1, 1},
-        .block = {.poisson = 0.3, .height = 1.5, .layer_growth = 1.2, .weighting = GAP_STANDARD},
-        .options = FULL_DEFAULTS,
-        .z = array_create(n * n, sizeof(double)),
-        .loads = 5,
-        .greatest = 0.7 * sqrt(2) * PI * height};
+static int double_sine(size_t n, double height, double poisson, struct error *err) {
+    struct run run = {.grid = {n, n, 1, 1},
+                      .block = {.poisson = poisson,
+                                .height = 1.5,
+                                .layer_growth = 1.2,
+                                .weighting = GAP_STANDARD},
+                      .options = FULL_DEFAULTS,
+                      .z = array_create(n * n, sizeof(double)),
+                      .loads = 5,
+                      .greatest = 0.7 * sqrt(2) * PI * height};
     if (run.z == NULL)
         return error_memory(err, n * n * sizeof(double), "heights");
     for (size_t i = 0; i < n * n; i++) {
@@ -113,11 +117,18 @@ static int double_sine(size_t n, double height, struct error *err) {
 static int run_all(struct error *err) {
     static const double SLOPES[] = {0.01, 0.1, 0.2, 0.5};
     static const char *const KINEMATICS[] = {"Hencky", "St Venant", "small strain"};
+    static const double TRANSITIONS[] = {INFINITY, 16, 8, 4}, POISSON[] = {0.49, 0.4999};
     struct full_options options = FULL_DEFAULTS;
     int status = 0;
     printf("profiles, RMS slope 0.1, 10 loads to 0.3 (the general program: 512 points in 61 s)\n");
     for (size_t n = 128; !status && n <= 2048; n *= 2)
         status = profile(n, 0.1, options, err);
+    printf("profiles of 512 points, equal columns and columns widening from 16, 8, 4 widths\n");
+    for (size_t t = 0; !status && t < 4; t++) {
+        options.transition = TRANSITIONS[t];
+        status = profile(512, 0.1, options, err);
+    }
+    options = FULL_DEFAULTS;
     for (int k = 0; !status && k < 3; k++) {
         printf("profiles of 512 points by slope, %s\n", KINEMATICS[k]);
         options.kinematics = (enum kinematics)k;
@@ -127,7 +138,10 @@ static int run_all(struct error *err) {
     }
     printf("double sine, height 0.02, 5 loads to 0.7 p* (the general program: 32 x 32 in 213 s)\n");
     for (size_t n = 16; !status && n <= 64; n *= 2)
-        status = double_sine(n, 0.02, err);
+        status = double_sine(n, 0.02, 0.3, err);
+    printf("double sine of 32 x 32 points, Poisson's ratio 0.49 and 0.4999\n");
+    for (size_t c = 0; !status && c < 2; c++)
+        status = double_sine(32, 0.02, POISSON[c], err);
     return status;
 }
 
