@@ -17,8 +17,8 @@ int bulk_create(struct bulk **out, const struct mesh *mesh, bool flat, struct er
 void bulk_destroy(struct bulk **bulk);
 double bulk_bytes(const struct mesh *mesh, bool flat);
 
-/* out = p + factor k v of every element: v what displacements u (mesh_freedoms) add to its V ln
- * theta, k the pressure of that. p and out may be the same. */
+/* out = p + factor k v of every element: v what displacements u (mesh_freedoms) add to its V e, k
+ * the pressure of that. p and out may be the same. */
 void bulk_bind(const struct bulk *bulk, const double *u, double factor, const double *p,
                double *out);
 /* Adds factor times the forces of pressures p outward to force (mesh_freedoms). */

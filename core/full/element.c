@@ -110,13 +110,25 @@ double element_quality(int dimension, double position[8][3]) {
 struct field {
     struct strained point[8];
     double gradient[8][8][3]; /* in space */
-    double bulk[8][3];        /* dv/du */
-    double growth;            /* theta - 1 */
+    double bulk[8][3];        /* V d growth/du */
+    double growth;            /* mean of the points' dilatation */
 };
+
+/* Of the dilatation at a point by a node's displacement along axis i: for J - 1, J grad; for tr E,
+ * F grad_X; for tr e, grad_X. grad: in space. */
+INLINE double swelling(int d, enum kinematics kinematics, const struct strained *point,
+                       const double h[3], const double grad_reference[3], const double grad[3],
+                       int i) {
+    if (kinematics == KINEMATICS_HENCKY)
+        return (1 + point->dilatation) * grad[i];
+    double sum = grad_reference[i];
+    for (int k = 0; k < d && kinematics == KINEMATICS_ST_VENANT; k++)
+        sum += h[k] * grad_reference[k];
+    return sum;
+}
 
 INLINE bool field_make(int d, const struct solid *solid, const struct element_shape *shape,
                        double u[8][3], struct field *f) {
-    bool small = solid->kinematics == KINEMATICS_SMALL;
     double growth = 0;
     memset(f->bulk, 0, sizeof f->bulk);
     for (int q = 0; q < 1 << d; q++) {
@@ -129,34 +141,37 @@ INLINE bool field_make(int d, const struct solid *solid, const struct element_sh
         if (!solid_strain(d, solid, h, point))
             return false;
         growth += shape->weight[q] * point->dilatation;
-        double volume = shape->weight[q] * (small ? 1 : 1 + point->dilatation);
         for (int a = 0; a < 1 << d; a++)
             for (int i = 0; i < d; i++) {
                 double sum = 0;
                 for (int k = 0; k < d; k++)
                     sum += shape->gradient[q][a][k] * point->inverse[k][i];
                 f->gradient[q][a][i] = sum;
-                f->bulk[a][i] += volume * sum;
             }
+        for (int a = 0; a < 1 << d; a++)
+            for (int i = 0; i < d; i++)
+                f->bulk[a][i] +=
+                    shape->weight[q] * swelling(d, solid->kinematics, point, h[i],
+                                                shape->gradient[q][a], f->gradient[q][a], i);
     }
     f->growth = growth / shape->volume;
-    return f->growth > -1;
+    return solid->kinematics == KINEMATICS_ST_VENANT || f->growth > -1;
 }
 
 /* Of the mean dilatation: its energy over V, the pull outward and what it adds to the stiffness,
- * times V, all by v; the slope of its strain (ln theta, small: theta - 1) by theta, and the
- * pressure that it makes. */
+ * times V, all by its growth; the slope of its strain e by growth, and the pressure that it
+ * makes. */
 struct bulk {
     double energy, pull, stiffness, slope, bound;
 };
 
 INLINE struct bulk bulk_of(const struct solid *solid, double growth, const double *pressure) {
-    bool small = solid->kinematics == KINEMATICS_SMALL;
-    double strain = small ? growth : log1p(growth), slope = small ? 1 : 1 / (1 + growth);
+    bool hencky = solid->kinematics == KINEMATICS_HENCKY;
+    double strain = hencky ? log1p(growth) : growth, slope = hencky ? 1 / (1 + growth) : 1;
     double bound = solid->mean * strain, p = pressure != NULL ? *pressure : bound;
     return (struct bulk){.energy = bound * strain / 2,
                          .pull = p * slope,
-                         .stiffness = (solid->mean - (small ? 0 : p)) * slope * slope,
+                         .stiffness = (solid->mean - (hencky ? p : 0)) * slope * slope,
                          .slope = slope,
                          .bound = bound};
 }
@@ -209,7 +224,6 @@ INLINE void stiffness_add(int d, double weight, double gradient[8][3], double mo
 INLINE void stiffnesses(int d, const struct solid *solid, const struct element_shape *shape,
                         struct field *f, const struct bulk *bulk,
                         double (*stiffness)[ELEMENT_FREEDOMS]) {
-    bool small = solid->kinematics == KINEMATICS_SMALL;
     blocks sum;
     for (int b = 0; b < 1 << d; b++)
         for (int i = 0; i < d; i++)
@@ -219,8 +233,7 @@ INLINE void stiffnesses(int d, const struct solid *solid, const struct element_s
                         bulk->stiffness / shape->volume * f->bulk[a][i] * f->bulk[b][j];
     for (int q = 0; q < 1 << d; q++) {
         double moduli[9][9];
-        double pull = small ? 0 : bulk->pull * (1 + f->point[q].dilatation);
-        solid_moduli(d, solid, &f->point[q], pull, moduli);
+        solid_moduli(d, solid, &f->point[q], bulk->pull, moduli);
         stiffness_add(d, shape->weight[q], f->gradient[q], moduli, sum);
     }
     for (int b = 0; b < 1 << d; b++)

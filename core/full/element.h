@@ -1,12 +1,15 @@
 /* The element of the full model: bilinear quadrilateral, trilinear hexahedron, 2 Gauss points a
- * direction, with the mean dilatation theta = v/V (its volume now and before) in place of the local
- * one but for the part that the layered model keeps:
+ * direction, with a mean dilatation in place of the local one but for the part that the layered
+ * model keeps:
  *
- *   energy = sum over Gauss points of weight x solid's energy (hencky.h)
- *          + V (mean/2) (ln theta)^2      (small: (theta - 1)^2)
+ *   energy = sum over Gauss points of weight x solid's energy (hencky.h) + V (mean/2) e^2
+ *
+ *   hencky: e = ln theta, theta = v/V, its volume now and before
+ *   st_venant: e the mean of tr E;  small: of tr e
  *
  * so that one pressure an element is bound when nu nears 1/2 (Simo, Taylor & Pister 1985), and
- * small strains on a flat block are those of layered.c.
+ * small strains on a flat block are those of layered.c. Where the strain is uniform the energy is
+ * the solid's with lambda = local + mean.
  *
  * Node a lies at side (a >> k) & 1 of axis k; the vertical axis is the last. */
 #ifndef RUGO_CORE_FULL_ELEMENT_H
@@ -27,12 +30,12 @@ bool element_shape_make(int dimension, double position[8][3], struct element_sha
  * element folded there. */
 double element_quality(int dimension, double position[8][3]);
 
-/* An element's pressure as an unknown p (E*, outward) of its own, bound by p = mean ln theta
- * (small: mean (theta - 1)) in balance alone. */
+/* An element's pressure as an unknown p (E*, outward) of its own, bound by p = mean e in balance
+ * alone. */
 struct element_bulk {
-    double gradient[ELEMENT_FREEDOMS]; /* of V ln theta by freedom: the forces of p = 1 */
-    double stiffness;                  /* mean/V: pressure by V ln theta */
-    double bound;                      /* mean ln theta */
+    double gradient[ELEMENT_FREEDOMS]; /* of V e by freedom: the forces of p = 1 */
+    double stiffness;                  /* mean/V: pressure by V e */
+    double bound;                      /* mean e */
 };
 
 /* Displacements u[a][k]; force and stiffness by freedom a*dimension + k. energy, force, stiffness,

@@ -131,16 +131,17 @@ INLINE void strain_small(int d, const struct solid *solid, double h[3][3], struc
 /* From the stretches: stresses along the axes, and the energy. */
 INLINE void stress_principal(int d, const struct solid *solid, struct strained *out) {
     bool hencky = solid->kinematics == KINEMATICS_HENCKY;
-    double strain[3], trace = 0, square = 0;
+    double trace = 0, square = 0;
     for (int p = 0; p < d; p++) {
-        strain[p] = hencky ? out->logarithm[p] : (out->square[p] - 1) / 2;
-        trace += strain[p];
-        square += strain[p] * strain[p];
+        trace += out->strain[p];
+        square += out->strain[p] * out->strain[p];
     }
     for (int p = 0; p < d; p++)
-        out->principal[p] =
-            (2 * solid->shear * strain[p] + solid->local * trace) * (hencky ? 1 : out->square[p]);
+        out->principal[p] = (2 * solid->shear * out->strain[p] + solid->local * trace) *
+                            (hencky ? 1 : out->square[p]);
     out->energy = solid->shear * square + solid->local / 2 * trace * trace;
+    if (!hencky)
+        out->dilatation = trace;
 }
 
 INLINE bool strain(int d, const struct solid *solid, double h[3][3], struct strained *out) {
@@ -167,7 +168,7 @@ INLINE bool strain(int d, const struct solid *solid, double h[3][3], struct stra
         if (!(value[p] > -1))
             return false;
         out->square[p] = 1 + value[p];
-        out->logarithm[p] = log1p(value[p]) / 2;
+        out->strain[p] = (solid->kinematics == KINEMATICS_HENCKY ? log1p(value[p]) : value[p]) / 2;
     }
     stress_principal(d, solid, out);
     for (int i = 0; i < d; i++)
@@ -205,36 +206,39 @@ struct principal_moduli {
 
 /* Stretches enter the shear moduli by (stress_p - stress_q)/(square_p - square_q), which for
  * Hencky's stress is shear/(stretch_p stretch_q) s/sinh s, s the difference of the logarithms, and
- * for St Venant's a polynomial: nothing is lost where stretches are equal or nearly so. */
+ * for St Venant's a polynomial: nothing is lost where stretches are equal or nearly so. The pull
+ * adds to Hencky's stresses pull J, to St Venant's pull square_p. */
 INLINE void moduli_finite(int d, const struct solid *solid, const struct strained *point,
                           double pull, struct principal_moduli *out) {
-    double trace = 0;
-    for (int p = 0; p < d; p++)
-        trace += (point->square[p] - 1) / 2;
+    bool hencky = solid->kinematics == KINEMATICS_HENCKY;
+    double outward = pull * (1 + point->dilatation), even = solid->local * point->dilatation + pull;
     for (int p = 0; p < d; p++)
         for (int q = 0; q < d; q++) {
             double xp = point->square[p], xq = point->square[q], same = p == q;
             double bare = 2 * solid->shear * same + solid->local;
-            if (solid->kinematics == KINEMATICS_HENCKY) {
-                double s = point->logarithm[p] - point->logarithm[q];
-                out->normal[p][q] = bare - same * point->principal[p];
+            if (hencky) {
+                double s = point->strain[p] - point->strain[q];
+                out->normal[p][q] = bare - same * point->principal[p] + (1 - same) * outward;
                 out->along[p][q] = solid->shear * sqrt(xq / xp) * over_sinh(s);
+                out->cross[p][q] = out->along[p][q] - point->principal[q] - outward;
             } else {
-                out->normal[p][q] = xp * xq * bare + same * point->principal[p];
-                out->along[p][q] = xq * (solid->shear * (xp + xq - 1) + solid->local * trace);
+                out->normal[p][q] = xp * xq * bare + same * (point->principal[p] + pull * xp);
+                out->along[p][q] = xq * (solid->shear * (xp + xq - 1) + even);
+                out->cross[p][q] = xq * solid->shear * xp;
             }
-            out->normal[p][q] += (1 - same) * pull;
-            out->cross[p][q] = out->along[p][q] - point->principal[q] - pull;
         }
 }
 
-/* Normal moduli of the energy in logarithms alone; of each pair of shears the largest cross term
- * that leaves them positive. */
-INLINE void moduli_convex(int d, const struct solid *solid, struct principal_moduli *out) {
+/* Normal moduli without stress (Hencky's: of the energy in logarithms alone); of each pair of
+ * shears the largest cross term that leaves them positive. */
+INLINE void moduli_convex(int d, const struct solid *solid, const struct strained *point,
+                          struct principal_moduli *out) {
+    bool hencky = solid->kinematics == KINEMATICS_HENCKY;
     for (int p = 0; p < d; p++)
         for (int q = 0; q < d; q++) {
             double most = sqrt(fmax(0, out->along[p][q]) * fmax(0, out->along[q][p]));
-            out->normal[p][q] = (p == q ? 2 * solid->shear : 0) + solid->local;
+            out->normal[p][q] = ((p == q ? 2 * solid->shear : 0) + solid->local) *
+                                (hencky ? 1 : point->square[p] * point->square[q]);
             out->along[p][q] = fmax(0, out->along[p][q]);
             out->cross[p][q] = copysign(fmin(fabs(out->cross[p][q]), most), out->cross[p][q]);
         }
@@ -256,7 +260,7 @@ INLINE void moduli_of(int d, const struct solid *solid, const struct strained *p
     else
         moduli_finite(d, solid, point, pull, &m);
     if (solid->convex && solid->kinematics != KINEMATICS_SMALL)
-        moduli_convex(d, solid, &m);
+        moduli_convex(d, solid, point, &m);
     /* The dyad of axes p and q as a row, and the rows that it is multiplied with, summed. */
     double dyad[9][9], factor[9][9];
     for (int p = 0; p < d; p++)

@@ -1,5 +1,6 @@
 /* Protects the finite element of the full model: the patch test on distorted meshes, forces and
- * stiffness as derivatives of the energy, rigid motion, volumes. */
+ * stiffness as derivatives of the energy, rigid motion, closed forms of uniform strains, volumes.
+ */
 #include "tests/support/check.h"
 
 #include "core/full/element.h"
@@ -131,6 +132,139 @@ static void a_rotated_element_gives_rotated_forces(void **state) {
     }
 }
 
+/* Kirchhoff's stress (small: the stress) by components, and the energy, of a uniform strain. */
+struct uniform {
+    double h[3][3];
+    double energy, across, normal[3]; /* across: 0, d - 1 */
+};
+
+/* The vertical axis stretched. */
+static struct uniform uniaxial(int d, enum kinematics k, double mu, double lambda, double stretch) {
+    struct uniform u = {.h = {{0}}};
+    double square = k == KINEMATICS_ST_VENANT ? stretch * stretch : 1;
+    double e = k == KINEMATICS_HENCKY      ? log(stretch)
+               : k == KINEMATICS_ST_VENANT ? (square - 1) / 2
+                                           : stretch - 1;
+    u.h[d - 1][d - 1] = stretch - 1;
+    for (int i = 0; i < d; i++)
+        u.normal[i] = i == d - 1 ? square * (2 * mu + lambda) * e : lambda * e;
+    u.energy = (mu + lambda / 2) * e * e;
+    return u;
+}
+
+/* All axes stretched alike. */
+static struct uniform swollen(int d, enum kinematics k, double mu, double lambda, double stretch) {
+    struct uniform u = uniaxial(d, k, mu, lambda, stretch);
+    double square = k == KINEMATICS_ST_VENANT ? stretch * stretch : 1;
+    double e = u.normal[d - 1] / (square * (2 * mu + lambda));
+    for (int i = 0; i < d; i++) {
+        u.h[i][i] = stretch - 1;
+        u.normal[i] = square * (2 * mu + d * lambda) * e;
+    }
+    u.energy = d * (mu + d * lambda / 2) * e * e;
+    return u;
+}
+
+/* The vertical axis stretched by s, then sheared sideways by gamma s: F = [1 gamma; 0 s]. St
+ * Venant: tau = F S F^T. Hencky: F F^T is m + D with D traceless and D^2 = r^2, its logarithm
+ * ln s + D atanh(r/m)/r. */
+static struct uniform sheared(int d, enum kinematics k, double mu, double lambda, double s) {
+    const double gamma = 0.3;
+    int v = d - 1;
+    struct uniform u = {.h = {{0}}};
+    u.h[0][v] = gamma;
+    u.h[v][v] = s - 1;
+    if (k == KINEMATICS_SMALL) {
+        u.normal[0] = u.normal[1] = lambda * (s - 1);
+        u.normal[v] = (2 * mu + lambda) * (s - 1);
+        u.across = mu * gamma;
+        u.energy = (mu + lambda / 2) * (s - 1) * (s - 1) + mu / 2 * gamma * gamma;
+    } else if (k == KINEMATICS_ST_VENANT) {
+        double e = (gamma * gamma + s * s - 1) / 2, down = (2 * mu + lambda) * e;
+        u.normal[1] = lambda * e; /* of the third axis in 3D */
+        u.normal[0] = lambda * e + 2 * gamma * mu * gamma + gamma * gamma * down;
+        u.normal[v] = s * s * down;
+        u.across = s * (mu * gamma + gamma * down);
+        u.energy = (mu + lambda / 2) * e * e + mu / 2 * gamma * gamma;
+    } else {
+        double m = (1 + gamma * gamma + s * s) / 2, r = sqrt(m * m - s * s), l = log(s);
+        double t = atanh(r / m), half = (1 + gamma * gamma - s * s) / 2;
+        u.normal[1] = lambda * l;
+        u.normal[0] = (mu + lambda) * l + mu * t / r * half;
+        u.normal[v] = (mu + lambda) * l - mu * t / r * half;
+        u.across = mu * t / r * gamma * s;
+        u.energy = mu / 2 * (l * l + t * t) + lambda / 2 * l * l;
+    }
+    return u;
+}
+
+/* The solid's closed forms with the whole of lambda, from the energy and the forces of a distorted
+ * element: the sum of force times place (small: place before) is the stress times the volume. */
+static void uniform_strain_is_the_solids(void **state) {
+    (void)state;
+    static struct uniform (*const STRAIN[])(int, enum kinematics, double, double,
+                                            double) = {uniaxial, swollen, sheared};
+    static const double STRETCHES[] = {0.8, 0.95, 1 - 1e-7, 1.3};
+    for (size_t c = 0; c < (size_t)2 * 3 * 3 * 4; c++) {
+        int d = 2 + (int)(c % 2);
+        enum kinematics kinematics = KINEMATICS[c / 2 % 3];
+        struct solid solid = solid_of(0.3, kinematics);
+        struct uniform expected = STRAIN[c / 6 % 3](d, kinematics, solid.shear,
+                                                    solid.local + solid.mean, STRETCHES[c / 18]);
+        double position[8][3], u[8][3], force[ELEMENT_FREEDOMS], energy;
+        struct element_shape element;
+        distorted(d, c, 0.2, position);
+        shape(d, position, &element);
+        for (int a = 0; a < 1 << d; a++)
+            for (int i = 0; i < d; i++) {
+                u[a][i] = 0;
+                for (int k = 0; k < d; k++)
+                    u[a][i] += expected.h[i][k] * position[a][k];
+            }
+        assert_true(element_evaluate(d, &solid, &element, u, NULL, &energy, force, NULL, NULL));
+        check_close(energy, element.volume * expected.energy, 1e-14);
+        for (int i = 0; i < d; i++)
+            for (int k = 0; k < d; k++) {
+                double stress = 0, across = i == 0 && k == d - 1 ? expected.across : 0;
+                if (k == 0 && i == d - 1)
+                    across = expected.across;
+                for (int a = 0; a < 1 << d; a++)
+                    stress += force[a * d + i] *
+                              (position[a][k] + (kinematics == KINEMATICS_SMALL ? 0 : u[a][k]));
+                check_close(stress, element.volume * (i == k ? expected.normal[i] : across), 1e-14);
+            }
+    }
+    struct uniform pressed = uniaxial(2, KINEMATICS_ST_VENANT, 0.35, 0.525, 0.8);
+    check_close(pressed.normal[1], -0.14112, 1e-15);
+}
+
+/* At rest all kinematics have one stiffness, and small displacements its forces. */
+static void small_strains_are_linear(void **state) {
+    (void)state;
+    for (uint64_t draw = 0; draw < 12; draw++) {
+        int d = 2 + (int)(draw % 2), freedoms = d << d;
+        struct solid solid = solid_of(draw < 6 ? 0.3 : 0.4999, KINEMATICS_SMALL);
+        double position[8][3], u[8][3] = {{0}}, linear[24][24], force[24], stiffness[24][24];
+        struct element_shape element;
+        distorted(d, draw, 0.2, position);
+        shape(d, position, &element);
+        assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, NULL, linear, NULL));
+        solid.kinematics = KINEMATICS[draw / 2 % 2];
+        assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, NULL, stiffness, NULL));
+        random_numbers(400 + draw, 24, 1e-12, &u[0][0]);
+        assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, force, NULL, NULL));
+        double size = (solid.local + solid.mean) / 0.525;
+        for (int m = 0; m < freedoms; m++) {
+            double expected = 0;
+            for (int n = 0; n < freedoms; n++) {
+                check_close(stiffness[m][n], linear[m][n], 1e-14 * size);
+                expected += linear[m][n] * u[n / d][n % d];
+            }
+            check_close(force[m], expected, 1e-22 * size);
+        }
+    }
+}
+
 static void bad_shapes_are_found(void **state) {
     (void)state;
     struct element_shape element;
@@ -171,6 +305,8 @@ int main(void) {
         cmocka_unit_test(patch_test),
         cmocka_unit_test(forces_and_stiffness_are_derivatives),
         cmocka_unit_test(a_rotated_element_gives_rotated_forces),
+        cmocka_unit_test(uniform_strain_is_the_solids),
+        cmocka_unit_test(small_strains_are_linear),
         cmocka_unit_test(bad_shapes_are_found),
         cmocka_unit_test(inside_out_is_refused),
     };
