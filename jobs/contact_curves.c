@@ -220,11 +220,13 @@ static bool append_others(struct workshop *shop) {
     return done;
 }
 
-/* Density over the nominal area: its integral is the fraction in contact. */
+/* Density over the nominal area: its integral is the fraction in contact, its first moment the
+ * load. Under- and overflow in undeformed areas of nodes. */
 static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
     const struct contact_case *study = shop->study;
     const struct bins *bins = &study->pressure;
     double load = study->loads[study->pdf_loads[at]], width = bins_width(bins);
+    double units = (double)contact_tally_units(study, model);
     const uint64_t *count =
         shop->tally->pressures.count + contact_tally_pressure_cell(shop->tally, model, at);
     for (size_t b = 0; b < bins->count; b++) {
@@ -250,8 +252,8 @@ static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
                         .standard_error = shop->standard_error,
                         .theories = {{theory ? "persson" : NULL, shop->pdf}},
                         .counted = true,
-                        .underflow = (double)count[0],
-                        .overflow = (double)count[bins->count + 1]});
+                        .underflow = (double)count[0] / units,
+                        .overflow = (double)count[bins->count + 1] / units});
 }
 
 static bool append_all(struct workshop *shop) {

@@ -161,13 +161,13 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
         contact_tally_values(tally, (enum contact_measure)a)[cell] = values[a];
 }
 
+/* On areas as they are now, whose forces are those on the undeformed ones. */
 static void count_pressures(const struct contact_scene *scene, size_t model, size_t load,
-                            const double *p, struct contact_tally *tally) {
+                            const double *p, double now, struct contact_tally *tally) {
     const struct contact_case *study = scene->study;
     for (size_t a = 0; a < study->pdf_count; a++)
         if (study->pdf_loads[a] == load)
-            contact_tally_pressures(tally, model, a, grid_points(&contact_case_finest(study)->grid),
-                                    p, 1 / scene->rms_slope);
+            contact_tally_pressures(tally, model, a, p, 1 / (now * scene->rms_slope), now);
 }
 
 struct stopper {
@@ -202,7 +202,7 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
             measure(scene, model, level, &state, report, tally,
                     contact_case_cell(study, model, level, k));
         if (status == 0 && finest)
-            count_pressures(scene, model, k, state.p, tally);
+            count_pressures(scene, model, k, state.p, present(report), tally);
     }
     return status;
 }
