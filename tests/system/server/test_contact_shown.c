@@ -115,7 +115,7 @@ static void the_model_full_is_told_apart(void **state) {
     shell("steep.db", "$RUGO run --db $DB --out steep steep.json && ls steep");
     check_shown((const char *[]){
         "  full (hencky)  ", "\nfull (hencky): kappa ", "\nnotes: ", "\ncase 0, realisation ",
-        ": model full, level 6: load ", " was reached up to ", " E* only (steepest slope ",
+        ": model full (hencky), level 6: load ", " was reached up to ", " E* only (steepest slope ",
         "case-0-contact_area-edges-full-hencky-6.csv\n", NULL});
     shell("steep.db", "$RUGO report --db $DB $ID");
     check_shown((const char *[]){"\nfull (hencky)      6  edges", " was reached up to ", NULL});
