@@ -129,6 +129,31 @@ static void the_model_full_is_told_apart(void **state) {
                                  "\n0,mean_gap,,layered,,", NULL});
 }
 
+/* In any case of a sweep, before anything runs. */
+static void what_cannot_be_meshed_is_refused(void **state) {
+    (void)state;
+    shell("refused.db",
+          "for set in 'contact.block_height=[{\"rms_heights\":100},{\"rms_heights\":1}]' "
+          "contact.transition_depth=[8,0.5]; do "
+          "$RUGO check --set \"$set\" steep.json && exit 1; "
+          "$RUGO run --db $DB --set \"$set\" steep.json && exit 1; done 2>&1; test ! -e $DB");
+    check_shown((const char *[]){"/contact/block_height: 1 RMS heights of the surface: the model "
+                                 "full needs 4 or more",
+                                 "/contact/transition_depth/1: 0.5 is not in [1, ", NULL});
+    shell("refused.db", "$RUGO check --set contact.transition_depth=[1,1e9] steep.json");
+}
+
+/* 24 columns of 13 layers, or half as many, and half of these, as soon as they are as deep as wide.
+ */
+static void a_mesh_has_the_columns_asked_for(void **state) {
+    (void)state;
+    shell("mesh.db",
+          "for depth in 1 1e9; do $RUGO generate --set surface.rms_slope=0.1 --set "
+          "contact.transition_depth=$depth --mesh mesh.vtu --pressure 0.1 steep.json >/dev/null "
+          "&& grep -o 'NumberOfCells=\"[0-9]*\"' mesh.vtu || exit 1; done");
+    check_shown((const char *[]){"\"126\"", "\"312\"", NULL});
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_run_shows_area_against_load),
@@ -136,6 +161,8 @@ int main(void) {
         cmocka_unit_test(the_report_tells_what_each_part_buys),
         cmocka_unit_test(files_hold_every_curve),
         cmocka_unit_test(the_model_full_is_told_apart),
+        cmocka_unit_test(what_cannot_be_meshed_is_refused),
+        cmocka_unit_test(a_mesh_has_the_columns_asked_for),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }
