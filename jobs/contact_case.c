@@ -7,6 +7,10 @@ static const double ROUNDING = 1e-9; /* relative: numbers that are meant to be e
 enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
 /* Elements allow edges of slope 6 (core/full/mesh.c), which is where steepest ones lie then. */
 static const double FULL_SLOPE_MOST = 2;
+/* RMS heights. Layers fold over valleys deeper than two thirds of the block: of Gaussian profiles
+ * of 32 to 2048 points and surfaces of 16 or 32 a side none mesh at 1, few to most at 2 and 3, all
+ * at 4. */
+static const double FULL_HEIGHT_LEAST = 4;
 enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS }; /* the order of units in the table */
 
 const char *const CONTACT_MODEL_NAMES[] = {
@@ -78,15 +82,23 @@ static int read_full(struct contact_case *out, const struct case_reader *reader,
                   "the model full needs the scale of the surface, whose slopes count in it: give "
                   "rms_slope or rms_height");
     int status = read_scale(surface, &rms_height, &rms_slope, err);
-    if (status == 0 && rms_slope > FULL_SLOPE_MOST)
+    if (status != 0)
+        return status;
+    double height = out->blocks[contact_case_full(out)].height / rms_height;
+    if (rms_slope > FULL_SLOPE_MOST)
         fault_add(reader->faults,
                   surface->spectrum.scale == SCALE_RMS_SLOPE ? "/surface/rms_slope"
                                                              : "/surface/rms_height",
                   "RMS slope %.4g: the model full can mesh surfaces up to about %g, whose steepest "
                   "edges are three times as steep",
                   rms_slope, FULL_SLOPE_MOST);
+    else if (height < FULL_HEIGHT_LEAST * (1 - ROUNDING))
+        fault_add(reader->faults, "/contact/block_height",
+                  "%.4g RMS heights of the surface: the model full needs %g or more; the layers of "
+                  "lower blocks fold over the surface's valleys",
+                  height, FULL_HEIGHT_LEAST);
     out->rms_slope = rms_slope;
-    return status;
+    return 0;
 }
 
 static int read_blocks(struct contact_case *out, const struct case_reader *reader,

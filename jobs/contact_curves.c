@@ -220,11 +220,14 @@ static bool append_others(struct workshop *shop) {
     return done;
 }
 
-/* Density over the nominal area: its integral is the fraction in contact. */
+/* Density over the nominal area: its integral is the fraction in contact, its first moment the
+ * load. Under- and overflow in undeformed areas of nodes. */
 static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
     const struct contact_case *study = shop->study;
     const struct bins *bins = &study->pressure;
     double load = study->loads[study->pdf_loads[at]], width = bins_width(bins);
+    double units = (double)contact_tally_units(study, model);
+    size_t cell = contact_case_cell(study, model, study->level_count - 1, study->pdf_loads[at]);
     const uint64_t *count =
         shop->tally->pressures.count + contact_tally_pressure_cell(shop->tally, model, at);
     for (size_t b = 0; b < bins->count; b++) {
@@ -232,6 +235,7 @@ static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
         shop->x[b] = bins_centre(bins, b);
         shop->y[b] = share.value / width;
         shop->standard_error[b] = share.standard_error / width;
+        shop->valueless[b] = (double)contact_tally_valueless(shop->tally, MEASURE_NODES, cell);
     }
     bool theory = contact_theory_pressures(study, shop->modes, load, shop->pdf);
     return curve_append(
@@ -249,9 +253,10 @@ static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
                         .y = shop->y,
                         .standard_error = shop->standard_error,
                         .theories = {{theory ? "persson" : NULL, shop->pdf}},
+                        .valueless = contact_case_is_full(study, model) ? shop->valueless : NULL,
                         .counted = true,
-                        .underflow = (double)count[0],
-                        .overflow = (double)count[bins->count + 1]});
+                        .underflow = (double)count[0] / units,
+                        .overflow = (double)count[bins->count + 1] / units});
 }
 
 static bool append_all(struct workshop *shop) {

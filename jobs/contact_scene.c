@@ -161,13 +161,13 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
         contact_tally_values(tally, (enum contact_measure)a)[cell] = values[a];
 }
 
+/* On areas as they are now, whose forces are those on the undeformed ones. */
 static void count_pressures(const struct contact_scene *scene, size_t model, size_t load,
-                            const double *p, struct contact_tally *tally) {
+                            const double *p, double now, struct contact_tally *tally) {
     const struct contact_case *study = scene->study;
     for (size_t a = 0; a < study->pdf_count; a++)
         if (study->pdf_loads[a] == load)
-            contact_tally_pressures(tally, model, a, grid_points(&contact_case_finest(study)->grid),
-                                    p, 1 / scene->rms_slope);
+            contact_tally_pressures(tally, model, a, p, 1 / (now * scene->rms_slope), now);
 }
 
 struct stopper {
@@ -196,15 +196,30 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
                              study->load_count);
         status =
             contact_solver_press(solver, study->loads[k] * scene->rms_slope, &state, &report, err);
-        if (status != 0)
-            error_context(err, "load %g", study->loads[k]);
-        else
+        if (status == 0)
             measure(scene, model, level, &state, report, tally,
                     contact_case_cell(study, model, level, k));
+        else if (report != NULL)
+            error_context(err, "load %g, reached %.4g", study->loads[k],
+                          report->reached / scene->rms_slope);
+        else
+            error_context(err, "load %g", study->loads[k]);
         if (status == 0 && finest)
-            count_pressures(scene, model, k, state.p, tally);
+            count_pressures(scene, model, k, state.p, present(report), tally);
     }
     return status;
+}
+
+/* "model full (hencky), level 6" */
+static void name_model(const struct contact_case *study, size_t model, size_t level,
+                       struct error *err) {
+    const char *name = CONTACT_MODEL_NAMES[study->blocks[model].model];
+    double points = study->levels[level].points;
+    if (contact_case_is_full(study, model))
+        error_context(err, "model %s (%s), level %g", name,
+                      FULL_KINEMATICS_NAMES[study->kinematics], points);
+    else
+        error_context(err, "model %s, level %g", name, points);
 }
 
 /* Where the model full finds no answer, a note tells why. */
@@ -216,8 +231,7 @@ static int solve_model(struct contact_scene *scene, size_t model, size_t level,
     int status = solve_loads(scene, model, level, tally, stopper, &why);
     if (status == 0)
         return 0;
-    error_context(&why, "model %s, level %g", CONTACT_MODEL_NAMES[study->blocks[model].model],
-                  study->levels[level].points);
+    name_model(study, model, level, &why);
     bool unsolved = status == ERROR_NUMERIC || status == ERROR_INPUT;
     if (unsolved && contact_case_is_full(study, model)) {
         notes_add(&tally->notes, tally->realisation, why.text);

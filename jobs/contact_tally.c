@@ -2,8 +2,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { FORMAT_KIND = 0x434f, FORMAT_VERSION = 3 }; /* "CO" */
+enum { FORMAT_KIND = 0x434f, FORMAT_VERSION = 4 }; /* "CO" */
 enum { SCALE_BITS_MOST = 16 };
+/* Areas that strains have changed are rounded to 2^-20 of a node's, so that sums stay exact. */
+static const uint64_t STRETCHED_UNITS = 1 << 20;
 
 static size_t bins_of(const struct contact_case *study) {
     return study->pressure.count + 2;
@@ -97,16 +99,23 @@ double contact_tally_bytes(const struct contact_case *study) {
            tally_bytes(study->model_count * study->pdf_count * bins);
 }
 
-void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, size_t n,
-                             const double *p, double scale) {
+uint64_t contact_tally_units(const struct contact_case *study, size_t model) {
+    return contact_case_is_full(study, model) ? STRETCHED_UNITS : 1;
+}
+
+void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, const double *p,
+                             double scale, double area) {
     const struct contact_case *study = tally->study;
     size_t first = contact_tally_pressure_cell(tally, model, at);
+    size_t n = grid_points(&contact_case_finest(study)->grid);
+    uint64_t units = contact_tally_units(study, model),
+             each = (uint64_t)lround(area * (double)units);
     for (size_t j = 0; j < n; j++)
         if (p[j] > 0)
             tally->bin[bins_find(&study->pressure, scale * p[j])]++;
     for (size_t b = 0; b < bins_of(study); b++) {
         if (tally->bin[b] > 0)
-            tally_add(&tally->pressures, first + b, tally->bin[b], n);
+            tally_add(&tally->pressures, first + b, each * tally->bin[b], units * n);
         tally->bin[b] = 0;
     }
 }
@@ -202,7 +211,8 @@ struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t
                                        size_t bin) {
     const struct contact_case *study = tally->study;
     size_t cell = contact_case_cell(study, model, study->level_count - 1, study->pdf_loads[at]);
-    fixed_point points = grid_points(&contact_case_finest(study)->grid);
+    fixed_point points = (fixed_point)grid_points(&contact_case_finest(study)->grid) *
+                         contact_tally_units(study, model);
     uint64_t solved = tally->sums[MEASURE_NODES].counts.count[cell];
     struct tally_total total = {solved, points * solved, points * points * solved};
     return tally_share(&tally->pressures, contact_tally_pressure_cell(tally, model, at) + bin,
@@ -265,11 +275,24 @@ static uint64_t unsolved(const struct contact_tally *tally) {
     return count;
 }
 
-/* Whether the counts can be, and no load has more points than there are. */
+/* Whether the pressures of a load lie on as much area as is in contact, but for rounding. */
+static bool pressures_fit(const struct contact_tally *tally, size_t model, size_t at) {
+    const struct contact_case *study = tally->study;
+    size_t cell = contact_case_cell(study, model, study->level_count - 1, study->pdf_loads[at]);
+    const uint64_t *count = tally->pressures.count + contact_tally_pressure_cell(tally, model, at);
+    double units = (double)grid_points(&contact_case_finest(study)->grid) *
+                   (double)contact_tally_units(study, model);
+    double area = units * contact_tally_total(tally, MEASURE_NODES, cell), sum = 0;
+    for (size_t b = 0; b < bins_of(study); b++)
+        sum += (double)count[b];
+    return fabs(sum - area) <= 1e-6 * area + 0.5;
+}
+
+/* Whether the counts can be, and belong together. */
 static bool adds_up(const struct contact_tally *tally) {
-    size_t bins = bins_of(tally->study);
+    const struct contact_case *study = tally->study;
     for (size_t a = 0; a < MEASURE_COUNT; a++)
-        for (size_t cell = 0; cell < contact_case_cells(tally->study); cell++)
+        for (size_t cell = 0; cell < contact_case_cells(study); cell++)
             if (!count_fits(tally, (enum contact_measure)a, cell))
                 return false;
     for (size_t a = MEASURE_COUNT; a < CONTACT_SUMS; a++) {
@@ -278,13 +301,10 @@ static bool adds_up(const struct contact_tally *tally) {
             if (counts->count[cell] > tally->realisations)
                 return false;
     }
-    for (size_t first = 0; first < tally->pressures.size; first += bins) {
-        fixed_point sum = 0;
-        for (size_t b = 0; b < bins; b++)
-            sum += tally->pressures.count[first + b];
-        if (sum > tally->points.sum)
-            return false;
-    }
+    for (size_t m = 0; m < study->model_count; m++)
+        for (size_t a = 0; a < study->pdf_count; a++)
+            if (!pressures_fit(tally, m, a))
+                return false;
     return tally->points.realisations == tally->realisations &&
            tally->notes.count == unsolved(tally);
 }

@@ -52,7 +52,8 @@ struct contact_tally {
     struct contact_sums sums[CONTACT_SUMS];
     struct tally_total points; /* of the finest level */
     struct tally pressures;    /* finest level: by model, load of pdf_loads, bin with under- and
-                                  overflow;    points that are open are in none */
+                                  overflow; in contact_tally_units of a node's undeformed area;
+                                  nodes that are open are in none */
     struct notes notes;        /* why the model full has no values, a realisation and level */
     uint64_t realisation;      /* the one under way, for these */
     double *values;            /* owned: the realisation under way, by measure and cell */
@@ -69,10 +70,10 @@ static inline double *contact_tally_values(struct contact_tally *tally,
                                            enum contact_measure measure) {
     return tally->values + (size_t)measure * contact_case_cells(tally->study);
 }
-/* Counts the pressures, scale * p at the n points of the finest level where p > 0. at: position in
- * pdf_loads. */
-void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, size_t n,
-                             const double *p, double scale);
+/* Counts the pressures, scale * p at the points of the finest level where p > 0, on area times the
+ * undeformed area of a node each. at: position in pdf_loads. */
+void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, const double *p,
+                             double scale, double area);
 /* Ends the realisation: adds its values, and the next one begins. */
 void contact_tally_add(struct contact_tally *tally);
 
@@ -89,9 +90,11 @@ struct estimate contact_tally_level(const struct contact_tally *tally, enum cont
                                     size_t model, size_t load);
 struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load);
-/* Share of the points of the finest level in a bin, over the realisations with values there. */
+/* Area of a bin over that of the cell, over the realisations with values there. */
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
                                        size_t bin);
+/* In how many parts a node's area is counted: 1 where all are equal. */
+uint64_t contact_tally_units(const struct contact_case *study, size_t model);
 /* First cell of the pressures of a model and load: underflow, the bins, overflow. */
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at);
 

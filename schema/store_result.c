@@ -167,18 +167,19 @@ static int insert_scalar(const struct target *target, const cJSON *scalar, struc
 }
 
 /* Values of a point, in the order of its columns. */
-enum { POINT_X, POINT_X2, POINT_Y, POINT_VALUES = 6 };
+enum { POINT_X, POINT_X2, POINT_Y, POINT_VALUES = 7 };
 static const char *const POINT_KEYS[POINT_VALUES] = {
-    "x", "x2", "y", "standard_error", "discretisation_error", "model_error"};
+    "x", "x2", "y", "standard_error", "discretisation_error", "model_error", "valueless"};
 
 static int insert_point(struct store *store, int64_t curve, int64_t number,
                         const cJSON *const values[POINT_VALUES], struct error *err) {
     sqlite3_stmt *statement = NULL;
-    int status = store_query(store, &statement, err,
-                             "INSERT INTO point (curve_id, number, x, x2, y, standard_error, "
-                             "discretisation_error, model_error) VALUES (?1, ?2, ?3, ?4, ?5, ?6, "
-                             "?7, ?8)",
-                             "ii", curve, number);
+    int status =
+        store_query(store, &statement, err,
+                    "INSERT INTO point (curve_id, number, x, x2, y, standard_error, "
+                    "discretisation_error, model_error, valueless) VALUES (?1, ?2, ?3, ?4, "
+                    "?5, ?6, ?7, ?8, ?9)",
+                    "ii", curve, number);
     for (int v = 0; !status && v < POINT_VALUES; v++)
         if (bind_number(statement, 3 + v, values[v]))
             status = store_error(store, err);

@@ -60,12 +60,12 @@ static void write_row(FILE *file, const cJSON *x, const cJSON *x2, const cJSON *
     fputc('\n', file);
 }
 
-enum { VALUES_MOST = 4, THEORIES_MOST = 8, COLUMNS_MOST = VALUES_MOST + THEORIES_MOST };
+enum { VALUES_MOST = 5, THEORIES_MOST = 8, COLUMNS_MOST = VALUES_MOST + THEORIES_MOST };
 
-/* The errors of mesh and model only where the curve has them. */
+/* All but the first two only where the curve has them. */
 static size_t curve_columns(const cJSON *curve, const cJSON **columns, FILE *file) {
     static const char *const VALUES[VALUES_MOST] = {"y", "standard_error", "discretisation_error",
-                                                    "model_error"};
+                                                    "model_error", "valueless"};
     size_t count = 0;
     fprintf(file, "x%s", member(curve, "x2") ? ",x2" : "");
     for (size_t v = 0; v < VALUES_MOST; v++)

@@ -27,7 +27,8 @@ struct plot {
     FILE *file;
     struct frame frame;
     struct plot_choice choice;
-    int rows; /* of the legend, so far */
+    int rows;     /* of the legend, so far */
+    bool partial; /* some points are means over fewer realisations */
 };
 
 /* --- curves --- */
@@ -53,15 +54,34 @@ static void draw_bars(FILE *file, const struct frame *frame, const cJSON *curve,
     fputc('\n', file);
 }
 
+static bool is_inside(const struct frame *frame, const cJSON *x, const cJSON *y) {
+    return frame_has_place(frame, x, y) && x->valuedouble >= frame->x.low &&
+           x->valuedouble <= frame->x.high && y->valuedouble <= frame->y.high &&
+           y->valuedouble >= frame->y.low;
+}
+
+/* An open circle where some realisations have no value. */
+static void draw_partial(struct plot *plot, const cJSON *curve, const char *colour) {
+    const cJSON *x = first_of(curve, "x"), *y = first_of(curve, "y");
+    const cJSON *valueless = first_of(curve, "valueless");
+    for (; x && y && valueless; x = x->next, y = y->next, valueless = valueless->next) {
+        if (!(valueless->valuedouble > 0) || !is_inside(&plot->frame, x, y))
+            continue;
+        fprintf(plot->file,
+                "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" class=\"partial\" stroke=\"%s\"/>\n",
+                frame_x(&plot->frame, x->valuedouble), frame_y(&plot->frame, y->valuedouble),
+                colour);
+        plot->partial = true;
+    }
+}
+
 /* style: attributes of the path. */
 static void draw_line(FILE *file, const struct frame *frame, const cJSON *x, const cJSON *y,
                       const char *style) {
     bool pen_down = false;
     fprintf(file, "<path %s d=\"", style);
     for (; x && y; x = x->next, y = y->next) {
-        bool inside = frame_has_place(frame, x, y) && x->valuedouble >= frame->x.low &&
-                      x->valuedouble <= frame->x.high && y->valuedouble <= frame->y.high &&
-                      y->valuedouble >= frame->y.low;
+        bool inside = is_inside(frame, x, y);
         if (inside)
             fprintf(file, "%c%.2f %.2f", pen_down ? 'L' : 'M', frame_x(frame, x->valuedouble),
                     frame_y(frame, y->valuedouble));
@@ -110,6 +130,7 @@ static void draw_curves(struct plot *plot) {
             draw_bars(plot->file, &plot->frame, line->curve, COLOURS[line->colour]);
         draw_line(plot->file, &plot->frame, first_of(line->curve, "x"), first_of(line->curve, "y"),
                   style);
+        draw_partial(plot, line->curve, COLOURS[line->colour]);
     }
     for (size_t n = 0; n < choice->count; n++) {
         curve_style(&choice->lines[n], style);
@@ -186,6 +207,8 @@ static void draw_theories(struct plot *plot) {
 
 static void draw_notes(struct plot *plot) {
     draw_note(plot, "bars: one standard error");
+    if (plot->partial)
+        draw_note(plot, "circles: not over all realisations");
     if (*plot->choice.left_out) {
         char text[PLOT_LABEL_SIZE + 16];
         snprintf(text, sizeof text, "shown: %s", plot->choice.left_out);
@@ -262,7 +285,7 @@ int plot_quantity(const cJSON *curves, const struct plot_request *request, FILE 
             ".title{font-weight:600}.middle{text-anchor:middle}.end{text-anchor:end}"
             ".note{fill:#666;font-size:12px}.grid{stroke:#e4e4e4}.frame{fill:none;stroke:#444}"
             ".curve{fill:none;stroke-linejoin:round}.theory{fill:none;stroke-width:1.4}"
-            ".bar{stroke-width:1.4;stroke-opacity:.45}</style>\n"
+            ".bar{stroke-width:1.4;stroke-opacity:.45}.partial{fill:#fff}</style>\n"
             "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
             width, HEIGHT, width, HEIGHT, width, HEIGHT);
     draw_title(&plot, text_of(curves, "name", ""), request->quantity);

@@ -63,6 +63,34 @@ void measured_cell(struct text_table *table, double value, double error) {
     table_cell(table, "%s", text);
 }
 
+const char *partial_text(double realisations, double valueless, char *out, size_t size) {
+    out[0] = 0;
+    if (valueless > 0)
+        snprintf(out, size, " (%.0f of %.0f)", realisations - valueless, realisations);
+    return out;
+}
+
+/* At any point, or in all of a report's curve. */
+static bool is_partial(const cJSON *curve) {
+    const cJSON *valueless = member(curve, "valueless");
+    for (const cJSON *v = first_of(curve, "valueless"); v; v = v->next)
+        if (v->valuedouble > 0)
+            return true;
+    return cJSON_IsNumber(valueless) && valueless->valuedouble > 0;
+}
+
+void print_partial(const cJSON *cases, FILE *file) {
+    for (const cJSON *one = cases->child; one; one = one->next)
+        for (const cJSON *curve = first_of(one, "curves"); curve; curve = curve->next)
+            if (is_partial(curve)) {
+                fputs(
+                    "\n(n of N): only n of N realisations have a value at the load; of a curve, at "
+                    "the load with fewest\n",
+                    file);
+                return;
+            }
+}
+
 void percent_cell(struct text_table *table, double share) {
     if (isnan(share))
         table_cell(table, "-");

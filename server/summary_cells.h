@@ -17,6 +17,11 @@ void value_cell(struct text_table *table, const cJSON *value);
 /* "0.25772 +- 0.00022": as many digits as the error has sense for. */
 void measured_text(double value, double error, char *out, size_t size);
 void measured_cell(struct text_table *table, double value, double error);
+/* " (2 of 3)" where a mean is not over all realisations; "" otherwise. */
+const char *partial_text(double realisations, double valueless, char *out, size_t size);
+/* What that means, if a curve of some case (of curves or of a report) has valueless realisations.
+ */
+void print_partial(const cJSON *cases, FILE *file);
 /* A share of one in percent, with two digits; "-" for NaN. */
 void percent_cell(struct text_table *table, double share);
 /* "hurst 0.8, dimension 2", each followed by a comma and a space. */

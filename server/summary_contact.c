@@ -67,6 +67,14 @@ static void error_cell(struct text_table *table, double error, double value) {
         table_cell(table, "%+.2g", 100 * error / value);
 }
 
+static void area_cell(struct text_table *table, const cJSON *one, const cJSON *curve, int k) {
+    char text[64], partial[48];
+    measured_text(item_of(curve, "y", k), item_of(curve, "standard_error", k), text, sizeof text);
+    partial_text(number_of(one, "realisations"), item_of(curve, "valueless", k), partial,
+                 sizeof partial);
+    table_cell(table, "%s%s", text, partial);
+}
+
 static void area_heading(const struct areas *areas, struct text_table *table) {
     char model[64];
     table_cell(table, "load");
@@ -83,12 +91,12 @@ static void area_heading(const struct areas *areas, struct text_table *table) {
         table_cell(table, "%s", areas->theories[t]);
 }
 
-static void area_row(const struct areas *areas, int k, struct text_table *table) {
+static void area_row(const cJSON *one, const struct areas *areas, int k, struct text_table *table) {
     table_number(table, item_of(areas->curves[0], "x", k));
     for (size_t m = 0; m < areas->model_count; m++) {
         const cJSON *curve = areas->curves[m];
         double y = item_of(curve, "y", k);
-        measured_cell(table, y, item_of(curve, "standard_error", k));
+        area_cell(table, one, curve, k);
         error_cell(table, item_of(curve, "discretisation_error", k), y);
         if (areas->model_count > 1)
             error_cell(table, item_of(curve, "model_error", k), y);
@@ -119,7 +127,7 @@ static void case_table(const cJSON *one, const struct areas *areas, FILE *file) 
     char model[64];
     area_heading(areas, &table);
     for (int n = 0; n < shown; n++)
-        area_row(areas, shown > 1 ? n * (loads - 1) / (shown - 1) : 0, &table);
+        area_row(one, areas, shown > 1 ? n * (loads - 1) / (shown - 1) : 0, &table);
     table_print(&table, file);
     table_clear(&table);
     fprintf(file, "%s: ", model_text(areas->curves[0], model, sizeof model));
@@ -208,11 +216,8 @@ static void case_row(const cJSON *one, const cJSON *cost, const char *const *var
     for (size_t p = 0; p < varied_count; p++)
         value_cell(table, member(member(one, "parameters"), varied[p]));
     table_number(table, number_of(one, "realisations"));
-    for (int n = 0; n < SAMPLES; n++) {
-        int k = sample_of(&areas, n);
-        measured_cell(table, item_of(areas.curves[0], "y", k),
-                      item_of(areas.curves[0], "standard_error", k));
-    }
+    for (int n = 0; n < SAMPLES; n++)
+        area_cell(table, one, areas.curves[0], sample_of(&areas, n));
     percent_cell(table, number_of(cost, "discretisation_error"));
     percent_cell(table, number_of(cost, "model_error"));
     scalar_cell(table, one, "kappa");
@@ -245,5 +250,6 @@ void summary_of_contact(const cJSON *cases, const cJSON *costs, FILE *file) {
         "\nload: p/(E* h'_rms); area: A/A0, +- one standard error; mesh %: error from the limit of "
         "the levels, model %: of the limit from that of the most complete model\n",
         file);
+    print_partial(cases, file);
     print_notes(cases, NOTES_SHOWN, file);
 }

@@ -8,13 +8,14 @@
 
 static void cases_table(const cJSON *cases, const char *const *varied, size_t varied_count,
                         FILE *file) {
-    static const char *const NUMBERS[] = {"realisations", "seconds", "seconds_per_realisation"};
+    static const char *const NUMBERS[] = {"seconds", "seconds_per_realisation"};
     static const char *const ERRORS[] = {"statistical_error", "discretisation_error", "model_error",
                                          "total_error"};
     static const char *const HEADINGS[] = {"realisations",  "seconds",          "s/realisation",
                                            "statistical %", "discretisation %", "model %",
                                            "total %",       "s to halve"};
-    enum { NUMBER_COUNT = 3, ERROR_COUNT = 4, HEADING_COUNT = NUMBER_COUNT + ERROR_COUNT + 1 };
+    enum { NUMBER_COUNT = 2, ERROR_COUNT = 4, HEADING_COUNT = NUMBER_COUNT + ERROR_COUNT + 2 };
+    char partial[48];
     struct text_table table = {.columns = 1 + varied_count + HEADING_COUNT};
     table_cell(&table, "case");
     for (size_t p = 0; p < varied_count; p++)
@@ -25,6 +26,9 @@ static void cases_table(const cJSON *cases, const char *const *varied, size_t va
         table_number(&table, number_of(one, "case"));
         for (size_t p = 0; p < varied_count; p++)
             value_cell(&table, member(member(one, "parameters"), varied[p]));
+        partial_text(number_of(one, "realisations"), number_of(one, "valueless"), partial,
+                     sizeof partial);
+        table_cell(&table, "%.0f%s", number_of(one, "realisations"), partial);
         for (size_t n = 0; n < NUMBER_COUNT; n++)
             table_number(&table, number_of(one, NUMBERS[n]));
         for (size_t e = 0; e < ERROR_COUNT; e++)
@@ -44,7 +48,7 @@ static const char *const ERRORS[ERROR_COUNT] = {"statistical_error", "discretisa
 /* Sums over the cases that have the series. */
 struct series {
     const cJSON *entry; /* of the first one */
-    double seconds, realisations, squares[ERROR_COUNT];
+    double seconds, realisations, valueless, squares[ERROR_COUNT];
     size_t known[ERROR_COUNT];
 };
 struct series_list {
@@ -70,6 +74,7 @@ static struct series *series_find(struct series_list *list, const cJSON *entry) 
 static void series_add(struct series *series, const cJSON *one, const cJSON *entry) {
     series->seconds += number_of(entry, "seconds");
     series->realisations += number_of(one, "realisations");
+    series->valueless += fmax(number_of(entry, "valueless"), 0);
     for (size_t e = 0; e < ERROR_COUNT; e++) {
         double error = number_of(entry, ERRORS[e]);
         if (!isnan(error)) {
@@ -98,12 +103,14 @@ static void series_table(const struct series_list *list, FILE *file) {
                                            "model %",       "total %"};
     enum { HEADING_COUNT = sizeof HEADINGS / sizeof *HEADINGS };
     struct text_table table = {.columns = HEADING_COUNT};
-    char model[64];
+    char model[64], partial[48];
     for (size_t h = 0; h < HEADING_COUNT; h++)
         table_cell(&table, "%s", HEADINGS[h]);
     for (size_t s = 0; s < list->count; s++) {
         const struct series *series = &list->rows[s];
-        table_cell(&table, "%s", model_text(series->entry, model, sizeof model));
+        model_text(series->entry, model, sizeof model);
+        partial_text(series->realisations, series->valueless, partial, sizeof partial);
+        table_cell(&table, "%s%s", model, partial);
         table_number(&table, number_of(series->entry, "level"));
         table_cell(&table, "%s", text_of(series->entry, "series", "-"));
         table_cell(&table, "%.3g", series->seconds / series->realisations);
@@ -157,5 +164,6 @@ void summary_of_report(const cJSON *report, FILE *file) {
             text_of(report, "study", "-"));
     cases_table(cases, varied, varied_count, file);
     print_all_series(cases, varied, varied_count, file);
+    print_partial(cases, file);
     print_notes(cases, NOTES_SHOWN, file);
 }

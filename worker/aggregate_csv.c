@@ -81,9 +81,9 @@ static const cJSON *next(const cJSON *item) {
 }
 
 /* Places in the columns of one curve (or of one row of a matrix). */
-enum { VALUES = 4 };
+enum { VALUES = 5 };
 static const char *const VALUE_KEYS[VALUES] = {"y", "standard_error", "discretisation_error",
-                                               "model_error"};
+                                               "model_error", "valueless"};
 struct place {
     const cJSON *value[VALUES], *theory[THEORIES_MOST];
 };

@@ -47,10 +47,20 @@ static double whole_error(double statistical, const struct series_errors *errors
     return sqrt(statistical * statistical + discretisation * discretisation + model * model);
 }
 
+/* Of the point that lacks most of them; nothing where the curve does not tell. */
+static bool put_valueless(cJSON *report, const cJSON *curve) {
+    const cJSON *valueless, *list = field_at(curve, "valueless");
+    double most = 0;
+    cJSON_ArrayForEach(valueless, list) {
+        most = fmax(most, valueless->valuedouble);
+    }
+    return !list || put_number(report, "valueless", most);
+}
+
 static bool put_curve_errors(cJSON *report, const cJSON *curves, const cJSON *curve) {
     struct series_errors errors;
     double statistical = curve_error(curve);
-    return series_errors(curves, curve, &errors) &&
+    return series_errors(curves, curve, &errors) && put_valueless(report, curve) &&
            put_number(report, "statistical_error", statistical) &&
            put_number(report, "discretisation_error", errors.discretisation) &&
            put_number(report, "model_error", errors.model) &&

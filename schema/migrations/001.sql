@@ -116,6 +116,7 @@ CREATE TABLE point (
     standard_error REAL,
     discretisation_error REAL,
     model_error REAL,
+    valueless INTEGER,                     -- realisations that y is not over; null: of none told
     PRIMARY KEY (curve_id, number)
 ) WITHOUT ROWID;
 
@@ -129,7 +130,8 @@ CREATE VIEW case_scalars AS
     FROM scalar c JOIN study s ON s.id = c.study_id;
 CREATE VIEW curve_points AS
     SELECT s.public AS study, c.case_number AS "case", c.quantity, c.series, p.x, p.y, p.standard_error,
-           p.x2, c.model, c.kinematics, c.level, c.pressure, p.discretisation_error, p.model_error
+           p.x2, c.model, c.kinematics, c.level, c.pressure, p.discretisation_error, p.model_error,
+           p.valueless
     FROM study s JOIN curve c ON c.study_id = s.id JOIN point p ON p.curve_id = c.id;
 -- The first notes of a case (jobs/notes.h), as published.
 CREATE VIEW case_notes AS

@@ -105,7 +105,7 @@ static void files_hold_every_curve(void **state) {
     shell("one.db", "$RUGO curves --db $DB --format csv $ID");
     check_shown((const char *[]){"case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
                                  "standard_error,"
-                                 "discretisation_error,model_error,theory_persson",
+                                 "discretisation_error,model_error,valueless,theory_persson",
                                  "\n0,contact_pressure_pdf,,layered,,8,0.1,", NULL});
 }
 
@@ -115,10 +115,10 @@ static void the_model_full_is_told_apart(void **state) {
     shell("steep.db", "$RUGO run --db $DB --out steep steep.json && ls steep");
     check_shown((const char *[]){
         "  full (hencky)  ", "\nfull (hencky): kappa ", "\nnotes: ", "\ncase 0, realisation ",
-        ": model full, level 6: load ", " was reached up to ", " E* only (steepest slope ",
+        ": model full (hencky), level 6: load ", " was reached up to ", " E* only (steepest slope ",
         "case-0-contact_area-edges-full-hencky-6.csv\n", NULL});
     shell("steep.db", "$RUGO report --db $DB $ID");
-    check_shown((const char *[]){"\nfull (hencky)      6  edges", " was reached up to ", NULL});
+    check_shown((const char *[]){"\nfull (hencky) (", " was reached up to ", NULL});
     shell("steep.db", "$RUGO report --db $DB --format json $ID");
     check_shown((const char *[]){"\"model\":\"full\",\"kinematics\":\"hencky\",\"level\":6",
                                  "\"notes\":{\"count\":", NULL});
@@ -129,6 +129,51 @@ static void the_model_full_is_told_apart(void **state) {
                                  "\n0,mean_gap,,layered,,", NULL});
 }
 
+/* How many realisations a mean is over, where not all have a value: in tables, files, pictures. */
+static void missing_realisations_are_told(void **state) {
+    (void)state;
+    shell("steep.db", "$RUGO run --db $DB --out steep steep.json");
+    check_shown((const char *[]){" of 8)  ", "\n(n of N): ", NULL});
+    shell("steep.db", "$RUGO report --db $DB $ID");
+    check_shown((const char *[]){"\n   0    8 (", " of 8)      6  edges", "\n(n of N): ", NULL});
+    shell("steep.db", "$RUGO report --db $DB --format json $ID");
+    check_shown((const char *[]){"\"valueless\":", NULL});
+    shell("steep.db", "$RUGO curves --db $DB --format csv $ID | grep -q "
+                      "'^0,contact_area,edges,full,hencky,6,,0.5,[^a-z]*,[1-8],0.68' && "
+                      "! $RUGO report --db one.db "
+                      "$($RUGO status --db one.db | awk 'NR == 2 {print $1}') | grep 'of [0-9]' && "
+                      "cat steep/case-0-contact_area-edges-full-hencky-6.csv && "
+                      "grep '<circle' steep/contact_area.svg steep/contact_pressure_pdf.svg");
+    check_shown((const char *[]){"x,y,standard_error,valueless,persson", ",0.68",
+                                 "steep/contact_area.svg:<circle ",
+                                 "steep/contact_pressure_pdf.svg:<circle ", NULL});
+}
+
+/* In any case of a sweep, before anything runs. */
+static void what_cannot_be_meshed_is_refused(void **state) {
+    (void)state;
+    shell("refused.db",
+          "for set in 'contact.block_height=[{\"rms_heights\":100},{\"rms_heights\":1}]' "
+          "contact.transition_depth=[8,0.5]; do "
+          "$RUGO check --set \"$set\" steep.json && exit 1; "
+          "$RUGO run --db $DB --set \"$set\" steep.json && exit 1; done 2>&1; test ! -e $DB");
+    check_shown((const char *[]){"/contact/block_height: 1 RMS heights of the surface: the model "
+                                 "full needs 4 or more",
+                                 "/contact/transition_depth/1: 0.5 is not in [1, ", NULL});
+    shell("refused.db", "$RUGO check --set contact.transition_depth=[1,1e9] steep.json");
+}
+
+/* 24 columns of 13 layers, or half as many, and half of these, as soon as they are as deep as wide.
+ */
+static void a_mesh_has_the_columns_asked_for(void **state) {
+    (void)state;
+    shell("mesh.db",
+          "for depth in 1 1e9; do $RUGO generate --set surface.rms_slope=0.1 --set "
+          "contact.transition_depth=$depth --mesh mesh.vtu --pressure 0.1 steep.json >/dev/null "
+          "&& grep -o 'NumberOfCells=\"[0-9]*\"' mesh.vtu || exit 1; done");
+    check_shown((const char *[]){"\"126\"", "\"312\"", NULL});
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_run_shows_area_against_load),
@@ -136,6 +181,9 @@ int main(void) {
         cmocka_unit_test(the_report_tells_what_each_part_buys),
         cmocka_unit_test(files_hold_every_curve),
         cmocka_unit_test(the_model_full_is_told_apart),
+        cmocka_unit_test(missing_realisations_are_told),
+        cmocka_unit_test(what_cannot_be_meshed_is_refused),
+        cmocka_unit_test(a_mesh_has_the_columns_asked_for),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }

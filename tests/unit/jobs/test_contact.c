@@ -356,7 +356,8 @@ static void against_each_realisation(void **state) {
 }
 
 /* Each realisation and level that the model full did not bring to the last load has a note, which
- * names the load reached; notes of other realisations, or too few, are refused. */
+ * names the kinematics and the load reached, in the study's units; notes of other realisations, or
+ * too few, are refused. */
 static void failures_are_told(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(STEEP, NULL);
@@ -374,8 +375,15 @@ static void failures_are_told(void **state) {
     assert_near(value_at(document, "/notes/count")->valuedouble, valueless, 0);
     const char *text =
         cJSON_GetStringValue(value_at(value_at(document, "/notes/kept")->child, "/text"));
-    assert_non_null(strstr(text, "model full, level "));
-    assert_non_null(strstr(text, " was reached up to "));
+    double level, load, reached, pressure, highest;
+    assert_int_equal(sscanf(text,
+                            "model full (hencky), level %lf: load %lf, reached %lf: contact on the "
+                            "true geometry under a mean pressure of %lf E* was reached up to %lf",
+                            &level, &load, &reached, &pressure, &highest),
+                     5);
+    assert_near(pressure, load * 1.6, 1e-4); /* RMS slope 1.6 */
+    assert_near(highest, reached * 1.6, 1e-3);
+    assert_true(reached < load);
     cJSON_Delete(document);
     document = document_of(LEVELS, 1);
     assert_null(value_at(document, "/notes"));

@@ -94,6 +94,7 @@ static void models_beside_full(void **state) {
                             "\"gap_weighting\": \"dual\""));
     assert_int_equal(study.kinematics, KINEMATICS_ST_VENANT);
     assert_int_equal(study.blocks[0].weighting, GAP_DUAL);
+    assert_true(study.transition_depth == 8);
     contact_case_clear(&study);
     study = read_case(STUDY(PROFILE, "\"model\": [\"layered\", \"halfspace\"]"));
     assert_int_equal(study.blocks[0].weighting, GAP_STANDARD);
@@ -150,6 +151,14 @@ static void faults(void **state) {
         {STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": \"full\", \"layer_growth\": 1,"
                                                "\"block_height\": {\"lengths\": 1000}"),
          "/contact/block_height", "4096 layers"},
+        {STUDY(PROFILE ", \"rms_slope\": 0.1",
+               "\"model\": [\"layered\", \"full\"], \"block_height\": {\"rms_heights\": 1}"),
+         "/contact/block_height", "1 RMS heights of the surface: the model full needs 4 or more"},
+        {STUDY(PROFILE ", \"rms_height\": 0.1",
+               "\"model\": \"full\", \"block_height\": {\"lengths\": 0.045}"),
+         "/contact/block_height", "3.6 RMS heights"},
+        {STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": \"full\", \"transition_depth\": 0.5"),
+         "/contact/transition_depth", "[1, 1e+09]"},
         {STUDY(PROFILE, "\"kinematics\": \"finite\""), "/contact/kinematics", "choices"},
         {STUDY(PROFILE, "\"model\": [\"layered\", \"layered\"]"), "/contact/model", "different"},
         {STUDY(PROFILE, "\"model\": []"), "/contact/model", "different"},
@@ -243,6 +252,7 @@ static void fingerprints(void **state) {
         STUDY(PROFILE, "\"estimators\": [\"edges\"]"),
         STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": \"full\""),
         STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": \"full\", \"kinematics\": \"small\""),
+        STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": \"full\", \"transition_depth\": 9"),
     };
     enum { TEXTS = sizeof texts / sizeof *texts };
     uint64_t marks[TEXTS];

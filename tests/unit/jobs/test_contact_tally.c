@@ -1,13 +1,21 @@
 /* Sums of contact realisations: values at very light loads keep their digits, realisations without
- * a value are left out and counted, and orders of convergence that were put in come out. */
+ * a value are left out and counted, pressures lie on the area in contact, and orders of convergence
+ * that were put in come out. */
 #include "jobs/contact_errors.h"
 #include "jobs/contact_tally.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
+#include <string.h>
 
 #define STUDY(contact)                                                                             \
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2,"                    \
     " \"length_ratio\": 1}, \"contact\": {" contact "}}"
+
+/* 16 points; bins of pressure 1 to 2, 2 to 3, 3 to 4. */
+static const char FULL_STUDY[] =
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\":"
+    " 1, \"rms_slope\": 0.1}, \"contact\": {\"model\": [\"layered\", \"full\"], \"pressures\":"
+    " {\"values\": [0.1]}, \"pressure_pdf\": {\"bins\": [1, 4, 3]}}}";
 
 struct fixture {
     struct contact_case study;
@@ -72,6 +80,39 @@ static void valueless_realisations_are_counted(void **state) {
     fixture_close(&f);
 }
 
+/* Pressures lie on the area in contact, stretched as it is: 3 nodes of 16, each 1.25 times as large
+ * in the model full. A block that tells otherwise is refused. */
+static void pressures_lie_on_the_area(void **state) {
+    (void)state;
+    static const double p[16] = {1, 0, 2, 3};
+    for (int wrong = 0; wrong < 2; wrong++) {
+        struct fixture f, copy;
+        struct error err = {0};
+        unsigned char *data = NULL;
+        size_t size = 0;
+        fixture_open(&f, FULL_STUDY);
+        fixture_open(&copy, FULL_STUDY);
+        for (size_t m = 0; m < 2; m++) {
+            double stretch = m == 1 ? 1.25 : 1;
+            static const enum contact_measure always[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_GAP,
+                                                          MEASURE_ITERATIONS};
+            for (size_t a = 0; a < 4; a++)
+                contact_tally_values(&f.tally, always[a])[m] = stretch * 3 / 16;
+            contact_tally_pressures(&f.tally, m, 0, p, 1, wrong ? 1 : stretch);
+        }
+        contact_tally_add(&f.tally);
+        check_relative(contact_tally_pressure(&f.tally, 1, 0, 3).value, (wrong ? 1 : 1.25) / 16,
+                       1e-14);
+        assert_int_equal(contact_tally_encode(&f.tally, &data, &size, &err), 0);
+        assert_int_equal(contact_tally_decode(&copy.tally, data, size, &err),
+                         wrong ? ERROR_INPUT : 0);
+        assert_true(!wrong || strstr(err.text, "does not add up") != NULL);
+        free(data);
+        fixture_close(&f);
+        fixture_close(&copy);
+    }
+}
+
 /* Values limit + slope (points)^-order on each level. */
 static struct contact_extrapolation extrapolate(const char *text, double order, double slope) {
     struct fixture f;
@@ -116,6 +157,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_loads_keep_their_digits),
         cmocka_unit_test(valueless_realisations_are_counted),
+        cmocka_unit_test(pressures_lie_on_the_area),
         cmocka_unit_test(orders_come_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

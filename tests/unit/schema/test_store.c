@@ -328,7 +328,7 @@ static void results_and_views(void **state) {
         "\"standard_error\":[[0,1],[0,0]]},{\"quantity\":\"area\",\"series\":\"edges\",\"model\":"
         "\"full\",\"kinematics\":\"hencky\",\"level\":8,\"pressure\":0.5,\"x\":[1,2],\"y\":[3,4],"
         "\"standard_error\":[0,0],"
-        "\"discretisation_error\":[0.25,null],\"model_error\":[null,-2]}]}");
+        "\"discretisation_error\":[0.25,null],\"model_error\":[null,-2],\"valueless\":[0,3]}]}");
     assert_int_equal(store_publish(store, id, 0, info.revision, curves, NULL), 0);
     assert_int_equal(store_publish(store, id, 0, info.revision - 1, curves, NULL),
                      0); /* an older one: ignored */
@@ -359,12 +359,14 @@ static void results_and_views(void **state) {
                "SELECT x || ':' || x2 || ':' || y || ':' || standard_error FROM curve_points WHERE "
                "quantity = 'joint'",
                "1.0:9.0:5.0:1.0");
-    check_text("copy.db",
-               "SELECT group_concat(model || kinematics || level || '@' || pressure "
-               "|| ':' || "
-               "coalesce(discretisation_error, 'none') || ':' || coalesce(model_error, 'none')) "
-               "FROM curve_points WHERE quantity = 'area'",
-               "fullhencky8.0@0.5:0.25:none,fullhencky8.0@0.5:none:-2.0");
+    check_text(
+        "copy.db",
+        "SELECT group_concat(model || kinematics || level || '@' || pressure "
+        "|| ':' || "
+        "coalesce(discretisation_error, 'none') || ':' || coalesce(model_error, 'none') || ':' || "
+        "valueless) "
+        "FROM curve_points WHERE quantity = 'area'",
+        "fullhencky8.0@0.5:0.25:none:0,fullhencky8.0@0.5:none:-2.0:3");
     check_text("copy.db", "SELECT \"case\" || realisation || note FROM case_notes", "07why");
     check_text("copy.db", "SELECT name || value || standard_error FROM case_scalars", "m01.00.5");
     check_text("copy.db",

@@ -171,12 +171,36 @@ static void a_picture_names_what_it_draws(void **state) {
     cJSON_Delete(document);
 }
 
+/* Points that are means over fewer realisations than the study's are open circles. */
+static void missing_realisations_are_seen(void **state) {
+    (void)state;
+    const double valueless[] = {0, 3};
+    cJSON *document = contact_of(1, 1);
+    cJSON *one = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "cases"), 0);
+    cJSON *curve = cJSON_GetArrayItem(cJSON_GetObjectItem(one, "curves"), 0);
+    char *text = picture_of(document, false);
+    assert_int_equal(count_of(text, "circle"), 0);
+    free(text);
+    cJSON_AddItemToObject(curve, "valueless", cJSON_CreateDoubleArray(valueless, 2));
+    text = picture_of(document, false);
+    assert_int_equal(count_of(text, "<circle "), 1);
+    assert_int_equal(count_of(text, "circles: not over all realisations"), 1);
+    free(text);
+    /* none has a value there: nothing to mark */
+    cJSON_ReplaceItemInArray(cJSON_GetObjectItem(curve, "y"), 1, cJSON_CreateNull());
+    text = picture_of(document, false);
+    assert_int_equal(count_of(text, "circle"), 0);
+    free(text);
+    cJSON_Delete(document);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_choice_narrows_as_far_as_it_must),
         cmocka_unit_test(kinematics_are_named),
         cmocka_unit_test(one_unit_a_picture),
         cmocka_unit_test(a_picture_names_what_it_draws),
+        cmocka_unit_test(missing_realisations_are_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

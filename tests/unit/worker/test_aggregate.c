@@ -180,16 +180,16 @@ static void csv_is_one_table(void **state) {
         "{\"quantity\":\"c\",\"series\":\"edges\",\"model\":\"full\",\"kinematics\":\"hencky\","
         "\"level\":8,\"pressure\":0.5,"
         "\"x\":[1],\"y\":[1e-300],\"standard_error\":null,\"discretisation_error\":[0.25],"
-        "\"model_error\":[-2],\"theory\":{\"persson\":[3]}}]}]}";
+        "\"model_error\":[-2],\"valueless\":[4],\"theory\":{\"persson\":[3]}}]}]}";
     static const char expected[] =
         "case,quantity,series,model,kinematics,level,pressure,x,x2,y,standard_error,discretisation_"
         "error,"
-        "model_error,theory_nayak,theory_persson\r\n"
-        "3,a,\"x, \"\"y\"\"\",,,,,0.1,,1,0.5,,,1.5,\r\n"
-        "3,a,\"x, \"\"y\"\"\",,,,,2,,,,,,2.5,\r\n"
-        "3,m,,,,,,1,7,1,0,,,,\r\n3,m,,,,,,1,8,2,0,,,,\r\n3,m,,,,,,1,9,3,0,,,,\r\n"
-        "3,m,,,,,,2,7,4,0,,,,\r\n3,m,,,,,,2,8,5,0,,,,\r\n3,m,,,,,,2,9,6,1,,,,\r\n"
-        "3,c,edges,full,hencky,8,0.5,1,,1e-300,,0.25,-2,,3\r\n";
+        "model_error,valueless,theory_nayak,theory_persson\r\n"
+        "3,a,\"x, \"\"y\"\"\",,,,,0.1,,1,0.5,,,,1.5,\r\n"
+        "3,a,\"x, \"\"y\"\"\",,,,,2,,,,,,,2.5,\r\n"
+        "3,m,,,,,,1,7,1,0,,,,,\r\n3,m,,,,,,1,8,2,0,,,,,\r\n3,m,,,,,,1,9,3,0,,,,,\r\n"
+        "3,m,,,,,,2,7,4,0,,,,,\r\n3,m,,,,,,2,8,5,0,,,,,\r\n3,m,,,,,,2,9,6,1,,,,,\r\n"
+        "3,c,edges,full,hencky,8,0.5,1,,1e-300,,0.25,-2,4,,3\r\n";
     struct error err = {0};
     char *table = NULL;
     cJSON *document = cJSON_Parse(text);

@@ -1,0 +1,181 @@
+/* What the scene tells of the model full is of the block as it is pressed: areas stretched, and
+ * pressures on these areas, which together carry the load; of small strains nothing is stretched.
+ */
+#include "core/contact/area.h"
+#include "core/contact/patches.h"
+#include "jobs/contact_scene.h"
+#include "jobs/contact_solver.h"
+#include "tests/support/check.h"
+#include "tests/support/contact_document.h"
+#include <stdlib.h>
+
+/* Fine bins, so that their centres tell the mean pressure. */
+#define PRESSED(dimension, kinematics)                                                             \
+    "{\"surface\": {\"dimension\": " dimension ", \"hurst\": 0.8, \"wavelength_ratio\": 2,"        \
+    " \"length_ratio\": 2, \"points_per_wavelength\": 4, \"rms_slope\": 0.2}, \"contact\": {"      \
+    "\"model\": [\"layered\", \"full\"], \"kinematics\": \"" kinematics "\", \"block_height\":"    \
+    " {\"lengths\": 1}, \"pressures\": {\"values\": [0.1, 0.3]}, \"pressure_pdf\": {\"at\":"       \
+    " [0.1, 0.3], \"bins\": [0, 10, 10000]}}}"
+enum { LAYERED, FULL, MODELS };
+
+/* A study, and one surface pressed by the scene and, beside it, by a solver of its own. */
+struct fixture {
+    struct contact_case study;
+    struct contact_compliances compliances;
+    struct contact_scene *scene;
+    struct contact_tally tally;
+    struct moments moments;
+    double *z;
+};
+
+static int go_on(void *context) {
+    (void)context;
+    return 0;
+}
+
+static void must(int status, const struct error *err) {
+    if (status != 0)
+        fail_msg("%s", err->text);
+}
+
+static void fixture_surface(struct fixture *f) {
+    struct generator *generator;
+    struct surface_report report;
+    struct error err = {0};
+    const struct surface_case *surface = &f->study.surface;
+    f->z = array_create(grid_points(&surface->grid), sizeof *f->z);
+    assert_non_null(f->z);
+    must(generator_create(&generator, &surface->spectrum, &surface->grid, &surface->options, &err),
+         &err);
+    modes_moments(generator_modes(generator), &f->moments);
+    must(generator_run(generator, (struct random_key){4, 0, 0}, f->z, &report, &err), &err);
+    generator_destroy(&generator);
+}
+
+static void fixture_open(struct fixture *f, const char *text) {
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse(text);
+    *f = (struct fixture){0};
+    assert_non_null(parameters);
+    must(contact_case_read(&f->study, parameters, NULL, &err), &err);
+    fixture_surface(f);
+    must(contact_compliances_create(&f->compliances, &f->study, &err), &err);
+    must(contact_scene_create(&f->scene, &f->study, &f->moments, &f->compliances, &err), &err);
+    must(contact_tally_create(&f->tally, &f->study, &err), &err);
+    must(contact_scene_solve(f->scene, f->z, &f->tally, go_on, NULL, &err), &err);
+    cJSON_Delete(parameters);
+}
+
+static void fixture_close(struct fixture *f) {
+    contact_scene_destroy(&f->scene);
+    contact_compliances_clear(&f->compliances);
+    contact_tally_clear(&f->tally);
+    contact_case_clear(&f->study);
+    free(f->z);
+}
+
+/* Areas of a state, each `now` times that on the undeformed face. */
+static void check_areas(struct fixture *f, size_t cell, const struct compliance *compliance,
+                        const struct contact_state *state, double now) {
+    struct area_workspace *workspace;
+    struct patch_finder *finder;
+    struct contact_area area;
+    struct patches patches;
+    struct error err = {0};
+    double points = (double)grid_points(&compliance->grid);
+    must(area_workspace_create(&workspace, compliance, &err), &err);
+    must(patch_finder_create(&finder, &compliance->grid, &err), &err);
+    contact_area(workspace, state->p, state->opening, &area);
+    patches_find(finder, state->p, &patches, NULL);
+    const struct {
+        enum contact_measure measure;
+        double share;
+    } AREAS[] = {{MEASURE_NODES, area.nodes},
+                 {MEASURE_EDGES, area.edges},
+                 {MEASURE_PERIMETER, area.perimeter},
+                 {MEASURE_NODES_LOWER, area.lower},
+                 {MEASURE_NODES_UPPER, area.upper},
+                 {MEASURE_PATCH_MEAN, patches.mean / points},
+                 {MEASURE_PATCH_LARGEST, (double)patches.largest / points}};
+    size_t active = 0;
+    for (size_t i = 0; i < grid_points(&compliance->grid); i++)
+        active += state->p[i] > 0;
+    check_relative(area.nodes, (double)active / points, 1e-14);
+    for (size_t a = 0; a < sizeof AREAS / sizeof *AREAS; a++)
+        if (!isnan(AREAS[a].share))
+            check_relative(contact_tally_values(&f->tally, AREAS[a].measure)[cell],
+                           now * AREAS[a].share, 1e-12);
+    patch_finder_destroy(&finder);
+    area_workspace_destroy(&workspace);
+}
+
+/* By a solver of its own, which presses the same surface to the same loads. */
+static void areas_are_those_now(void **state) {
+    (void)state;
+    static const struct {
+        const char *study;
+        bool stretches;
+    } CASES[] = {{PRESSED("1", "hencky"), true},
+                 {PRESSED("2", "hencky"), true},
+                 {PRESSED("1", "st_venant_kirchhoff"), true},
+                 {PRESSED("1", "small"), false},
+                 {PRESSED("2", "small"), false}};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        struct fixture f;
+        struct contact_state pressed;
+        const struct full_report *report;
+        struct error err = {0};
+        fixture_open(&f, CASES[c].study);
+        for (size_t m = 0; m < MODELS; m++) {
+            const struct compliance *compliance = f.compliances.of[m][0];
+            struct contact_solver *solver;
+            must(contact_solver_create(&solver, &f.study, m, compliance, &err), &err);
+            must(contact_solver_begin(solver, f.z, go_on, NULL, &err), &err);
+            for (size_t k = 0; k < f.study.load_count; k++) {
+                must(contact_solver_press(solver, f.study.loads[k] * f.moments.rms_slope, &pressed,
+                                          &report, &err),
+                     &err);
+                assert_true(m == LAYERED || fabs(report->stretch - 1) > 1e-3); /* it tells */
+                check_areas(&f, contact_case_cell(&f.study, m, 0, k), compliance, &pressed,
+                            m == FULL && CASES[c].stretches ? report->stretch : 1);
+            }
+            contact_solver_destroy(&solver);
+        }
+        fixture_close(&f);
+    }
+}
+
+/* Integral and first moment; centres of bins are within half a bin's width of what they hold. */
+static void pressures_carry_the_load(void **state) {
+    (void)state;
+    static const char *const STUDIES[] = {PRESSED("1", "hencky"), PRESSED("2", "hencky"),
+                                          PRESSED("1", "small")};
+    static const char *const MODEL[] = {"layered", "full"};
+    for (size_t c = 0; c < sizeof STUDIES / sizeof *STUDIES; c++) {
+        cJSON *document = solve(STUDIES[c], 3);
+        for (size_t m = 0; m < MODELS; m++) {
+            const cJSON *area = curve_of(document, "contact_area", "nodes", MODEL[m]);
+            const cJSON *curve = curve_of(document, "contact_pressure_pdf", "", MODEL[m]);
+            for (int k = 0; k < 2; k++, curve = curve->next) {
+                double width = at(curve, "/x", 1) - at(curve, "/x", 0), sum = 0, moment = 0;
+                for (int b = 0; b < points(curve); b++) {
+                    sum += width * at(curve, "/y", b);
+                    moment += width * at(curve, "/y", b) * at(curve, "/x", b);
+                }
+                assert_near(value_at(curve, "/underflow")->valuedouble, 0, 0, 0);
+                assert_near(value_at(curve, "/overflow")->valuedouble, 0, 0, 0);
+                check_relative(sum, at(area, "/y", k), 1e-6);
+                assert_near(moment, at(area, "/x", k), width / 2 * sum, at(area, "/x", k));
+            }
+        }
+        cJSON_Delete(document);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(areas_are_those_now),
+        cmocka_unit_test(pressures_carry_the_load),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
