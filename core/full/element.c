@@ -1,103 +1,100 @@
 #include "core/full/element.h"
 #include "core/vectors.h"
 #include <math.h>
-#include <string.h>
+#include <stddef.h>
 
 #define INLINE static inline __attribute__((always_inline))
 
 /* --- shape --- */
 
-/* dN_a/dxi_k at a point of [-1, 1]^d. */
-INLINE void parent_gradients(int d, const double at[3], double gradient[8][3]) {
+/* At the points (+-reach, ...): parent[a][k] = dN_a/dxi_k and jacobian[k][l] = dX_l/dxi_k. */
+INLINE void jacobians(int d, double reach, double position[8][3], pointwise parent[8][3],
+                      pointwise jacobian[3][3]) {
     for (int a = 0; a < 1 << d; a++)
-        for (int k = 0; k < d; k++) {
-            double product = 1;
-            for (int l = 0; l < d; l++) {
-                double side = a >> l & 1 ? 0.5 : -0.5;
-                product *= l == k ? side : 0.5 + side * at[l];
+        for (int k = 0; k < d; k++)
+            for (int q = 0; q < 1 << d; q++) {
+                double product = a >> k & 1 ? 0.5 : -0.5;
+                for (int l = 0; l < d; l++)
+                    if (l != k)
+                        product *= ((a ^ q) >> l & 1 ? 1 - reach : 1 + reach) / 2;
+                parent[a][k][q] = product;
             }
-            gradient[a][k] = product;
-        }
-}
-
-INLINE double determinant(int d, double m[3][3]) {
-    if (d == 2)
-        return m[0][0] * m[1][1] - m[0][1] * m[1][0];
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-}
-
-/* jacobian[k][l] = dX_l/dxi_k */
-INLINE void jacobian_at(int d, const double at[3], double position[8][3], double parent[8][3],
-                        double jacobian[3][3]) {
-    parent_gradients(d, at, parent);
     for (int k = 0; k < d; k++)
-        for (int l = 0; l < d; l++) {
-            jacobian[k][l] = 0;
-            for (int a = 0; a < 1 << d; a++)
-                jacobian[k][l] += parent[a][k] * position[a][l];
-        }
+        for (int l = 0; l < d; l++)
+            for (int q = 0; q < 1 << d; q++) {
+                double sum = 0;
+                for (int a = 0; a < 1 << d; a++)
+                    sum += parent[a][k][q] * position[a][l];
+                jacobian[k][l][q] = sum;
+            }
 }
 
-INLINE void invert(int d, double m[3][3], double det, double out[3][3]) {
-    if (d == 2) {
-        out[0][0] = m[1][1] / det;
-        out[1][1] = m[0][0] / det;
-        out[0][1] = -m[0][1] / det;
-        out[1][0] = -m[1][0] / det;
-        return;
-    }
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) {
-            int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-            out[k][i] = (m[i1][k1] * m[i2][k2] - m[i1][k2] * m[i2][k1]) / det;
+/* adjoint[l][k] = determinant times the inverse. */
+INLINE void invert(int d, pointwise m[3][3], pointwise determinant, pointwise adjoint[3][3]) {
+    for (int q = 0; q < 1 << d; q++) {
+        if (d == 2) {
+            adjoint[0][0][q] = m[1][1][q];
+            adjoint[1][1][q] = m[0][0][q];
+            adjoint[0][1][q] = -m[0][1][q];
+            adjoint[1][0][q] = -m[1][0][q];
+        } else {
+            for (int i = 0; i < 3; i++)
+                for (int k = 0; k < 3; k++) {
+                    int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+                    adjoint[k][i][q] = m[i1][k1][q] * m[i2][k2][q] - m[i1][k2][q] * m[i2][k1][q];
+                }
         }
+        double sum = 0;
+        for (int k = 0; k < d; k++)
+            sum += m[0][k][q] * adjoint[k][0][q];
+        determinant[q] = sum;
+    }
 }
 
 INLINE double quality_of(int d, double position[8][3]) {
+    pointwise parent[8][3], jacobian[3][3], adjoint[3][3], determinant;
     double least = 1;
-    for (int corner = 0; corner < 1 << d; corner++) {
-        double at[3], parent[8][3], jacobian[3][3], edges = 1;
-        for (int k = 0; k < d; k++)
-            at[k] = corner >> k & 1 ? 1 : -1;
-        jacobian_at(d, at, position, parent, jacobian);
+    jacobians(d, 1, position, parent, jacobian);
+    invert(d, jacobian, determinant, adjoint);
+    for (int q = 0; q < 1 << d; q++) {
+        double edges = 1;
         for (int k = 0; k < d; k++) {
             double square = 0;
             for (int l = 0; l < d; l++)
-                square += jacobian[k][l] * jacobian[k][l];
+                square += jacobian[k][l][q] * jacobian[k][l][q];
             edges *= sqrt(square);
         }
-        least = fmin(least, determinant(d, jacobian) / edges);
+        least = fmin(least, determinant[q] / edges);
     }
     return least;
 }
 
 INLINE bool shape_make(int d, double position[8][3], struct element_shape *out) {
     static const double GAUSS = 0.57735026918962576; /* 1/sqrt(3) */
-    out->volume = 0;
-    bool positive = true;
-    for (int q = 0; q < 1 << d; q++) {
-        double at[3], parent[8][3], jacobian[3][3], inverse[3][3];
-        for (int k = 0; k < d; k++)
-            at[k] = q >> k & 1 ? GAUSS : -GAUSS;
-        jacobian_at(d, at, position, parent, jacobian);
-        double det = determinant(d, jacobian);
-        positive = positive && det > 0;
-        invert(d, jacobian, det, inverse);
-        for (int a = 0; a < 1 << d; a++)
-            for (int l = 0; l < d; l++) {
-                out->gradient[q][a][l] = 0;
+    pointwise parent[8][3], jacobian[3][3], adjoint[3][3], over;
+    jacobians(d, GAUSS, position, parent, jacobian);
+    invert(d, jacobian, out->weight, adjoint);
+    for (int q = 0; q < 1 << d; q++)
+        over[q] = 1 / out->weight[q];
+    for (int a = 0; a < 1 << d; a++)
+        for (int l = 0; l < d; l++)
+            for (int q = 0; q < 1 << d; q++) {
+                double sum = 0;
                 for (int k = 0; k < d; k++)
-                    out->gradient[q][a][l] += inverse[l][k] * parent[a][k];
+                    sum += adjoint[l][k][q] * parent[a][k][q];
+                out->gradient[a][l][q] = sum * over[q];
             }
-        out->weight[q] = det;
-        out->volume += det;
+    bool positive = true;
+    out->volume = 0;
+    for (int q = 0; q < 1 << d; q++) {
+        positive = positive && out->weight[q] > 0;
+        out->volume += out->weight[q];
     }
     return positive;
 }
 
-bool element_shape_make(int dimension, double position[8][3], struct element_shape *out) {
+WIDE_VECTORS bool element_shape_make(int dimension, double position[8][3],
+                                     struct element_shape *out) {
     return dimension == 2 ? shape_make(2, position, out) : shape_make(3, position, out);
 }
 
@@ -107,53 +104,62 @@ double element_quality(int dimension, double position[8][3]) {
 
 /* --- energy, forces, stiffness --- */
 
+/* By node as the innermost index. */
+typedef double nodes[ELEMENT_NODES];
+
 struct field {
-    struct strained point[8];
-    double gradient[8][8][3]; /* in space */
-    double bulk[8][3];        /* V d growth/du */
+    struct strained point;
+    pointwise gradient[8][3]; /* in space, [a][k][q] */
+    nodes across[8][3];       /* the same, [q][k][a] */
+    nodes bulk[3];            /* [i][a]: V d growth/du */
     double growth;            /* mean of the points' dilatation */
 };
 
-/* Of the dilatation at a point by a node's displacement along axis i: for J - 1, J grad; for tr E,
- * F grad_X; for tr e, grad_X. grad: in space. */
-INLINE double swelling(int d, enum kinematics kinematics, const struct strained *point,
-                       const double h[3], const double grad_reference[3], const double grad[3],
-                       int i) {
-    if (kinematics == KINEMATICS_HENCKY)
-        return (1 + point->dilatation) * grad[i];
-    double sum = grad_reference[i];
-    for (int k = 0; k < d && kinematics == KINEMATICS_ST_VENANT; k++)
-        sum += h[k] * grad_reference[k];
-    return sum;
+/* out[i][a]: the integral of tensor_ik grad_k N_a. */
+INLINE void divergence(int d, const pointwise weight, pointwise tensor[3][3], nodes across[8][3],
+                       nodes out[3]) {
+    for (int i = 0; i < d; i++) {
+        nodes sum = {0};
+        for (int q = 0; q < 1 << d; q++)
+            for (int k = 0; k < d; k++) {
+                double part = weight[q] * tensor[i][k][q];
+                for (int a = 0; a < 1 << d; a++)
+                    sum[a] += part * across[q][k][a];
+            }
+        for (int a = 0; a < 1 << d; a++)
+            out[i][a] = sum[a];
+    }
 }
 
 INLINE bool field_make(int d, const struct solid *solid, const struct element_shape *shape,
                        double u[8][3], struct field *f) {
+    pointwise h[3][3];
+    for (int i = 0; i < d; i++)
+        for (int k = 0; k < d; k++)
+            for (int q = 0; q < 1 << d; q++) {
+                double sum = 0;
+                for (int a = 0; a < 1 << d; a++)
+                    sum += u[a][i] * shape->gradient[a][k][q];
+                h[i][k][q] = sum;
+            }
+    if (!solid_strain(d, solid, h, &f->point))
+        return false;
     double growth = 0;
-    memset(f->bulk, 0, sizeof f->bulk);
-    for (int q = 0; q < 1 << d; q++) {
-        struct strained *point = &f->point[q];
-        double h[3][3] = {{0}};
-        for (int a = 0; a < 1 << d; a++)
-            for (int i = 0; i < d; i++)
-                for (int k = 0; k < d; k++)
-                    h[i][k] += u[a][i] * shape->gradient[q][a][k];
-        if (!solid_strain(d, solid, h, point))
-            return false;
-        growth += shape->weight[q] * point->dilatation;
-        for (int a = 0; a < 1 << d; a++)
-            for (int i = 0; i < d; i++) {
+    for (int q = 0; q < 1 << d; q++)
+        growth += shape->weight[q] * f->point.dilatation[q];
+    for (int a = 0; a < 1 << d; a++)
+        for (int i = 0; i < d; i++)
+            for (int q = 0; q < 1 << d; q++) {
                 double sum = 0;
                 for (int k = 0; k < d; k++)
-                    sum += shape->gradient[q][a][k] * point->inverse[k][i];
-                f->gradient[q][a][i] = sum;
+                    sum += shape->gradient[a][k][q] * f->point.inverse[k][i][q];
+                f->gradient[a][i][q] = sum;
             }
-        for (int a = 0; a < 1 << d; a++)
-            for (int i = 0; i < d; i++)
-                f->bulk[a][i] +=
-                    shape->weight[q] * swelling(d, solid->kinematics, point, h[i],
-                                                shape->gradient[q][a], f->gradient[q][a], i);
-    }
+    for (int q = 0; q < 1 << d; q++)
+        for (int k = 0; k < d; k++)
+            for (int a = 0; a < 1 << d; a++)
+                f->across[q][k][a] = f->gradient[a][k][q];
+    divergence(d, shape->weight, f->point.spread, f->across, f->bulk);
     f->growth = growth / shape->volume;
     return solid->kinematics == KINEMATICS_ST_VENANT || f->growth > -1;
 }
@@ -176,72 +182,61 @@ INLINE struct bulk bulk_of(const struct solid *solid, double growth, const doubl
                          .bound = bound};
 }
 
-INLINE void forces(int d, const struct element_shape *shape, const struct field *f,
-                   const struct bulk *bulk, double *force) {
-    for (int a = 0; a < 1 << d; a++)
-        for (int i = 0; i < d; i++)
-            force[a * d + i] = bulk->pull * f->bulk[a][i];
-    for (int q = 0; q < 1 << d; q++)
-        for (int a = 0; a < 1 << d; a++)
-            for (int i = 0; i < d; i++) {
-                double sum = 0;
-                for (int k = 0; k < d; k++)
-                    sum += f->point[q].stress[i][k] * f->gradient[q][a][k];
-                force[a * d + i] += shape->weight[q] * sum;
-            }
+/* Of one node: t[i*d + k][j], the first Piola-Kirchhoff stress (in space) by its displacement j. */
+INLINE void stresses_by(int d, pointwise gradient[3], struct moduli *m, pointwise t[9][3]) {
+    for (int i = 0; i < d; i++)
+        for (int k = 0; k < d; k++)
+            for (int j = 0; j < d; j++)
+                for (int q = 0; q < 1 << d; q++) {
+                    double sum = 0;
+                    for (int l = 0; l < d; l++)
+                        sum += m->material[symmetric_index(d, i, k)][j * d + l][q] * gradient[l][q];
+                    t[i * d + k][j][q] = sum;
+                }
+    for (int k = 0; k < d; k++)
+        for (int q = 0; q < 1 << d; q++) {
+            double sum = 0;
+            for (int l = 0; l < d; l++)
+                sum += m->stress[k][l][q] * gradient[l][q];
+            for (int i = 0; i < d; i++)
+                t[i * d + k][i][q] += sum;
+        }
 }
 
-/* Of nodes a and b, [b][i][j][a]: the innermost loops run over a. */
-typedef double blocks[ELEMENT_NODES][3][3][ELEMENT_NODES];
-
-/* Adds one Gauss point: gradient . moduli . gradient. */
-INLINE void stiffness_add(int d, double weight, double gradient[8][3], double moduli[9][9],
-                          blocks out) {
-    double across[3][ELEMENT_NODES] = {{0}};
-    for (int a = 0; a < 1 << d; a++)
-        for (int k = 0; k < d; k++)
-            across[k][a] = gradient[a][k];
-    for (int b = 0; b < 1 << d; b++) {
-        double t[9][3] = {{0}};
-        for (int ik = 0; ik < d * d; ik++)
-            for (int j = 0; j < d; j++) {
-                double sum = 0;
-                for (int l = 0; l < d; l++)
-                    sum += moduli[ik][j * d + l] * gradient[b][l];
-                t[ik][j] = weight * sum;
-            }
+/* Adds to out[i][j][a] the integral of grad_k N_a t_ikj. */
+INLINE void blocks_add(int d, pointwise t[9][3], nodes across[8][3], nodes out[3][3]) {
+    for (int q = 0; q < 1 << d; q++)
         for (int i = 0; i < d; i++)
             for (int j = 0; j < d; j++)
                 for (int a = 0; a < 1 << d; a++) {
                     double sum = 0;
                     for (int k = 0; k < d; k++)
-                        sum += across[k][a] * t[i * d + k][j];
-                    out[b][i][j][a] += sum;
+                        sum += across[q][k][a] * t[i * d + k][j][q];
+                    out[i][j][a] += sum;
                 }
-    }
 }
 
 INLINE void stiffnesses(int d, const struct solid *solid, const struct element_shape *shape,
                         struct field *f, const struct bulk *bulk,
                         double (*stiffness)[ELEMENT_FREEDOMS]) {
-    blocks sum;
-    for (int b = 0; b < 1 << d; b++)
+    struct moduli moduli;
+    double factor = bulk->stiffness / shape->volume;
+    solid_moduli(d, solid, &f->point, bulk->pull, shape->weight, &moduli);
+    for (int b = 0; b < 1 << d; b++) {
+        nodes block[3][3];
+        pointwise t[9][3];
         for (int i = 0; i < d; i++)
             for (int j = 0; j < d; j++)
                 for (int a = 0; a < 1 << d; a++)
-                    sum[b][i][j][a] =
-                        bulk->stiffness / shape->volume * f->bulk[a][i] * f->bulk[b][j];
-    for (int q = 0; q < 1 << d; q++) {
-        double moduli[9][9];
-        solid_moduli(d, solid, &f->point[q], bulk->pull, moduli);
-        stiffness_add(d, shape->weight[q], f->gradient[q], moduli, sum);
-    }
-    for (int b = 0; b < 1 << d; b++)
+                    block[i][j][a] = factor * f->bulk[j][b] * f->bulk[i][a];
+        stresses_by(d, f->gradient[b], &moduli, t);
+        blocks_add(d, t, f->across, block);
         for (int a = 0; a <= b; a++)
             for (int i = 0; i < d; i++)
                 for (int j = 0; j < d; j++)
                     stiffness[a * d + i][b * d + j] = stiffness[b * d + j][a * d + i] =
-                        sum[b][i][j][a];
+                        block[i][j][a];
+    }
 }
 
 INLINE bool evaluate(int d, const struct solid *solid, const struct element_shape *shape,
@@ -254,10 +249,15 @@ INLINE bool evaluate(int d, const struct solid *solid, const struct element_shap
     if (energy != NULL) {
         *energy = shape->volume * bulk.energy;
         for (int q = 0; q < 1 << d; q++)
-            *energy += shape->weight[q] * f.point[q].energy;
+            *energy += shape->weight[q] * f.point.energy[q];
     }
-    if (force != NULL)
-        forces(d, shape, &f, &bulk, force);
+    if (force != NULL) {
+        nodes inner[3];
+        divergence(d, shape->weight, f.point.stress, f.across, inner);
+        for (int a = 0; a < 1 << d; a++)
+            for (int i = 0; i < d; i++)
+                force[a * d + i] = inner[i][a] + bulk.pull * f.bulk[i][a];
+    }
     if (stiffness != NULL)
         stiffnesses(d, solid, shape, &f, &bulk, stiffness);
     if (out != NULL) {
@@ -265,7 +265,7 @@ INLINE bool evaluate(int d, const struct solid *solid, const struct element_shap
         out->bound = bulk.bound;
         for (int a = 0; a < 1 << d; a++)
             for (int i = 0; i < d; i++)
-                out->gradient[a * d + i] = bulk.slope * f.bulk[a][i];
+                out->gradient[a * d + i] = bulk.slope * f.bulk[i][a];
     }
     return true;
 }

@@ -20,8 +20,8 @@
 enum { ELEMENT_NODES = 8, ELEMENT_FREEDOMS = 24 };
 
 struct element_shape {        /* of the reference */
-    double gradient[8][8][3]; /* [q][a][k]: dN_a/dX_k at Gauss point q */
-    double weight[8];         /* of Gauss points: volume */
+    pointwise gradient[8][3]; /* [a][k][q]: dN_a/dX_k at Gauss point q */
+    pointwise weight;         /* of Gauss points: volume */
     double volume;
 };
 /* Reference positions [a][k]. False when a Jacobian at a Gauss point is not positive. */

@@ -20,32 +20,51 @@ struct solid {
     enum kinematics kinematics;
     double shear;       /* Lame's mu, in E* as the next */
     double local, mean; /* parts of Lame's lambda: of the dilatation here, of its element's mean */
-    bool convex;        /* moduli lack what stress can make negative in them: no tangent any more,
-                           but a step along them leads downhill */
+    bool convex;        /* moduli lack what stress adds to them: no tangent any more, but a step
+                           along them leads downhill */
 };
 /* Split as the layered model's. */
 struct solid solid_of(double poisson, enum kinematics kinematics);
 
-/* A strained point; components from the dimension on are not set. */
+/* A value at each Gauss point of an element, 2^dimension of them: all are worked on at once. */
+enum { POINTS_MOST = 8 };
+typedef double pointwise[POINTS_MOST];
+
+/* Strained points; components from the dimension on are not set. */
 struct strained {
-    double energy;        /* E*, per reference volume */
-    double dilatation;    /* of which the element takes the mean: J - 1; st_venant: sum E_p; small:
-                             tr e */
-    double inverse[3][3]; /* of F: gradients here are grad_X F^-1; small: 1 */
-    double stress[3][3];  /* Kirchhoff's */
-    double axis[3][3];    /* axis[p]: principal direction in space */
-    double principal[3];  /* Kirchhoff's stress along it */
-    double strain[3];     /* e_p; st_venant: E_p */
-    double square[3];     /* of the stretch */
+    pointwise energy;     /* E*, per reference volume */
+    pointwise dilatation; /* whose mean the element takes: J - 1; st_venant: sum E_p; small: tr e */
+    pointwise spread[3][3];  /* its first variation is spread_ik G_ik, G as below */
+    pointwise inverse[3][3]; /* of F: gradients here are grad_X F^-1; small: 1 */
+    pointwise stress[3][3];  /* Kirchhoff's */
+    pointwise axis[3][3];    /* axis[p]: principal direction in space */
+    pointwise principal[3];  /* Kirchhoff's stress along it */
+    pointwise strain[3];     /* e_p; st_venant: E_p */
+    pointwise square[3];     /* of the stretch */
 };
 
-/* h[i][k] = du_i/dX_k. False, with nothing else promised, when the point is turned inside out. */
-bool solid_strain(int dimension, const struct solid *solid, double h[3][3], struct strained *out);
+/* h[i][k] = du_i/dX_k. False, with nothing else promised, when a point is turned inside out. */
+bool solid_strain(int dimension, const struct solid *solid, pointwise h[3][3],
+                  struct strained *out);
 
-/* The second variation of the energy and of pull times the dilatation is G : moduli : G, with
- * G = dH F^-1 the gradient in space of the variation:
- * moduli[i*dimension + k][j*dimension + l] multiplies G_ik G_jl. */
+/* Components of a symmetric tensor: xx, yy, (zz,) xy, (xz, yz). */
+enum { SYMMETRIC_MOST = 6 };
+static inline int symmetric_index(int dimension, int i, int k) {
+    return i == k ? i : dimension + i + k - 1;
+}
+
+/* The second variation of the energy and of pull times the dilatation is, with G = dH F^-1 the
+ * gradient in space of the variation,
+ *
+ *   e_ik material[symmetric_index(d, i, k)][j*d + l] G_jl + G_ik stress[k][l] G_il
+ *
+ * the first sum over k >= i, where e_ik = G_ik + G_ki, e_ii = G_ii. Each times the point's
+ * weight. stress is Kirchhoff's, with that of the pull. */
+struct moduli {
+    pointwise material[SYMMETRIC_MOST][9];
+    pointwise stress[3][3];
+};
 void solid_moduli(int dimension, const struct solid *solid, const struct strained *point,
-                  double pull, double moduli[9][9]);
+                  double pull, const pointwise weight, struct moduli *out);
 
 #endif

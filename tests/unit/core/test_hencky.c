@@ -1,5 +1,5 @@
 /* Protects the material of the full model: closed forms, its moduli against differences, equal and
- * nearly equal stretches, objectivity. */
+ * nearly equal stretches, strains of all sizes, objectivity. */
 #include "tests/support/check.h"
 
 #include "core/full/hencky.h"
@@ -10,12 +10,6 @@ static const double POISSON[] = {0, 0.3, 0.49, 0.4999};
 static const enum kinematics KINEMATICS[] = {KINEMATICS_HENCKY, KINEMATICS_ST_VENANT,
                                              KINEMATICS_SMALL};
 
-static struct strained strain(int d, const struct solid *solid, double h[3][3]) {
-    struct strained point;
-    assert_true(solid_strain(d, solid, h, &point));
-    return point;
-}
-
 /* A gradient of entries up to size, the same each run. */
 static void random_gradient(uint64_t draw, double size, double h[3][3]) {
     struct random_key key = {.seed = 4, .realisation = draw};
@@ -23,6 +17,51 @@ static void random_gradient(uint64_t draw, double size, double h[3][3]) {
     random_uniform(key, 0, 0, 9, uniform);
     for (size_t n = 0; n < 9; n++)
         h[n / 3][n % 3] = size * (2 * uniform[n] - 1);
+}
+
+/* Of one point, among others of an element. */
+struct point {
+    double energy, dilatation, stress[3][3];
+};
+enum { HERE = 2 };
+
+static bool strain_all(int d, const struct solid *solid, double h[3][3], struct strained *out) {
+    pointwise all[3][3];
+    for (uint64_t q = 0; q < POINTS_MOST; q++) {
+        double other[3][3];
+        random_gradient(3000 + q, 0.2, other);
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++)
+                all[i][k][q] = q == HERE ? h[i][k] : other[i][k];
+    }
+    return solid_strain(d, solid, all, out);
+}
+
+static struct point strain(int d, const struct solid *solid, double h[3][3]) {
+    struct strained all;
+    assert_true(strain_all(d, solid, h, &all));
+    struct point point = {.energy = all.energy[HERE], .dilatation = all.dilatation[HERE]};
+    for (int i = 0; i < d; i++)
+        for (int k = 0; k < d; k++)
+            point.stress[i][k] = all.stress[i][k][HERE];
+    return point;
+}
+
+/* Second variation of the energy and the pull times the dilatation, by G_ik G_jl. */
+static void moduli_of(int d, const struct solid *solid, double h[3][3], double pull,
+                      double out[9][9]) {
+    static const pointwise WEIGHT = {3, 2, 0.5, 4, 5, 6, 7, 8};
+    struct strained all;
+    struct moduli moduli;
+    assert_true(strain_all(d, solid, h, &all));
+    solid_moduli(d, solid, &all, pull, WEIGHT, &moduli);
+    for (int ik = 0; ik < d * d; ik++)
+        for (int jl = 0; jl < d * d; jl++) {
+            out[ik][jl] = moduli.material[symmetric_index(d, ik / d, ik % d)][jl][HERE];
+            if (ik / d == jl / d)
+                out[ik][jl] += moduli.stress[ik % d][jl % d][HERE];
+            out[ik][jl] /= WEIGHT[HERE];
+        }
 }
 
 /* Hencky (1928): tau_p = 2 mu ln lambda_p + lambda ln J, plane strain's third stretch 1. Rounding
@@ -35,7 +74,7 @@ static void hencky_has_its_closed_forms(void **state) {
             double logarithm = log(stretch), mu = solid.shear, a = solid.local;
             double uniaxial[3][3] = {{stretch - 1}};
             for (int d = 2; d <= 3; d++) {
-                struct strained p = strain(d, &solid, uniaxial);
+                struct point p = strain(d, &solid, uniaxial);
                 check_close(p.stress[0][0], (2 * mu + a) * logarithm, 1e-13);
                 check_close(p.stress[1][1], a * logarithm, 1e-13);
                 check_close(p.energy, (mu + a / 2) * logarithm * logarithm, 1e-13);
@@ -45,7 +84,7 @@ static void hencky_has_its_closed_forms(void **state) {
             double gamma = stretch, e = asinh(gamma / 2), angle = atan2(1, gamma / 2);
             double shear[3][3] = {{0, gamma}};
             for (int d = 2; d <= 3; d++) {
-                struct strained p = strain(d, &solid, shear);
+                struct point p = strain(d, &solid, shear);
                 check_close(p.stress[0][0], 2 * mu * e * cos(angle), 1e-13);
                 check_close(p.stress[0][1], 2 * mu * e * sin(angle), 1e-13);
                 check_close(p.energy, 2 * mu * e * e, 1e-13);
@@ -66,7 +105,7 @@ static void st_venant_has_its_closed_forms(void **state) {
             for (int d = 2; d <= 3; d++) {
                 double square = stretch * stretch, e = (square - 1) / 2;
                 double uniaxial[3][3] = {{stretch - 1}};
-                struct strained p = strain(d, &solid, uniaxial);
+                struct point p = strain(d, &solid, uniaxial);
                 check_close(p.stress[0][0], square * (2 * mu + a) * e, 1e-13);
                 check_close(p.stress[1][1], a * e, 1e-13);
                 check_close(p.energy, (mu + a / 2) * e * e, 1e-13);
@@ -89,15 +128,46 @@ static void small_strains_are_linear(void **state) {
     random_gradient(1, 1e-9, h);
     for (int d = 2; d <= 3; d++) {
         struct solid small = solid_of(0.3, KINEMATICS_SMALL);
-        struct strained linear = strain(d, &small, h);
+        struct point linear = strain(d, &small, h);
         for (size_t k = 0; k < 2; k++) {
             struct solid solid = solid_of(0.3, KINEMATICS[k]);
-            struct strained p = strain(d, &solid, h);
+            struct point p = strain(d, &solid, h);
             for (int i = 0; i < d; i++)
                 for (int j = 0; j < d; j++)
                     check_close(p.stress[i][j], linear.stress[i][j], 1e-16);
         }
     }
+}
+
+/* Points of all sizes of strain at once: each has orthonormal axes and, where small, the linear
+ * stress to its own last digits. */
+static void sizes_do_not_mix(void **state) {
+    (void)state;
+    static const double SIZES[] = {1e-9, 0.3, 0, 1e-12, 1e-300, 1e-30, 3e-151, 1e-160};
+    for (int d = 2; d <= 3; d++)
+        for (size_t k = 0; k < 2; k++) {
+            struct solid solid = solid_of(0.3, KINEMATICS[k]);
+            struct solid small = solid_of(0.3, KINEMATICS_SMALL);
+            struct strained p, linear;
+            pointwise h[3][3];
+            for (uint64_t q = 0; q < POINTS_MOST; q++) {
+                double one[3][3];
+                random_gradient(q, SIZES[q], one);
+                for (int i = 0; i < 3; i++)
+                    for (int l = 0; l < 3; l++)
+                        h[i][l][q] = one[i][l];
+            }
+            assert_true(solid_strain(d, &solid, h, &p) && solid_strain(d, &small, h, &linear));
+            for (int q = 0; q < 1 << d; q++)
+                for (int i = 0; i < d; i++)
+                    for (int l = 0; l < d; l++) {
+                        double product = 0, size = SIZES[q], off = 1e-15 * size + 10 * size * size;
+                        for (int m = 0; m < d; m++)
+                            product += p.axis[i][m][q] * p.axis[l][m][q];
+                        check_close(product, i == l, 1e-14);
+                        check_close(p.stress[i][l][q], linear.stress[i][l][q], off + 1e-150);
+                    }
+        }
 }
 
 /* Energy under a pull at F + step G F, whose gradient in space is G. */
@@ -112,7 +182,7 @@ static double varied_energy(int d, const struct solid *solid, double h[3][3], do
                 varied[i][k] += step * g[i][l] * f;
             }
         }
-    struct strained p = strain(d, solid, varied);
+    struct point p = strain(d, solid, varied);
     return p.energy + pull * p.dilatation;
 }
 
@@ -120,7 +190,7 @@ static double varied_energy(int d, const struct solid *solid, double h[3][3], do
  * derivative and 1e-16/1e-8 of rounding. */
 static void check_differences(int d, const struct solid *solid, double h[3][3], double g[3][3]) {
     static const double STEP = 3e-4, PULL = 0.07;
-    struct strained p = strain(d, solid, h);
+    struct point p = strain(d, solid, h);
     double slope =
         (varied_energy(d, solid, h, g, STEP, 0) - varied_energy(d, solid, h, g, -STEP, 0)) /
         (2 * STEP);
@@ -128,7 +198,7 @@ static void check_differences(int d, const struct solid *solid, double h[3][3], 
     double after = varied_energy(d, solid, h, g, STEP, PULL);
     double here = varied_energy(d, solid, h, g, 0, PULL);
     double first = 0, second = 0, moduli[9][9];
-    solid_moduli(d, solid, &p, PULL, moduli);
+    moduli_of(d, solid, h, PULL, moduli);
     for (int i = 0; i < d; i++)
         for (int k = 0; k < d; k++) {
             first += p.stress[i][k] * g[i][k];
@@ -161,16 +231,14 @@ static void equal_stretches_are_no_exception(void **state) {
     struct solid solid = solid_of(0.3, KINEMATICS_HENCKY);
     for (int d = 2; d <= 3; d++) {
         double h[3][3] = {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}, equal[9][9], moduli[9][9];
-        struct strained point = strain(d, &solid, h);
-        solid_moduli(d, &solid, &point, 0.02, equal);
+        moduli_of(d, &solid, h, 0.02, equal);
         double g[3][3];
         random_gradient(7, 0.2, g);
         check_differences(d, &solid, h, g);
         for (double apart = 1e-16; apart < 0.03; apart *= 3) {
             h[0][0] = 0.1 + apart;
             h[0][1] = apart / 3;
-            point = strain(d, &solid, h);
-            solid_moduli(d, &solid, &point, 0.02, moduli);
+            moduli_of(d, &solid, h, 0.02, moduli);
             for (int m = 0; m < d * d; m++)
                 for (int n = 0; n < d * d; n++)
                     check_close(moduli[m][n], equal[m][n], 1e-13 + 10 * apart);
@@ -192,14 +260,14 @@ static void a_rotation_turns_the_stress(void **state) {
             double c = cos((double)draw), s = sin((double)draw), h[3][3], turned[3][3];
             double r[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
             random_gradient(draw, 0.25, h);
-            struct strained before = strain(d, &solid, h);
+            struct point before = strain(d, &solid, h);
             for (int i = 0; i < 3; i++)
                 for (int k = 0; k < 3; k++) {
                     turned[i][k] = -(i == k);
                     for (int l = 0; l < 3; l++)
                         turned[i][k] += r[i][l] * (h[l][k] + (l == k));
                 }
-            struct strained after = strain(d, &solid, turned);
+            struct point after = strain(d, &solid, turned);
             check_close(after.energy, before.energy, 1e-13);
             for (int i = 0; i < d; i++)
                 for (int k = 0; k < d; k++) {
@@ -223,15 +291,14 @@ static void convex_moduli_lead_downhill(void **state) {
         convex.convex = true;
         random_gradient(draw, draw < 4 ? 0 : 0.3, h);
         random_gradient(2000 + draw, 1, g);
-        struct strained point = strain(d, &convex, h);
-        solid_moduli(d, &convex, &point, draw < 4 ? 0 : 0.5 * (double)(draw % 7) - 1.5, moduli);
+        moduli_of(d, &convex, h, draw < 4 ? 0 : 0.5 * (double)(draw % 7) - 1.5, moduli);
         for (int m = 0; m < d * d; m++)
             for (int n = 0; n < d * d; n++)
                 energy += moduli[m][n] * g[m / d][m % d] * g[n / d][n % d];
         assert_true(energy > -1e-12);
         if (draw < 4) {
             double tangent[9][9];
-            solid_moduli(d, &solid, &point, 0, tangent);
+            moduli_of(d, &solid, h, 0, tangent);
             for (int m = 0; m < d * d; m++)
                 for (int n = 0; n < d * d; n++)
                     check_close(moduli[m][n], tangent[m][n], 1e-14);
@@ -244,12 +311,11 @@ static void what_is_inside_out_is_refused(void **state) {
     struct solid solid = solid_of(0.3, KINEMATICS_HENCKY);
     struct strained point;
     double flat[3][3] = {{-1}}, beyond[3][3] = {{-1.5}}, twice[3][3] = {{-2, 0, 0}, {0, -2, 0}};
-    assert_false(solid_strain(2, &solid, flat, &point));
-    assert_false(solid_strain(3, &solid, beyond, &point));
-    assert_true(solid_strain(2, &solid, twice, &point)); /* half a turn, no strain */
-    check_close(point.energy, 0, 1e-30);
+    assert_false(strain_all(2, &solid, flat, &point));
+    assert_false(strain_all(3, &solid, beyond, &point));
+    check_close(strain(2, &solid, twice).energy, 0, 1e-30); /* half a turn, no strain */
     double lost[3][3] = {{NAN}};
-    assert_false(solid_strain(2, &solid, lost, &point));
+    assert_false(strain_all(2, &solid, lost, &point));
 }
 
 int main(void) {
@@ -257,6 +323,7 @@ int main(void) {
         cmocka_unit_test(hencky_has_its_closed_forms),
         cmocka_unit_test(st_venant_has_its_closed_forms),
         cmocka_unit_test(small_strains_are_linear),
+        cmocka_unit_test(sizes_do_not_mix),
         cmocka_unit_test(moduli_are_the_second_derivative),
         cmocka_unit_test(equal_stretches_are_no_exception),
         cmocka_unit_test(a_rotation_turns_the_stress),
