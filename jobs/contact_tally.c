@@ -326,7 +326,7 @@ int contact_tally_decode(struct contact_tally *tally, const unsigned char *data,
         tally_get(&reader, &tally->sums[a].counts);
     }
     tally_total_get(&reader, &tally->points);
-    tally_get(&reader, &tally->pressures);
+    tally_get_weighed(&reader, &tally->pressures);
     notes_get(&reader, &tally->notes);
     if (reader.failed || reader.at != reader.end)
         return refuse(err, "is malformed");

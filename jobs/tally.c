@@ -1,4 +1,5 @@
 #include "jobs/tally.h"
+#include <stdbool.h>
 #include <stdlib.h>
 
 /* No honest sum comes near (a million realisations of 2^31 points: 2^82); 2^26 blocks of such sums
@@ -77,15 +78,23 @@ void tally_put(struct bytes *bytes, const struct tally *tally) {
     }
 }
 
-void tally_get(struct byte_reader *reader, struct tally *tally) {
+static void get_tally(struct byte_reader *reader, struct tally *tally, bool within) {
     bytes_get_counts(reader, tally->size, tally->count);
     for (size_t cell = 0; cell < tally->size && !reader->failed; cell++) {
         fixed_point count = tally->count[cell];
         if (count == 0)
             continue;
         tally->square[cell] = get_sum(reader, count, SUM_MOST);
-        tally->cross[cell] = get_sum(reader, tally->square[cell], SUM_MOST);
+        tally->cross[cell] = get_sum(reader, within ? tally->square[cell] : count, SUM_MOST);
     }
+}
+
+void tally_get(struct byte_reader *reader, struct tally *tally) {
+    get_tally(reader, tally, true);
+}
+
+void tally_get_weighed(struct byte_reader *reader, struct tally *tally) {
+    get_tally(reader, tally, false);
 }
 
 /* a b - c d of integers, exact unless a product passes 2^127. */

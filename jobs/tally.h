@@ -42,6 +42,8 @@ void tally_merge(struct tally *into, const struct tally *from);
 void tally_put(struct bytes *bytes, const struct tally *tally);
 /* Fails the reader for sums that no realisations could have, or that could overflow in merging. */
 void tally_get(struct byte_reader *reader, struct tally *tally);
+/* The same of things that weigh differently, so that n_r may pass N_r. */
+void tally_get_weighed(struct byte_reader *reader, struct tally *tally);
 
 /* Share of a cell and its error. */
 struct estimate tally_share(const struct tally *tally, size_t cell,

@@ -80,33 +80,38 @@ static void valueless_realisations_are_counted(void **state) {
     fixture_close(&f);
 }
 
-/* Pressures lie on the area in contact, stretched as it is: 3 nodes of 16, each 1.25 times as large
- * in the model full. A block that tells otherwise is refused. */
+/* Pressures lie on the area in contact, stretched as it is: that of some nodes of 16, or of all,
+ * each 1.25 times as large in the model full. A block that tells otherwise is refused. */
 static void pressures_lie_on_the_area(void **state) {
     (void)state;
-    static const double p[16] = {1, 0, 2, 3};
-    for (int wrong = 0; wrong < 2; wrong++) {
+    static const struct {
+        size_t nodes;
+        double told; /* of their stretch, in the histogram */
+        int status;
+    } CASES[] = {{3, 1.25, 0}, {16, 1.25, 0}, {3, 1, ERROR_INPUT}};
+    static const enum contact_measure always[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_GAP,
+                                                  MEASURE_ITERATIONS};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
         struct fixture f, copy;
         struct error err = {0};
+        double share = (double)CASES[c].nodes / 16, pressures[16] = {0};
         unsigned char *data = NULL;
         size_t size = 0;
+        for (size_t i = 0; i < CASES[c].nodes; i++)
+            pressures[i] = 2;
         fixture_open(&f, FULL_STUDY);
         fixture_open(&copy, FULL_STUDY);
         for (size_t m = 0; m < 2; m++) {
-            double stretch = m == 1 ? 1.25 : 1;
-            static const enum contact_measure always[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_GAP,
-                                                          MEASURE_ITERATIONS};
             for (size_t a = 0; a < 4; a++)
-                contact_tally_values(&f.tally, always[a])[m] = stretch * 3 / 16;
-            contact_tally_pressures(&f.tally, m, 0, p, 1, wrong ? 1 : stretch);
+                contact_tally_values(&f.tally, always[a])[m] = (m == 1 ? 1.25 : 1) * share;
+            contact_tally_pressures(&f.tally, m, 0, pressures, 1, m == 1 ? CASES[c].told : 1);
         }
         contact_tally_add(&f.tally);
-        check_relative(contact_tally_pressure(&f.tally, 1, 0, 3).value, (wrong ? 1 : 1.25) / 16,
+        check_relative(contact_tally_pressure(&f.tally, 1, 0, 2).value, CASES[c].told * share,
                        1e-14);
         assert_int_equal(contact_tally_encode(&f.tally, &data, &size, &err), 0);
-        assert_int_equal(contact_tally_decode(&copy.tally, data, size, &err),
-                         wrong ? ERROR_INPUT : 0);
-        assert_true(!wrong || strstr(err.text, "does not add up") != NULL);
+        assert_int_equal(contact_tally_decode(&copy.tally, data, size, &err), CASES[c].status);
+        assert_true(CASES[c].status == 0 || strstr(err.text, "does not add up") != NULL);
         free(data);
         fixture_close(&f);
         fixture_close(&copy);
