@@ -222,11 +222,11 @@ static int solve_factored(struct newton *n, double tolerance, struct newton_end 
     int status = n->factor == NULL ? factor_create(&n->factor, n->mesh, err) : 0;
     if (status == 0)
         status = factor_run(n->factor, n->tangent, n->active, err);
-    if (status == ERROR_NUMERIC) { /* far from balance, stress may outweigh stiffness */
+    if (status == ERROR_NUMERIC) { /* where stress outweighs stiffness, the guide does without it */
         n->solid.convex = true;
-        bool made = evaluate(n);
+        status = evaluate(n) ? factor_run(n->factor, n->tangent, n->active, err) : status;
         n->solid.convex = false;
-        status = made ? factor_run(n->factor, n->tangent, n->active, err) : status;
+        (void)evaluate(n); /* as it did before */
     }
     if (status != 0)
         return status;
