@@ -14,8 +14,8 @@ static const double TRUSTED = 0.1, SETTLED = 1e-4;
 /* Residual left of the linear equations, when iterated. */
 static const double LINEAR_MOST = 1e-2, LINEAR_PART = 0.1, LINEAR_EXACT = 1e-10;
 static const double LINEAR_STIFFNESS = 1e-6;
-/* A step is halved so often at most. */
-enum { HALVINGS = 8 };
+/* At most: halvings of a step; rounds with the same set since the best one; sets that come back. */
+enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
@@ -146,11 +146,13 @@ struct memory {
     size_t count;
 };
 
-/* Whether this set was met before; it is now. */
+/* Whether this set was met before; it is now. After a meeting memory is empty. */
 static bool memory_meets(struct memory *memory, uint64_t hash) {
     for (size_t a = 0; a < memory->count && a < REMEMBERED; a++)
-        if (memory->hash[a] == hash)
+        if (memory->hash[a] == hash) {
+            memory->count = 0;
             return true;
+        }
     memory->hash[memory->count++ % REMEMBERED] = hash;
     return false;
 }
@@ -300,7 +302,7 @@ struct round {
 
 /* Gaps and forces at u; from the second go on, what they say of the set. A set that was there
  * before would go on coming back: from then on it changes a node at a time, and only near balance.
- */
+ * One that comes back even so tells of no equilibrium. */
 static struct round look(struct newton *n, double pressure, bool first, struct memory *memory,
                          struct newton_end *end) {
     struct round round = {.largest = 0};
@@ -313,8 +315,7 @@ static struct round look(struct newton *n, double pressure, bool first, struct m
     if (round.changes > 0) {
         end->changes += round.changes;
         round.start.residual = residual(n, pressure, n->change);
-        if (memory_meets(memory, active_hash(n)) && !careful)
-            end->cycles++;
+        end->cycles += memory_meets(memory, active_hash(n));
     }
     measure(n, end);
     round.start.inside = end->inside;
@@ -325,8 +326,33 @@ static struct round look(struct newton *n, double pressure, bool first, struct m
     return round;
 }
 
+/* The best round with the active set as it is. */
+struct progress {
+    double least;  /* off */
+    size_t rounds; /* since */
+};
+
+/* Whether to go on from a round that is off by so much. */
+static int check_progress(const struct newton *n, struct progress *progress, double off,
+                          bool changed, const struct newton_end *end, struct error *err) {
+    bool better = changed || off < progress->least;
+    progress->least = better ? off : progress->least;
+    progress->rounds = better ? 0 : progress->rounds + 1;
+    if (end->cycles > RETURNS)
+        return error_set(err, ERROR_NUMERIC, "the sets of nodes in contact come back");
+    if (end->iterations == n->max_iterations || progress->rounds > PATIENCE)
+        return error_set(err, ERROR_NUMERIC,
+                         "%zu iterations of Newton's left %.2g of the largest force",
+                         end->iterations, end->residual);
+    if (n->stop != NULL && n->stop(n->context) != 0)
+        return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of Newton's",
+                         end->iterations);
+    return 0;
+}
+
 int newton_settle(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
     struct memory memory = {0};
+    struct progress progress = {.least = INFINITY};
     *end = (struct newton_end){0};
     n->factored = n->solver == SOLVER_FACTORED;
     if (!n->evaluated && !evaluate(n))
@@ -341,16 +367,12 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
         if (!first && round.changes == 0 && end->residual <= n->tolerance &&
             start->inside <= start->closed)
             return 0;
-        if (end->iterations == n->max_iterations)
-            return error_set(err, ERROR_NUMERIC,
-                             "%zu iterations of Newton's left %.2g of the largest force",
-                             end->iterations, end->residual);
-        if (n->stop != NULL && n->stop(n->context) != 0)
-            return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of Newton's",
-                             end->iterations);
-        end->iterations++;
         double off = fmax(end->residual, start->inside * COMPLEMENTARITY / round.largest);
-        int status = newton_change(n, off, end, err);
+        int status = check_progress(n, &progress, off, round.changes > 0, end, err);
+        if (status != 0)
+            return status;
+        end->iterations++;
+        status = newton_change(n, off, end, err);
         if (status == ERROR_NUMERIC && !n->factored && factorable(n->mesh)) {
             n->factored = true;
             if (evaluate(n))

@@ -54,7 +54,7 @@ struct newton_end {
     size_t linear;      /* iterations of the linear equations */
     size_t factored;    /* factorisations */
     size_t changes;     /* of single nodes of the active set */
-    size_t cycles;      /* active sets that came back and had to be taken apart node by node */
+    size_t cycles;      /* active sets that came back; from the first on nodes change one by one */
     double residual;    /* largest, over the largest contact force */
     double inside;      /* largest |gap| in contact */
     double penetration; /* largest -gap elsewhere, >= 0 */
