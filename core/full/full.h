@@ -5,8 +5,11 @@
  * same block guesses which nodes touch at each load; it has no part in the answer. Pressures p are
  * contact forces over the nodes' tributary areas on the undeformed grid, so that their mean is the
  * load, exactly; how much the contact has shrunk or stretched sideways is told beside
- * (full_report.stretch). A solver belongs to one thread; the elastic state has no history, but each
- * load starts from the one before. */
+ * (full_report.stretch). The face does not touch itself: where it would fold over itself a load
+ * finds no equilibrium. In a load step no cell of the face stretches by more than a quarter, so
+ * that one load and many lead to the same answer; but for St Venant's solid, where single elements
+ * snap within that: what it reaches near its limit depends on the loads. A solver belongs to one
+ * thread; the elastic state has no history, but each load starts from the one before. */
 #ifndef RUGO_CORE_FULL_FULL_H
 #define RUGO_CORE_FULL_FULL_H
 

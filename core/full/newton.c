@@ -256,33 +256,61 @@ static int newton_change(struct newton *n, double off, struct newton_end *end, s
     return (n->factored ? solve_factored : solve_iterated)(n, tolerance, end, err);
 }
 
+double newton_cell_stretch(const struct mesh *m, const double *u, size_t j, size_t i) {
+    size_t nx = m->level[0].nx, d = (size_t)m->dimension;
+    size_t right = (i + 1) % nx, back = (j + 1) % m->level[0].ny;
+    const double *a = u + (j * nx + i) * d, *b = u + (j * nx + right) * d;
+    if (d == 2)
+        return 1 + b[0] - a[0];
+    const double *c = u + (back * nx + i) * d, *e = u + (back * nx + right) * d;
+    double x1 = 1 + e[0] - a[0], y1 = m->across + e[1] - a[1];
+    double x2 = -1 + c[0] - b[0], y2 = m->across + c[1] - b[1];
+    return (x1 * y2 - x2 * y1) / (2 * m->across);
+}
+
+/* Whether a cell of the face is turned from the flat: contact, which knows nothing of what lies
+ * sideways of a node, would let the face pass through itself there. */
+static bool face_folds(const struct newton *n) {
+    const struct level *face = &n->mesh->level[0];
+    for (size_t j = 0; j < face->ny; j++)
+        for (size_t i = 0; i < face->nx; i++)
+            if (newton_cell_stretch(n->mesh, n->u, j, i) <= 0)
+                return true;
+    return false;
+}
+
 /* Where a step starts. */
 struct start {
     double residual, potential, inside;
     double closed; /* gaps up to this are none */
 };
 
-/* Takes the longest of the step and its halves that turns no element inside out and, where nodes in
- * contact already lie on the flat, brings the forces or the energy down. */
+/* Takes the longest of the step and its halves that neither folds the face nor turns an element
+ * inside out and, where nodes in contact already lie on the flat, brings the forces or the energy
+ * down. */
 static int advance(struct newton *n, double pressure, const struct start *start,
                    struct error *err) {
     size_t unknowns = newton_unknowns(n);
     double length = 1;
-    bool feasible = start->inside <= start->closed;
+    bool feasible = start->inside <= start->closed, folds = false;
     memcpy(n->before, n->u, unknowns * sizeof *n->before);
     int status = ERROR_NUMERIC;
     for (int halving = 0; status != 0 && halving < HALVINGS; halving++, length /= 2) {
         for (size_t f = 0; f < unknowns; f++)
             n->u[f] = n->before[f] + length * n->change[f];
-        if (!evaluate(n))
+        folds = face_folds(n);
+        if (folds || !evaluate(n))
             continue;
         if (!feasible || residual(n, pressure, n->rest) <= start->residual ||
             potential(n, pressure) < start->potential)
             status = 0;
     }
-    return status == 0 ? 0
-                       : error_set(err, ERROR_NUMERIC,
-                                   "a step of Newton's turns elements inside out or leads uphill");
+    if (status == 0)
+        return 0;
+    n->evaluated = false;
+    return error_set(err, status,
+                     folds ? "the face folds over itself"
+                           : "a step of Newton's turns elements inside out or leads uphill");
 }
 
 static void remember_residual(struct newton_end *end, double value, bool changed) {

@@ -71,6 +71,9 @@ int newton_settle(struct newton *newton, double pressure, struct newton_end *end
 void newton_measure_gaps(struct newton *newton);
 /* D of every node, and its sum. */
 double newton_node_area(const struct newton *newton);
+/* Area of the face's cell in row j, column i as seen from the flat under displacements u, over that
+ * undeformed: half of the cross product of its diagonals. Above 0 at every equilibrium. */
+double newton_cell_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i);
 /* -d(mean gap)/d(pressure) >= 0 by the tangent at u. */
 int newton_compliance(struct newton *newton, double *out, struct error *err);
 
