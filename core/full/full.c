@@ -307,6 +307,18 @@ static double contact_stretch(const struct full *f) {
     return corners > 0 ? sum_value(&now) / (double)corners : NAN;
 }
 
+static double deepest_node(const struct full *f) {
+    double deepest = 0;
+    for (size_t node = 0; node < f->mesh->face; node++)
+        deepest = fmax(deepest, -f->newton.gap[node]);
+    return deepest;
+}
+
+/* What violations are told over. */
+static double height_scale(const struct full *f) {
+    return f->rms > 0 ? f->rms : 1;
+}
+
 static void tell_report(const struct full *f, const struct newton_end *end,
                         const struct contact_state *state, struct full_report *report) {
     struct sum force = {0};
@@ -317,7 +329,8 @@ static void tell_report(const struct full *f, const struct newton_end *end,
     report->balance =
         state->pressure > 0 ? sum_value(&force) / (double)f->mesh->face / state->pressure - 1 : 0;
     report->residual = end->residual;
-    report->penetration = state->penetration;
+    report->penetration = deepest_node(f) / height_scale(f);
+    report->weighted_penetration = state->penetration;
     report->stretch = contact_stretch(f);
     report->slope = f->mesh->slope;
     report->quality = f->mesh->quality;
@@ -340,10 +353,10 @@ static int tell(struct full *f, const struct newton_end *end, struct contact_sta
         f->pressure[node] = n->active[node] ? fmax(DBL_MIN, force / newton_node_area(n)) : 0;
         out->nodes += n->active[node];
     }
-    double scale = f->rms > 0 ? f->rms : 1, compliance = 0;
+    double compliance = 0;
     out->mean_gap = sum_value(&gap) / (double)face * f->mesh->unit;
-    out->penetration = end->penetration / scale;
-    out->violation = fmax(end->inside, end->penetration) / scale;
+    out->penetration = end->penetration / height_scale(f);
+    out->violation = fmax(end->inside, end->penetration) / height_scale(f);
     if (out->nodes == 0)
         return 0;
     int status = newton_compliance(&f->newton, &compliance, err);

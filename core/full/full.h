@@ -38,10 +38,13 @@ struct full_report {
     double reached;     /* mean pressure of the last step that went well, E* */
     double balance;     /* (sum of contact forces over load) - 1 */
     double residual;    /* largest out-of-balance force, over the largest contact force */
-    double penetration; /* largest, over the RMS height */
-    double stretch;     /* tributary area of nodes in contact now, over that undeformed; or NaN */
-    double slope;       /* steepest edge of the face */
-    double quality;     /* least Jacobian over edges' lengths of all elements: 1 for bricks */
+    /* Of the nodes through the flat, the deepest, and the largest of the weighted gap outside of
+     * the contact (contact_state.penetration), which alone the solver keeps at 0; they differ with
+     * GAP_STANDARD. Over the RMS height, >= 0. */
+    double penetration, weighted_penetration;
+    double stretch; /* tributary area of nodes in contact now, over that undeformed; or NaN */
+    double slope;   /* steepest edge of the face */
+    double quality; /* least Jacobian over edges' lengths of all elements: 1 for bricks */
     double history[NEWTON_HISTORY]; /* of residuals, the latest last ... */
     size_t unchanged;               /* ... and how many of them since the active set changed */
 };

@@ -56,8 +56,8 @@ struct newton_end {
     size_t changes;     /* of single nodes of the active set */
     size_t cycles;      /* active sets that came back; from the first on nodes change one by one */
     double residual;    /* largest, over the largest contact force */
-    double inside;      /* largest |gap| in contact */
-    double penetration; /* largest -gap elsewhere, >= 0 */
+    double inside;      /* largest |weighted gap| in contact */
+    double penetration; /* largest -weighted gap elsewhere, >= 0 */
     double history[NEWTON_HISTORY]; /* residuals before each iteration; the latest last ... */
     size_t unchanged;               /* ... and how many of them since the active set changed */
 };
