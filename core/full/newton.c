@@ -14,6 +14,8 @@ static const double TRUSTED = 0.1, SETTLED = 1e-4;
 /* Residual left of the linear equations, when iterated. */
 static const double LINEAR_MOST = 1e-2, LINEAR_PART = 0.1, LINEAR_EXACT = 1e-10;
 static const double LINEAR_STIFFNESS = 1e-6;
+/* Of the highest height, that add up; of the load, at most, where the forces of these do. */
+static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
 /* At most: halvings of a step; rounds with the same set since the best one; sets that come back. */
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
 
@@ -73,6 +75,16 @@ static double contact_force(const struct newton *n, size_t node) {
     return n->force[mesh_vertical(n->mesh, node)];
 }
 
+/* What rounding makes of gaps, between heights and displacements as large as the highest of them,
+ * and of forces, by strains of such displacements. */
+static double gap_rounding(const struct newton *n) {
+    return ROUNDINGS * DBL_EPSILON * fabs(n->flat);
+}
+static double force_rounding(const struct newton *n) {
+    double stiffness = 2 * n->solid.shear + n->solid.local + n->solid.mean;
+    return gap_rounding(n) * stiffness * newton_node_area(n);
+}
+
 /* --- the active set --- */
 
 static double largest_force(const struct newton *n) {
@@ -112,7 +124,7 @@ static void active_fill(struct newton *n) {
 
 /* Moves the nodes that contradict: all, or the worst alone. Returns how many. */
 static size_t active_update(struct newton *n, bool one) {
-    double least = n->tolerance * largest_force(n), worst = 0;
+    double least = fmax(n->tolerance * largest_force(n), force_rounding(n)), worst = 0;
     size_t changes = 0, which = 0;
     for (size_t node = 0; node < n->mesh->face; node++) {
         double wrong = contradiction(n, node, least);
@@ -282,7 +294,7 @@ static bool face_folds(const struct newton *n) {
 /* Where a step starts. */
 struct start {
     double residual, potential, inside;
-    double closed; /* gaps up to this are none */
+    double closed, balanced; /* gaps and residuals up to these are none */
 };
 
 /* Takes the longest of the step and its halves that neither folds the face nor turns an element
@@ -347,7 +359,8 @@ static struct round look(struct newton *n, double pressure, bool first, struct m
     }
     measure(n, end);
     round.start.inside = end->inside;
-    round.start.closed = n->tolerance * round.largest / COMPLEMENTARITY;
+    round.start.closed = fmax(n->tolerance * round.largest / COMPLEMENTARITY, gap_rounding(n));
+    round.start.balanced = fmax(n->tolerance * round.largest, force_rounding(n));
     round.start.potential = potential(n, pressure);
     end->residual = round.start.residual / round.largest;
     remember_residual(end, end->residual, round.changes > 0);
@@ -383,6 +396,10 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
     struct progress progress = {.least = INFINITY};
     *end = (struct newton_end){0};
     n->factored = n->solver == SOLVER_FACTORED;
+    double load = pressure * newton_node_area(n) * (double)n->mesh->face;
+    if (force_rounding(n) > ROUNDING_MOST * load)
+        return error_set(err, ERROR_NUMERIC, "rounding makes forces up to %.2g of so light a load",
+                         force_rounding(n) / load);
     if (!n->evaluated && !evaluate(n))
         return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
     newton_measure_gaps(n);
@@ -392,7 +409,7 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
         bool first = end->iterations == 0;
         struct round round = look(n, pressure, first, &memory, end);
         const struct start *start = &round.start;
-        if (!first && round.changes == 0 && end->residual <= n->tolerance &&
+        if (!first && round.changes == 0 && start->residual <= start->balanced &&
             start->inside <= start->closed)
             return 0;
         double off = fmax(end->residual, start->inside * COMPLEMENTARITY / round.largest);

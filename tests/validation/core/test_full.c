@@ -338,6 +338,28 @@ static void first_touch_and_full_contact(void **state) {
     close_both(&p);
 }
 
+/* A load of 1e-12 E* strains less than heights are rounded: forces are known to 1e-5 of it. */
+static void light_loads_end_where_rounding_does(void **state) {
+    (void)state;
+    for (size_t c = 0; c < 2; c++) {
+        struct pressed p;
+        struct error err = {0};
+        struct block block = BLOCK;
+        block.weighting = c == 0 ? GAP_STANDARD : GAP_DUAL;
+        open_both(&p, line(128), block);
+        fill_rough(&p.scene, 0.1);
+        begin_both(&p);
+        assert_int_equal(full_press(p.full, 1e-12, &p.state, &p.report, &err), 0);
+        assert_int_equal(p.state.nodes, 1);
+        check_close(p.report.balance, 0, 1e-5);
+        press_both(&p, 0.01);
+        assert_int_equal(full_press(p.full, 0, &p.state, NULL, &err), 0);
+        assert_int_equal(full_press(p.full, 1e-16, &p.state, NULL, &err), ERROR_NUMERIC);
+        assert_non_null(strstr(err.text, "of so light a load"));
+        close_both(&p);
+    }
+}
+
 static void a_flat_block_is_all_in_contact(void **state) {
     (void)state;
     struct pressed p;
@@ -547,6 +569,7 @@ int main(void) {
         cmocka_unit_test(units_do_not_matter),
         cmocka_unit_test(nearly_incompressible_blocks_do_not_lock),
         cmocka_unit_test(first_touch_and_full_contact),
+        cmocka_unit_test(light_loads_end_where_rounding_does),
         cmocka_unit_test(a_flat_block_is_all_in_contact),
         cmocka_unit_test(plateaus_and_twins_touch_at_once),
         cmocka_unit_test(stiff_profiles_find_their_answer),
