@@ -21,6 +21,7 @@ const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1] = {
     [CONTACT_SCALAR_FULL_CHANGES] = "full_set_changes",
     [CONTACT_SCALAR_FULL_BALANCE] = "full_force_balance",
     [CONTACT_SCALAR_FULL_PENETRATION] = "full_penetration",
+    [CONTACT_SCALAR_FULL_WEIGHTED_PENETRATION] = "full_weighted_penetration",
     [CONTACT_SCALAR_FULL_STRETCH] = "full_stretch",
     [CONTACT_SCALAR_FULL_SLOPE] = "full_steepest_slope",
     [CONTACT_SCALAR_FULL_QUALITY] = "full_mesh_quality",
@@ -75,6 +76,8 @@ static void measure_full(struct contact_tally *tally, double *out) {
     out[CONTACT_SCALAR_FULL_CHANGES] = sum_of(n, finest_values(tally, MEASURE_CHANGES, full));
     out[CONTACT_SCALAR_FULL_BALANCE] = largest_of(n, finest_values(tally, MEASURE_BALANCE, full));
     out[CONTACT_SCALAR_FULL_PENETRATION] =
+        largest_of(n, finest_values(tally, MEASURE_DEEPEST, full));
+    out[CONTACT_SCALAR_FULL_WEIGHTED_PENETRATION] =
         largest_of(n, finest_values(tally, MEASURE_PENETRATION, full));
     if (solved > 0)
         out[CONTACT_SCALAR_FULL_STRETCH] = finest_values(tally, MEASURE_STRETCH, full)[solved - 1];

@@ -20,9 +20,10 @@ enum contact_scalar {
     CONTACT_SCALAR_FULL_LOAD_REACHED, /* the last with values; 0: no mesh, or no equilibrium */
     CONTACT_SCALAR_FULL_ITERATIONS,   /* Newton's, of all loads, as the cuts */
     CONTACT_SCALAR_FULL_CUTS,
-    CONTACT_SCALAR_FULL_CHANGES, /* of single nodes of the active set, of all loads */
-    CONTACT_SCALAR_FULL_BALANCE, /* largest, as the penetration, which is in RMS heights */
-    CONTACT_SCALAR_FULL_PENETRATION,
+    CONTACT_SCALAR_FULL_CHANGES,     /* of single nodes of the active set, of all loads */
+    CONTACT_SCALAR_FULL_BALANCE,     /* largest, as the penetrations, which are in RMS heights */
+    CONTACT_SCALAR_FULL_PENETRATION, /* of the nodes */
+    CONTACT_SCALAR_FULL_WEIGHTED_PENETRATION,
     CONTACT_SCALAR_FULL_STRETCH, /* at the last load reached */
     CONTACT_SCALAR_FULL_SLOPE,   /* steepest edge of the face; none without a mesh, as the next */
     CONTACT_SCALAR_FULL_QUALITY, /* least Jacobian over edges of the undeformed elements */

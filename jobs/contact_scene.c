@@ -156,6 +156,7 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
         [MEASURE_PENETRATION] = state->penetration,
         [MEASURE_CUTS] = report != NULL ? (double)report->cuts : NAN,
         [MEASURE_CHANGES] = report != NULL ? (double)report->changes : NAN,
+        [MEASURE_DEEPEST] = report != NULL ? report->penetration : NAN,
         [MEASURE_BALANCE] = report != NULL ? fabs(report->balance) : NAN,
         [MEASURE_STRETCH] = report != NULL ? report->stretch : NAN,
     };

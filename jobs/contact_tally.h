@@ -26,11 +26,12 @@ enum contact_measure {
     MEASURE_ITERATIONS,
     MEASURE_WORK, /* transforms of the level's grid */
     MEASURE_VIOLATION,
-    MEASURE_PENETRATION,
-    MEASURE_CUTS,    /* of load steps; of the model full alone, as all below */
-    MEASURE_CHANGES, /* of single nodes of the active set */
-    MEASURE_BALANCE, /* |sum of contact forces/load - 1| */
-    MEASURE_STRETCH, /* area of the nodes in contact now, over that undeformed */
+    MEASURE_PENETRATION, /* of the weighted gap */
+    MEASURE_CUTS,        /* of load steps; of the model full alone, as all below */
+    MEASURE_CHANGES,     /* of single nodes of the active set */
+    MEASURE_DEEPEST,     /* node through the flat */
+    MEASURE_BALANCE,     /* |sum of contact forces/load - 1| */
+    MEASURE_STRETCH,     /* area of the nodes in contact now, over that undeformed */
     MEASURE_COUNT
 };
 

@@ -9,7 +9,11 @@ const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
                                            .transition = 8,
                                            .tolerance = 1e-9,
                                            .max_iterations = 60,
-                                           .least_step = 1.0 / 64};
+                                           .least_step = 1.0 / 256};
+
+/* Change of a cell's stretch in a load step; failures, a load. */
+static const double STRETCH_MOST = 0.25;
+enum { CUTS = 12 };
 
 /* Within, lengths are in steps along x. */
 struct full {
@@ -217,65 +221,72 @@ static void restore(struct full *f) {
     memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
 }
 
-/* From the load kept to another: in one step, or in smaller ones that grow again. */
+/* Of the cells of the face, since the state kept. */
+static double stretch_change(const struct full *f) {
+    const struct mesh *m = f->mesh;
+    double most = 0;
+    for (size_t j = 0; j < m->level[0].ny; j++)
+        for (size_t i = 0; i < m->level[0].nx; i++)
+            most = fmax(most, fabs(newton_cell_stretch(m, f->newton.u, j, i) -
+                                   newton_cell_stretch(m, f->kept, j, i)));
+    return most;
+}
+
+/* One load step. An equilibrium further than STRETCH_MOST from the state kept may be one that the
+ * face comes to by folding only. *change: how far it is. */
+static int step_to(struct full *f, double load, double *change, struct newton_end *end,
+                   struct full_report *report, struct error *err) {
+    predict(f, load);
+    int status = newton_settle(&f->newton, load, end, err);
+    report->newton += end->iterations;
+    report->linear += end->linear;
+    report->factored += end->factored;
+    report->changes += end->changes;
+    report->cycles += end->cycles;
+    *change = status == 0 ? stretch_change(f) : 0;
+    if (*change > STRETCH_MOST)
+        status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
+    if (status != 0)
+        restore(f);
+    else {
+        keep(f, load);
+        report->steps++;
+    }
+    return status;
+}
+
+/* From the load kept to another: in one step, or in smaller ones that grow again once two in a row
+ * have gone well and not too far. */
 static int raise_load(struct full *f, double goal, struct newton_end *end,
                       struct full_report *report, struct error *err) {
-    double whole = goal - f->load, step = whole;
+    double whole = goal - f->load, step = whole, change;
+    bool cut = false;
     int status = 0;
     do {
-        bool last = fabs(step) >= fabs(goal - f->load);
-        double next = last ? goal : f->load + step;
-        predict(f, next);
-        status = newton_settle(&f->newton, next, end, err);
-        report->newton += end->iterations;
-        report->linear += end->linear;
-        report->factored += end->factored;
-        report->changes += end->changes;
-        report->cycles += end->cycles;
+        step = fabs(step) < fabs(goal - f->load) ? step : goal - f->load;
+        double next = step == goal - f->load ? goal : f->load + step;
+        status = step_to(f, next, &change, end, report, err);
         if (status == 0) {
-            keep(f, next);
-            report->steps++;
-            step *= 2;
-        } else {
-            restore(f);
-            if (status != ERROR_NUMERIC)
-                return status;
-            report->cuts++;
-            step /= 2;
-            if (fabs(step) < f->options.least_step * fabs(whole) || whole == 0)
-                return error_context(err,
-                                     "contact on the true geometry under a mean pressure of %g E* "
-                                     "was reached up to %g E* only (steepest slope %.3g, worst "
-                                     "element %.2g); the next step of %.2g E* failed",
-                                     goal, f->load, f->mesh->slope, f->mesh->quality, 2 * step);
+            step *= cut || 2 * change > STRETCH_MOST ? 1 : 2;
+            cut = false;
+            continue;
         }
+        if (status != ERROR_NUMERIC)
+            return status;
+        cut = true;
+        step /= 2;
+        report->cuts++;
+        if (report->cuts == CUTS || fabs(step) < f->options.least_step * fabs(whole) || whole == 0)
+            return error_context(err,
+                                 "contact on the true geometry under a mean pressure of %g E* was "
+                                 "reached up to %g E* only (steepest slope %.3g, worst element "
+                                 "%.2g); the next step of %.2g E* failed",
+                                 goal, f->load, f->mesh->slope, f->mesh->quality, 2 * step);
     } while (f->load != goal || status != 0);
     return 0;
 }
 
 /* --- what is told --- */
-
-/* Displacement of a node of the face along x or y. */
-static double sideways(const struct full *f, size_t node, size_t axis) {
-    return f->newton.u[node * (size_t)f->mesh->dimension + axis];
-}
-
-/* Area of a face cell as seen from the flat, now, over that undeformed: half of the cross product
- * of its diagonals. */
-static double cell_stretch(const struct full *f, size_t j, size_t i) {
-    const struct mesh *m = f->mesh;
-    size_t nx = m->level[0].nx, ny = m->level[0].ny;
-    size_t right = (i + 1) % nx, back = (j + 1) % ny;
-    size_t a = j * nx + i, b = j * nx + right;
-    if (m->dimension == 2)
-        return 1 + sideways(f, b, 0) - sideways(f, a, 0);
-    size_t c = back * nx + i, e = back * nx + right;
-    double x1 = 1 + sideways(f, e, 0) - sideways(f, a, 0);
-    double y1 = m->across + sideways(f, e, 1) - sideways(f, a, 1);
-    double x2 = -1 + sideways(f, c, 0) - sideways(f, b, 0);
-    double y2 = m->across + sideways(f, c, 1) - sideways(f, b, 1);
-    return (x1 * y2 - x2 * y1) / (2 * m->across);
-}
 
 /* Each cell gives a node its share: the integral of N is the same for all its corners where the
  * cell is a parallelogram, and nearly so elsewhere. */
@@ -291,9 +302,21 @@ static double contact_stretch(const struct full *f) {
             if (m->dimension == 3)
                 touching += active[back * nx + i] + active[back * nx + right];
             corners += (size_t)touching;
-            sum_add(&now, touching * cell_stretch(f, j, i));
+            sum_add(&now, touching * newton_cell_stretch(m, f->newton.u, j, i));
         }
     return corners > 0 ? sum_value(&now) / (double)corners : NAN;
+}
+
+static double deepest_node(const struct full *f) {
+    double deepest = 0;
+    for (size_t node = 0; node < f->mesh->face; node++)
+        deepest = fmax(deepest, -f->newton.gap[node]);
+    return deepest;
+}
+
+/* What violations are told over. */
+static double height_scale(const struct full *f) {
+    return f->rms > 0 ? f->rms : 1;
 }
 
 static void tell_report(const struct full *f, const struct newton_end *end,
@@ -306,7 +329,8 @@ static void tell_report(const struct full *f, const struct newton_end *end,
     report->balance =
         state->pressure > 0 ? sum_value(&force) / (double)f->mesh->face / state->pressure - 1 : 0;
     report->residual = end->residual;
-    report->penetration = state->penetration;
+    report->penetration = deepest_node(f) / height_scale(f);
+    report->weighted_penetration = state->penetration;
     report->stretch = contact_stretch(f);
     report->slope = f->mesh->slope;
     report->quality = f->mesh->quality;
@@ -329,10 +353,10 @@ static int tell(struct full *f, const struct newton_end *end, struct contact_sta
         f->pressure[node] = n->active[node] ? fmax(DBL_MIN, force / newton_node_area(n)) : 0;
         out->nodes += n->active[node];
     }
-    double scale = f->rms > 0 ? f->rms : 1, compliance = 0;
+    double compliance = 0;
     out->mean_gap = sum_value(&gap) / (double)face * f->mesh->unit;
-    out->penetration = end->penetration / scale;
-    out->violation = fmax(end->inside, end->penetration) / scale;
+    out->penetration = end->penetration / height_scale(f);
+    out->violation = fmax(end->inside, end->penetration) / height_scale(f);
     if (out->nodes == 0)
         return 0;
     int status = newton_compliance(&f->newton, &compliance, err);

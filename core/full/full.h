@@ -5,8 +5,11 @@
  * same block guesses which nodes touch at each load; it has no part in the answer. Pressures p are
  * contact forces over the nodes' tributary areas on the undeformed grid, so that their mean is the
  * load, exactly; how much the contact has shrunk or stretched sideways is told beside
- * (full_report.stretch). A solver belongs to one thread; the elastic state has no history, but each
- * load starts from the one before. */
+ * (full_report.stretch). The face does not touch itself: where it would fold over itself a load
+ * finds no equilibrium. In a load step no cell of the face stretches by more than a quarter, so
+ * that one load and many lead to the same answer; but for St Venant's solid, where single elements
+ * snap within that: what it reaches near its limit depends on the loads. A solver belongs to one
+ * thread; the elastic state has no history, but each load starts from the one before. */
 #ifndef RUGO_CORE_FULL_FULL_H
 #define RUGO_CORE_FULL_FULL_H
 
@@ -35,10 +38,13 @@ struct full_report {
     double reached;     /* mean pressure of the last step that went well, E* */
     double balance;     /* (sum of contact forces over load) - 1 */
     double residual;    /* largest out-of-balance force, over the largest contact force */
-    double penetration; /* largest, over the RMS height */
-    double stretch;     /* tributary area of nodes in contact now, over that undeformed; or NaN */
-    double slope;       /* steepest edge of the face */
-    double quality;     /* least Jacobian over edges' lengths of all elements: 1 for bricks */
+    /* Of the nodes through the flat, the deepest, and the largest of the weighted gap outside of
+     * the contact (contact_state.penetration), which alone the solver keeps at 0; they differ with
+     * GAP_STANDARD. Over the RMS height, >= 0. */
+    double penetration, weighted_penetration;
+    double stretch; /* tributary area of nodes in contact now, over that undeformed; or NaN */
+    double slope;   /* steepest edge of the face */
+    double quality; /* least Jacobian over edges' lengths of all elements: 1 for bricks */
     double history[NEWTON_HISTORY]; /* of residuals, the latest last ... */
     size_t unchanged;               /* ... and how many of them since the active set changed */
 };

@@ -14,8 +14,10 @@ static const double TRUSTED = 0.1, SETTLED = 1e-4;
 /* Residual left of the linear equations, when iterated. */
 static const double LINEAR_MOST = 1e-2, LINEAR_PART = 0.1, LINEAR_EXACT = 1e-10;
 static const double LINEAR_STIFFNESS = 1e-6;
-/* A step is halved so often at most. */
-enum { HALVINGS = 8 };
+/* Of the highest height, that add up; of the load, at most, where the forces of these do. */
+static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
+/* At most: halvings of a step; rounds with the same set since the best one; sets that come back. */
+enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
@@ -73,6 +75,16 @@ static double contact_force(const struct newton *n, size_t node) {
     return n->force[mesh_vertical(n->mesh, node)];
 }
 
+/* What rounding makes of gaps, between heights and displacements as large as the highest of them,
+ * and of forces, by strains of such displacements. */
+static double gap_rounding(const struct newton *n) {
+    return ROUNDINGS * DBL_EPSILON * fabs(n->flat);
+}
+static double force_rounding(const struct newton *n) {
+    double stiffness = 2 * n->solid.shear + n->solid.local + n->solid.mean;
+    return gap_rounding(n) * stiffness * newton_node_area(n);
+}
+
 /* --- the active set --- */
 
 static double largest_force(const struct newton *n) {
@@ -112,7 +124,7 @@ static void active_fill(struct newton *n) {
 
 /* Moves the nodes that contradict: all, or the worst alone. Returns how many. */
 static size_t active_update(struct newton *n, bool one) {
-    double least = n->tolerance * largest_force(n), worst = 0;
+    double least = fmax(n->tolerance * largest_force(n), force_rounding(n)), worst = 0;
     size_t changes = 0, which = 0;
     for (size_t node = 0; node < n->mesh->face; node++) {
         double wrong = contradiction(n, node, least);
@@ -146,11 +158,13 @@ struct memory {
     size_t count;
 };
 
-/* Whether this set was met before; it is now. */
+/* Whether this set was met before; it is now. After a meeting memory is empty. */
 static bool memory_meets(struct memory *memory, uint64_t hash) {
     for (size_t a = 0; a < memory->count && a < REMEMBERED; a++)
-        if (memory->hash[a] == hash)
+        if (memory->hash[a] == hash) {
+            memory->count = 0;
             return true;
+        }
     memory->hash[memory->count++ % REMEMBERED] = hash;
     return false;
 }
@@ -222,11 +236,11 @@ static int solve_factored(struct newton *n, double tolerance, struct newton_end 
     int status = n->factor == NULL ? factor_create(&n->factor, n->mesh, err) : 0;
     if (status == 0)
         status = factor_run(n->factor, n->tangent, n->active, err);
-    if (status == ERROR_NUMERIC) { /* far from balance, stress may outweigh stiffness */
+    if (status == ERROR_NUMERIC) { /* where stress outweighs stiffness, the guide does without it */
         n->solid.convex = true;
-        bool made = evaluate(n);
+        status = evaluate(n) ? factor_run(n->factor, n->tangent, n->active, err) : status;
         n->solid.convex = false;
-        status = made ? factor_run(n->factor, n->tangent, n->active, err) : status;
+        (void)evaluate(n); /* as it did before */
     }
     if (status != 0)
         return status;
@@ -254,33 +268,61 @@ static int newton_change(struct newton *n, double off, struct newton_end *end, s
     return (n->factored ? solve_factored : solve_iterated)(n, tolerance, end, err);
 }
 
+double newton_cell_stretch(const struct mesh *m, const double *u, size_t j, size_t i) {
+    size_t nx = m->level[0].nx, d = (size_t)m->dimension;
+    size_t right = (i + 1) % nx, back = (j + 1) % m->level[0].ny;
+    const double *a = u + (j * nx + i) * d, *b = u + (j * nx + right) * d;
+    if (d == 2)
+        return 1 + b[0] - a[0];
+    const double *c = u + (back * nx + i) * d, *e = u + (back * nx + right) * d;
+    double x1 = 1 + e[0] - a[0], y1 = m->across + e[1] - a[1];
+    double x2 = -1 + c[0] - b[0], y2 = m->across + c[1] - b[1];
+    return (x1 * y2 - x2 * y1) / (2 * m->across);
+}
+
+/* Whether a cell of the face is turned from the flat: contact, which knows nothing of what lies
+ * sideways of a node, would let the face pass through itself there. */
+static bool face_folds(const struct newton *n) {
+    const struct level *face = &n->mesh->level[0];
+    for (size_t j = 0; j < face->ny; j++)
+        for (size_t i = 0; i < face->nx; i++)
+            if (newton_cell_stretch(n->mesh, n->u, j, i) <= 0)
+                return true;
+    return false;
+}
+
 /* Where a step starts. */
 struct start {
     double residual, potential, inside;
-    double closed; /* gaps up to this are none */
+    double closed, balanced; /* gaps and residuals up to these are none */
 };
 
-/* Takes the longest of the step and its halves that turns no element inside out and, where nodes in
- * contact already lie on the flat, brings the forces or the energy down. */
+/* Takes the longest of the step and its halves that neither folds the face nor turns an element
+ * inside out and, where nodes in contact already lie on the flat, brings the forces or the energy
+ * down. */
 static int advance(struct newton *n, double pressure, const struct start *start,
                    struct error *err) {
     size_t unknowns = newton_unknowns(n);
     double length = 1;
-    bool feasible = start->inside <= start->closed;
+    bool feasible = start->inside <= start->closed, folds = false;
     memcpy(n->before, n->u, unknowns * sizeof *n->before);
     int status = ERROR_NUMERIC;
     for (int halving = 0; status != 0 && halving < HALVINGS; halving++, length /= 2) {
         for (size_t f = 0; f < unknowns; f++)
             n->u[f] = n->before[f] + length * n->change[f];
-        if (!evaluate(n))
+        folds = face_folds(n);
+        if (folds || !evaluate(n))
             continue;
         if (!feasible || residual(n, pressure, n->rest) <= start->residual ||
             potential(n, pressure) < start->potential)
             status = 0;
     }
-    return status == 0 ? 0
-                       : error_set(err, ERROR_NUMERIC,
-                                   "a step of Newton's turns elements inside out or leads uphill");
+    if (status == 0)
+        return 0;
+    n->evaluated = false;
+    return error_set(err, status,
+                     folds ? "the face folds over itself"
+                           : "a step of Newton's turns elements inside out or leads uphill");
 }
 
 static void remember_residual(struct newton_end *end, double value, bool changed) {
@@ -300,7 +342,7 @@ struct round {
 
 /* Gaps and forces at u; from the second go on, what they say of the set. A set that was there
  * before would go on coming back: from then on it changes a node at a time, and only near balance.
- */
+ * One that comes back even so tells of no equilibrium. */
 static struct round look(struct newton *n, double pressure, bool first, struct memory *memory,
                          struct newton_end *end) {
     struct round round = {.largest = 0};
@@ -313,22 +355,51 @@ static struct round look(struct newton *n, double pressure, bool first, struct m
     if (round.changes > 0) {
         end->changes += round.changes;
         round.start.residual = residual(n, pressure, n->change);
-        if (memory_meets(memory, active_hash(n)) && !careful)
-            end->cycles++;
+        end->cycles += memory_meets(memory, active_hash(n));
     }
     measure(n, end);
     round.start.inside = end->inside;
-    round.start.closed = n->tolerance * round.largest / COMPLEMENTARITY;
+    round.start.closed = fmax(n->tolerance * round.largest / COMPLEMENTARITY, gap_rounding(n));
+    round.start.balanced = fmax(n->tolerance * round.largest, force_rounding(n));
     round.start.potential = potential(n, pressure);
     end->residual = round.start.residual / round.largest;
     remember_residual(end, end->residual, round.changes > 0);
     return round;
 }
 
+/* The best round with the active set as it is. */
+struct progress {
+    double least;  /* off */
+    size_t rounds; /* since */
+};
+
+/* Whether to go on from a round that is off by so much. */
+static int check_progress(const struct newton *n, struct progress *progress, double off,
+                          bool changed, const struct newton_end *end, struct error *err) {
+    bool better = changed || off < progress->least;
+    progress->least = better ? off : progress->least;
+    progress->rounds = better ? 0 : progress->rounds + 1;
+    if (end->cycles > RETURNS)
+        return error_set(err, ERROR_NUMERIC, "the sets of nodes in contact come back");
+    if (end->iterations == n->max_iterations || progress->rounds > PATIENCE)
+        return error_set(err, ERROR_NUMERIC,
+                         "%zu iterations of Newton's left %.2g of the largest force",
+                         end->iterations, end->residual);
+    if (n->stop != NULL && n->stop(n->context) != 0)
+        return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of Newton's",
+                         end->iterations);
+    return 0;
+}
+
 int newton_settle(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
     struct memory memory = {0};
+    struct progress progress = {.least = INFINITY};
     *end = (struct newton_end){0};
     n->factored = n->solver == SOLVER_FACTORED;
+    double load = pressure * newton_node_area(n) * (double)n->mesh->face;
+    if (force_rounding(n) > ROUNDING_MOST * load)
+        return error_set(err, ERROR_NUMERIC, "rounding makes forces up to %.2g of so light a load",
+                         force_rounding(n) / load);
     if (!n->evaluated && !evaluate(n))
         return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
     newton_measure_gaps(n);
@@ -338,19 +409,15 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
         bool first = end->iterations == 0;
         struct round round = look(n, pressure, first, &memory, end);
         const struct start *start = &round.start;
-        if (!first && round.changes == 0 && end->residual <= n->tolerance &&
+        if (!first && round.changes == 0 && start->residual <= start->balanced &&
             start->inside <= start->closed)
             return 0;
-        if (end->iterations == n->max_iterations)
-            return error_set(err, ERROR_NUMERIC,
-                             "%zu iterations of Newton's left %.2g of the largest force",
-                             end->iterations, end->residual);
-        if (n->stop != NULL && n->stop(n->context) != 0)
-            return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of Newton's",
-                             end->iterations);
-        end->iterations++;
         double off = fmax(end->residual, start->inside * COMPLEMENTARITY / round.largest);
-        int status = newton_change(n, off, end, err);
+        int status = check_progress(n, &progress, off, round.changes > 0, end, err);
+        if (status != 0)
+            return status;
+        end->iterations++;
+        status = newton_change(n, off, end, err);
         if (status == ERROR_NUMERIC && !n->factored && factorable(n->mesh)) {
             n->factored = true;
             if (evaluate(n))

@@ -54,10 +54,10 @@ struct newton_end {
     size_t linear;      /* iterations of the linear equations */
     size_t factored;    /* factorisations */
     size_t changes;     /* of single nodes of the active set */
-    size_t cycles;      /* active sets that came back and had to be taken apart node by node */
+    size_t cycles;      /* active sets that came back; from the first on nodes change one by one */
     double residual;    /* largest, over the largest contact force */
-    double inside;      /* largest |gap| in contact */
-    double penetration; /* largest -gap elsewhere, >= 0 */
+    double inside;      /* largest |weighted gap| in contact */
+    double penetration; /* largest -weighted gap elsewhere, >= 0 */
     double history[NEWTON_HISTORY]; /* residuals before each iteration; the latest last ... */
     size_t unchanged;               /* ... and how many of them since the active set changed */
 };
@@ -71,6 +71,9 @@ int newton_settle(struct newton *newton, double pressure, struct newton_end *end
 void newton_measure_gaps(struct newton *newton);
 /* D of every node, and its sum. */
 double newton_node_area(const struct newton *newton);
+/* Area of the face's cell in row j, column i as seen from the flat under displacements u, over that
+ * undeformed: half of the cross product of its diagonals. Above 0 at every equilibrium. */
+double newton_cell_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i);
 /* -d(mean gap)/d(pressure) >= 0 by the tangent at u. */
 int newton_compliance(struct newton *newton, double *out, struct error *err);
 
