@@ -9,8 +9,6 @@
 /* Stiffness beyond this, in units of E* h'/sqrt(m0), is that of full contact but for rounding; its
  * square must fit into exact sums. */
 static const double STIFFNESS_MOST = 1e6;
-/* Of a contact area that is all of the flat. */
-static const double ROUNDING = 1e-6;
 
 struct contact_scene {
     const struct contact_case *study;
@@ -173,28 +171,6 @@ static void count_pressures(const struct contact_scene *scene, size_t model, siz
             contact_tally_pressures(tally, model, a, p, 1 / (now * scene->rms_slope), now);
 }
 
-/* The face has no contact with itself: sides of valleys may pass through each other, and more of it
- * then touches than there is of the flat, which is no answer. */
-static int press(const struct contact_scene *scene, size_t model, size_t level, double load,
-                 struct contact_state *state, const struct full_report **report,
-                 struct error *err) {
-    double points = (double)grid_points(&scene->study->levels[level].grid);
-    int status = contact_solver_press(scene->solvers[model][level], load * scene->rms_slope, state,
-                                      report, err);
-    const struct full_report *full = *report;
-    if (full == NULL)
-        return status == 0 ? 0 : error_context(err, "load %g", load);
-    if (status != 0)
-        return error_context(err, "load %g, reached %.4g", load, full->reached / scene->rms_slope);
-    double area = present(full) * (double)state->nodes / points;
-    if (area >= 0 && area <= 1 + ROUNDING)
-        return 0;
-    return error_set(err, ERROR_NUMERIC,
-                     "load %g: the contact is %.4g times as large as the flat: sides of valleys "
-                     "have passed through each other (steepest slope %.3g)",
-                     load, area, full->slope);
-}
-
 struct stopper {
     int (*stop)(void *context);
     void *context;
@@ -219,10 +195,16 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
         if (stopper->stop(stopper->context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
                              study->load_count);
-        status = press(scene, model, level, study->loads[k], &state, &report, err);
+        status =
+            contact_solver_press(solver, study->loads[k] * scene->rms_slope, &state, &report, err);
         if (status == 0)
             measure(scene, model, level, &state, report, tally,
                     contact_case_cell(study, model, level, k));
+        else if (report != NULL)
+            error_context(err, "load %g, reached %.4g", study->loads[k],
+                          report->reached / scene->rms_slope);
+        else
+            error_context(err, "load %g", study->loads[k]);
         if (status == 0 && finest)
             count_pressures(scene, model, k, state.p, present(report), tally);
     }

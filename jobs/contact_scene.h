@@ -32,9 +32,8 @@ double contact_scene_bytes(const struct contact_case *study);
  * tally's values. stop is asked before each load, and by the model full before each iteration of
  * Newton's; non-zero ends it with ERROR_STOPPED. ERROR_NUMERIC names model, level and load.
  *
- * Where the model full finds no mesh or no equilibrium, or more touches than there is of the flat,
- * the realisation has no values of it on that level from that load on: that is no error, but a note
- * of the tally. */
+ * Where the model full finds no mesh or no equilibrium, the realisation has no values of it on that
+ * level from that load on: that is no error, but a note of the tally. */
 int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
                         int (*stop)(void *context), void *context, struct error *err);
 
