@@ -41,7 +41,7 @@ static double full_seconds(const struct contact_case *study, size_t model,
     struct contact_full_size size = contact_full_size(study, model, grid);
     bool profile = grid_is_profile(grid);
     double linear = (profile ? 36 : 80) + (size.bulk ? 50 : 0);
-    double nanoseconds = (profile ? 330 : 2500) + linear * size.linear;
+    double nanoseconds = (profile ? 250 : 1100) + linear * size.linear;
     if (size.factored)
         nanoseconds = profile ? 5000 : 7e4;
     return 1e-9 * nanoseconds * size.freedoms * size.newton * (double)study->load_count;

@@ -5,7 +5,7 @@
 /* Beyond these the equations are factorised, where the mesh allows it (core/full/newton.h). */
 static const double LINEAR_MOST = 20, SURFACE_FACTORED = 20000;
 /* An iteration of Newton's on a freedom takes as long as so many transforms on a point. */
-static const double PROFILE_TRANSFORMS = 115, SURFACE_TRANSFORMS = 580;
+static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
 
 /* Of a factorisation, a freedom. */
 static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
