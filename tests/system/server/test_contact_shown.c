@@ -20,7 +20,7 @@ static int setup(void **state) {
     spit("steep.json",
          "{\"name\":\"steep\",\"kind\":\"contact\",\"seed\":3,\"realisations\":8,\"surface\":{"
          "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":2,\"length_ratio\":2,"
-         "\"points_per_wavelength\":6,\"rms_slope\":1.9},\"contact\":{\"model\":[\"full\","
+         "\"points_per_wavelength\":6,\"rms_slope\":1.2},\"contact\":{\"model\":[\"full\","
          "\"layered\"],\"block_height\":{\"lengths\":1},\"pressures\":{\"to\":0.5,\"steps\":3}}}");
     spit("wave.json",
          "{\"name\":\"wave\",\"kind\":\"contact\",\"realisations\":2,\"surface\":{\"dimension\":1,"
