@@ -37,12 +37,11 @@ struct point {
 /* Of a level whose nodes are `wide` columns apart. */
 static struct point point_of(const struct mesh *mesh, size_t k, size_t wide, size_t j, size_t i) {
     const struct level *level = &mesh->level[k];
-    double width = (double)(level->width / wide);
-    struct point point = {.x = (double)i * width, .y = (double)j * width * mesh->across};
+    size_t width = level->width / wide;
+    struct point point = {.x = (double)(i * width), .y = (double)(j * width) * mesh->across};
     for (size_t back = 0; back <= j % wide; back++)
         for (size_t right = 0; right <= i % wide; right++)
-            point.node[point.count++] = level->first + (j / wide + back) % level->ny * level->nx +
-                                        (i / wide + right) % level->nx;
+            point.node[point.count++] = level_node(level, j / wide + back, i / wide + right);
     return point;
 }
 

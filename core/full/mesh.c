@@ -125,12 +125,6 @@ static double hanging_weight(size_t parity, int corner, int node) {
     return node == 1 ? at : 1 - at;
 }
 
-/* Row and column up to one beyond the last, which is the first. */
-static size_t level_node(const struct level *level, size_t j, size_t i) {
-    size_t row = j < level->ny ? j : 0, column = i < level->nx ? i : 0;
-    return level->first + row * level->nx + column;
-}
-
 void mesh_element(const struct mesh *mesh, size_t layer, size_t j, size_t i,
                   struct mesh_element *out) {
     const struct level *upper = &mesh->level[layer], *lower = upper + 1;

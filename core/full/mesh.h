@@ -80,6 +80,11 @@ static inline size_t mesh_vertical(const struct mesh *mesh, size_t node) {
 static inline size_t mesh_far_side(const struct mesh *mesh) {
     return mesh->level[mesh->layers].first;
 }
+/* Node in a row and column; one beyond the last is the first. */
+static inline size_t level_node(const struct level *level, size_t j, size_t i) {
+    size_t row = j < level->ny ? j : 0, column = i < level->nx ? i : 0;
+    return level->first + row * level->nx + column;
+}
 static inline size_t level_nodes(const struct level *level) {
     return level->nx * level->ny;
 }

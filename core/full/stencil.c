@@ -154,13 +154,13 @@ static void untie(size_t d, const struct mesh_element *element, struct contribut
  * unless it is the second column's second side. */
 INLINE size_t slot_between(int d, int a, int b, int parity) {
     bool across = (a ^ b) >> (d - 1) & 1;
-    int slot = 0, power = 1;
+    size_t slot = 0, power = 1;
     for (int k = 0; k < d - 1; k++) {
         int from = a >> k & 1 & (across ? parity >> k : 1);
-        slot += ((b >> k & 1) - from + 1) * power;
+        slot += (size_t)((b >> k & 1) - from + 1) * power;
         power *= 3;
     }
-    return (size_t)(slot + (across ? power : 0));
+    return slot + (across ? power : 0);
 }
 
 /* parity: bit k tells whether the element is the second one of a wide column along axis k; all set
