@@ -263,6 +263,11 @@ static void newton_converges_quadratically(void **state) {
         for (size_t k = 0; k + 2 < p.report.unchanged && k < 3; k++)
             assert_true(last[-(ptrdiff_t)k] <=
                         last[-(ptrdiff_t)k - 1] * last[-(ptrdiff_t)k - 1] + 2e-10);
+        for (size_t k = p.report.unchanged; k-- > 1;) {
+            double before = last[-(ptrdiff_t)k], after = last[1 - (ptrdiff_t)k];
+            print_message("load %.2f: %.1e, over the square of %.1e: %.2g\n", load, after, before,
+                          after / (before * before));
+        }
     }
     close_both(&p);
 }
@@ -416,6 +421,24 @@ static void stiff_profiles_find_their_answer(void **state) {
         assert_true(p.report.quality < 1 && p.report.slope > CASES[c].slope);
         close_both(&p);
     }
+}
+
+/* In one load, which goes up in a few steps that grow again after the first ones were too long.
+ * Active sets come back on the way; were these not taken apart node by node, a fortieth of the load
+ * would be the end. */
+static void sets_that_come_back_are_taken_apart(void **state) {
+    (void)state;
+    struct pressed p;
+    struct block block = BLOCK;
+    block.poisson = 0.4999;
+    block.weighting = GAP_STANDARD;
+    open_both(&p, line(128), block);
+    fill_waves(&p.scene, 0.6, 4, 4);
+    begin_both(&p);
+    press_both(&p, 0.2);
+    assert_true(p.report.cycles > 0 && p.report.cuts >= 4);
+    assert_true(p.report.steps < (size_t)1 << (p.report.cuts - 1));
+    close_both(&p);
 }
 
 /* Profiles of RMS slope 1 with 8 to 16 waves a cell, whose valleys close before the loads of a
@@ -573,6 +596,7 @@ int main(void) {
         cmocka_unit_test(a_flat_block_is_all_in_contact),
         cmocka_unit_test(plateaus_and_twins_touch_at_once),
         cmocka_unit_test(stiff_profiles_find_their_answer),
+        cmocka_unit_test(sets_that_come_back_are_taken_apart),
         cmocka_unit_test(one_load_and_many_end_before_a_fold),
         cmocka_unit_test(failures_name_the_load_reached),
         cmocka_unit_test(a_stopped_load_is_taken_up_again),
