@@ -129,7 +129,7 @@ double full_bytes(const struct grid *grid, const struct block *block,
     struct mesh *mesh = NULL;
     if (mesh_create(&mesh, grid, block, options->transition, NULL) != 0)
         return NAN;
-    enum { VECTORS = 6, FACES = 8 }; /* newton.h and this file: unknowns, face */
+    enum { VECTORS = 6, FACES = 7 }; /* newton.h and this file: unknowns, face */
     struct solid solid = solid_of(block->poisson, options->kinematics);
     bool bulk = krylov_needs_bulk(&solid);
     double unknowns = (double)(mesh_freedoms(mesh) + (bulk ? mesh->elements : 0));
@@ -227,8 +227,8 @@ static double stretch_change(const struct full *f) {
     double most = 0;
     for (size_t j = 0; j < m->level[0].ny; j++)
         for (size_t i = 0; i < m->level[0].nx; i++)
-            most = fmax(most, fabs(newton_cell_stretch(m, f->newton.u, j, i) -
-                                   newton_cell_stretch(m, f->kept, j, i)));
+            most = fmax(most,
+                        fabs(mesh_stretch(m, f->newton.u, j, i) - mesh_stretch(m, f->kept, j, i)));
     return most;
 }
 
@@ -302,7 +302,7 @@ static double contact_stretch(const struct full *f) {
             if (m->dimension == 3)
                 touching += active[back * nx + i] + active[back * nx + right];
             corners += (size_t)touching;
-            sum_add(&now, touching * newton_cell_stretch(m, f->newton.u, j, i));
+            sum_add(&now, touching * mesh_stretch(m, f->newton.u, j, i));
         }
     return corners > 0 ? sum_value(&now) / (double)corners : NAN;
 }

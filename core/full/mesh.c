@@ -258,3 +258,15 @@ int mesh_shape(struct mesh *mesh, const double *z, struct error *err) {
     }
     return quality_check(mesh, err);
 }
+
+double mesh_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i) {
+    size_t nx = mesh->level[0].nx, d = (size_t)mesh->dimension;
+    size_t right = (i + 1) % nx, back = (j + 1) % mesh->level[0].ny;
+    const double *a = u + (j * nx + i) * d, *b = u + (j * nx + right) * d;
+    if (d == 2)
+        return 1 + b[0] - a[0];
+    const double *c = u + (back * nx + i) * d, *e = u + (back * nx + right) * d;
+    double x1 = 1 + e[0] - a[0], y1 = mesh->across + e[1] - a[1];
+    double x2 = -1 + c[0] - b[0], y2 = mesh->across + c[1] - b[1];
+    return (x1 * y2 - x2 * y1) / (2 * mesh->across);
+}

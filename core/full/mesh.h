@@ -69,6 +69,10 @@ void mesh_corners_add(const struct mesh *mesh, const struct mesh_element *elemen
 void mesh_position(const struct mesh *mesh, const struct mesh_element *element,
                    double position[8][3]);
 
+/* Area of the face's cell in row j, column i as seen from the flat under displacements u
+ * (mesh_freedoms), over that undeformed: half of the cross product of its diagonals. */
+double mesh_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i);
+
 static inline size_t mesh_freedoms(const struct mesh *mesh) {
     return mesh->nodes * (size_t)mesh->dimension;
 }

@@ -22,8 +22,8 @@ enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
 int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
     *out = (struct newton){.mesh = mesh, .solid = *solid, .solver = solver};
-    double **const arrays[] = {&out->u,    &out->force, &out->before, &out->change,
-                               &out->rest, &out->gap,   &out->opening};
+    double **const arrays[] = {&out->u, &out->force, &out->before, &out->change};
+    double **const faces[] = {&out->gap, &out->opening};
     int status = stencil_create(&out->tangent, mesh, krylov_needs_bulk(solid), err);
     if (status == 0)
         status = krylov_create(&out->krylov, mesh, solid, weighting, err);
@@ -31,6 +31,11 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct soli
         *arrays[a] = array_create(newton_unknowns(out), sizeof(double));
         if (*arrays[a] == NULL)
             status = error_memory(err, newton_unknowns(out) * sizeof(double), "displacements");
+    }
+    for (size_t a = 0; status == 0 && a < sizeof faces / sizeof *faces; a++) {
+        *faces[a] = array_create(mesh->face, sizeof(double));
+        if (*faces[a] == NULL)
+            status = error_memory(err, mesh->face * sizeof(double), "gaps");
     }
     if (status == 0) {
         out->active = array_create(mesh->face, sizeof *out->active);
@@ -54,7 +59,6 @@ void newton_clear(struct newton *n) {
     free(n->force);
     free(n->before);
     free(n->change);
-    free(n->rest);
     free(n->gap);
     free(n->opening);
     free(n->active);
@@ -205,24 +209,17 @@ static void measure(const struct newton *n, struct newton_end *end) {
     }
 }
 
-/* Forces, tangent and energy at u. Factorisations are for the displacements alone: pressures follow
+/* Forces and tangent at u. Factorisations are for the displacements alone: pressures follow
  * them there. */
 static bool evaluate(struct newton *n) {
     size_t freedoms = mesh_freedoms(n->mesh);
     n->tangent->bound = n->factored;
-    n->evaluated = stencil_evaluate(n->mesh, &n->solid, n->u, &n->energy, n->force, n->tangent);
+    n->evaluated = stencil_evaluate(n->mesh, &n->solid, n->u, NULL, n->force, n->tangent);
     for (size_t f = freedoms; n->factored && n->evaluated && f < newton_unknowns(n); f++) {
         n->u[f] -= n->force[f];
         n->force[f] = 0;
     }
     return n->evaluated;
-}
-
-/* Potential energy of the block and the load. */
-static double potential(const struct newton *n, double pressure) {
-    size_t far_side = mesh_far_side(n->mesh);
-    return n->energy + pressure * newton_node_area(n) * (double)n->mesh->face *
-                           n->u[mesh_vertical(n->mesh, far_side)];
 }
 
 /* Some ten seconds a factorisation with the reference BLAS, and a GB. */
@@ -268,61 +265,34 @@ static int newton_change(struct newton *n, double off, struct newton_end *end, s
     return (n->factored ? solve_factored : solve_iterated)(n, tolerance, end, err);
 }
 
-double newton_cell_stretch(const struct mesh *m, const double *u, size_t j, size_t i) {
-    size_t nx = m->level[0].nx, d = (size_t)m->dimension;
-    size_t right = (i + 1) % nx, back = (j + 1) % m->level[0].ny;
-    const double *a = u + (j * nx + i) * d, *b = u + (j * nx + right) * d;
-    if (d == 2)
-        return 1 + b[0] - a[0];
-    const double *c = u + (back * nx + i) * d, *e = u + (back * nx + right) * d;
-    double x1 = 1 + e[0] - a[0], y1 = m->across + e[1] - a[1];
-    double x2 = -1 + c[0] - b[0], y2 = m->across + c[1] - b[1];
-    return (x1 * y2 - x2 * y1) / (2 * m->across);
-}
-
 /* Whether a cell of the face is turned from the flat: contact, which knows nothing of what lies
  * sideways of a node, would let the face pass through itself there. */
 static bool face_folds(const struct newton *n) {
     const struct level *face = &n->mesh->level[0];
     for (size_t j = 0; j < face->ny; j++)
         for (size_t i = 0; i < face->nx; i++)
-            if (newton_cell_stretch(n->mesh, n->u, j, i) <= 0)
+            if (mesh_stretch(n->mesh, n->u, j, i) <= 0)
                 return true;
     return false;
 }
 
-/* Where a step starts. */
-struct start {
-    double residual, potential, inside;
-    double closed, balanced; /* gaps and residuals up to these are none */
-};
-
 /* Takes the longest of the step and its halves that neither folds the face nor turns an element
- * inside out and, where nodes in contact already lie on the flat, brings the forces or the energy
- * down. */
-static int advance(struct newton *n, double pressure, const struct start *start,
-                   struct error *err) {
+ * inside out. */
+static int advance(struct newton *n, struct error *err) {
     size_t unknowns = newton_unknowns(n);
     double length = 1;
-    bool feasible = start->inside <= start->closed, folds = false;
+    bool folds = false;
     memcpy(n->before, n->u, unknowns * sizeof *n->before);
-    int status = ERROR_NUMERIC;
-    for (int halving = 0; status != 0 && halving < HALVINGS; halving++, length /= 2) {
+    for (int halving = 0; halving < HALVINGS; halving++, length /= 2) {
         for (size_t f = 0; f < unknowns; f++)
             n->u[f] = n->before[f] + length * n->change[f];
         folds = face_folds(n);
-        if (folds || !evaluate(n))
-            continue;
-        if (!feasible || residual(n, pressure, n->rest) <= start->residual ||
-            potential(n, pressure) < start->potential)
-            status = 0;
+        if (!folds && evaluate(n))
+            return 0;
     }
-    if (status == 0)
-        return 0;
     n->evaluated = false;
-    return error_set(err, status,
-                     folds ? "the face folds over itself"
-                           : "a step of Newton's turns elements inside out or leads uphill");
+    return error_set(err, ERROR_NUMERIC,
+                     folds ? "the face folds over itself" : "an element is turned inside out");
 }
 
 static void remember_residual(struct newton_end *end, double value, bool changed) {
@@ -335,9 +305,10 @@ static void remember_residual(struct newton_end *end, double value, bool changed
 
 /* One go: what is known of u and the set, before a step from there. */
 struct round {
-    struct start start;
     double largest; /* contact force, or the mean one */
-    size_t changes; /* of the set, just made */
+    double residual, inside;
+    double balanced, closed; /* residuals and gaps up to these are none */
+    size_t changes;          /* of the set, just made */
 };
 
 /* Gaps and forces at u; from the second go on, what they say of the set. A set that was there
@@ -348,21 +319,20 @@ static struct round look(struct newton *n, double pressure, bool first, struct m
     struct round round = {.largest = 0};
     newton_measure_gaps(n);
     round.largest = fmax(largest_force(n), pressure * newton_node_area(n));
-    round.start.residual = residual(n, pressure, n->change);
+    round.residual = residual(n, pressure, n->change);
     bool careful = end->cycles > 0;
-    if (!first && round.start.residual <= (careful ? SETTLED : TRUSTED) * round.largest)
+    if (!first && round.residual <= (careful ? SETTLED : TRUSTED) * round.largest)
         round.changes = active_update(n, careful);
     if (round.changes > 0) {
         end->changes += round.changes;
-        round.start.residual = residual(n, pressure, n->change);
+        round.residual = residual(n, pressure, n->change);
         end->cycles += memory_meets(memory, active_hash(n));
     }
     measure(n, end);
-    round.start.inside = end->inside;
-    round.start.closed = fmax(n->tolerance * round.largest / COMPLEMENTARITY, gap_rounding(n));
-    round.start.balanced = fmax(n->tolerance * round.largest, force_rounding(n));
-    round.start.potential = potential(n, pressure);
-    end->residual = round.start.residual / round.largest;
+    round.inside = end->inside;
+    round.closed = fmax(n->tolerance * round.largest / COMPLEMENTARITY, gap_rounding(n));
+    round.balanced = fmax(n->tolerance * round.largest, force_rounding(n));
+    end->residual = round.residual / round.largest;
     remember_residual(end, end->residual, round.changes > 0);
     return round;
 }
@@ -408,11 +378,10 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
     for (;;) {
         bool first = end->iterations == 0;
         struct round round = look(n, pressure, first, &memory, end);
-        const struct start *start = &round.start;
-        if (!first && round.changes == 0 && start->residual <= start->balanced &&
-            start->inside <= start->closed)
+        if (!first && round.changes == 0 && round.residual <= round.balanced &&
+            round.inside <= round.closed)
             return 0;
-        double off = fmax(end->residual, start->inside * COMPLEMENTARITY / round.largest);
+        double off = fmax(end->residual, round.inside * COMPLEMENTARITY / round.largest);
         int status = check_progress(n, &progress, off, round.changes > 0, end, err);
         if (status != 0)
             return status;
@@ -424,7 +393,7 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
                 continue;
         }
         if (status == 0)
-            status = advance(n, pressure, start, err);
+            status = advance(n, err);
         if (status != 0)
             return status;
     }

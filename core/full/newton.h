@@ -26,17 +26,16 @@ struct newton {
     struct factor *factor; /* NULL until one is needed */
     bool factored;         /* factor is of the last tangent, and takes the rest of the load */
     struct krylov *krylov;
-    double *u;     /* newton_unknowns: displacements, and pressures of elements where these are
-                      unknowns of their own (stencil.h); who changes them clears evaluated */
-    double *force; /* newton_unknowns: inner forces, those of the contact on the face, and what the
-                      pressures are beyond those of the dilatation */
-    double energy;
-    bool evaluated;                 /* force, energy and tangent are those of u */
-    double *before, *change, *rest; /* scratch */
-    double *gap, *opening;          /* face, at u: at the nodes and weighted */
-    bool *active;                   /* face */
-    double flat;                    /* vertical position of the flat */
-    double tolerance;               /* largest residual, over the largest contact force */
+    double *u;      /* newton_unknowns: displacements, and pressures of elements where these are
+                       unknowns of their own (stencil.h); who changes them clears evaluated */
+    double *force;  /* newton_unknowns: inner forces, those of the contact on the face, and what the
+                       pressures are beyond those of the dilatation */
+    bool evaluated; /* force and tangent are those of u */
+    double *before, *change; /* newton_unknowns: scratch */
+    double *gap, *opening;   /* face, at u: at the nodes and weighted */
+    bool *active;            /* face */
+    double flat;             /* vertical position of the flat */
+    double tolerance;        /* largest residual, over the largest contact force */
     size_t max_iterations;
     int (*stop)(void *context); /* asked before each iteration; NULL: not */
     void *context;
@@ -71,9 +70,6 @@ int newton_settle(struct newton *newton, double pressure, struct newton_end *end
 void newton_measure_gaps(struct newton *newton);
 /* D of every node, and its sum. */
 double newton_node_area(const struct newton *newton);
-/* Area of the face's cell in row j, column i as seen from the flat under displacements u, over that
- * undeformed: half of the cross product of its diagonals. Above 0 at every equilibrium. */
-double newton_cell_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i);
 /* -d(mean gap)/d(pressure) >= 0 by the tangent at u. */
 int newton_compliance(struct newton *newton, double *out, struct error *err);
 
