@@ -27,7 +27,8 @@ struct full {
     double *pressure, *gap, *opening; /* face: what is told */
     double *kept;                     /* displacements of the last load that went well */
     double *told;                     /* displacements, in the user's unit */
-    bool *kept_active, *guess;        /* face: its active set; the linear model's for it */
+    bool *kept_active;                /* face: its active set */
+    bool *guess, *touches;            /* face: the linear model's, at that load and predicted */
     double load;                      /* that load; 0: lifted off */
     double rms;                       /* height, in steps */
 };
@@ -50,10 +51,11 @@ static int arrays_create(struct full *f, struct error *err) {
     f->opening = array_create(face, sizeof *f->opening);
     f->kept_active = array_create(face, sizeof *f->kept_active);
     f->guess = array_create(face, sizeof *f->guess);
+    f->touches = array_create(face, sizeof *f->touches);
     f->kept = array_create(newton_unknowns(&f->newton), sizeof *f->kept);
     f->told = array_create(freedoms, sizeof *f->told);
     if (!f->z || !f->pressure || !f->gap || !f->opening || !f->kept_active || !f->guess ||
-        !f->kept || !f->told)
+        !f->touches || !f->kept || !f->told)
         return error_memory(err, 2 * freedoms * sizeof(double), "finite elements");
     return 0;
 }
@@ -107,6 +109,7 @@ void full_destroy(struct full **full) {
     free(f->opening);
     free(f->kept_active);
     free(f->guess);
+    free(f->touches);
     free(f->kept);
     free(f->told);
     free(f);
@@ -194,25 +197,20 @@ int full_begin(struct full *f, const double *z, struct error *err) {
 static void predict(struct full *f, double load) {
     struct contact_state state;
     struct error ignored;
-    if (contact_press(f->linear, load, &state, &ignored) != 0)
-        return;
+    bool known = contact_press(f->linear, load, &state, &ignored) == 0;
     for (size_t node = 0; node < f->mesh->face; node++) {
-        bool touches = state.p[node] > 0;
-        if (f->load == 0 || touches != f->guess[node])
-            f->newton.active[node] = touches;
+        f->touches[node] = known ? state.p[node] > 0 : f->guess[node];
+        if (known && (f->load == 0 || f->touches[node] != f->guess[node]))
+            f->newton.active[node] = f->touches[node];
     }
 }
 
 static void keep(struct full *f, double load) {
-    struct contact_state state;
-    struct error ignored;
     size_t face = f->mesh->face;
     f->load = load;
     memcpy(f->kept, f->newton.u, newton_unknowns(&f->newton) * sizeof *f->kept);
     memcpy(f->kept_active, f->newton.active, face * sizeof *f->kept_active);
-    bool known = contact_press(f->linear, load, &state, &ignored) == 0;
-    for (size_t node = 0; known && node < face; node++)
-        f->guess[node] = state.p[node] > 0;
+    memcpy(f->guess, f->touches, face * sizeof *f->guess);
 }
 
 static void restore(struct full *f) {
@@ -349,7 +347,8 @@ static int tell(struct full *f, const struct newton_end *end, struct contact_sta
         sum_add(&gap, n->gap[node]);
         f->gap[node] = n->gap[node] * f->mesh->unit;
         f->opening[node] = n->opening[node] * f->mesh->unit;
-        /* In contact, if barely. */
+        /* A node whose force is 0 within the tolerance stays in the contact, which callers know by
+         * p > 0. */
         f->pressure[node] = n->active[node] ? fmax(DBL_MIN, force / newton_node_area(n)) : 0;
         out->nodes += n->active[node];
     }
@@ -357,10 +356,11 @@ static int tell(struct full *f, const struct newton_end *end, struct contact_sta
     out->mean_gap = sum_value(&gap) / (double)face * f->mesh->unit;
     out->penetration = end->penetration / height_scale(f);
     out->violation = fmax(end->inside, end->penetration) / height_scale(f);
-    if (out->nodes == 0)
+    out->stiffness = out->nodes == face ? INFINITY : 0;
+    if (out->nodes == 0 || out->nodes == face)
         return 0;
     int status = newton_compliance(&f->newton, &compliance, err);
-    out->stiffness = out->nodes == face ? INFINITY : 1 / (compliance * f->mesh->unit);
+    out->stiffness = 1 / (compliance * f->mesh->unit);
     return status;
 }
 
