@@ -7,9 +7,9 @@
  * load, exactly; how much the contact has shrunk or stretched sideways is told beside
  * (full_report.stretch). The face does not touch itself: where it would fold over itself a load
  * finds no equilibrium. In a load step no cell of the face stretches by more than a quarter, so
- * that one load and many lead to the same answer; but for St Venant's solid, where single elements
- * snap within that: what it reaches near its limit depends on the loads. A solver belongs to one
- * thread; the elastic state has no history, but each load starts from the one before. */
+ * that one load and many lead to the same answer, or fail at the same load within a few least
+ * steps. A solver belongs to one thread; the elastic state has no history, but each load starts
+ * from the one before. */
 #ifndef RUGO_CORE_FULL_FULL_H
 #define RUGO_CORE_FULL_FULL_H
 
