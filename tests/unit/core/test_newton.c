@@ -107,7 +107,7 @@ static void a_set_that_comes_back_is_taken_apart(void **state) {
     (void)state;
     for (int weighting = 0; weighting < 2; weighting++) {
         struct work w;
-        struct newton_end end;
+        struct newton_end end = {0};
         struct error err = {0};
         double force[64];
         open_work(&w, (struct grid){8, 8, 1, 1}, weighting ? GAP_STANDARD : GAP_DUAL, 0.2);
