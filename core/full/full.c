@@ -11,9 +11,8 @@ const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
                                            .max_iterations = 60,
                                            .least_step = 1.0 / 256};
 
-/* Change of a cell's stretch in a load step; failures, a load. */
+/* Change of a cell's stretch in a load step. */
 static const double STRETCH_MOST = 0.25;
-enum { CUTS = 12 };
 
 /* Within, lengths are in steps along x. */
 struct full {
@@ -274,7 +273,7 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
         cut = true;
         step /= 2;
         report->cuts++;
-        if (report->cuts == CUTS || fabs(step) < f->options.least_step * fabs(whole) || whole == 0)
+        if (fabs(step) < f->options.least_step * fabs(whole) || whole == 0)
             return error_context(err,
                                  "contact on the true geometry under a mean pressure of %g E* was "
                                  "reached up to %g E* only (steepest slope %.3g, worst element "
