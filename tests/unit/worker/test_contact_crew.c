@@ -14,7 +14,7 @@ static const char CONTACT_STUDY[] =
 static const char STEEP_STUDY[] =
     "{\"name\":\"steep\",\"kind\":\"contact\",\"seed\":3,\"realisations\":12,\"surface\":{"
     "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":2,\"length_ratio\":2,"
-    "\"points_per_wavelength\":6,\"rms_slope\":[0.1,1.9]},\"contact\":{\"model\":[\"full\","
+    "\"points_per_wavelength\":6,\"rms_slope\":[0.1,1.2]},\"contact\":{\"model\":[\"full\","
     "\"halfspace\"],\"block_height\":{\"lengths\":1},\"pressures\":{\"to\":0.5,\"steps\":3}}}";
 
 /* The study's curves without its id, as text. */
