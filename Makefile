@@ -105,7 +105,8 @@ run-unit:
 	@tests/run-tests $(call all_tests,unit)
 run-threads:
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(TESTS_unit_worker) $(TESTS_system_server)
-	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(TESTS_unit_worker) $(TESTS_system_server)
+	@TSAN_OPTIONS=suppressions=$(abspath tests/thread-sanitizer.txt) \
+		RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(TESTS_unit_worker) $(TESTS_system_server)
 .PHONY: run-unit run-threads
 
 deps:
