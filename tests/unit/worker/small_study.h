@@ -79,6 +79,7 @@ static inline struct study_status fixture_status(struct fixture *fixture) {
 
 static inline void fixture_close(struct fixture *fixture) {
     store_close(&fixture->store);
+    unlink(fixture->database);
 }
 
 #endif
