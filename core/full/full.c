@@ -134,7 +134,7 @@ double full_bytes(const struct grid *grid, const struct block *block,
     enum { VECTORS = 6, FACES = 7 }; /* newton.h and this file: unknowns, face */
     struct solid solid = solid_of(block->poisson, options->kinematics);
     bool bulk = krylov_needs_bulk(&solid);
-    double unknowns = (double)(mesh_freedoms(mesh) + (bulk ? mesh->elements : 0));
+    double unknowns = (double)mesh_unknowns(mesh, bulk);
     double bytes =
         sizeof(double) * (VECTORS * unknowns + FACES * (double)mesh->face + (double)mesh->nodes) +
         stencil_bytes(mesh, bulk) + krylov_bytes(mesh, &solid, iterations) + contact_bytes(grid) +

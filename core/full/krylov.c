@@ -1,4 +1,5 @@
 #include "core/full/krylov.h"
+#include "core/full/alias.h"
 #include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>
@@ -35,7 +36,7 @@ int krylov_create(struct krylov **out, const struct mesh *mesh, const struct sol
         return error_memory(err, sizeof *k, "residuals");
     k->mesh = mesh;
     k->freedoms = mesh_freedoms(mesh);
-    k->unknowns = k->freedoms + (bulk ? mesh->elements : 0);
+    k->unknowns = mesh_unknowns(mesh, bulk);
     int status = bulk ? bulk_create(&k->bulk, mesh, true, err) : 0;
     if (status == 0)
         status = flat_create(&k->flat, mesh, solid, k->bulk, err);
@@ -84,12 +85,11 @@ void krylov_destroy(struct krylov **krylov) {
 double krylov_bytes(const struct mesh *mesh, const struct solid *solid, double iterations) {
     enum { VECTORS = 3, FACES = 7, WAVES = 5 };
     bool bulk = krylov_needs_bulk(solid);
-    size_t waves = (mesh->level[0].nx / 2 + 1) * mesh->level[0].ny;
-    double unknowns = (double)(mesh_freedoms(mesh) + (bulk ? mesh->elements : 0));
+    double waves = (double)level_waves(&mesh->level[0]);
+    double unknowns = (double)mesh_unknowns(mesh, bulk);
     double vectors = 2 * fmin(iterations, BASIS) + 1 + VECTORS;
     return flat_bytes(mesh) + (bulk ? bulk_bytes(mesh, true) : 0) +
-           sizeof(double) *
-               (vectors * unknowns + FACES * (double)mesh->face + WAVES * (double)waves);
+           sizeof(double) * (vectors * unknowns + FACES * (double)mesh->face + WAVES * waves);
 }
 
 bool krylov_needs_bulk(const struct solid *solid) {

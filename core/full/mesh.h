@@ -76,6 +76,10 @@ double mesh_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i
 static inline size_t mesh_freedoms(const struct mesh *mesh) {
     return mesh->nodes * (size_t)mesh->dimension;
 }
+/* With the pressures of elements, where these are unknowns of their own (krylov.h). */
+static inline size_t mesh_unknowns(const struct mesh *mesh, bool bulk) {
+    return mesh_freedoms(mesh) + (bulk ? mesh->elements : 0);
+}
 /* Freedom of a node's vertical displacement. */
 static inline size_t mesh_vertical(const struct mesh *mesh, size_t node) {
     return (node + 1) * (size_t)mesh->dimension - 1;

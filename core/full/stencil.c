@@ -224,7 +224,7 @@ INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct solid *s
 }
 
 size_t stencil_unknowns(const struct stencil *stencil) {
-    return mesh_freedoms(stencil->mesh) + (stencil->bulk != NULL ? stencil->mesh->elements : 0);
+    return mesh_unknowns(stencil->mesh, stencil->bulk != NULL);
 }
 
 bool stencil_evaluate(const struct mesh *mesh, const struct solid *solid, const double *u,

@@ -1,4 +1,5 @@
 #include "core/full/support.h"
+#include "core/full/alias.h"
 #include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@ static double weight_symbol(size_t mode, size_t n) {
 static void fill_symbols(struct support *s, const struct mesh *mesh, const struct flat *flat) {
     const double *compliance = flat_compliance(flat);
     size_t nx = mesh->level[0].nx, ny = mesh->level[0].ny;
-    for (size_t k = 0; k < (nx / 2 + 1) * ny; k++) {
+    for (size_t k = 0; k < level_waves(&mesh->level[0]); k++) {
         double weight = 1;
         if (s->weight != NULL) {
             weight = weight_symbol(k / ny, nx);
@@ -31,7 +32,7 @@ static void fill_symbols(struct support *s, const struct mesh *mesh, const struc
 int support_create(struct support *out, const struct mesh *mesh, const struct flat *flat,
                    enum gap_weighting weighting, struct error *err) {
     *out = (struct support){.face = mesh->face};
-    size_t nx = mesh->level[0].nx, ny = mesh->level[0].ny, waves = (nx / 2 + 1) * ny;
+    size_t nx = mesh->level[0].nx, ny = mesh->level[0].ny, waves = level_waves(&mesh->level[0]);
     struct grid grid = {nx, ny, (double)nx, (double)ny * mesh->across};
     double **const arrays[] = {&out->r,    &out->old,   &out->t,     &out->w,
                                &out->soft, &out->stiff, &out->weight};
