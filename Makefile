@@ -32,22 +32,22 @@ CFLAGS  = -std=c11 -D_GNU_SOURCE -g $(OPT) $(WARN) -ffp-contract=off -fno-math-e
           -fstack-protector-strong -fPIE -pthread $(FORTIFY) -I.
 LDFLAGS = -pie -Wl,-z,relro,-z,now -pthread $(if $(SAN),-fsanitize=$(SAN)) $(if $(COV),--coverage)
 LIBS_core   = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
-LIBS_jobs   = -lcjson $(LIBS_core)
-LIBS_schema = -lsqlite3 $(LIBS_jobs)
-LIBS_worker = -lcurl $(LIBS_schema)
+LIBS_schema = -lcjson -lsqlite3 $(LIBS_core)
+LIBS_jobs   = $(LIBS_schema)
+LIBS_worker = -lcurl $(LIBS_jobs)
 LIBS_server = -lmicrohttpd -lnettle $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
-embedded = $(wildcard $(1)/migrations/*.sql $(1)/web/* $(1)/*.yaml)
+embedded = $(wildcard $(1)/store/migrations/*.sql $(1)/web/* $(1)/http/*.yaml)
 
 # Each layer is an archive; a layer's tests link it and the layers below, so that one can work on one layer alone.
 LAYERS   = core schema jobs worker server
 BELOW_core   = core
 BELOW_schema = schema core
-BELOW_jobs   = jobs core
+BELOW_jobs   = jobs schema core
 BELOW_worker = worker jobs schema core
 BELOW_server = server worker jobs schema core
-MAIN     = server/main.c
+MAIN     = server/command/main.c
 sources  = $(filter-out $(MAIN),$(wildcard $(1)/*.c $(1)/*/*.c))
 objects  = $(patsubst %,$(BUILD)/%.o,$(1))
 archive  = $(patsubst %,$(BUILD)/lib%.a,$(1))
@@ -126,13 +126,24 @@ format:
 	@clang-format -i $(SOURCES)
 check-format:
 	@clang-format --dry-run --Werror $(SOURCES)
-lint: lint-deps check-format
+lint: lint-deps check-format check-layers
 	@printf '%s\n' $(filter %.c,$(SOURCES)) | \
 	    xargs -P $$(nproc) -n 1 sh -c 'clang-tidy --quiet "$$0" -- -std=c11 -D_GNU_SOURCE -I. 2>/dev/null || exit 255'
 	@echo "lint: $(words $(filter %.c,$(SOURCES))) files clean"
 lint-deps: deps
 	@tests/install-deps "" "clang-format clang-tidy" clang-format clang-tidy
 .PHONY: lint-deps
+
+# Each archive needs nothing but those of the layers below it: linked whole, it leaves no symbol open.
+define WHOLE
+$(BUILD)/whole-$(1): $(call archive,$(BELOW_$(1)))
+	$(Q)echo 'int main(void) { return 0; }' | $(CC) $(LDFLAGS) -o $$@ -x c - -x none \
+	    -Wl,--whole-archive $(BUILD)/lib$(1).a -Wl,--no-whole-archive $$^ $(LIBS_$(1))
+endef
+$(foreach layer,$(LAYERS),$(eval $(call WHOLE,$(layer))))
+check-layers: $(patsubst %,$(BUILD)/whole-%,$(LAYERS))
+	@echo "layers: $(LAYERS): each links whole against those below"
+.PHONY: check-layers
 
 install: all
 	install -D $(BUILD)/rugo $(DESTDIR)$(PREFIX)/bin/rugo

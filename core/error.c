@@ -43,35 +43,3 @@ void *array_create(size_t count, size_t size) {
         return NULL;
     return calloc(count ? count : 1, size ? size : 1);
 }
-
-static char *text_copy(const char *text) {
-    size_t size = strlen(text) + 1;
-    char *copy = malloc(size);
-    return copy ? memcpy(copy, text, size) : NULL;
-}
-
-void fault_add(struct fault_list *list, const char *pointer, const char *format, ...) {
-    size_t at = list->count++;
-    if (at >= FAULTS_KEPT)
-        return;
-    if (!list->faults)
-        list->faults = array_create(FAULTS_KEPT, sizeof *list->faults);
-    char detail[400];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(detail, sizeof detail, format, arguments);
-    va_end(arguments);
-    if (!list->faults)
-        return;
-    list->faults[at] = (struct fault){text_copy(pointer), text_copy(detail)};
-}
-
-void fault_list_clear(struct fault_list *list) {
-    size_t kept = list->count < FAULTS_KEPT ? list->count : FAULTS_KEPT;
-    for (size_t i = 0; list->faults && i < kept; i++) {
-        free(list->faults[i].pointer);
-        free(list->faults[i].detail);
-    }
-    free(list->faults);
-    *list = (struct fault_list){0};
-}

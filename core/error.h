@@ -1,4 +1,4 @@
-/* Errors as values, and lists of faults found in what a user wrote.
+/* Errors as values.
  *
  * Every fallible function returns an int: 0, or one of the negative codes below, and then has
  * filled the caller's struct error with a sentence that names the thing at fault, its value and
@@ -39,21 +39,5 @@ __attribute__((format(printf, 2, 3))) int error_context(struct error *err, const
 
 /* malloc of count * size bytes, zeroed; NULL when out of memory or when the product overflows. */
 void *array_create(size_t count, size_t size);
-
-/* A growing list of faults in one input, each with the JSON pointer it belongs to. Initialise
- * with {0}; owns its strings. At most FAULTS_KEPT are kept, all are counted. */
-enum { FAULTS_KEPT = 100 };
-struct fault {
-    char *pointer; /* RFC 6901; "" is the whole document */
-    char *detail;  /* what is wrong and what is allowed */
-};
-struct fault_list {
-    struct fault *faults; /* count entries, or FAULTS_KEPT if fewer */
-    size_t count;
-};
-/* Adds a fault; out of memory only counts it. */
-__attribute__((format(printf, 3, 4))) void fault_add(struct fault_list *list, const char *pointer,
-                                                     const char *format, ...);
-void fault_list_clear(struct fault_list *list);
 
 #endif

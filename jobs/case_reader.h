@@ -4,8 +4,9 @@
 #define RUGO_JOBS_CASE_READER_H
 
 #include "core/error.h"
-#include "core/parameter.h"
 #include "core/statistics/histogram.h"
+#include "schema/study/fault.h"
+#include "schema/study/parameter.h"
 #include <cjson/cJSON.h>
 #include <stdint.h>
 

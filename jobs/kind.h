@@ -9,7 +9,8 @@
 #define RUGO_JOBS_KIND_H
 
 #include "core/error.h"
-#include "core/parameter.h"
+#include "schema/study/fault.h"
+#include "schema/study/parameter.h"
 #include <cjson/cJSON.h>
 #include <stdint.h>
 

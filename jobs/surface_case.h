@@ -2,8 +2,9 @@
 #ifndef RUGO_JOBS_SURFACE_CASE_H
 #define RUGO_JOBS_SURFACE_CASE_H
 
-#include "core/parameter.h"
 #include "core/surface/surface.h"
+#include "schema/study/fault.h"
+#include "schema/study/parameter.h"
 #include <cjson/cJSON.h>
 
 /* Table rows of /surface/...: a kind puts the same rows at the head of its own table by including

@@ -1,7 +1,7 @@
 #include "worker/aggregate.h"
 #include "jobs/kind.h"
-#include "worker/flat.h"
-#include "worker/wire_field.h"
+#include "schema/json/flat.h"
+#include "schema/json/wire_field.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef RUGO_WORKER_AGGREGATE_H
 #define RUGO_WORKER_AGGREGATE_H
 
-#include "schema/store.h"
+#include "schema/store/store.h"
 
 struct job_kind;
 

@@ -1,6 +1,6 @@
 /* Curves as one table for spreadsheets and plotting programs. */
+#include "schema/json/wire_field.h"
 #include "worker/aggregate.h"
-#include "worker/wire_field.h"
 
 #include <math.h>
 #include <stdio.h>

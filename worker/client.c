@@ -1,5 +1,5 @@
 #include "worker/client.h"
-#include "schema/json.h"
+#include "schema/json/json.h"
 
 #include <curl/curl.h>
 #include <stdbool.h>

@@ -3,6 +3,7 @@
 #define RUGO_WORKER_CLIENT_H
 
 #include "core/error.h"
+#include "schema/study/fault.h"
 #include <cjson/cJSON.h>
 #include <stdio.h>
 

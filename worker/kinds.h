@@ -3,7 +3,8 @@
 #define RUGO_WORKER_KINDS_H
 
 #include "jobs/kind.h"
-#include "schema/study.h"
+#include "schema/study/fault.h"
+#include "schema/study/study.h"
 
 /* Static table of kinds_count() entries made from JOB_KINDS. */
 const struct study_kind *kinds_table(void);

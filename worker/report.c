@@ -7,10 +7,10 @@
  * first one with an error at all.
  * Statistical errors fall with the square root of the realisations, so that half the error costs
  * three times what was spent. */
+#include "schema/json/flat.h"
+#include "schema/json/wire_field.h"
 #include "worker/aggregate.h"
-#include "worker/flat.h"
 #include "worker/report_series.h"
-#include "worker/wire_field.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 #include "worker/report_series.h"
-#include "worker/wire_field.h"
+#include "schema/json/wire_field.h"
 
 #include <math.h>
 #include <string.h>

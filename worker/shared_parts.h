@@ -6,7 +6,7 @@
 #define RUGO_WORKER_SHARED_PARTS_H
 
 #include "jobs/kind.h"
-#include "schema/store.h"
+#include "schema/store/store.h"
 #include <pthread.h>
 
 struct shared_part; /* one a case in use */

@@ -4,7 +4,7 @@
 #define RUGO_WORKER_SOURCE_H
 
 #include "jobs/kind.h"
-#include "schema/store.h"
+#include "schema/store/store.h"
 
 struct source;
 struct source_options {

@@ -18,7 +18,7 @@
 #define RUGO_WORKER_WIRE_H
 
 #include "jobs/kind.h"
-#include "schema/store.h"
+#include "schema/store/store.h"
 
 enum { WIRE_JOBS_MOST = 100, WIRE_KINDS_MOST = 32, WIRE_REASON_MOST = 2000 };
 

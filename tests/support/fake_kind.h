@@ -2,7 +2,8 @@
 #ifndef RUGO_TESTS_SUPPORT_FAKE_KIND_H
 #define RUGO_TESTS_SUPPORT_FAKE_KIND_H
 
-#include "schema/study.h"
+#include "schema/study/fault.h"
+#include "schema/study/study.h"
 #include <math.h>
 
 static const char *const FAKE_COLOURS[] = {"red", "green", NULL};

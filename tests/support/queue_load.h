@@ -3,7 +3,8 @@
 #define RUGO_TESTS_SUPPORT_QUEUE_LOAD_H
 
 #include "jobs/kind.h"
-#include "schema/store.h"
+#include "schema/store/store.h"
+#include "schema/study/fault.h"
 #include "worker/kinds.h"
 #include <stdio.h>
 #include <stdlib.h>

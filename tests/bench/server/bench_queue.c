@@ -5,7 +5,7 @@
  * The results are real ones (the server checks what it takes): one tiny profile's block is computed
  * once and handed in for every job. The clients send texts made beforehand and look for three
  * fields in the answers, so that on few processors it is the server that is measured. */
-#include "server/writer.h"
+#include "server/http/writer.h"
 #include "tests/support/queue_load.h"
 #include "worker/wire.h"
 #include <arpa/inet.h>

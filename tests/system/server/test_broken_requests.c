@@ -1,7 +1,7 @@
 /* Protects: what a broken study or request is told. Each gets its status, a problem (RFC 9457) with
  * the same status, the pointer to the fault and a text that says what is wrong and what is allowed;
  * nothing is queued. */
-#include "schema/json.h"
+#include "schema/json/json.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include <signal.h>

@@ -2,6 +2,7 @@
 #include "jobs/case_reader.h"
 #include "jobs/kind.h"
 #include "jobs/value.h"
+#include "schema/study/fault.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

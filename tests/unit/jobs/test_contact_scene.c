@@ -3,8 +3,8 @@
  */
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
-#include "jobs/contact_scene.h"
-#include "jobs/contact_solver.h"
+#include "jobs/contact/contact_scene.h"
+#include "jobs/contact/contact_solver.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"
 #include <stdlib.h>

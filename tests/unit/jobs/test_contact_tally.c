@@ -1,8 +1,8 @@
 /* Sums of contact realisations: values at very light loads keep their digits, realisations without
  * a value are left out and counted, pressures lie on the area in contact, and orders of convergence
  * that were put in come out. */
-#include "jobs/contact_errors.h"
-#include "jobs/contact_tally.h"
+#include "jobs/contact/contact_errors.h"
+#include "jobs/contact/contact_tally.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 #include <string.h>

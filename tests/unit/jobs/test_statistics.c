@@ -5,6 +5,7 @@
 #include "jobs/bytes.h"
 #include "jobs/kind.h"
 #include "jobs/value.h"
+#include "schema/study/fault.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,7 @@
 /* Reading the surface of a case: effective values, every fault that no single range shows with its
  * pointer and words, and the grid that follows. */
 #include "jobs/surface_case.h"
+#include "schema/study/fault.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 /* Protects: the gate lets exactly RFC 8259 through, says where and what else is wrong, and numbers
  * come back with the bits they had. */
-#include "schema/json.h"
+#include "schema/json/json.h"
 #include "tests/support/check.h"
 #include <float.h>
 #include <stdio.h>

@@ -1,6 +1,7 @@
 /* Protects: the states of studies and jobs, through every transition, on a clock that the test
  * sets: what a lease allows, that nothing is done twice or lost, and what people read of it. */
-#include "schema/store.h"
+#include "schema/store/store.h"
+#include "schema/study/fault.h"
 #include "tests/support/check.h"
 #include "tests/support/fake_kind.h"
 #include <sqlite3.h>

@@ -1,6 +1,6 @@
 /* Protects: a peer gets the form that it likes best, not one whose name its header happens to hold.
  */
-#include "server/accept.h"
+#include "server/http/accept.h"
 #include "tests/support/check.h"
 
 static void the_closest_range_says_how_much_a_type_is_liked(void **state) {

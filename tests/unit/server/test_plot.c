@@ -1,7 +1,7 @@
 /* Protects: a picture shows as many curves as its legend can name, says what it leaves out, and
  * tells models, levels, estimators and theories apart. */
-#include "server/plot.h"
-#include "server/plot_choice.h"
+#include "server/show/plot.h"
+#include "server/show/plot_choice.h"
 #include "tests/support/check.h"
 #include <stdio.h>
 #include <stdlib.h>

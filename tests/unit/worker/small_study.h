@@ -2,7 +2,8 @@
 #ifndef RUGO_TESTS_UNIT_WORKER_SMALL_STUDY_H
 #define RUGO_TESTS_UNIT_WORKER_SMALL_STUDY_H
 
-#include "schema/store.h"
+#include "schema/store/store.h"
+#include "schema/study/fault.h"
 #include "worker/kinds.h"
 
 #include <stdarg.h>

@@ -2,6 +2,7 @@
  * that add up, or is refused with words when it is checked; never a hang, a NaN or a crash. */
 #include "jobs/kind.h"
 #include "jobs/value.h"
+#include "schema/study/fault.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

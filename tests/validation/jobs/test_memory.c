@@ -1,6 +1,7 @@
 /* The memory that `check` states for a worker is what a realisation takes at its peak, within 20 %:
  * each case runs in a process of its own, whose largest resident set is measured. */
 #include "jobs/kind.h"
+#include "schema/study/fault.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>

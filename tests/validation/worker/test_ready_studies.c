@@ -1,5 +1,6 @@
 /* Every study in jobs/studies reads without a fault and opens into the cases its README promises.
  */
+#include "schema/study/fault.h"
 #include "worker/kinds.h"
 #include <setjmp.h>
 #include <stdarg.h>

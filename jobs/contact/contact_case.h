@@ -1,0 +1,78 @@
+/* One case of a contact study, read and costed. Loads are p/(E* h'), h' the RMS slope of the
+ * prescribed spectrum; lengths are in lambda_s; results are dimensionless, so that E plays no part
+ * in them. */
+#ifndef RUGO_JOBS_CONTACT_CONTACT_CASE_H
+#define RUGO_JOBS_CONTACT_CONTACT_CASE_H
+
+#include "core/contact/contact.h"
+#include "core/full/full.h"
+#include "core/statistics/histogram.h"
+#include "jobs/kind.h"
+#include "jobs/surface_case.h"
+#include "schema/study/fault.h"
+
+/* Table of the kind: the rows of /surface/..., then those of /contact/.... */
+enum { CONTACT_PARAMETER_COUNT = SURFACE_PARAMETER_COUNT + 16 };
+extern const struct parameter CONTACT_PARAMETERS[];
+
+enum { CONTACT_MODELS = 3, CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000 };
+extern const char *const CONTACT_MODEL_NAMES[];   /* of enum contact_model; NULL at the end */
+extern const char *const FULL_KINEMATICS_NAMES[]; /* of enum kinematics; NULL at the end */
+
+/* A mesh on which every realisation is solved: the own grid sampled at other points. */
+struct contact_level {
+    double points; /* a shortest wave, as given */
+    struct grid grid;
+    size_t stride; /* every stride-th point of the own grid each way; 0: resampled from its band */
+};
+
+struct contact_case {
+    struct surface_case surface; /* and its own grid, on which realisations are generated */
+    size_t band;                 /* highest wave number of a realisation on its own grid */
+    size_t model_count;
+    struct block blocks[CONTACT_MODELS]; /* one a model, in the order given */
+    enum kinematics kinematics;          /* of the model full, as the next two */
+    double transition_depth;             /* full.h */
+    double rms_slope;                    /* of the prescribed spectrum; where full is a model */
+    size_t level_count;
+    struct contact_level levels[CONTACT_LEVELS_MOST]; /* rising: the last is the finest */
+    size_t load_count;
+    double *loads;                /* owned: p/(E* h'), rising, > 0 */
+    bool nodes, edges, perimeter; /* estimators shown */
+    double tolerance;
+    size_t pdf_count;
+    size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
+    struct bins pressure; /* of p/(E* h') */
+    uint64_t fingerprint; /* of all parameters */
+};
+/* As surface_case_read. */
+int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,
+                      struct error *err);
+void contact_case_clear(struct contact_case *study);
+
+static inline const struct contact_level *contact_case_finest(const struct contact_case *study) {
+    return &study->levels[study->level_count - 1];
+}
+/* Model, level and load as one number, loads running fastest; and how many there are. */
+static inline size_t contact_case_cell(const struct contact_case *study, size_t model, size_t level,
+                                       size_t load) {
+    return (model * study->level_count + level) * study->load_count + load;
+}
+static inline size_t contact_case_cells(const struct contact_case *study) {
+    return contact_case_cell(study, study->model_count, 0, 0);
+}
+
+/* The most complete of the models: that from which the errors of the others are counted. */
+size_t contact_case_complete(const struct contact_case *study);
+/* Whether a model is the finite elements on the true geometry, which may find no answer: the
+ * realisation has no values then, from that load on. */
+static inline bool contact_case_is_full(const struct contact_case *study, size_t model) {
+    return study->blocks[model].model == MODEL_FULL;
+}
+/* Position of that model, or model_count without it. */
+size_t contact_case_full(const struct contact_case *study);
+
+/* Memory, time and error of one realisation, before anything ran. */
+void contact_case_estimate(const struct contact_case *study, struct job_estimate *out);
+
+#endif

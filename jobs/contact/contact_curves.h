@@ -1,0 +1,15 @@
+/* The curves of a contact case. */
+#ifndef RUGO_JOBS_CONTACT_CONTACT_CURVES_H
+#define RUGO_JOBS_CONTACT_CONTACT_CURVES_H
+
+#include "jobs/contact/contact_tally.h"
+#include <cjson/cJSON.h>
+
+/* An array of curves (interface.md), those of one quantity together: the first is the contact area
+ * of the first model on the finest level. modes, moments: of the prescribed spectrum. Caller
+ * deletes. */
+int contact_curves(const struct contact_case *study, const struct modes *modes,
+                   const struct moments *moments, const struct contact_tally *tally, cJSON **out,
+                   struct error *err);
+
+#endif

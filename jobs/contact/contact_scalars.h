@@ -1,0 +1,53 @@
+/* The scalars of one contact realisation, and of a case. Areas are those of the first model on the
+ * finest level by matched edges; roughness is that of the own grid, lengths in lambda_s. */
+#ifndef RUGO_JOBS_CONTACT_CONTACT_SCALARS_H
+#define RUGO_JOBS_CONTACT_CONTACT_SCALARS_H
+
+#include "core/statistics/roughness.h"
+#include "jobs/contact/contact_tally.h"
+#include "jobs/realisations.h"
+
+enum contact_scalar {
+    CONTACT_SCALAR_KAPPA, /* slope of the light-load line */
+    CONTACT_SCALAR_POWER_LAW_A,
+    CONTACT_SCALAR_POWER_LAW_B,
+    CONTACT_SCALAR_ERF_KAPPA,
+    CONTACT_SCALAR_AREA_LAST, /* at the last load, as the gap, which is over sqrt(m0) */
+    CONTACT_SCALAR_GAP_LAST,
+    CONTACT_SCALAR_ITERATIONS, /* of all loads */
+    CONTACT_SCALAR_VIOLATION,  /* the largest */
+    /* Of the model full on the finest level; none without it. */
+    CONTACT_SCALAR_FULL_LOAD_REACHED, /* the last with values; 0: no mesh, or no equilibrium */
+    CONTACT_SCALAR_FULL_ITERATIONS,   /* Newton's, of all loads, as the cuts */
+    CONTACT_SCALAR_FULL_CUTS,
+    CONTACT_SCALAR_FULL_CHANGES,     /* of single nodes of the active set, of all loads */
+    CONTACT_SCALAR_FULL_BALANCE,     /* largest, as the penetrations, which are in RMS heights */
+    CONTACT_SCALAR_FULL_PENETRATION, /* of the nodes */
+    CONTACT_SCALAR_FULL_WEIGHTED_PENETRATION,
+    CONTACT_SCALAR_FULL_STRETCH, /* at the last load reached */
+    CONTACT_SCALAR_FULL_SLOPE,   /* steepest edge of the face; none without a mesh, as the next */
+    CONTACT_SCALAR_FULL_QUALITY, /* least Jacobian over edges of the undeformed elements */
+    CONTACT_SCALAR_RMS_HEIGHT,   /* by finite differences, as the slope */
+    CONTACT_SCALAR_RMS_SLOPE,
+    CONTACT_SCALAR_NAYAK_ALPHA, /* spectral */
+    CONTACT_SCALAR_SKEWNESS,
+    CONTACT_SCALAR_KURTOSIS,
+    CONTACT_SCALAR_GENERATOR_ITERATIONS,
+    CONTACT_SCALAR_EPS_H, /* none if Gaussian, as the two below */
+    CONTACT_SCALAR_EPS_S,
+    CONTACT_SCALAR_EPS_S0,
+    CONTACT_SCALAR_COUNT
+};
+extern const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1]; /* names, NULL at the end */
+
+/* Of the realisation whose values the tally holds. nayak_alpha: of its own spectrum. Fails only
+ * with ERROR_MEMORY; a fit that finds too few points has no value. */
+int contact_scalars_measure(struct contact_tally *tally, const struct roughness *roughness,
+                            double nayak_alpha, const struct surface_report *report,
+                            double out[CONTACT_SCALAR_COUNT], struct error *err);
+
+/* {name: {"value", "standard_error", "theory"?}} over the realisations; caller deletes. */
+int contact_scalars_json(const struct contact_case *study, const struct moments *moments,
+                         const struct realisations *realisations, cJSON **out, struct error *err);
+
+#endif

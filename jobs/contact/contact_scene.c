@@ -1,0 +1,255 @@
+#include "jobs/contact/contact_scene.h"
+#include "core/contact/area.h"
+#include "core/contact/patches.h"
+#include "jobs/contact/contact_solver.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Stiffness beyond this, in units of E* h'/sqrt(m0), is that of full contact but for rounding; its
+ * square must fit into exact sums. */
+static const double STIFFNESS_MOST = 1e6;
+
+struct contact_scene {
+    const struct contact_case *study;
+    double rms_slope, rms_height; /* of the prescribed spectrum */
+    struct contact_solver *solvers[CONTACT_MODELS][CONTACT_LEVELS_MOST];
+    struct area_workspace *areas[CONTACT_MODELS][CONTACT_LEVELS_MOST];
+    struct patch_finder *finders[CONTACT_LEVELS_MOST];
+    double *z; /* a level's sampling; room for the finest */
+};
+
+int contact_compliances_create(struct contact_compliances *out, const struct contact_case *study,
+                               struct error *err) {
+    int status = 0;
+    *out = (struct contact_compliances){0};
+    for (size_t m = 0; m < study->model_count && status == 0; m++)
+        for (size_t l = 0; l < study->level_count && status == 0; l++) {
+            struct block block = contact_linear_block(&study->blocks[m]);
+            status = compliance_create(&out->of[m][l], &study->levels[l].grid, &block, err);
+        }
+    if (status != 0)
+        contact_compliances_clear(out);
+    return status;
+}
+
+void contact_compliances_clear(struct contact_compliances *compliances) {
+    for (size_t m = 0; m < CONTACT_MODELS; m++)
+        for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++)
+            compliance_destroy(&compliances->of[m][l]);
+}
+
+static int scene_fill(struct contact_scene *scene, const struct contact_compliances *compliances,
+                      struct error *err) {
+    const struct contact_case *study = scene->study;
+    int status = 0;
+    for (size_t l = 0; l < study->level_count && status == 0; l++) {
+        status = patch_finder_create(&scene->finders[l], &study->levels[l].grid, err);
+        for (size_t m = 0; m < study->model_count && status == 0; m++) {
+            status = area_workspace_create(&scene->areas[m][l], compliances->of[m][l], err);
+            if (status == 0)
+                status = contact_solver_create(&scene->solvers[m][l], study, m,
+                                               compliances->of[m][l], err);
+        }
+    }
+    if (status != 0)
+        return status;
+    size_t points = grid_points(&contact_case_finest(study)->grid);
+    scene->z = array_create(points, sizeof *scene->z);
+    return scene->z != NULL ? 0 : error_memory(err, points * sizeof *scene->z, "a surface");
+}
+
+int contact_scene_create(struct contact_scene **out, const struct contact_case *study,
+                         const struct moments *moments,
+                         const struct contact_compliances *compliances, struct error *err) {
+    struct contact_scene *scene = array_create(1, sizeof *scene);
+    if (scene == NULL)
+        return error_memory(err, sizeof *scene, "a contact scene");
+    scene->study = study;
+    scene->rms_slope = moments->rms_slope;
+    scene->rms_height = moments->rms_height;
+    int status = scene_fill(scene, compliances, err);
+    if (status != 0)
+        contact_scene_destroy(&scene);
+    *out = scene;
+    return status;
+}
+
+void contact_scene_destroy(struct contact_scene **scene) {
+    struct contact_scene *s = *scene;
+    if (s == NULL)
+        return;
+    for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++) {
+        patch_finder_destroy(&s->finders[l]);
+        for (size_t m = 0; m < CONTACT_MODELS; m++) {
+            area_workspace_destroy(&s->areas[m][l]);
+            contact_solver_destroy(&s->solvers[m][l]);
+        }
+    }
+    free(s->z);
+    free(s);
+    *scene = NULL;
+}
+
+double contact_scene_bytes(const struct contact_case *study) {
+    double bytes = 8.0 * (double)grid_points(&contact_case_finest(study)->grid);
+    for (size_t l = 0; l < study->level_count; l++) {
+        const struct grid *grid = &study->levels[l].grid;
+        bytes += 32.0 * (double)grid_points(grid); /* patches */
+        for (size_t m = 0; m < study->model_count; m++) {
+            struct block block = contact_linear_block(&study->blocks[m]);
+            bytes += 8.0 * (double)grid_points(grid) + contact_solver_bytes(study, m, grid) +
+                     compliance_bytes(grid, &block);
+        }
+    }
+    return bytes;
+}
+
+int contact_level_sample(const struct contact_case *study, const struct contact_level *level,
+                         const double *z, double *out, struct error *err) {
+    const struct grid *own = &study->surface.grid, *grid = &level->grid;
+    size_t band = study->band;
+    if (level->stride == 0)
+        return surface_resample(own, z, grid, out, band, grid_is_profile(own) ? 0 : band, err);
+    for (size_t j = 0; j < grid->ny; j++) {
+        const double *row = z + j * level->stride * own->nx;
+        for (size_t i = 0; i < grid->nx; i++)
+            out[j * grid->nx + i] = row[i * level->stride];
+    }
+    return 0;
+}
+
+/* What areas on the undeformed face are worth in the present configuration: 1 where strains are
+ * small, and where nothing touches. */
+static double present(const struct full_report *report) {
+    bool finite = report != NULL && report->kinematics != KINEMATICS_SMALL;
+    return finite && isfinite(report->stretch) ? report->stretch : 1;
+}
+
+/* Measures of a solved load into a cell. */
+static void measure(struct contact_scene *scene, size_t model, size_t level,
+                    const struct contact_state *state, const struct full_report *report,
+                    struct contact_tally *tally, size_t cell) {
+    double points = (double)grid_points(&scene->study->levels[level].grid);
+    double stiffness = state->stiffness * scene->rms_height / scene->rms_slope;
+    double now = present(report);
+    struct contact_area area;
+    struct patches patches;
+    contact_area(scene->areas[model][level], state->p, state->opening, &area);
+    patches_find(scene->finders[level], state->p, &patches, NULL);
+    const double values[MEASURE_COUNT] = {
+        [MEASURE_NODES] = now * area.nodes,
+        [MEASURE_EDGES] = now * area.edges,
+        [MEASURE_PERIMETER] = now * area.perimeter,
+        [MEASURE_GAP] = state->mean_gap / scene->rms_height,
+        [MEASURE_NODES_LOWER] = now * area.lower,
+        [MEASURE_NODES_UPPER] = now * area.upper,
+        [MEASURE_STIFFNESS] = stiffness < STIFFNESS_MOST ? stiffness : NAN,
+        [MEASURE_PATCHES] = (double)patches.count,
+        [MEASURE_PATCH_MEAN] = now * patches.mean / points,
+        [MEASURE_PATCH_LARGEST] = now * (double)patches.largest / points,
+        [MEASURE_ITERATIONS] = (double)state->iterations,
+        [MEASURE_WORK] = state->work / points,
+        [MEASURE_VIOLATION] = state->violation,
+        [MEASURE_PENETRATION] = state->penetration,
+        [MEASURE_CUTS] = report != NULL ? (double)report->cuts : NAN,
+        [MEASURE_CHANGES] = report != NULL ? (double)report->changes : NAN,
+        [MEASURE_DEEPEST] = report != NULL ? report->penetration : NAN,
+        [MEASURE_BALANCE] = report != NULL ? fabs(report->balance) : NAN,
+        [MEASURE_STRETCH] = report != NULL ? report->stretch : NAN,
+    };
+    for (size_t a = 0; a < MEASURE_COUNT; a++)
+        contact_tally_values(tally, (enum contact_measure)a)[cell] = values[a];
+}
+
+/* On areas as they are now, whose forces are those on the undeformed ones. */
+static void count_pressures(const struct contact_scene *scene, size_t model, size_t load,
+                            const double *p, double now, struct contact_tally *tally) {
+    const struct contact_case *study = scene->study;
+    for (size_t a = 0; a < study->pdf_count; a++)
+        if (study->pdf_loads[a] == load)
+            contact_tally_pressures(tally, model, a, p, 1 / (now * scene->rms_slope), now);
+}
+
+struct stopper {
+    int (*stop)(void *context);
+    void *context;
+};
+
+/* All loads of one model and level, rising, each from the last. */
+static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
+                       struct contact_tally *tally, const struct stopper *stopper,
+                       struct error *err) {
+    const struct contact_case *study = scene->study;
+    struct contact_solver *solver = scene->solvers[model][level];
+    struct contact_state state;
+    const struct full_report *report;
+    const struct mesh *mesh = contact_solver_mesh(solver);
+    bool finest = level + 1 == study->level_count;
+    int status = contact_solver_begin(solver, scene->z, stopper->stop, stopper->context, err);
+    if (status == 0 && finest && mesh != NULL) {
+        tally->slope = mesh->slope;
+        tally->quality = mesh->quality;
+    }
+    for (size_t k = 0; k < study->load_count && status == 0; k++) {
+        if (stopper->stop(stopper->context) != 0)
+            return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
+                             study->load_count);
+        status =
+            contact_solver_press(solver, study->loads[k] * scene->rms_slope, &state, &report, err);
+        if (status == 0)
+            measure(scene, model, level, &state, report, tally,
+                    contact_case_cell(study, model, level, k));
+        else if (report != NULL)
+            error_context(err, "load %g, reached %.4g", study->loads[k],
+                          report->reached / scene->rms_slope);
+        else
+            error_context(err, "load %g", study->loads[k]);
+        if (status == 0 && finest)
+            count_pressures(scene, model, k, state.p, present(report), tally);
+    }
+    return status;
+}
+
+/* "model full (hencky), level 6" */
+static void name_model(const struct contact_case *study, size_t model, size_t level,
+                       struct error *err) {
+    const char *name = CONTACT_MODEL_NAMES[study->blocks[model].model];
+    double points = study->levels[level].points;
+    if (contact_case_is_full(study, model))
+        error_context(err, "model %s (%s), level %g", name,
+                      FULL_KINEMATICS_NAMES[study->kinematics], points);
+    else
+        error_context(err, "model %s, level %g", name, points);
+}
+
+/* Where the model full finds no answer, a note tells why. */
+static int solve_model(struct contact_scene *scene, size_t model, size_t level,
+                       struct contact_tally *tally, const struct stopper *stopper,
+                       struct error *err) {
+    const struct contact_case *study = scene->study;
+    struct error why = {0};
+    int status = solve_loads(scene, model, level, tally, stopper, &why);
+    if (status == 0)
+        return 0;
+    name_model(study, model, level, &why);
+    bool unsolved = status == ERROR_NUMERIC || status == ERROR_INPUT;
+    if (unsolved && contact_case_is_full(study, model)) {
+        notes_add(&tally->notes, tally->realisation, why.text);
+        return 0;
+    }
+    return error_set(err, status, "%s", why.text);
+}
+
+int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
+                        int (*stop)(void *context), void *context, struct error *err) {
+    const struct contact_case *study = scene->study;
+    const struct stopper stopper = {stop, context};
+    int status = 0;
+    for (size_t l = 0; l < study->level_count && status == 0; l++) {
+        status = contact_level_sample(study, &study->levels[l], z, scene->z, err);
+        for (size_t m = 0; m < study->model_count && status == 0; m++)
+            status = solve_model(scene, m, l, tally, &stopper, err);
+    }
+    return status;
+}

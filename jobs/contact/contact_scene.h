@@ -1,0 +1,40 @@
+/* All that one realisation is solved with: the compliance of every model and level, which threads
+ * share, and a thread's own solvers. */
+#ifndef RUGO_JOBS_CONTACT_CONTACT_SCENE_H
+#define RUGO_JOBS_CONTACT_CONTACT_SCENE_H
+
+#include "jobs/contact/contact_case.h"
+#include "jobs/contact/contact_tally.h"
+
+/* By model and level; of the model full that of contact_linear_block, which tells its areas where
+ * edges lie. Immutable. */
+struct contact_compliances {
+    struct compliance *of[CONTACT_MODELS][CONTACT_LEVELS_MOST]; /* owned */
+};
+int contact_compliances_create(struct contact_compliances *out, const struct contact_case *study,
+                               struct error *err);
+void contact_compliances_clear(struct contact_compliances *compliances);
+
+/* Heights on the own grid of the case, sampled on that of a level. */
+int contact_level_sample(const struct contact_case *study, const struct contact_level *level,
+                         const double *z, double *out, struct error *err);
+
+struct contact_scene;
+/* Borrows all three. moments: of the prescribed spectrum, which sets the scale. */
+int contact_scene_create(struct contact_scene **out, const struct contact_case *study,
+                         const struct moments *moments,
+                         const struct contact_compliances *compliances, struct error *err);
+void contact_scene_destroy(struct contact_scene **scene);
+/* Bytes of both, without the surface itself. */
+double contact_scene_bytes(const struct contact_case *study);
+
+/* Solves every level, model and load of one realisation, z on the own grid of the case, into the
+ * tally's values. stop is asked before each load, and by the model full before each iteration of
+ * Newton's; non-zero ends it with ERROR_STOPPED. ERROR_NUMERIC names model, level and load.
+ *
+ * Where the model full finds no mesh or no equilibrium, the realisation has no values of it on that
+ * level from that load on: that is no error, but a note of the tally. */
+int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
+                        int (*stop)(void *context), void *context, struct error *err);
+
+#endif

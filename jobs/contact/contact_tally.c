@@ -1,0 +1,345 @@
+#include "jobs/contact/contact_tally.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { FORMAT_KIND = 0x434f, FORMAT_VERSION = 4 }; /* "CO" */
+enum { SCALE_BITS_MOST = 16 };
+/* Areas that strains have changed are rounded to 2^-20 of a node's, so that sums stay exact. */
+static const uint64_t STRETCHED_UNITS = 1 << 20;
+
+static size_t bins_of(const struct contact_case *study) {
+    return study->pressure.count + 2;
+}
+
+/* Exact sums resolve 2^-60. What falls with the load is summed over a power of two near it, which
+ * costs no digits, so that light loads keep theirs. */
+static double scale_of(const struct contact_case *study, enum contact_measure measure,
+                       size_t load) {
+    bool falls =
+        measure != MEASURE_GAP && (measure <= MEASURE_STIFFNESS || measure == MEASURE_PATCH_MEAN ||
+                                   measure == MEASURE_PATCH_LARGEST);
+    int exponent;
+    (void)frexp(fmin(study->loads[load], 1), &exponent);
+    return falls ? ldexp(1, exponent < -SCALE_BITS_MOST ? SCALE_BITS_MOST : -exponent) : 1;
+}
+
+static int sums_create(struct contact_sums *out, size_t size, struct error *err) {
+    int status = tally_sums_create(&out->sums, size, err);
+    return status != 0 ? status : tally_create(&out->counts, size, err);
+}
+
+static void sums_clear(struct contact_sums *sums) {
+    tally_sums_clear(&sums->sums);
+    tally_clear(&sums->counts);
+}
+
+/* A realisation's value, if it has one. */
+static void sums_add(struct contact_sums *sums, size_t cell, double value) {
+    if (isnan(value))
+        return;
+    tally_sums_add(&sums->sums, cell, value, 1);
+    tally_add(&sums->counts, cell, 1, 1);
+}
+
+static struct estimate sums_mean(const struct contact_sums *sums, size_t cell,
+                                 uint64_t realisations, double scale) {
+    struct estimate mean = tally_sums_ratio(&sums->sums, &sums->counts, cell, realisations);
+    return (struct estimate){mean.value / scale, mean.standard_error / scale};
+}
+
+static void values_begin(struct contact_tally *tally) {
+    size_t n = MEASURE_COUNT * contact_case_cells(tally->study);
+    for (size_t a = 0; a < n; a++)
+        tally->values[a] = NAN;
+    tally->slope = tally->quality = NAN;
+}
+
+int contact_tally_create(struct contact_tally *out, const struct contact_case *study,
+                         struct error *err) {
+    size_t cells = contact_case_cells(study), bins = bins_of(study);
+    *out = (struct contact_tally){.study = study,
+                                  .values = array_create(cells, MEASURE_COUNT * sizeof(double)),
+                                  .bin = array_create(bins, sizeof *out->bin)};
+    int status = 0;
+    if (out->values == NULL || out->bin == NULL)
+        status = error_memory(err, cells * MEASURE_COUNT * sizeof(double), "a tally");
+    for (size_t a = 0; a < MEASURE_COUNT && status == 0; a++)
+        status = sums_create(&out->sums[a], cells, err);
+    for (size_t a = 0; a < MEASURE_PAIRED && status == 0; a++) {
+        size_t pairs = study->level_count > 1 ? study->model_count * study->load_count : 0;
+        status = sums_create(&out->sums[SUMS_LEVELS + a], pairs, err);
+        if (status == 0)
+            status = sums_create(&out->sums[SUMS_MODELS + a],
+                                 (study->model_count - 1) * study->load_count, err);
+    }
+    if (status == 0)
+        status = tally_create(&out->pressures, study->model_count * study->pdf_count * bins, err);
+    if (status == 0)
+        values_begin(out);
+    else
+        contact_tally_clear(out);
+    return status;
+}
+
+void contact_tally_clear(struct contact_tally *tally) {
+    for (size_t a = 0; a < CONTACT_SUMS; a++)
+        sums_clear(&tally->sums[a]);
+    tally_clear(&tally->pressures);
+    free(tally->values);
+    free(tally->bin);
+    *tally = (struct contact_tally){0};
+}
+
+double contact_tally_bytes(const struct contact_case *study) {
+    size_t cells = contact_case_cells(study), bins = bins_of(study);
+    size_t pairs = (2 * study->model_count - 1) * study->load_count;
+    double a_cell = tally_sums_bytes(1) + tally_bytes(1);
+    return MEASURE_COUNT * (double)cells * (a_cell + sizeof(double)) +
+           MEASURE_PAIRED * (double)pairs * a_cell +
+           tally_bytes(study->model_count * study->pdf_count * bins);
+}
+
+uint64_t contact_tally_units(const struct contact_case *study, size_t model) {
+    return contact_case_is_full(study, model) ? STRETCHED_UNITS : 1;
+}
+
+void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, const double *p,
+                             double scale, double area) {
+    const struct contact_case *study = tally->study;
+    size_t first = contact_tally_pressure_cell(tally, model, at);
+    size_t n = grid_points(&contact_case_finest(study)->grid);
+    uint64_t units = contact_tally_units(study, model),
+             each = (uint64_t)lround(area * (double)units);
+    for (size_t j = 0; j < n; j++)
+        if (p[j] > 0)
+            tally->bin[bins_find(&study->pressure, scale * p[j])]++;
+    for (size_t b = 0; b < bins_of(study); b++) {
+        if (tally->bin[b] > 0)
+            tally_add(&tally->pressures, first + b, each * tally->bin[b], units * n);
+        tally->bin[b] = 0;
+    }
+}
+
+static void add_level_pairs(struct contact_tally *tally, enum contact_measure measure) {
+    const struct contact_case *study = tally->study;
+    const double *values = contact_tally_values(tally, measure);
+    size_t finest = study->level_count - 1;
+    for (size_t m = 0; m < study->model_count; m++)
+        for (size_t k = 0; k < study->load_count; k++)
+            sums_add(&tally->sums[SUMS_LEVELS + measure], m * study->load_count + k,
+                     (values[contact_case_cell(study, m, finest, k)] -
+                      values[contact_case_cell(study, m, finest - 1, k)]) *
+                         scale_of(study, measure, k));
+}
+
+/* Place of a model and load among the differences from the most complete model, which has none. */
+static size_t model_pair(const struct contact_case *study, size_t model, size_t load) {
+    return (model - (model > contact_case_complete(study))) * study->load_count + load;
+}
+
+static void add_model_pairs(struct contact_tally *tally, enum contact_measure measure) {
+    const struct contact_case *study = tally->study;
+    const double *values = contact_tally_values(tally, measure);
+    size_t finest = study->level_count - 1, complete = contact_case_complete(study);
+    for (size_t m = 0; m < study->model_count; m++)
+        for (size_t k = 0; m != complete && k < study->load_count; k++)
+            sums_add(&tally->sums[SUMS_MODELS + measure], model_pair(study, m, k),
+                     (values[contact_case_cell(study, m, finest, k)] -
+                      values[contact_case_cell(study, complete, finest, k)]) *
+                         scale_of(study, measure, k));
+}
+
+void contact_tally_add(struct contact_tally *tally) {
+    const struct contact_case *study = tally->study;
+    size_t cells = contact_case_cells(study);
+    for (size_t a = 0; a < MEASURE_COUNT; a++) {
+        const double *values = contact_tally_values(tally, (enum contact_measure)a);
+        for (size_t cell = 0; cell < cells; cell++)
+            sums_add(&tally->sums[a], cell,
+                     values[cell] *
+                         scale_of(study, (enum contact_measure)a, cell % study->load_count));
+    }
+    for (size_t a = 0; a < MEASURE_PAIRED; a++) {
+        if (study->level_count > 1)
+            add_level_pairs(tally, (enum contact_measure)a);
+        if (study->model_count > 1)
+            add_model_pairs(tally, (enum contact_measure)a);
+    }
+    tally_total_add(&tally->points, grid_points(&contact_case_finest(study)->grid));
+    tally->realisations++;
+    values_begin(tally);
+}
+
+struct estimate contact_tally_mean(const struct contact_tally *tally, enum contact_measure measure,
+                                   size_t cell) {
+    double scale = scale_of(tally->study, measure, cell % tally->study->load_count);
+    return sums_mean(&tally->sums[measure], cell, tally->realisations, scale);
+}
+
+double contact_tally_total(const struct contact_tally *tally, enum contact_measure measure,
+                           size_t cell) {
+    double scale = scale_of(tally->study, measure, cell % tally->study->load_count);
+    return exact_sum_value(&tally->sums[measure].sums.sum[cell]) / scale;
+}
+
+uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact_measure measure,
+                                 size_t cell) {
+    return tally->realisations - tally->sums[measure].counts.count[cell];
+}
+
+struct estimate contact_tally_level(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t load) {
+    if (tally->study->level_count < 2)
+        return (struct estimate){NAN, NAN};
+    return sums_mean(&tally->sums[SUMS_LEVELS + measure], model * tally->study->load_count + load,
+                     tally->realisations, scale_of(tally->study, measure, load));
+}
+
+struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t load) {
+    if (model == contact_case_complete(tally->study))
+        return (struct estimate){NAN, NAN};
+    return sums_mean(&tally->sums[SUMS_MODELS + measure], model_pair(tally->study, model, load),
+                     tally->realisations, scale_of(tally->study, measure, load));
+}
+
+size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at) {
+    return (model * tally->study->pdf_count + at) * bins_of(tally->study);
+}
+
+struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
+                                       size_t bin) {
+    const struct contact_case *study = tally->study;
+    size_t cell = contact_case_cell(study, model, study->level_count - 1, study->pdf_loads[at]);
+    fixed_point points = (fixed_point)grid_points(&contact_case_finest(study)->grid) *
+                         contact_tally_units(study, model);
+    uint64_t solved = tally->sums[MEASURE_NODES].counts.count[cell];
+    struct tally_total total = {solved, points * solved, points * points * solved};
+    return tally_share(&tally->pressures, contact_tally_pressure_cell(tally, model, at) + bin,
+                       &total);
+}
+
+int contact_tally_encode(const struct contact_tally *tally, unsigned char **data, size_t *size,
+                         struct error *err) {
+    struct bytes bytes = {0};
+    bytes_put_unsigned(&bytes, FORMAT_KIND);
+    bytes_put_unsigned(&bytes, FORMAT_VERSION);
+    bytes_put_unsigned(&bytes, tally->study->fingerprint);
+    bytes_put_unsigned(&bytes, tally->realisations);
+    for (size_t a = 0; a < CONTACT_SUMS; a++) {
+        tally_sums_put(&bytes, &tally->sums[a].sums);
+        tally_put(&bytes, &tally->sums[a].counts);
+    }
+    tally_total_put(&bytes, &tally->points);
+    tally_put(&bytes, &tally->pressures);
+    notes_put(&bytes, &tally->notes);
+    bytes_seal(&bytes);
+    if (bytes.failed) {
+        bytes_clear(&bytes);
+        return error_memory(err, bytes.capacity, "a partial result");
+    }
+    *data = bytes.data;
+    *size = bytes.size;
+    return 0;
+}
+
+static int refuse(struct error *err, const char *reason) {
+    return error_set(err, ERROR_INPUT, "the partial result %s", reason);
+}
+
+/* Whether a cell has as many values as it can: none more than there are realisations, one of each
+ * where all have one, and of the model full no more than at the load before. */
+static bool count_fits(const struct contact_tally *tally, enum contact_measure measure,
+                       size_t cell) {
+    const struct contact_case *study = tally->study;
+    const uint64_t *count = tally->sums[measure].counts.count;
+    size_t model = cell / (study->level_count * study->load_count);
+    bool always = measure == MEASURE_NODES || measure == MEASURE_EDGES || measure == MEASURE_GAP ||
+                  measure == MEASURE_ITERATIONS;
+    if (!always)
+        return count[cell] <= tally->realisations;
+    if (contact_case_is_full(study, model))
+        return count[cell] <=
+               (cell % study->load_count > 0 ? count[cell - 1] : tally->realisations);
+    return count[cell] == tally->realisations;
+}
+
+/* Realisations and levels that the model full did not bring to the last load: a note each. */
+static uint64_t unsolved(const struct contact_tally *tally) {
+    const struct contact_case *study = tally->study;
+    size_t full = contact_case_full(study), last = study->load_count - 1;
+    uint64_t count = 0;
+    for (size_t l = 0; l < study->level_count && full < study->model_count; l++)
+        count +=
+            contact_tally_valueless(tally, MEASURE_NODES, contact_case_cell(study, full, l, last));
+    return count;
+}
+
+/* Whether the pressures of a load lie on as much area as is in contact, but for rounding. */
+static bool pressures_fit(const struct contact_tally *tally, size_t model, size_t at) {
+    const struct contact_case *study = tally->study;
+    size_t cell = contact_case_cell(study, model, study->level_count - 1, study->pdf_loads[at]);
+    const uint64_t *count = tally->pressures.count + contact_tally_pressure_cell(tally, model, at);
+    double units = (double)grid_points(&contact_case_finest(study)->grid) *
+                   (double)contact_tally_units(study, model);
+    double area = units * contact_tally_total(tally, MEASURE_NODES, cell), sum = 0;
+    for (size_t b = 0; b < bins_of(study); b++)
+        sum += (double)count[b];
+    return fabs(sum - area) <= 1e-6 * area + 0.5;
+}
+
+/* Whether the counts can be, and belong together. */
+static bool adds_up(const struct contact_tally *tally) {
+    const struct contact_case *study = tally->study;
+    for (size_t a = 0; a < MEASURE_COUNT; a++)
+        for (size_t cell = 0; cell < contact_case_cells(study); cell++)
+            if (!count_fits(tally, (enum contact_measure)a, cell))
+                return false;
+    for (size_t a = MEASURE_COUNT; a < CONTACT_SUMS; a++) {
+        const struct tally *counts = &tally->sums[a].counts;
+        for (size_t cell = 0; cell < counts->size; cell++)
+            if (counts->count[cell] > tally->realisations)
+                return false;
+    }
+    for (size_t m = 0; m < study->model_count; m++)
+        for (size_t a = 0; a < study->pdf_count; a++)
+            if (!pressures_fit(tally, m, a))
+                return false;
+    return tally->points.realisations == tally->realisations &&
+           tally->notes.count == unsolved(tally);
+}
+
+int contact_tally_decode(struct contact_tally *tally, const unsigned char *data, size_t size,
+                         struct error *err) {
+    struct byte_reader reader = bytes_open(data, size);
+    if (reader.failed)
+        return refuse(err, "is cut short or damaged: its seal does not match");
+    if (bytes_get_unsigned(&reader) != FORMAT_KIND)
+        return refuse(err, "is not one of contact");
+    if (bytes_get_unsigned(&reader) != FORMAT_VERSION)
+        return refuse(err, "is of another version of its format");
+    if (bytes_get_unsigned(&reader) != tally->study->fingerprint)
+        return refuse(err, "is of a case with other parameters");
+    tally->realisations = bytes_get_unsigned(&reader);
+    for (size_t a = 0; a < CONTACT_SUMS; a++) {
+        tally_sums_get(&reader, &tally->sums[a].sums);
+        tally_get(&reader, &tally->sums[a].counts);
+    }
+    tally_total_get(&reader, &tally->points);
+    tally_get_weighed(&reader, &tally->pressures);
+    notes_get(&reader, &tally->notes);
+    if (reader.failed || reader.at != reader.end)
+        return refuse(err, "is malformed");
+    return adds_up(tally) ? 0 : refuse(err, "does not add up");
+}
+
+void contact_tally_merge(struct contact_tally *into, const struct contact_tally *from) {
+    into->realisations += from->realisations;
+    for (size_t a = 0; a < CONTACT_SUMS; a++) {
+        tally_sums_merge(&into->sums[a].sums, &from->sums[a].sums);
+        tally_merge(&into->sums[a].counts, &from->sums[a].counts);
+    }
+    tally_total_merge(&into->points, &from->points);
+    tally_merge(&into->pressures, &from->pressures);
+    notes_merge(&into->notes, &from->notes);
+}

@@ -1,0 +1,109 @@
+/* What a block of realisations adds up to: exact sums and counts, encoded into a partial result.
+ *
+ * Each realisation is solved for every model, level and load (a cell of contact_case_cell) and
+ * gives a value of each measure there, or none (NaN): a measure that is not defined there, or any
+ * where the model full found no answer. Differences between levels and between models
+ * are summed on their own: both see the same surface, so that their errors are those of pairs. */
+#ifndef RUGO_JOBS_CONTACT_CONTACT_TALLY_H
+#define RUGO_JOBS_CONTACT_CONTACT_TALLY_H
+
+#include "jobs/contact/contact_case.h"
+#include "jobs/notes.h"
+#include "jobs/tally.h"
+
+enum contact_measure {
+    MEASURE_NODES, /* share of the cell, as all areas */
+    MEASURE_EDGES,
+    MEASURE_PERIMETER, /* surfaces alone */
+    MEASURE_GAP,       /* mean gap/sqrt(m0) */
+    MEASURE_PAIRED,    /* measures above: differences are summed too */
+    MEASURE_NODES_LOWER = MEASURE_PAIRED,
+    MEASURE_NODES_UPPER,
+    MEASURE_STIFFNESS, /* -d(p/(E* h'))/d(gap/sqrt(m0)); none in full contact */
+    MEASURE_PATCHES,
+    MEASURE_PATCH_MEAN, /* share of the cell; none without patches */
+    MEASURE_PATCH_LARGEST,
+    MEASURE_ITERATIONS,
+    MEASURE_WORK, /* transforms of the level's grid */
+    MEASURE_VIOLATION,
+    MEASURE_PENETRATION, /* of the weighted gap */
+    MEASURE_CUTS,        /* of load steps; of the model full alone, as all below */
+    MEASURE_CHANGES,     /* of single nodes of the active set */
+    MEASURE_DEEPEST,     /* node through the flat */
+    MEASURE_BALANCE,     /* |sum of contact forces/load - 1| */
+    MEASURE_STRETCH,     /* area of the nodes in contact now, over that undeformed */
+    MEASURE_COUNT
+};
+
+/* Sums over the realisations that have a value in a cell, and how many these are. */
+struct contact_sums {
+    struct tally_sums sums;
+    struct tally counts;
+};
+/* Which sums: those of each measure, by cell; then differences of the paired measures. */
+enum {
+    SUMS_LEVELS = MEASURE_COUNT,                /* finest level less the next; by model and load */
+    SUMS_MODELS = SUMS_LEVELS + MEASURE_PAIRED, /* finest level: a model less the most complete
+                                                   one; by model and load */
+    CONTACT_SUMS = SUMS_MODELS + MEASURE_PAIRED
+};
+struct contact_tally {
+    const struct contact_case *study; /* borrowed */
+    uint64_t realisations;
+    struct contact_sums sums[CONTACT_SUMS];
+    struct tally_total points; /* of the finest level */
+    struct tally pressures;    /* finest level: by model, load of pdf_loads, bin with under- and
+                                  overflow; in contact_tally_units of a node's undeformed area;
+                                  nodes that are open are in none */
+    struct notes notes;        /* why the model full has no values, a realisation and level */
+    uint64_t realisation;      /* the one under way, for these */
+    double *values;            /* owned: the realisation under way, by measure and cell */
+    double slope, quality;     /* the same: finest mesh of the model full (mesh.h); NaN without */
+    uint64_t *bin;             /* owned: scratch, zero in between */
+};
+int contact_tally_create(struct contact_tally *out, const struct contact_case *study,
+                         struct error *err);
+void contact_tally_clear(struct contact_tally *tally);
+double contact_tally_bytes(const struct contact_case *study);
+
+/* The realisation under way: values of a measure, by cell; NaN until they are set. */
+static inline double *contact_tally_values(struct contact_tally *tally,
+                                           enum contact_measure measure) {
+    return tally->values + (size_t)measure * contact_case_cells(tally->study);
+}
+/* Counts the pressures, scale * p at the points of the finest level where p > 0, on area times the
+ * undeformed area of a node each. at: position in pdf_loads. */
+void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, const double *p,
+                             double scale, double area);
+/* Ends the realisation: adds its values, and the next one begins. */
+void contact_tally_add(struct contact_tally *tally);
+
+struct estimate contact_tally_mean(const struct contact_tally *tally, enum contact_measure measure,
+                                   size_t cell);
+/* Sum over the realisations, exact. */
+double contact_tally_total(const struct contact_tally *tally, enum contact_measure measure,
+                           size_t cell);
+/* Realisations without a value. */
+uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact_measure measure,
+                                 size_t cell);
+/* Means of the paired differences; NaN with one level, or for the most complete model. */
+struct estimate contact_tally_level(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t load);
+struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t load);
+/* Area of a bin over that of the cell, over the realisations with values there. */
+struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
+                                       size_t bin);
+/* In how many parts a node's area is counted: 1 where all are equal. */
+uint64_t contact_tally_units(const struct contact_case *study, size_t model);
+/* First cell of the pressures of a model and load: underflow, the bins, overflow. */
+size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at);
+
+/* As those of statistics_tally.h. */
+int contact_tally_encode(const struct contact_tally *tally, unsigned char **data, size_t *size,
+                         struct error *err);
+int contact_tally_decode(struct contact_tally *tally, const unsigned char *data, size_t size,
+                         struct error *err);
+void contact_tally_merge(struct contact_tally *into, const struct contact_tally *from);
+
+#endif

@@ -1,0 +1,31 @@
+/* One case of a statistics study, read and costed. */
+#ifndef RUGO_JOBS_STATISTICS_STATISTICS_CASE_H
+#define RUGO_JOBS_STATISTICS_STATISTICS_CASE_H
+
+#include "core/statistics/histogram.h"
+#include "core/statistics/summits.h"
+#include "jobs/kind.h"
+#include "jobs/surface_case.h"
+#include "schema/study/fault.h"
+
+/* Table of the kind: the rows of /surface/..., then those of /statistics/.... */
+enum { STATISTICS_PARAMETER_COUNT = SURFACE_PARAMETER_COUNT + 4 };
+extern const struct parameter STATISTICS_PARAMETERS[];
+
+struct statistics_case {
+    struct surface_case surface;
+    enum summit_stencil stencil;
+    enum summit_curvature curvature;
+    struct bins height;     /* of z* = z/sqrt(m0) */
+    struct bins equivalent; /* of t1 = -sqrt(3/m4) kappa_m; profiles z''/sqrt(m4) */
+    uint64_t fingerprint;   /* of all parameters */
+};
+/* As surface_case_read. */
+int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
+                         struct fault_list *faults, struct error *err);
+void statistics_case_clear(struct statistics_case *study);
+
+/* Memory, time and error of one realisation, before anything ran. */
+void statistics_case_estimate(const struct statistics_case *study, struct job_estimate *out);
+
+#endif

@@ -1,0 +1,158 @@
+#include "jobs/statistics/statistics_scalars.h"
+#include "core/sum.h"
+#include "core/theory/nayak.h"
+#include "jobs/estimate.h"
+#include "jobs/scalar.h"
+#include "jobs/statistics/statistics_theory.h"
+#include <math.h>
+#include <stdlib.h>
+
+const char *const STATISTICS_SCALARS[SCALAR_COUNT + 1] = {
+    [SCALAR_RMS_HEIGHT] = "rms_height",
+    [SCALAR_RMS_SLOPE] = "rms_slope",
+    [SCALAR_RMS_CURVATURE] = "rms_curvature",
+    [SCALAR_SKEWNESS] = "skewness",
+    [SCALAR_KURTOSIS] = "kurtosis",
+    [SCALAR_LOWEST] = "lowest",
+    [SCALAR_HIGHEST] = "highest",
+    [SCALAR_M0] = "m0",
+    [SCALAR_M2] = "m2",
+    [SCALAR_M4] = "m4",
+    [SCALAR_NAYAK_ALPHA] = "nayak_alpha",
+    [SCALAR_M2_DIFFERENCE] = "m2_finite_difference",
+    [SCALAR_M4_DIFFERENCE] = "m4_finite_difference",
+    [SCALAR_NAYAK_ALPHA_DIFFERENCE] = "nayak_alpha_finite_difference",
+    [SCALAR_SUMMITS] = "summits",
+    [SCALAR_SUMMIT_DENSITY] = "summit_density",
+    [SCALAR_SUMMIT_DENSITY_PER_AREA] = "summit_density_per_area",
+    [SCALAR_SUMMIT_HEIGHT_MEAN] = "summit_height_mean",
+    [SCALAR_SUMMIT_HEIGHT_VARIANCE] = "summit_height_variance",
+    [SCALAR_SUMMIT_CURVATURE_MEAN] = "summit_curvature_mean",
+    [SCALAR_GENERATOR_ITERATIONS] = "generator_iterations",
+    [SCALAR_GENERATOR_CONVERGED] = "generator_converged",
+    [SCALAR_EPS_H] = "eps_h",
+    [SCALAR_EPS_S] = "eps_s",
+    [SCALAR_EPS_S0] = "eps_s0",
+    [SCALAR_EPS_S_AMPLITUDE] = "eps_s_amplitude",
+    [SCALAR_EPS_S0_AMPLITUDE] = "eps_s0_amplitude",
+};
+
+/* Mean and variance of heights, mean curvature, of the summits of one realisation; NaN (0/0) where
+ * there is none. */
+static void measure_summits(const struct statistics_case *study, const struct moments *moments,
+                            const struct summit_list *list, double *out) {
+    const struct grid *grid = &study->surface.grid;
+    double n = (double)list->count, ratio = study->surface.wavelength_ratio;
+    bool surface = study->surface.dimension == 2;
+    struct sum heights = {0, 0}, curvatures = {0, 0}, squares = {0, 0};
+    for (size_t a = 0; a < list->count; a++) {
+        sum_add(&heights, list->summits[a].height);
+        sum_add(&curvatures, list->summits[a].curvature);
+    }
+    double height = sum_value(&heights) / n, curvature = sum_value(&curvatures) / n;
+    for (size_t a = 0; a < list->count; a++) {
+        double deviation = list->summits[a].height - height;
+        sum_add(&squares, deviation * deviation);
+    }
+    out[SCALAR_SUMMITS] = n;
+    out[SCALAR_SUMMIT_DENSITY] = n / (surface ? grid->lx * grid->ly : grid->lx);
+    out[SCALAR_SUMMIT_DENSITY_PER_AREA] =
+        out[SCALAR_SUMMIT_DENSITY] * (surface ? ratio * ratio : ratio);
+    out[SCALAR_SUMMIT_HEIGHT_MEAN] = height / sqrt(moments->m0);
+    out[SCALAR_SUMMIT_HEIGHT_VARIANCE] = sum_value(&squares) / n / moments->m0;
+    out[SCALAR_SUMMIT_CURVATURE_MEAN] = curvature / sqrt(moments->m4);
+}
+
+void statistics_scalars_measure(const struct statistics_case *study, const struct moments *moments,
+                                const struct realisation_measures *measures,
+                                double out[SCALAR_COUNT]) {
+    const struct roughness *roughness = measures->roughness;
+    const struct surface_report *report = measures->report;
+    bool iterated = report->end != END_DIRECT;
+    out[SCALAR_RMS_HEIGHT] = roughness->rms_height;
+    out[SCALAR_RMS_SLOPE] = roughness->rms_slope;
+    out[SCALAR_RMS_CURVATURE] = roughness->rms_curvature;
+    out[SCALAR_SKEWNESS] = roughness->skewness;
+    out[SCALAR_KURTOSIS] = roughness->kurtosis;
+    out[SCALAR_LOWEST] = roughness->lowest / sqrt(moments->m0);
+    out[SCALAR_HIGHEST] = roughness->highest / sqrt(moments->m0);
+    out[SCALAR_M0] = measures->moments->m0;
+    out[SCALAR_M2] = measures->moments->m2;
+    out[SCALAR_M4] = measures->moments->m4;
+    out[SCALAR_NAYAK_ALPHA] = measures->moments->nayak_alpha;
+    out[SCALAR_M2_DIFFERENCE] = roughness->m2;
+    out[SCALAR_M4_DIFFERENCE] = roughness->m4;
+    out[SCALAR_NAYAK_ALPHA_DIFFERENCE] = roughness->nayak_alpha;
+    measure_summits(study, moments, measures->summits, out);
+    out[SCALAR_GENERATOR_ITERATIONS] = (double)report->iterations;
+    out[SCALAR_GENERATOR_CONVERGED] = iterated ? report->end == END_CONVERGED : NAN;
+    out[SCALAR_EPS_H] = iterated ? report->eps_h : NAN;
+    out[SCALAR_EPS_S] = iterated ? report->eps_s : NAN;
+    out[SCALAR_EPS_S0] = iterated ? report->eps_s0 : NAN;
+    out[SCALAR_EPS_S_AMPLITUDE] = iterated ? report->eps_s_amplitude : NAN;
+    out[SCALAR_EPS_S0_AMPLITUDE] = iterated ? report->eps_s0_amplitude : NAN;
+}
+
+/* Columns of the scalars, n values each, and the estimates made of them. */
+struct columns {
+    size_t n;
+    double *values; /* SCALAR_COUNT x n */
+};
+static const double *column(const struct columns *columns, enum statistics_scalar scalar) {
+    return columns->values + (size_t)scalar * columns->n;
+}
+
+/* Over all summits of the case; the variance about the common mean, which it replaces. */
+static struct estimate summit_estimate(const struct columns *columns,
+                                       enum statistics_scalar scalar) {
+    const double *number = column(columns, SCALAR_SUMMITS);
+    if (scalar != SCALAR_SUMMIT_HEIGHT_VARIANCE)
+        return estimate_weighted(columns->n, column(columns, scalar), number);
+    const double *mean = column(columns, SCALAR_SUMMIT_HEIGHT_MEAN);
+    double *variance = columns->values + (size_t)scalar * columns->n;
+    double common = estimate_weighted(columns->n, mean, number).value;
+    for (size_t r = 0; r < columns->n; r++)
+        variance[r] += (mean[r] - common) * (mean[r] - common);
+    return estimate_weighted(columns->n, variance, number);
+}
+
+static bool put_scalars(cJSON *scalars, const struct statistics_case *study,
+                        const struct moments *moments, struct columns *columns) {
+    double theory[SCALAR_COUNT];
+    statistics_theory_scalars(study, moments, theory);
+    bool exact = surface_case_exact(&study->surface), done = true;
+    const double prescribed[] = {moments->m0, moments->m2, moments->m4, moments->nayak_alpha};
+    for (enum statistics_scalar a = 0; a < SCALAR_COUNT && done; a++) {
+        struct estimate estimate;
+        if (exact && a >= SCALAR_M0 && a <= SCALAR_NAYAK_ALPHA)
+            estimate = (struct estimate){prescribed[a - SCALAR_M0], 0};
+        else if (a >= SCALAR_SUMMIT_HEIGHT_MEAN && a <= SCALAR_SUMMIT_CURVATURE_MEAN)
+            estimate = summit_estimate(columns, a);
+        else
+            estimate = estimate_mean(columns->n, column(columns, a));
+        done = scalar_put(scalars, STATISTICS_SCALARS[a], estimate, theory[a]);
+    }
+    /* as given, or as solved for nayak_alpha */
+    return done && scalar_put(scalars, "wavelength_ratio",
+                              (struct estimate){study->surface.wavelength_ratio, 0}, NAN);
+}
+
+int statistics_scalars_json(const struct statistics_case *study, const struct moments *moments,
+                            const struct realisations *realisations, cJSON **out,
+                            struct error *err) {
+    struct columns columns = {.n = (size_t)realisations->count};
+    size_t bytes = columns.n * SCALAR_COUNT * sizeof(double);
+    columns.values = array_create(columns.n + 1, SCALAR_COUNT * sizeof(double));
+    cJSON *scalars = cJSON_CreateObject();
+    bool done = columns.values != NULL && scalars != NULL;
+    for (size_t a = 0; a < SCALAR_COUNT && done; a++)
+        realisations_column(realisations, a, columns.values + a * columns.n);
+    done = done && put_scalars(scalars, study, moments, &columns);
+    free(columns.values);
+    if (!done) {
+        cJSON_Delete(scalars);
+        return error_memory(err, bytes, "scalars");
+    }
+    *out = scalars;
+    return 0;
+}

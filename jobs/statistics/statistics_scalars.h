@@ -1,0 +1,59 @@
+/* The scalars of one realisation, and of a case. */
+#ifndef RUGO_JOBS_STATISTICS_STATISTICS_SCALARS_H
+#define RUGO_JOBS_STATISTICS_STATISTICS_SCALARS_H
+
+#include "core/statistics/roughness.h"
+#include "jobs/realisations.h"
+#include "jobs/statistics/statistics_case.h"
+
+/* Lengths in lambda_s. Finite-difference values say so; m0 to nayak_alpha are spectral. */
+enum statistics_scalar {
+    SCALAR_RMS_HEIGHT, /* the three by finite differences (2.35) */
+    SCALAR_RMS_SLOPE,
+    SCALAR_RMS_CURVATURE,
+    SCALAR_SKEWNESS,
+    SCALAR_KURTOSIS,
+    SCALAR_LOWEST, /* z*, as all summit heights below */
+    SCALAR_HIGHEST,
+    SCALAR_M0,
+    SCALAR_M2,
+    SCALAR_M4,
+    SCALAR_NAYAK_ALPHA,
+    SCALAR_M2_DIFFERENCE,
+    SCALAR_M4_DIFFERENCE,
+    SCALAR_NAYAK_ALPHA_DIFFERENCE,
+    SCALAR_SUMMITS,                 /* how many in the cell */
+    SCALAR_SUMMIT_DENSITY,          /* per lambda_s^2, profiles per lambda_s */
+    SCALAR_SUMMIT_DENSITY_PER_AREA, /* per lambda_l^2, profiles per lambda_l */
+    SCALAR_SUMMIT_HEIGHT_MEAN,
+    SCALAR_SUMMIT_HEIGHT_VARIANCE,
+    SCALAR_SUMMIT_CURVATURE_MEAN, /* kappa_m/sqrt(m4) */
+    SCALAR_GENERATOR_ITERATIONS,
+    SCALAR_GENERATOR_CONVERGED, /* 1 below tolerance, 0 stalled or at the limit; none if Gaussian */
+    SCALAR_EPS_H,
+    SCALAR_EPS_S,
+    SCALAR_EPS_S0,
+    SCALAR_EPS_S_AMPLITUDE,
+    SCALAR_EPS_S0_AMPLITUDE,
+    SCALAR_COUNT
+};
+extern const char *const STATISTICS_SCALARS[SCALAR_COUNT + 1]; /* names, NULL at the end */
+
+/* What is known of one realisation. */
+struct realisation_measures {
+    const struct roughness *roughness;
+    const struct moments *moments; /* of this realisation's spectrum */
+    const struct summit_list *summits;
+    const struct surface_report *report;
+};
+/* moments: of the prescribed spectrum, which sets the scale. NaN: none. */
+void statistics_scalars_measure(const struct statistics_case *study, const struct moments *moments,
+                                const struct realisation_measures *measures,
+                                double out[SCALAR_COUNT]);
+
+/* {name: {"value", "standard_error", "theory"?}} over the realisations; caller deletes. */
+int statistics_scalars_json(const struct statistics_case *study, const struct moments *moments,
+                            const struct realisations *realisations, cJSON **out,
+                            struct error *err);
+
+#endif

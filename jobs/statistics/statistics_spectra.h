@@ -1,0 +1,28 @@
+/* Spectral density and autocorrelation of a case. Where the surfaces have the prescribed spectrum
+ * exactly, both are known before anything ran; else they are measured on every realisation. */
+#ifndef RUGO_JOBS_STATISTICS_STATISTICS_SPECTRA_H
+#define RUGO_JOBS_STATISTICS_STATISTICS_SPECTRA_H
+
+#include "jobs/statistics/statistics_tally.h"
+
+/* Entries of the two tallies: 0 where nothing is measured. */
+size_t spectra_densities(const struct statistics_case *study);
+size_t spectra_correlations(const struct statistics_case *study);
+
+/* Workspace for measuring, made once a case. */
+struct spectra {
+    size_t densities, correlations;
+    double *abscissa, *measured; /* owned, scratch */
+    double *reference; /* owned, densities: prescribed density, its mean where that is 0 */
+};
+int spectra_create(struct spectra *out, const struct statistics_case *study,
+                   const struct modes *modes, struct error *err);
+void spectra_clear(struct spectra *spectra);
+int spectra_measure(struct spectra *spectra, const struct grid *grid, const double *z,
+                    struct statistics_tally *tally, struct error *err);
+
+/* Appends the curves "psd" and "acf". */
+int spectra_curves(const struct statistics_case *study, const struct modes *modes,
+                   const struct statistics_tally *tally, cJSON *curves, struct error *err);
+
+#endif

@@ -1,0 +1,79 @@
+#include "schema/json/json.h"
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+int base64_encode(const unsigned char *data, size_t size, char **out, struct error *err) {
+    if (size > SIZE_MAX / 2)
+        return error_set(err, ERROR_MEMORY, "%zu bytes are too many to encode", size);
+    size_t length = (size + 2) / 3 * 4;
+    char *text = malloc(length + 1), *at = text;
+    if (!text)
+        return error_memory(err, length + 1, "base64 text");
+    for (size_t i = 0; i < size; i += 3) {
+        size_t left = size - i;
+        uint32_t group = (uint32_t)data[i] << 16;
+        group |= left > 1 ? (uint32_t)data[i + 1] << 8 : 0;
+        group |= left > 2 ? data[i + 2] : 0;
+        *at++ = DIGITS[group >> 18];
+        *at++ = DIGITS[group >> 12 & 63];
+        *at++ = left > 1 ? DIGITS[group >> 6 & 63] : '=';
+        *at++ = left > 2 ? DIGITS[group & 63] : '=';
+    }
+    *at = 0;
+    *out = text;
+    return 0;
+}
+
+/* -1 for what is no digit. */
+static int digit_value(char c) {
+    if (c >= 'A' && c <= 'Z')
+        return c - 'A';
+    if (c >= 'a' && c <= 'z')
+        return c - 'a' + 26;
+    if (c >= '0' && c <= '9')
+        return c - '0' + 52;
+    return c == '+' ? 62 : c == '/' ? 63 : -1;
+}
+
+/* Four characters to 1..3 bytes; 0 when they are no base64. Only the last group may be padded. */
+static size_t group_decode(const char *text, int last, unsigned char *bytes) {
+    size_t count = last && text[3] == '=' ? (text[2] == '=' ? 1 : 2) : 3;
+    uint32_t group = 0;
+    for (size_t i = 0; i < 4; i++) {
+        int value = i <= count ? digit_value(text[i]) : 0;
+        if (value < 0)
+            return 0;
+        group = group << 6 | (uint32_t)value;
+    }
+    /* Bits behind the last byte must be zero: one text for one value. */
+    if ((count == 1 && group & 0xffff) || (count == 2 && group & 0xff))
+        return 0;
+    bytes[0] = (unsigned char)(group >> 16);
+    bytes[1] = (unsigned char)(group >> 8);
+    bytes[2] = (unsigned char)group;
+    return count;
+}
+
+int base64_decode(const char *text, unsigned char **out, size_t *size, struct error *err) {
+    size_t length = strlen(text), at = 0;
+    if (length % 4)
+        return error_set(err, ERROR_INPUT, "base64 of %zu characters; allowed: a multiple of 4",
+                         length);
+    unsigned char *data = malloc(length / 4 * 3 + 1);
+    if (!data)
+        return error_memory(err, length / 4 * 3 + 1, "base64 data");
+    for (size_t i = 0; i < length; i += 4) {
+        size_t count = group_decode(text + i, i + 4 == length, data + at);
+        if (count == 0) {
+            free(data);
+            return error_set(err, ERROR_INPUT, "no base64 at character %zu", i);
+        }
+        at += count;
+    }
+    *out = data;
+    *size = at;
+    return 0;
+}

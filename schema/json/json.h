@@ -1,0 +1,34 @@
+/* A strict gate in front of cJSON, which alone takes duplicate keys, bad UTF-8, 01, 1e999, a BOM
+ * and text after the end. */
+#ifndef RUGO_SCHEMA_JSON_JSON_H
+#define RUGO_SCHEMA_JSON_JSON_H
+
+#include "core/error.h"
+#include <cjson/cJSON.h>
+
+struct json_limits {
+    size_t bytes;  /* largest text */
+    size_t depth;  /* deepest nesting */
+    size_t values; /* most values (numbers, strings, objects, ...) in all */
+};
+extern const struct json_limits JSON_LIMITS; /* 16 MiB, 32, 1 000 000 */
+
+/* Parses exactly one RFC 8259 value: valid UTF-8, strict numbers within double's range, no
+ * duplicate keys, nothing behind it. ERROR_INPUT with line and column. limits may be NULL for
+ * JSON_LIMITS. *out is the caller's to delete. */
+int json_parse(const char *text, size_t size, const struct json_limits *limits, cJSON **out,
+               struct error *err);
+/* Compact text, numbers so that they read back to the same double, NaN and infinities as null;
+ * caller frees. NULL when out of memory. */
+char *json_print(const cJSON *value);
+/* Value at an RFC 6901 pointer, or NULL. */
+const cJSON *json_at(const cJSON *root, const char *pointer);
+/* A number, or null where it is NaN or infinite. NULL when out of memory. */
+cJSON *json_number(double value);
+cJSON *json_numbers(const double *values, size_t n);
+
+/* RFC 4648 base64 with padding. Caller frees *out. */
+int base64_encode(const unsigned char *data, size_t size, char **out, struct error *err);
+int base64_decode(const char *text, unsigned char **out, size_t *size, struct error *err);
+
+#endif

@@ -1,0 +1,87 @@
+#include "schema/json/wire_field.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The largest integer that every JSON reader keeps exactly. */
+static const double INTEGER_MOST = 9007199254740992.0; /* 2^53 */
+
+bool field_put(cJSON *object, const char *key, cJSON *item) {
+    if (item && cJSON_AddItemToObject(object, key, item)) {
+        return true;
+    }
+    cJSON_Delete(item);
+    return false;
+}
+
+bool field_put_text(cJSON *object, const char *key, const char *text) {
+    return field_put(object, key, cJSON_CreateString(text));
+}
+
+bool field_put_count(cJSON *object, const char *key, uint64_t count) {
+    return field_put(object, key, cJSON_CreateNumber((double)count));
+}
+
+cJSON *fields_finish(cJSON *value, bool complete) {
+    if (complete) {
+        return value;
+    }
+    cJSON_Delete(value);
+    return NULL;
+}
+
+int field_fault(const char *key, const char *what, struct error *err) {
+    return error_set(err, ERROR_INPUT, "\"%s\" must be %s", key, what);
+}
+
+const cJSON *field_at(const cJSON *object, const char *key) {
+    return cJSON_GetObjectItemCaseSensitive(object, key);
+}
+
+int field_text(const cJSON *object, const char *key, size_t size, const char **out,
+               struct error *err) {
+    const char *text = cJSON_GetStringValue(field_at(object, key));
+    if (!text || !*text || strlen(text) >= size) {
+        return error_set(err, ERROR_INPUT, "\"%s\" must be a string of 1 to %zu bytes", key,
+                         size - 1);
+    }
+    *out = text;
+    return 0;
+}
+
+int field_copy(const cJSON *object, const char *key, size_t size, char *out, struct error *err) {
+    const char *text = "";
+    int status = field_text(object, key, size, &text, err);
+    if (!status) {
+        memcpy(out, text, strlen(text) + 1);
+    }
+    return status;
+}
+
+int field_count(const cJSON *object, const char *key, uint64_t *out, struct error *err) {
+    const cJSON *item = field_at(object, key);
+    if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= INTEGER_MOST) ||
+        item->valuedouble != floor(item->valuedouble)) {
+        return field_fault(key, "an integer of 0 to 2^53", err);
+    }
+    *out = (uint64_t)item->valuedouble;
+    return 0;
+}
+
+int field_seconds(const cJSON *object, const char *key, double *out, struct error *err) {
+    const cJSON *item = field_at(object, key);
+    if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= 1e12)) {
+        return field_fault(key, "a number of seconds", err);
+    }
+    *out = item->valuedouble;
+    return 0;
+}
+
+int field_bool(const cJSON *object, const char *key, bool *out, struct error *err) {
+    const cJSON *item = field_at(object, key);
+    if (item && !cJSON_IsBool(item)) {
+        return field_fault(key, "true or false", err);
+    }
+    *out = cJSON_IsTrue(item);
+    return 0;
+}

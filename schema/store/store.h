@@ -1,0 +1,175 @@
+/* The store: studies, the queue of jobs with leases, partial results, published curves, in one
+ * SQLite file. The only code that speaks SQL. schema/README.md draws the states and documents the
+ * views.
+ *
+ * One handle belongs to one thread at a time. Every state change is one transaction
+ * (BEGIN IMMEDIATE), or a savepoint within store_begin .. store_commit (group commit). Waiting for
+ * another process's lock is polite and bounded; then ERROR_SYSTEM "the database is busy".
+ *
+ * Leases run on CLOCK_BOOTTIME, not on the wall clock, and are void after a reboot. */
+#ifndef RUGO_SCHEMA_STORE_STORE_H
+#define RUGO_SCHEMA_STORE_STORE_H
+
+#include "schema/study/study.h"
+#include <stdbool.h>
+
+enum { STUDY_ID_SIZE = 17, TOKEN_SIZE = 33, ATTEMPTS_MOST = 3 };
+
+struct store;
+struct store_options {
+    bool read_only;                   /* ERROR_ABSENT when the file does not exist */
+    bool existing;                    /* do not create */
+    int64_t lease_ms;                 /* 0: 60 000 */
+    int64_t (*now_ms)(void *context); /* lease clock; NULL: CLOCK_BOOTTIME */
+    void *context;
+};
+int store_open(struct store **out, const char *path, const struct store_options *options,
+               struct error *err);
+void store_close(struct store **store);
+
+/* Group commit: everything between is one transaction, each operation still all or nothing.
+ * store_commit fails as a whole: then nothing since store_begin happened. */
+int store_begin(struct store *store, struct error *err);
+int store_commit(struct store *store, struct error *err);
+
+/* --- studies --- */
+/* Queues a study with its jobs. key (may be NULL): a second submission with the same key and the
+ * same source gives the first one's id and *existing = true; another source under it: ERROR_STATE.
+ */
+int store_submit(struct store *store, const struct study *study, const char *key,
+                 char id[STUDY_ID_SIZE], bool *existing, struct error *err);
+
+struct study_status {
+    char id[STUDY_ID_SIZE];
+    char *name, *kind;                  /* owned */
+    const char *state;                  /* static: queued running done failed cancelled */
+    uint64_t seed, cases, realisations; /* realisations of each case */
+    uint64_t jobs, jobs_done, jobs_failed, jobs_running, jobs_waiting, jobs_cancelled;
+    uint64_t realisations_total, realisations_done,
+        realisations_failed; /* done includes running jobs' reports */
+    double seconds;          /* spent by completed jobs, summed over workers */
+    double seconds_left;     /* estimate of work left, one worker; NaN before anything is known */
+    uint64_t workers;        /* distinct workers with a live lease */
+    uint64_t revision;       /* rises with every change of results or state */
+    char created[32], finished[32]; /* UTC, ISO 8601; "" if not yet */
+};
+void study_status_clear(struct study_status *status);
+int store_status(struct store *store, const char *id, struct study_status *out, struct error *err);
+/* Up to limit studies created after study `after` ("" from the start), oldest first; frees by
+ * study_status_clear each, then free. */
+int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
+               size_t *count, struct error *err);
+int store_cancel(struct store *store, const char *id, struct error *err); /* ERROR_STATE if ended */
+/* Failed jobs wait again with fresh attempts; *count of them. */
+int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err);
+
+struct failure {
+    int64_t job;
+    uint64_t case_number, first, count, attempts;
+    char *worker, *reason; /* owned */
+};
+int store_failures(struct store *store, const char *id, struct failure **out, size_t *count,
+                   struct error *err);
+void failures_free(struct failure *failures, size_t count);
+
+/* --- the queue --- */
+struct claimed_job {
+    int64_t id;
+    char study[STUDY_ID_SIZE], token[TOKEN_SIZE]; /* token: the fence of this lease */
+    char *kind, *parameters;                      /* owned; parameters is JSON text */
+    uint64_t seed, case_number, first, count, attempt;
+    int64_t lease_ms;
+};
+void claimed_job_clear(struct claimed_job *job);
+
+struct claim {
+    const char *worker, *host; /* for the log */
+    const char *const *kinds;  /* NULL-terminated; NULL: any */
+    const char *study;         /* only this study; NULL: any */
+    size_t count;              /* at most */
+};
+/* Hands out waiting jobs and those whose lease ran out (which count an attempt; the last failed
+ * attempt fails the job with "lease ran out ..."). Oldest study first. *count may be 0. */
+int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs,
+                size_t *count, struct error *err);
+/* Renews the lease; done: realisations so far. ERROR_STATE when the lease is lost or the study
+ * cancelled (the text says which). */
+int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_t done,
+                    struct error *err);
+
+struct block_result {
+    uint64_t first, count;
+    size_t scalar_count;
+    const char *const *names; /* scalar_count names */
+    const double *scalars;    /* count x scalar_count */
+    const unsigned char *data;
+    size_t size;
+    double seconds;
+    const struct block_text *text; /* NULL: store_complete makes it */
+};
+/* Names and scalars as they are stored. Whoever queues for the one writer makes them beforehand. */
+struct block_text {
+    char *names, *scalars; /* owned */
+};
+int block_text_create(struct block_text *out, const struct block_result *result, struct error *err);
+void block_text_clear(struct block_text *text);
+
+/* Stores the result once. Completing again with the same token is harmless (0, *first_time false);
+ * a lost lease is ERROR_STATE and its result dropped. *case_done: no job of the case is left. */
+int store_complete(struct store *store, int64_t job, const char *token,
+                   const struct block_result *result, bool *first_time, bool *case_done,
+                   struct error *err);
+/* The attempt failed: waits again, or fails for good after ATTEMPTS_MOST; reason kept. permanent:
+ * fail at once. */
+int store_fail(struct store *store, int64_t job, const char *token, const char *reason,
+               bool permanent, struct error *err);
+/* Hands a job back unharmed: the attempt does not count. */
+int store_release(struct store *store, int64_t job, const char *token, struct error *err);
+/* Study, case and expected block of a job under a live lease or done under this token (to check a
+ * result before it is taken). Fills job without parameters unless with_parameters. */
+int store_job(struct store *store, int64_t job, const char *token, struct claimed_job *out,
+              struct error *err);
+
+/* --- results --- */
+struct case_info {
+    cJSON *parameters; /* owned */
+    uint64_t seed, realisations, realisations_done, revision;
+};
+void case_info_clear(struct case_info *info);
+int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
+               struct error *err);
+/* Calls visit for every stored block of a case, in realisation order, within one read transaction.
+ * A non-zero return of visit stops and is returned. */
+typedef int result_visit(void *context, const struct block_result *result, struct error *err);
+int store_results(struct store *store, const char *study, uint64_t case_number, result_visit *visit,
+                  void *context, struct error *err);
+/* Replaces the published curves and scalars of a case ({"scalars", "curves"} of interface.md) for
+ * the views curve_points and case_scalars; keeps the document too. revision: of case_info when it
+ * was read; an older one than published is ignored. */
+int store_publish(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
+                  const cJSON *curves, struct error *err);
+/* The published document of a case, or NULL in *out when there is none of this revision. */
+int store_published(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
+                    cJSON **out, struct error *err);
+/* A complete case whose curves are not published at its revision: the one behind `skip` others.
+ * ERROR_ABSENT when there is none. */
+int store_unpublished(struct store *store, uint64_t skip, char study[STUDY_ID_SIZE],
+                      uint64_t *case_number, struct error *err);
+/* Cost and time of a case for the report. */
+struct case_cost {
+    uint64_t case_number, realisations_done, realisations, jobs, attempts;
+    double seconds; /* of completed jobs */
+};
+int store_cost(struct store *store, const char *study, uint64_t case_number, struct case_cost *out,
+               struct error *err);
+
+/* --- upkeep --- */
+int store_snapshot(struct store *store, const char *path,
+                   struct error *err); /* VACUUM INTO; path must not exist */
+struct store_metrics {
+    uint64_t studies, jobs_waiting, jobs_running, jobs_done, jobs_failed, jobs_cancelled;
+    uint64_t wal_bytes, database_bytes;
+};
+int store_metrics(struct store *store, struct store_metrics *out, struct error *err);
+
+#endif

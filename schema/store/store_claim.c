@@ -1,0 +1,168 @@
+/* Claims: jobs handed out, and taken back from those whose lease ran out. */
+#include "schema/store/store_internal.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One job whose lease ran out waits again, or has failed. 1 when there was one. */
+static int expire_one(struct store *store, struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status = store_query(store, &row, err,
+                             "SELECT id, coalesce(worker, '?') FROM job WHERE state = 'running' "
+                             "AND lease_until <= ? ORDER BY lease_until LIMIT 1",
+                             "i", store_now(store));
+    if (!status)
+        status = store_step(store, row, err);
+    if (status <= 0)
+        return status;
+    int64_t id = sqlite3_column_int64(row, 0);
+    char reason[160];
+    snprintf(reason, sizeof reason, "lease ran out on worker %.100s",
+             (const char *)sqlite3_column_text(row, 1));
+    sqlite3_reset(row);
+    struct job_row job;
+    status = job_read(store, id, NULL, &job, err);
+    if (!status)
+        status = job_give_up(store, &job, reason, false, err);
+    return status ? status : 1;
+}
+
+static bool is_wanted(const char *const *kinds, const char *kind) {
+    for (; kinds && *kinds; kinds++)
+        if (strcmp(*kinds, kind) == 0)
+            return true;
+    return !kinds;
+}
+
+/* The oldest study with a job that waits and is wanted; only: 0, or the one that may be. Fills
+ * job's study, kind and seed. 1, or 0 when there is none. */
+static int find_study(struct store *store, const struct claim *claim, int64_t only, int64_t *study,
+                      bool *queued, struct claimed_job *job, struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status =
+        store_query(store, &row, err,
+                    "SELECT id, public, kind, seed, state = 'queued' FROM study WHERE state IN "
+                    "('queued', 'running') AND jobs_waiting > 0 AND (?1 = 0 OR id = ?1) "
+                    "ORDER BY id",
+                    "i", only);
+    while (!status && (status = store_step(store, row, err)) == 1) {
+        const char *kind = (const char *)sqlite3_column_text(row, 2);
+        status = 0;
+        if (!is_wanted(claim->kinds, kind))
+            continue;
+        *study = sqlite3_column_int64(row, 0);
+        *queued = sqlite3_column_int(row, 4);
+        snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 1));
+        job->seed = strtoull((const char *)sqlite3_column_text(row, 3), NULL, 10);
+        job->kind = strdup(kind);
+        status = job->kind ? 1 : error_memory(err, 0, "a kind");
+        sqlite3_reset(row);
+        break;
+    }
+    return status;
+}
+
+/* Leases the study's first job that waits. */
+static int lease_job(struct store *store, const struct claim *claim, int64_t study,
+                     struct claimed_job *job, struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status =
+        store_query(store, &row, err,
+                    "SELECT id, case_number, first, count, attempts + 1 FROM job WHERE state = "
+                    "'waiting' AND study_id = ? ORDER BY id LIMIT 1",
+                    "i", study);
+    if (!status)
+        status = store_step(store, row, err);
+    if (status == 0)
+        return error_set(err, ERROR_SYSTEM, "study %s counts waiting jobs that are not there",
+                         job->study);
+    if (status < 0)
+        return status;
+    job->id = sqlite3_column_int64(row, 0);
+    job->case_number = (uint64_t)sqlite3_column_int64(row, 1);
+    job->first = (uint64_t)sqlite3_column_int64(row, 2);
+    job->count = (uint64_t)sqlite3_column_int64(row, 3);
+    job->attempt = (uint64_t)sqlite3_column_int64(row, 4);
+    job->lease_ms = store->options.lease_ms;
+    sqlite3_reset(row);
+    status = random_text(job->token, TOKEN_SIZE - 1, err);
+    if (status)
+        return status;
+    return store_run(
+        store, err,
+        "UPDATE job SET state = 'running', attempts = attempts + 1, token = ?, worker = ?, "
+        "host = ?, lease_until = ?, reported = 0, claimed = ? WHERE id = ?",
+        "tttiti", job->token, claim->worker, claim->host,
+        store_now(store) + store->options.lease_ms, store_time(store), job->id);
+}
+
+static int copy_parameters(struct store *store, int64_t study, struct claimed_job *job,
+                           struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status = store_query(store, &row, err,
+                             "SELECT parameters FROM study_case WHERE study_id = ? AND number = ?",
+                             "ii", study, (int64_t)job->case_number);
+    if (!status)
+        status = store_step(store, row, err);
+    if (status <= 0)
+        return status ? status
+                      : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
+    job->parameters = column_copy(row, 0);
+    sqlite3_reset(row);
+    return job->parameters ? 0 : error_memory(err, 0, "a job's parameters");
+}
+
+/* The counters change with every claim; the state only with the first, as it is indexed. */
+static int count_claim(struct store *store, int64_t study, bool queued, struct error *err) {
+    int status = store_run(store, err,
+                           "UPDATE study SET jobs_waiting = jobs_waiting - 1, jobs_running = "
+                           "jobs_running + 1, revision = revision + 1 WHERE id = ?",
+                           "i", study);
+    if (!status && queued)
+        status =
+            store_run(store, err, "UPDATE study SET state = 'running' WHERE id = ?", "i", study);
+    return status;
+}
+
+/* 1 and a job, or 0 when nothing waits. */
+static int claim_one(struct store *store, const struct claim *claim, int64_t only,
+                     struct claimed_job *job, struct error *err) {
+    int64_t study = 0;
+    bool queued = false;
+    int status = find_study(store, claim, only, &study, &queued, job, err);
+    if (status <= 0)
+        return status;
+    status = lease_job(store, claim, study, job, err);
+    if (!status)
+        status = count_claim(store, study, queued, err);
+    if (!status)
+        status = copy_parameters(store, study, job, err);
+    return status ? status : 1;
+}
+
+int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs,
+                size_t *count, struct error *err) {
+    int64_t only = 0;
+    size_t n = 0;
+    *count = 0;
+    int status = change_begin(store, err);
+    if (status)
+        return status;
+    if (claim->study)
+        status = study_row(store, claim->study, &only, err);
+    while (!status && (status = expire_one(store, err)) == 1)
+        status = 0;
+    while (!status && n < claim->count) {
+        jobs[n] = (struct claimed_job){0};
+        status = claim_one(store, claim, only, &jobs[n], err);
+        if (status == 0)
+            break;
+        n++; /* also after an error: what it holds is cleared below */
+        status = status == 1 ? 0 : status;
+    }
+    status = change_end(store, status, err);
+    for (size_t i = 0; status && i < n; i++)
+        claimed_job_clear(&jobs[i]);
+    *count = status ? 0 : n;
+    return status;
+}

@@ -1,0 +1,193 @@
+/* Completion: a result in, once. */
+#include "schema/store/store_internal.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* --- texts --- */
+
+enum { NUMBER_MOST = 25 }; /* "-1.2345678901234567e-308," */
+
+/* The fewest digits that read back to the same double; null where it is none. */
+static char *put_number(char *at, double value) {
+    int length = snprintf(at, NUMBER_MOST + 1, "null"), digits = 15;
+    if (!isfinite(value))
+        return at + length;
+    do
+        length = snprintf(at, NUMBER_MOST + 1, "%.*g", digits, value);
+    while (++digits <= 17 && strtod(at, NULL) != value);
+    return at + length;
+}
+
+/* The scalars as JSON rows, by hand: through a tree it took longer than the rest of a completion.
+ */
+static char *scalars_text(const struct block_result *result) {
+    size_t width = result->scalar_count;
+    if (width > SIZE_MAX / NUMBER_MOST - 1)
+        return NULL;
+    char *text = array_create((size_t)result->count + 1, width * NUMBER_MOST + 4), *at = text;
+    if (!text)
+        return NULL;
+    *at++ = '[';
+    for (uint64_t r = 0; r < result->count; r++) {
+        *at++ = '[';
+        for (size_t s = 0; s < width; s++) {
+            at = put_number(at, result->scalars[r * width + s]);
+            *at++ = ',';
+        }
+        at -= width > 0; /* the last comma */
+        *at++ = ']';
+        *at++ = ',';
+    }
+    at -= result->count > 0;
+    *at++ = ']';
+    *at = 0;
+    return text;
+}
+
+static char *names_text(const struct block_result *result) {
+    cJSON *names = cJSON_CreateStringArray(result->names, (int)result->scalar_count);
+    char *text = names ? json_print(names) : NULL;
+    cJSON_Delete(names);
+    return text;
+}
+
+int block_text_create(struct block_text *out, const struct block_result *result,
+                      struct error *err) {
+    struct block_text text = {names_text(result), scalars_text(result)};
+    if (!text.names || !text.scalars) {
+        block_text_clear(&text);
+        return error_memory(err, result->size, "a result");
+    }
+    *out = text;
+    return 0;
+}
+
+void block_text_clear(struct block_text *text) {
+    free(text->names);
+    free(text->scalars);
+    *text = (struct block_text){0};
+}
+
+/* --- the change --- */
+
+/* The row of this list of names, which most jobs share. */
+static int names_row(struct store *store, const char *names, int64_t *id, struct error *err) {
+    int status =
+        store_integer(store, id, err, "SELECT id FROM scalar_names WHERE names = ?", "t", names);
+    if (status != ERROR_ABSENT)
+        return status;
+    status = store_run(store, err, "INSERT INTO scalar_names (names) VALUES (?)", "t", names);
+    *id = sqlite3_last_insert_rowid(store->db);
+    return status;
+}
+
+static int insert_result(struct store *store, const struct job_row *job,
+                         const struct block_result *result, const struct block_text *text,
+                         struct error *err) {
+    int64_t names = 0;
+    int status = names_row(store, text->names, &names, err);
+    if (!status)
+        status = store_run(
+            store, err, "INSERT INTO result (job_id, names_id, scalars, data) VALUES (?, ?, ?, ?)",
+            "iitb", job->id, names, text->scalars, (const void *)result->data, result->size);
+    return status;
+}
+
+/* Jobs of the case that have not ended. */
+static int read_left(struct store *store, const struct job_row *job, int64_t *left,
+                     struct error *err) {
+    int status = store_integer(store, left, err,
+                               "SELECT jobs_left FROM study_case WHERE study_id = ? AND number = ?",
+                               "ii", job->study, job->case_number);
+    if (status == ERROR_ABSENT)
+        return error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
+    return status;
+}
+
+/* A query behind each update, not RETURNING: that makes a table for its row each time. */
+static int count_completion(struct store *store, const struct job_row *job, double seconds,
+                            int64_t *left, struct error *err) {
+    int64_t undone = 0;
+    int status = store_run(
+        store, err,
+        "UPDATE study_case SET jobs_left = jobs_left - 1, realisations_done = realisations_done "
+        "+ ?, seconds = seconds + ?, revision = revision + 1 WHERE study_id = ? AND number = ?",
+        "idii", job->count, seconds, job->study, job->case_number);
+    if (!status)
+        status = store_run(
+            store, err,
+            "UPDATE study SET jobs_running = jobs_running - 1, jobs_done = jobs_done + 1, "
+            "realisations_done = realisations_done + ?, seconds = seconds + ?, revision = "
+            "revision + 1 WHERE id = ?",
+            "idi", job->count, seconds, job->study);
+    if (!status)
+        status = store_integer(store, &undone, err,
+                               "SELECT jobs_waiting + jobs_running FROM study WHERE id = ?", "i",
+                               job->study);
+    if (!status && !undone)
+        status = study_settle(store, job->study, err);
+    return status ? status : read_left(store, job, left, err);
+}
+
+static int job_complete(struct store *store, const struct job_row *job,
+                        const struct block_result *result, const struct block_text *text,
+                        int64_t *left, struct error *err) {
+    int status = insert_result(store, job, result, text, err);
+    if (!status)
+        status = store_run(
+            store, err,
+            "UPDATE job SET state = 'done', reported = 0, seconds = ?, ended = ? WHERE id = ?",
+            "dti", result->seconds, store_time(store), job->id);
+    return status ? status : count_completion(store, job, result->seconds, left, err);
+}
+
+static int check_block(const struct job_row *job, const struct block_result *result,
+                       struct error *err) {
+    if (result->first == (uint64_t)job->first && result->count == (uint64_t)job->count)
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "a result of %llu realisations from %llu; job %lld is %lld from %lld",
+                     (unsigned long long)result->count, (unsigned long long)result->first,
+                     (long long)job->id, (long long)job->count, (long long)job->first);
+}
+
+/* Within a change. *again: it was completed before, under this token. */
+static int complete(struct store *store, int64_t id, const char *token,
+                    const struct block_result *result, const struct block_text *text, bool *again,
+                    int64_t *left, struct error *err) {
+    struct job_row job;
+    int status = job_read(store, id, token, &job, err);
+    if (status)
+        return status;
+    *again = job.done && job.owned;
+    if (!*again)
+        status = job_check_lease(&job, err);
+    if (!status)
+        status = check_block(&job, result, err);
+    if (status)
+        return status;
+    if (!*again)
+        return job_complete(store, &job, result, text, left, err);
+    return read_left(store, &job, left, err);
+}
+
+int store_complete(struct store *store, int64_t job, const char *token,
+                   const struct block_result *result, bool *first_time, bool *case_done,
+                   struct error *err) {
+    struct block_text made = {0};
+    const struct block_text *text = result->text ? result->text : &made;
+    int64_t left = 0;
+    bool again = false;
+    int status = result->text ? 0 : block_text_create(&made, result, err);
+    if (!status && !(status = change_begin(store, err))) {
+        status = complete(store, job, token, result, text, &again, &left, err);
+        status = change_end(store, status, err);
+    }
+    block_text_clear(&made);
+    if (!status) {
+        *first_time = !again;
+        *case_done = left == 0;
+    }
+    return status;
+}

@@ -1,0 +1,70 @@
+/* What the files of the store share; nobody else includes this. */
+#ifndef RUGO_SCHEMA_STORE_STORE_INTERNAL_H
+#define RUGO_SCHEMA_STORE_STORE_INTERNAL_H
+
+#include "schema/store/store.h"
+#include <sqlite3.h>
+#include <time.h>
+
+enum { STATEMENTS = 96, BOOT_SIZE = 40 };
+
+struct store {
+    sqlite3 *db;
+    char *path;
+    struct store_options options;
+    char boot[BOOT_SIZE]; /* of this boot of the machine; leases of another are void */
+    time_t time;          /* of time_text */
+    char time_text[24];   /* "" at first */
+    int batch;            /* inside store_begin .. store_commit */
+    /* Prepared once, found by the address of their text. */
+    struct {
+        const char *sql;
+        sqlite3_stmt *statement;
+    } statements[STATEMENTS];
+    size_t statement_count;
+};
+
+/* The prepared statement of a literal, reset, its parameters bound by format: i int64_t, d double,
+ * t text or NULL (copied), b blob (const void *, size_t; copied). */
+int store_query(struct store *store, sqlite3_stmt **out, struct error *err, const char *sql,
+                const char *format, ...);
+/* 1 a row, 0 the end (the statement is reset), or an error. */
+int store_step(struct store *store, sqlite3_stmt *statement, struct error *err);
+/* Runs a statement that gives no rows. Neither this nor store_integer copies what is bound. */
+int store_run(struct store *store, struct error *err, const char *sql, const char *format, ...);
+/* Runs and gives the first column of the first row; ERROR_ABSENT when there is none (err
+ * untouched). */
+int store_integer(struct store *store, int64_t *out, struct error *err, const char *sql,
+                  const char *format, ...);
+/* A change: all of it or nothing. End it with its status, which is returned, or the commit's. */
+int change_begin(struct store *store, struct error *err);
+int change_end(struct store *store, int status, struct error *err);
+
+int store_error(struct store *store, struct error *err); /* from SQLite's last error */
+int64_t store_now(const struct store *store);
+/* Now, for people: UTC, ISO 8601; good until the next call. */
+const char *store_time(struct store *store);
+int random_text(char *text, size_t digits,
+                struct error *err); /* hex digits from the kernel, NUL-terminated */
+char *column_copy(sqlite3_stmt *statement, int column); /* "" for NULL; NULL out of memory */
+
+/* Row of a study; ERROR_ABSENT with a sentence when there is none. */
+int study_row(struct store *store, const char *id, int64_t *row, struct error *err);
+/* Ends the study when nothing of it waits or runs; raises its revision. */
+int study_settle(struct store *store, int64_t study, struct error *err);
+
+/* What a change of a job needs to know of it. */
+struct job_row {
+    int64_t id, study, case_number, first, count, attempts;
+    bool running, done, cancelled;
+    bool owned; /* the token given is that of its last lease */
+};
+int job_read(struct store *store, int64_t id, const char *token, struct job_row *job,
+             struct error *err);
+/* ERROR_STATE unless the job runs under this token. */
+int job_check_lease(const struct job_row *job, struct error *err);
+/* The attempt failed: the job waits again or has failed. */
+int job_give_up(struct store *store, const struct job_row *job, const char *reason, bool permanent,
+                struct error *err);
+
+#endif

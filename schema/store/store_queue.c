@@ -1,0 +1,181 @@
+/* The queue: what is done under a lease, and the ends of attempts that gave no result.
+ * schema/README.md draws the states. */
+#include "schema/store/store_internal.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+void claimed_job_clear(struct claimed_job *job) {
+    free(job->kind);
+    free(job->parameters);
+    *job = (struct claimed_job){0};
+}
+
+int job_read(struct store *store, int64_t id, const char *token, struct job_row *job,
+             struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status =
+        store_query(store, &row, err,
+                    "SELECT study_id, case_number, first, count, attempts, state = 'running', "
+                    "state = 'done', state = 'cancelled', token IS ? FROM job WHERE id = ?",
+                    "ti", token, id);
+    if (!status)
+        status = store_step(store, row, err);
+    if (status == 0)
+        return error_set(err, ERROR_ABSENT, "there is no job %lld", (long long)id);
+    if (status < 0)
+        return status;
+    *job = (struct job_row){.id = id,
+                            .study = sqlite3_column_int64(row, 0),
+                            .case_number = sqlite3_column_int64(row, 1),
+                            .first = sqlite3_column_int64(row, 2),
+                            .count = sqlite3_column_int64(row, 3),
+                            .attempts = sqlite3_column_int64(row, 4),
+                            .running = sqlite3_column_int(row, 5),
+                            .done = sqlite3_column_int(row, 6),
+                            .cancelled = sqlite3_column_int(row, 7),
+                            .owned = sqlite3_column_int(row, 8)};
+    sqlite3_reset(row);
+    return 0;
+}
+
+int job_check_lease(const struct job_row *job, struct error *err) {
+    if (job->owned && job->cancelled)
+        return error_set(err, ERROR_STATE, "the study of job %lld was cancelled",
+                         (long long)job->id);
+    if (!job->running || !job->owned)
+        return error_set(err, ERROR_STATE, "the lease of job %lld is lost", (long long)job->id);
+    return 0;
+}
+
+/* The job, if the token is that of its live lease. */
+static int read_leased(struct store *store, int64_t id, const char *token, struct job_row *job,
+                       struct error *err) {
+    int status = job_read(store, id, token, job, err);
+    return status ? status : job_check_lease(job, err);
+}
+
+/* --- the end of an attempt that gave no result --- */
+
+static int job_requeue(struct store *store, const struct job_row *job, const char *reason,
+                       bool counts, struct error *err) {
+    int status =
+        store_run(store, err,
+                  "UPDATE job SET state = 'waiting', token = NULL, reported = 0, attempts = "
+                  "attempts - ?, error = coalesce(?, error) WHERE id = ?",
+                  "iti", (int64_t)!counts, reason, job->id);
+    if (!status)
+        status = store_run(store, err,
+                           "UPDATE study SET jobs_running = jobs_running - 1, jobs_waiting = "
+                           "jobs_waiting + 1, revision = revision + 1 WHERE id = ?",
+                           "i", job->study);
+    return status;
+}
+
+static int job_fail(struct store *store, const struct job_row *job, const char *reason,
+                    struct error *err) {
+    int status =
+        store_run(store, err,
+                  "UPDATE job SET state = 'failed', reported = 0, error = ?, ended = ? WHERE id = "
+                  "?",
+                  "tti", reason, store_time(store), job->id);
+    if (!status)
+        status =
+            store_run(store, err,
+                      "UPDATE study SET jobs_running = jobs_running - 1, jobs_failed = "
+                      "jobs_failed + 1, realisations_failed = realisations_failed + ? WHERE id = ?",
+                      "ii", job->count, job->study);
+    if (!status)
+        status = store_run(store, err,
+                           "UPDATE study_case SET jobs_left = jobs_left - 1 WHERE study_id = ? AND "
+                           "number = ?",
+                           "ii", job->study, job->case_number);
+    return status ? status : study_settle(store, job->study, err);
+}
+
+int job_give_up(struct store *store, const struct job_row *job, const char *reason, bool permanent,
+                struct error *err) {
+    if (permanent || job->attempts >= ATTEMPTS_MOST)
+        return job_fail(store, job, reason, err);
+    return job_requeue(store, job, reason, true, err);
+}
+
+/* --- under a lease --- */
+
+int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_t done,
+                    struct error *err) {
+    struct job_row row;
+    int status = change_begin(store, err);
+    if (status)
+        return status;
+    status = read_leased(store, job, token, &row, err);
+    if (!status) {
+        int64_t reported = done < (uint64_t)row.count ? (int64_t)done : row.count;
+        status = store_run(store, err, "UPDATE job SET lease_until = ?, reported = ? WHERE id = ?",
+                           "iii", store_now(store) + store->options.lease_ms, reported, job);
+    }
+    return change_end(store, status, err);
+}
+
+int store_fail(struct store *store, int64_t job, const char *token, const char *reason,
+               bool permanent, struct error *err) {
+    struct job_row row;
+    int status = change_begin(store, err);
+    if (status)
+        return status;
+    status = read_leased(store, job, token, &row, err);
+    if (!status)
+        status = job_give_up(store, &row, reason, permanent, err);
+    return change_end(store, status, err);
+}
+
+int store_release(struct store *store, int64_t job, const char *token, struct error *err) {
+    struct job_row row;
+    int status = change_begin(store, err);
+    if (status)
+        return status;
+    status = read_leased(store, job, token, &row, err);
+    if (!status)
+        status = job_requeue(store, &row, NULL, false, err);
+    return change_end(store, status, err);
+}
+
+static int copy_study(struct store *store, int64_t study, struct claimed_job *job,
+                      struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status = store_query(store, &row, err,
+                             "SELECT s.public, s.kind, s.seed, c.parameters FROM study s JOIN "
+                             "study_case c ON c.study_id = s.id WHERE s.id = ? AND c.number = ?",
+                             "ii", study, (int64_t)job->case_number);
+    if (!status)
+        status = store_step(store, row, err);
+    if (status <= 0)
+        return status ? status
+                      : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
+    snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 0));
+    job->kind = column_copy(row, 1);
+    job->seed = strtoull((const char *)sqlite3_column_text(row, 2), NULL, 10);
+    job->parameters = column_copy(row, 3);
+    sqlite3_reset(row);
+    return job->kind && job->parameters ? 0 : error_memory(err, 0, "a job's parameters");
+}
+
+int store_job(struct store *store, int64_t job, const char *token, struct claimed_job *out,
+              struct error *err) {
+    struct job_row row;
+    int status = job_read(store, job, token, &row, err);
+    if (!status && !(row.owned && (row.running || row.done)))
+        status = error_set(err, ERROR_STATE, "the lease of job %lld is lost", (long long)job);
+    if (status)
+        return status;
+    *out = (struct claimed_job){.id = job,
+                                .case_number = (uint64_t)row.case_number,
+                                .first = (uint64_t)row.first,
+                                .count = (uint64_t)row.count,
+                                .attempt = (uint64_t)row.attempts,
+                                .lease_ms = store->options.lease_ms};
+    snprintf(out->token, sizeof out->token, "%s", token);
+    status = copy_study(store, row.study, out, err);
+    if (status)
+        claimed_job_clear(out);
+    return status;
+}

@@ -1,0 +1,391 @@
+/* Studies: submission, progress, cancellation, retry. */
+#include "schema/store/store_internal.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int study_row(struct store *store, const char *id, int64_t *row, struct error *err) {
+    int status = store_integer(store, row, err, "SELECT id FROM study WHERE public = ?", "t", id);
+    if (status == ERROR_ABSENT)
+        return error_set(err, ERROR_ABSENT, "there is no study \"%.40s\"", id);
+    return status;
+}
+
+int study_settle(struct store *store, int64_t study, struct error *err) {
+    return store_run(
+        store, err,
+        "UPDATE study SET revision = revision + 1,"
+        " state = CASE WHEN state IN ('cancelled', 'queued') OR jobs_waiting + "
+        "jobs_running > 0 THEN state WHEN jobs_failed > 0 THEN 'failed' ELSE 'done' END,"
+        " finished = CASE WHEN jobs_waiting + jobs_running > 0 THEN NULL"
+        " ELSE coalesce(finished, ?) END WHERE id = ?",
+        "ti", store_time(store), study);
+}
+
+/* --- submission --- */
+
+static uint64_t blocks_of(const struct study *study, const struct study_case *one) {
+    return (study->realisations + one->block - 1) / one->block;
+}
+
+static int insert_case(struct store *store, const struct study *study, int64_t row, size_t number,
+                       struct error *err) {
+    const struct study_case *one = &study->cases[number];
+    int64_t blocks = (int64_t)blocks_of(study, one);
+    char *parameters = json_print(one->parameters);
+    if (!parameters)
+        return error_memory(err, 0, "the parameters of a case");
+    int status =
+        store_run(store, err,
+                  "INSERT INTO study_case (study_id, number, parameters, estimate, jobs, "
+                  "jobs_left) VALUES (?, ?, ?, ?, ?, ?)",
+                  "iitdii", row, (int64_t)number, parameters, one->cost.seconds, blocks, blocks);
+    free(parameters);
+    for (uint64_t first = 0; !status && first < study->realisations; first += one->block) {
+        uint64_t left = study->realisations - first;
+        uint64_t count = left < one->block ? left : one->block;
+        status = store_run(
+            store, err, "INSERT INTO job (study_id, case_number, first, count) VALUES (?, ?, ?, ?)",
+            "iiii", row, (int64_t)number, (int64_t)first, (int64_t)count);
+    }
+    return status;
+}
+
+static int insert_study(struct store *store, const struct study *study, const char *key,
+                        const char *id, struct error *err) {
+    uint64_t jobs = 0;
+    for (size_t c = 0; c < study->case_count; c++)
+        jobs += blocks_of(study, &study->cases[c]);
+    char seed[24];
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
+    int status = store_run(store, err,
+                           "INSERT INTO study (public, name, kind, seed, realisations, submit_key, "
+                           "state, cases, jobs, "
+                           "jobs_waiting, created) VALUES (?, ?, ?, ?, ?, ?, 'queued', ?, ?, ?, ?)",
+                           "ttttitiiit", id, study->name, study->kind->name, seed,
+                           (int64_t)study->realisations, key, (int64_t)study->case_count,
+                           (int64_t)jobs, (int64_t)jobs, store_time(store));
+    int64_t row = sqlite3_last_insert_rowid(store->db);
+    if (!status)
+        status = store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",
+                           "it", row, study->source);
+    for (size_t c = 0; !status && c < study->case_count; c++)
+        status = insert_case(store, study, row, c, err);
+    return status;
+}
+
+/* 1 and the id when the key was used for this very study, 0 when it was not used. */
+static int find_key(struct store *store, const struct study *study, const char *key,
+                    char id[STUDY_ID_SIZE], struct error *err) {
+    if (!key)
+        return 0;
+    sqlite3_stmt *statement = NULL;
+    int status = store_query(store, &statement, err,
+                             "SELECT public, source = ? FROM study JOIN study_source ON "
+                             "study_id = study.id WHERE submit_key = ?",
+                             "tt", study->source, key);
+    if (!status)
+        status = store_step(store, statement, err);
+    if (status <= 0)
+        return status;
+    bool same = sqlite3_column_int(statement, 1);
+    snprintf(id, STUDY_ID_SIZE, "%s", (const char *)sqlite3_column_text(statement, 0));
+    sqlite3_reset(statement);
+    if (!same)
+        return error_set(err, ERROR_STATE, "the key \"%.60s\" was used for another study", key);
+    return 1;
+}
+
+int store_submit(struct store *store, const struct study *study, const char *key,
+                 char id[STUDY_ID_SIZE], bool *existing, struct error *err) {
+    int status = change_begin(store, err);
+    if (status)
+        return status;
+    status = find_key(store, study, key, id, err);
+    bool found = status == 1;
+    if (!status)
+        status = random_text(id, STUDY_ID_SIZE - 1, err);
+    if (!status)
+        status = insert_study(store, study, key, id, err);
+    status = change_end(store, found ? 0 : status, err);
+    if (!status && existing)
+        *existing = found;
+    return status;
+}
+
+/* --- progress --- */
+
+static const char *state_name(const unsigned char *text) {
+    static const char *const NAMES[] = {"queued", "running", "done", "failed", "cancelled"};
+    for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
+        if (text && strcmp(NAMES[n], (const char *)text) == 0)
+            return NAMES[n];
+    return "failed";
+}
+
+#define STATUS_COLUMNS                                                                             \
+    "public, name, kind, state, seed, cases, realisations, jobs, jobs_done, jobs_failed, "         \
+    "jobs_running, jobs_waiting, jobs_cancelled, realisations_done, realisations_failed, "         \
+    "seconds, "                                                                                    \
+    "revision, created, finished, id, "                                                            \
+    "(SELECT coalesce(sum(reported), 0) FROM job WHERE state = 'running' AND study_id = "          \
+    "study.id), "                                                                                  \
+    "(SELECT count(DISTINCT worker) FROM job WHERE state = 'running' AND study_id = study.id)"
+
+static uint64_t column_count(sqlite3_stmt *row, int column) {
+    return (uint64_t)sqlite3_column_int64(row, column);
+}
+
+static void column_time(sqlite3_stmt *row, int column, char text[32]) {
+    const unsigned char *time = sqlite3_column_text(row, column);
+    snprintf(text, 32, "%s", time ? (const char *)time : "");
+}
+
+static int read_status(sqlite3_stmt *row, struct study_status *out, struct error *err) {
+    snprintf(out->id, sizeof out->id, "%s", (const char *)sqlite3_column_text(row, 0));
+    out->name = column_copy(row, 1);
+    out->kind = column_copy(row, 2);
+    out->state = state_name(sqlite3_column_text(row, 3));
+    out->seed = strtoull((const char *)sqlite3_column_text(row, 4), NULL, 10);
+    out->cases = column_count(row, 5);
+    out->realisations = column_count(row, 6);
+    out->jobs = column_count(row, 7);
+    out->jobs_done = column_count(row, 8);
+    out->jobs_failed = column_count(row, 9);
+    out->jobs_running = column_count(row, 10);
+    out->jobs_waiting = column_count(row, 11);
+    out->jobs_cancelled = column_count(row, 12);
+    out->realisations_total = out->cases * out->realisations;
+    out->realisations_done = column_count(row, 13) + column_count(row, 20);
+    out->realisations_failed = column_count(row, 14);
+    out->seconds = sqlite3_column_double(row, 15);
+    out->revision = column_count(row, 16);
+    column_time(row, 17, out->created);
+    column_time(row, 18, out->finished);
+    out->workers = column_count(row, 21);
+    if (!out->name || !out->kind)
+        return error_memory(err, 0, "a study's name");
+    return 0;
+}
+
+/* Time left: the estimates of what is undone, corrected by how they did on what is done. */
+static int time_left(struct store *store, int64_t row, struct study_status *out,
+                     struct error *err) {
+    out->seconds_left = NAN;
+    if (out->jobs_waiting + out->jobs_running == 0) {
+        out->seconds_left = 0;
+        return 0;
+    }
+    sqlite3_stmt *statement = NULL;
+    int status =
+        store_query(store, &statement, err,
+                    "SELECT sum(estimate * realisations_done), sum(estimate * (?2 - "
+                    "realisations_done)), sum(seconds) FROM study_case WHERE study_id = ?1",
+                    "ii", row, (int64_t)out->realisations);
+    if (!status)
+        status = store_step(store, statement, err);
+    if (status <= 0)
+        return status;
+    double done = sqlite3_column_double(statement, 0), left = sqlite3_column_double(statement, 1);
+    double spent = sqlite3_column_double(statement, 2);
+    out->seconds_left = done > 0 && spent > 0 ? left * spent / done : left;
+    sqlite3_reset(statement);
+    return 0;
+}
+
+void study_status_clear(struct study_status *status) {
+    free(status->name);
+    free(status->kind);
+    *status = (struct study_status){0};
+}
+
+int store_status(struct store *store, const char *id, struct study_status *out, struct error *err) {
+    sqlite3_stmt *statement = NULL;
+    struct study_status read = {0};
+    int status = store_query(store, &statement, err,
+                             "SELECT " STATUS_COLUMNS " FROM study WHERE public = ?", "t", id);
+    if (!status)
+        status = store_step(store, statement, err);
+    if (status == 0)
+        return error_set(err, ERROR_ABSENT, "there is no study \"%.40s\"", id);
+    if (status < 0)
+        return status;
+    int64_t row = sqlite3_column_int64(statement, 19);
+    status = read_status(statement, &read, err);
+    sqlite3_reset(statement);
+    if (!status)
+        status = time_left(store, row, &read, err);
+    if (status)
+        study_status_clear(&read);
+    else
+        *out = read;
+    return status;
+}
+
+static void free_list(struct study_status *list, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        study_status_clear(&list[i]);
+    free(list);
+}
+
+int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
+               size_t *count, struct error *err) {
+    int64_t row = 0;
+    int status = after && *after ? study_row(store, after, &row, err) : 0;
+    if (status)
+        return status;
+    struct study_status *list = array_create(limit, sizeof *list);
+    int64_t *rows = array_create(limit, sizeof *rows);
+    size_t n = 0;
+    sqlite3_stmt *statement = NULL;
+    if (!list || !rows)
+        status = error_memory(err, limit * sizeof *list, "a list of studies");
+    if (!status)
+        status =
+            store_query(store, &statement, err,
+                        "SELECT " STATUS_COLUMNS " FROM study WHERE id > ? ORDER BY id LIMIT ?",
+                        "ii", row, (int64_t)limit);
+    while (!status && n < limit && (status = store_step(store, statement, err)) == 1) {
+        rows[n] = sqlite3_column_int64(statement, 19);
+        status = read_status(statement, &list[n++], err);
+    }
+    if (status >= 0 && n)
+        sqlite3_reset(statement);
+    for (size_t i = 0; status >= 0 && i < n; i++)
+        status = time_left(store, rows[i], &list[i], err);
+    free(rows);
+    if (status < 0) {
+        free_list(list, n);
+        return status;
+    }
+    *out = list;
+    *count = n;
+    return 0;
+}
+
+/* --- cancel and retry --- */
+
+static int cancel_jobs(struct store *store, int64_t row, struct error *err) {
+    int status = store_run(store, err,
+                           "UPDATE job SET state = 'cancelled', ended = ? WHERE study_id = ? AND "
+                           "state IN ('waiting', 'running')",
+                           "ti", store_time(store), row);
+    if (!status)
+        status = store_run(
+            store, err,
+            "UPDATE study SET state = 'cancelled', jobs_cancelled = jobs_cancelled + "
+            "jobs_waiting + jobs_running, jobs_waiting = 0, jobs_running = 0 WHERE id = ?",
+            "i", row);
+    if (!status)
+        status = store_run(store, err, "UPDATE study_case SET jobs_left = 0 WHERE study_id = ?",
+                           "i", row);
+    return status ? status : study_settle(store, row, err);
+}
+
+int store_cancel(struct store *store, const char *id, struct error *err) {
+    int64_t row = 0, ended = 0;
+    int status = change_begin(store, err);
+    if (status)
+        return status;
+    status = study_row(store, id, &row, err);
+    if (!status)
+        status = store_integer(
+            store, &ended, err,
+            "SELECT state IN ('done', 'failed', 'cancelled') FROM study WHERE id = ?", "i", row);
+    if (!status && ended)
+        status = error_set(err, ERROR_STATE, "study %s has already ended", id);
+    if (!status)
+        status = cancel_jobs(store, row, err);
+    return change_end(store, status, err);
+}
+
+static int retry_jobs(struct store *store, int64_t row, struct error *err) {
+    int status =
+        store_run(store, err,
+                  "UPDATE study_case SET jobs_left = jobs_left + (SELECT count(*) FROM job j "
+                  "WHERE j.study_id = study_case.study_id AND j.case_number = number AND "
+                  "j.state IN ('failed', 'cancelled')) WHERE study_id = ?",
+                  "i", row);
+    if (!status)
+        status =
+            store_run(store, err,
+                      "UPDATE job SET state = 'waiting', attempts = 0, token = NULL, ended = NULL "
+                      "WHERE study_id = ? AND state IN ('failed', 'cancelled')",
+                      "i", row);
+    if (!status)
+        status = store_run(
+            store, err,
+            "UPDATE study SET jobs_waiting = jobs_waiting + jobs_failed + jobs_cancelled, "
+            "jobs_failed = 0, jobs_cancelled = 0, realisations_failed = 0, state = "
+            "CASE WHEN jobs_done > 0 THEN 'running' ELSE 'queued' END WHERE id = ?",
+            "i", row);
+    return status ? status : study_settle(store, row, err);
+}
+
+int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err) {
+    int64_t row, jobs = 0;
+    int status = change_begin(store, err);
+    if (status)
+        return status;
+    status = study_row(store, id, &row, err);
+    if (!status)
+        status =
+            store_integer(store, &jobs, err,
+                          "SELECT jobs_failed + jobs_cancelled FROM study WHERE id = ?", "i", row);
+    if (!status && jobs)
+        status = retry_jobs(store, row, err);
+    status = change_end(store, status, err);
+    if (!status)
+        *count = (uint64_t)jobs;
+    return status;
+}
+
+/* --- failures --- */
+
+void failures_free(struct failure *failures, size_t count) {
+    for (size_t i = 0; failures && i < count; i++) {
+        free(failures[i].worker);
+        free(failures[i].reason);
+    }
+    free(failures);
+}
+
+static int append_failure(sqlite3_stmt *row, struct failure **list, size_t count,
+                          struct error *err) {
+    struct failure *larger = realloc(*list, (count + 1) * sizeof *larger);
+    if (!larger)
+        return error_memory(err, (count + 1) * sizeof *larger, "failures");
+    *list = larger;
+    larger[count] =
+        (struct failure){sqlite3_column_int64(row, 0), column_count(row, 1), column_count(row, 2),
+                         column_count(row, 3),         column_count(row, 4), column_copy(row, 5),
+                         column_copy(row, 6)};
+    if (!larger[count].worker || !larger[count].reason)
+        return error_memory(err, 0, "a failure's reason");
+    return 0;
+}
+
+int store_failures(struct store *store, const char *id, struct failure **out, size_t *count,
+                   struct error *err) {
+    int64_t row = 0;
+    sqlite3_stmt *statement = NULL;
+    struct failure *list = NULL;
+    size_t n = 0;
+    int status = study_row(store, id, &row, err);
+    if (!status)
+        status =
+            store_query(store, &statement, err,
+                        "SELECT id, case_number, first, count, attempts, worker, error FROM job "
+                        "WHERE study_id = ? AND state = 'failed' ORDER BY id LIMIT 1000",
+                        "i", row);
+    while (!status && (status = store_step(store, statement, err)) == 1)
+        status = append_failure(statement, &list, n++, err);
+    if (status < 0) {
+        failures_free(list, n);
+        return status;
+    }
+    *out = list;
+    *count = n;
+    return 0;
+}

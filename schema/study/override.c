@@ -1,0 +1,59 @@
+#include "schema/study/override.h"
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The value as JSON, or as a string where it is none. */
+static int override_value(const char *text, cJSON **out, struct error *err) {
+    if (json_parse(text, strlen(text), NULL, out, NULL) == 0)
+        return 0;
+    *out = cJSON_CreateString(text);
+    return *out ? 0 : error_memory(err, strlen(text), "a value");
+}
+
+/* The member `name` of object, made if missing; NULL when it is no object. */
+static cJSON *member_object(cJSON *object, const char *name) {
+    cJSON *member = cJSON_GetObjectItemCaseSensitive(object, name);
+    if (!member)
+        member = cJSON_AddObjectToObject(object, name);
+    return cJSON_IsObject(member) ? member : NULL;
+}
+
+static int put(cJSON *object, const char *name, cJSON *value, struct error *err) {
+    bool replace = cJSON_GetObjectItemCaseSensitive(object, name) != NULL;
+    bool good = replace ? cJSON_ReplaceItemInObjectCaseSensitive(object, name, value)
+                        : cJSON_AddItemToObject(object, name, value);
+    if (good)
+        return 0;
+    cJSON_Delete(value);
+    return error_memory(err, strlen(name), "a member");
+}
+
+int override_apply(cJSON *document, const char *text, struct error *err) {
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text)
+        return error_set(err, ERROR_INPUT, "\"%.100s\" is not PATH=VALUE", text);
+    char *path = strndup(text, (size_t)(equals - text));
+    if (!path)
+        return error_memory(err, strlen(text), "a path");
+    const char *separator = *path == '/' ? "/" : ".";
+    cJSON *object = document, *value = NULL;
+    char *rest = NULL, *name = strtok_r(path, separator, &rest);
+    int status = 0;
+    while (!status && name) {
+        char *next = strtok_r(NULL, separator, &rest);
+        if (!cJSON_IsObject(object)) {
+            status = error_set(err, ERROR_INPUT,
+                               "\"%.100s\": what is before \"%.60s\" is not an object", text, name);
+        } else if (next) {
+            object = member_object(object, name);
+        } else {
+            status = override_value(equals + 1, &value, err);
+            if (!status)
+                status = put(object, name, value, err);
+        }
+        name = next;
+    }
+    free(path);
+    return status;
+}

@@ -1,0 +1,341 @@
+#include "schema/study/study.h"
+#include "schema/study/override.h"
+#include "schema/study/sweep.h"
+#include "schema/study/value.h"
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double EXACT_INTEGERS = 0x1p53;
+static const double JOB_SECONDS = 60;        /* a job takes about a minute */
+static const double JOB_REALISATIONS = 5000; /* and its result stays below a few MB */
+static const uint64_t REALISATIONS_MOST = 10000000;
+static const char *const COMMON[] = {"/name", "/kind", "/seed", "/realisations"};
+enum { COMMON_COUNT = sizeof COMMON / sizeof *COMMON };
+
+/* --- names --- */
+
+/* Edits between two names: how far a misspelt one is from a known one (Levenshtein 1966). */
+static size_t name_distance(const char *a, const char *b) {
+    size_t row[64], length = strlen(b);
+    if (length >= 64)
+        return 64;
+    for (size_t j = 0; j <= length; j++)
+        row[j] = j;
+    for (size_t i = 1; *a; a++, i++) {
+        size_t diagonal = row[0];
+        row[0] = i;
+        for (size_t j = 1; j <= length; j++) {
+            size_t change = diagonal + (*a != b[j - 1]);
+            diagonal = row[j];
+            size_t shift = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
+            row[j] = change < shift ? change : shift;
+        }
+    }
+    return row[length];
+}
+
+static const char *known_path(const struct study_kind *kind, size_t index) {
+    if (index < COMMON_COUNT)
+        return COMMON[index];
+    index -= COMMON_COUNT;
+    return kind && index < kind->parameter_count ? kind->parameters[index].path : NULL;
+}
+
+enum place { PLACE_UNKNOWN, PLACE_INSIDE, PLACE_PARAMETER };
+
+/* Whether a pointer names a parameter, an object on the way to one, or nothing. */
+static enum place pointer_place(const struct study_kind *kind, const char *pointer) {
+    size_t length = strlen(pointer);
+    const char *path;
+    for (size_t i = 0; (path = known_path(kind, i)); i++) {
+        if (strncmp(path, pointer, length) != 0)
+            continue;
+        if (path[length] == 0)
+            return PLACE_PARAMETER;
+        if (path[length] == '/')
+            return PLACE_INSIDE;
+    }
+    return PLACE_UNKNOWN;
+}
+
+/* "; did you mean ...?" where a sibling's name is near. */
+static void suggestion(const struct study_kind *kind, const char *prefix, const char *name,
+                       char *text, size_t size) {
+    size_t best = strlen(name) / 3 + 1, length = strlen(prefix);
+    const char *path;
+    *text = 0;
+    for (size_t i = 0; (path = known_path(kind, i)); i++) {
+        if (strncmp(path, prefix, length) != 0 || path[length] != '/')
+            continue;
+        char sibling[POINTER_SIZE];
+        snprintf(sibling, sizeof sibling, "%.*s", (int)strcspn(path + length + 1, "/"),
+                 path + length + 1);
+        size_t distance = name_distance(name, sibling);
+        if (distance <= best) {
+            best = distance;
+            snprintf(text, size, "; did you mean \"%.60s\"?", sibling);
+        }
+    }
+}
+
+static void check_names(const struct study_kind *kind, const cJSON *object, const char *prefix,
+                        struct fault_list *faults) {
+    for (const cJSON *member = object->child; member; member = member->next) {
+        char pointer[POINTER_SIZE], hint[96], text[48];
+        snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
+        switch (pointer_place(kind, pointer)) {
+        case PLACE_PARAMETER:
+            break;
+        case PLACE_INSIDE:
+            value_describe(member, text, sizeof text);
+            if (cJSON_IsObject(member))
+                check_names(kind, member, pointer, faults);
+            else
+                fault_add(faults, pointer, "%s is not an object", text);
+            break;
+        case PLACE_UNKNOWN:
+            suggestion(kind, prefix, member->string, hint, sizeof hint);
+            fault_add(faults, pointer, "unknown name%s", hint);
+        }
+    }
+}
+
+/* --- what every study has --- */
+
+static void read_name(struct study *study, const cJSON *document, struct fault_list *faults) {
+    const cJSON *name = json_at(document, "/name");
+    if (!name)
+        fault_add(faults, "/name", "missing; give the study a name");
+    else if (!cJSON_IsString(name) || !*name->valuestring || strlen(name->valuestring) > 200)
+        fault_add(faults, "/name", "not a text of 1 to 200 bytes");
+    else
+        study->name = strdup(name->valuestring);
+}
+
+static void read_kind(struct study *study, const cJSON *document, const struct study_kind *kinds,
+                      size_t kind_count, struct fault_list *faults) {
+    const cJSON *kind = json_at(document, "/kind");
+    char allowed[128] = "", text[48];
+    for (size_t k = 0; k < kind_count; k++) {
+        if (cJSON_IsString(kind) && strcmp(kind->valuestring, kinds[k].name) == 0)
+            study->kind = &kinds[k];
+        size_t used = strlen(allowed);
+        snprintf(allowed + used, sizeof allowed - used, "%s\"%s\"", k ? ", " : "", kinds[k].name);
+    }
+    if (study->kind)
+        return;
+    if (!kind) {
+        fault_add(faults, "/kind", "missing; give one of %s", allowed);
+        return;
+    }
+    value_describe(kind, text, sizeof text);
+    fault_add(faults, "/kind", "%s is not one of %s", text, allowed);
+}
+
+static bool decimal_seed(const char *text, uint64_t *seed) {
+    char *end;
+    errno = 0;
+    unsigned long long value = strtoull(text, &end, 10);
+    bool digits = *text && strspn(text, "0123456789") == strlen(text);
+    *seed = value;
+    return digits && !errno && !*end;
+}
+
+static void read_seed(struct study *study, const cJSON *document, struct fault_list *faults) {
+    const cJSON *seed = json_at(document, "/seed");
+    char text[48];
+    study->seed = 1;
+    if (!seed)
+        return;
+    value_describe(seed, text, sizeof text);
+    if (cJSON_IsString(seed)) {
+        if (!decimal_seed(seed->valuestring, &study->seed))
+            fault_add(faults, "/seed", "%s is not a decimal number up to 18446744073709551615",
+                      text);
+    } else if (!cJSON_IsNumber(seed) || seed->valuedouble != rint(seed->valuedouble) ||
+               seed->valuedouble < 0) {
+        fault_add(faults, "/seed", "%s is not an integer of 0 or more", text);
+    } else if (seed->valuedouble > EXACT_INTEGERS) {
+        fault_add(faults, "/seed",
+                  "%s is not in [0, 9007199254740992]; write a larger seed as a "
+                  "decimal string",
+                  text);
+    } else {
+        study->seed = (uint64_t)seed->valuedouble;
+    }
+}
+
+static void read_realisations(struct study *study, const cJSON *document,
+                              struct fault_list *faults) {
+    const cJSON *count = json_at(document, "/realisations");
+    char text[48];
+    study->realisations = study->kind ? study->kind->default_realisations : 1;
+    if (!count)
+        return;
+    value_describe(count, text, sizeof text);
+    if (cJSON_IsObject(count) && cJSON_GetObjectItemCaseSensitive(count, "target_error"))
+        fault_add(faults, "/realisations",
+                  "a target error is for a later version; give a number of realisations");
+    else if (!cJSON_IsNumber(count) || count->valuedouble != rint(count->valuedouble))
+        fault_add(faults, "/realisations", "%s is not an integer", text);
+    else if (!(count->valuedouble >= 1 && count->valuedouble <= (double)REALISATIONS_MOST))
+        fault_add(faults, "/realisations", "%s is not in [1, %llu]", text,
+                  (unsigned long long)REALISATIONS_MOST);
+    else
+        study->realisations = (uint64_t)count->valuedouble;
+}
+
+/* --- what the kind asks for --- */
+
+static void check_list(const struct parameter *parameter, const cJSON *list,
+                       struct fault_list *faults) {
+    if (!parameter->sweep) {
+        fault_add(faults, parameter->path, "a list is not allowed here: this cannot be swept");
+        return;
+    }
+    size_t i = 0;
+    for (const cJSON *item = list->child; item; item = item->next, i++) {
+        char pointer[POINTER_SIZE];
+        snprintf(pointer, sizeof pointer, "%s/%zu", parameter->path, i);
+        value_check(parameter, item, pointer, faults);
+    }
+    if (i == 0)
+        fault_add(faults, parameter->path, "an empty list; give at least one value");
+}
+
+static void check_parameters(const struct study_kind *kind, const cJSON *document,
+                             struct fault_list *faults) {
+    for (size_t p = 0; p < kind->parameter_count; p++) {
+        const struct parameter *parameter = &kind->parameters[p];
+        const cJSON *value = json_at(document, parameter->path);
+        if (value && value_is_list(parameter, value))
+            check_list(parameter, value, faults);
+        else if (value)
+            value_check(parameter, value, parameter->path, faults);
+        else if (parameter->required)
+            fault_add(faults, parameter->path, "missing: %s", parameter->help);
+    }
+}
+
+/* Cases of a sweep share most of their faults: each is told once. */
+static void merge_faults(struct fault_list *all, const struct fault_list *found) {
+    size_t kept = found->count < FAULTS_KEPT ? found->count : FAULTS_KEPT;
+    for (size_t i = 0; found->faults && i < kept; i++) {
+        const struct fault *fault = &found->faults[i];
+        bool known = false;
+        size_t told = all->count < FAULTS_KEPT ? all->count : FAULTS_KEPT;
+        for (size_t k = 0; all->faults && k < told && !known; k++)
+            known = strcmp(all->faults[k].pointer, fault->pointer) == 0 &&
+                    strcmp(all->faults[k].detail, fault->detail) == 0;
+        if (!known)
+            fault_add(all, fault->pointer, "%s", fault->detail);
+    }
+}
+
+/* Blocks of equal size that take about JOB_SECONDS each. */
+static uint64_t block_size(uint64_t realisations, double seconds) {
+    double most = seconds > 0 ? floor(JOB_SECONDS / seconds + 0.5) : (double)realisations;
+    most = fmin(fmax(most, 1), fmin(JOB_REALISATIONS, (double)realisations));
+    uint64_t blocks = (realisations + (uint64_t)most - 1) / (uint64_t)most;
+    return (realisations + blocks - 1) / blocks;
+}
+
+static int check_cases(struct study *study, double memory_limit, struct fault_list *faults,
+                       struct error *err) {
+    for (size_t c = 0; c < study->case_count; c++) {
+        struct study_case *one = &study->cases[c];
+        struct fault_list found = {0};
+        int status =
+            study->kind->check(study->kind->context, one->parameters, &found, &one->cost, err);
+        if (!status && !found.count && memory_limit > 0 && one->cost.memory_bytes > memory_limit)
+            fault_add(&found, "",
+                      "a worker needs %.3g GiB for a grid of %zu by %zu; allowed: "
+                      "%.3g GiB on this machine",
+                      one->cost.memory_bytes / 0x1p30, one->cost.nx, one->cost.ny,
+                      memory_limit / 0x1p30);
+        merge_faults(faults, &found);
+        fault_list_clear(&found);
+        if (status)
+            return status;
+        one->block = block_size(study->realisations, one->cost.seconds);
+    }
+    return 0;
+}
+
+/* --- together --- */
+
+static int faulty(const struct fault_list *faults, struct error *err) {
+    const struct fault *first = faults->faults;
+    if (first && first->pointer && first->detail)
+        return error_set(err, ERROR_INPUT, "%s%s%s", first->pointer, *first->pointer ? ": " : "",
+                         first->detail);
+    return error_set(err, ERROR_INPUT, "the study has %zu faults", faults->count);
+}
+
+static int fill(struct study *study, const cJSON *document, const struct study_kind *kinds,
+                size_t kind_count, double memory_limit, struct fault_list *faults,
+                struct error *err) {
+    read_name(study, document, faults);
+    read_kind(study, document, kinds, kind_count, faults);
+    read_seed(study, document, faults);
+    read_realisations(study, document, faults);
+    if (study->kind) {
+        check_names(study->kind, document, "", faults);
+        check_parameters(study->kind, document, faults);
+    }
+    if (faults->count || !study->kind)
+        return faulty(faults, err);
+    study->source = json_print(document);
+    if (!study->name || !study->source)
+        return error_memory(err, strlen(study->kind->name), "a study");
+    int status = sweep_open(study, document, faults, err);
+    if (!status && !faults->count)
+        status = check_cases(study, memory_limit, faults, err);
+    if (!status && faults->count)
+        status = faulty(faults, err);
+    return status;
+}
+
+int study_read(struct study **out, const char *text, size_t size, const char *const *overrides,
+               const struct study_kind *kinds, size_t kind_count, double memory_limit,
+               struct fault_list *faults, struct error *err) {
+    cJSON *document = NULL;
+    struct study *study = NULL;
+    int status = json_parse(text, size, NULL, &document, err);
+    if (!status && !cJSON_IsObject(document)) {
+        fault_add(faults, "", "a study is a JSON object");
+        status = faulty(faults, err);
+    }
+    for (size_t i = 0; !status && overrides && overrides[i]; i++)
+        status = override_apply(document, overrides[i], err);
+    if (!status && !(study = array_create(1, sizeof *study)))
+        status = error_memory(err, sizeof *study, "a study");
+    if (!status)
+        status = fill(study, document, kinds, kind_count, memory_limit, faults, err);
+    cJSON_Delete(document);
+    if (status) {
+        study_destroy(&study);
+        return status;
+    }
+    *out = study;
+    return 0;
+}
+
+void study_destroy(struct study **study) {
+    struct study *s = *study;
+    if (!s)
+        return;
+    for (size_t c = 0; s->cases && c < s->case_count; c++)
+        cJSON_Delete(s->cases[c].parameters);
+    for (size_t p = 0; s->swept && s->swept[p]; p++)
+        free(s->swept[p]);
+    free(s->swept);
+    free(s->cases);
+    free(s->name);
+    free(s->source);
+    free(s);
+    *study = NULL;
+}

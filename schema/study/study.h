@@ -1,0 +1,63 @@
+/* A study: what a researcher wrote, checked, with its sweeps opened into cases.
+ *
+ * The schema knows no job kind: the caller hands over a table of them. */
+#ifndef RUGO_SCHEMA_STUDY_STUDY_H
+#define RUGO_SCHEMA_STUDY_STUDY_H
+
+#include "schema/json/json.h"
+#include "schema/study/fault.h"
+#include "schema/study/parameter.h"
+#include <stdint.h>
+
+struct study_cost {
+    size_t nx, ny;
+    double memory_bytes;   /* peak of one worker */
+    double seconds;        /* CPU seconds a realisation */
+    double relative_error; /* of the main curve, one realisation */
+};
+
+/* What the reader must know of a job kind. */
+struct study_kind {
+    const char *name;
+    const struct parameter *parameters;
+    size_t parameter_count;
+    uint64_t default_realisations;
+    /* Adds faults that no single range shows, and estimates the cost; context is handed through. */
+    int (*check)(const void *context, const cJSON *parameters, struct fault_list *faults,
+                 struct study_cost *cost, struct error *err);
+    const void *context;
+};
+
+struct study_case {
+    cJSON *parameters; /* owned: effective values, lists replaced, defaults filled in */
+    struct study_cost cost;
+    uint64_t block; /* realisations a job */
+};
+struct study {
+    char *name;
+    const struct study_kind *kind; /* borrowed from the caller's table */
+    uint64_t seed;
+    uint64_t realisations; /* of each case */
+    size_t case_count;
+    struct study_case *cases;
+    char *source; /* the document as compact JSON, as it was given */
+    /* swept pointers, in the order of the file (the last runs fastest), NULL-terminated */
+    char **swept;
+};
+
+enum { STUDY_CASES_MOST = 10000 };
+
+/* Reads and checks a study, all faults at once. overrides: PATH=VALUE strings of --set (PATH a
+ * pointer or dotted, VALUE JSON or a bare word), NULL-terminated or NULL. memory_limit in bytes: a
+ * case that needs more is a fault (0: no limit). Returns ERROR_INPUT with faults filled (or, where
+ * the text is no JSON, with err alone); *out is then untouched. */
+int study_read(struct study **out, const char *text, size_t size, const char *const *overrides,
+               const struct study_kind *kinds, size_t kind_count, double memory_limit,
+               struct fault_list *faults, struct error *err);
+void study_destroy(struct study **study);
+
+/* JSON Schema (draft 2020-12) of studies of these kinds; caller deletes. NULL when out of memory.
+ */
+cJSON *study_schema(const struct study_kind *kinds, size_t kind_count);
+
+#endif

@@ -1,0 +1,22 @@
+/* Values against the rows of a parameter table: what is wrong with one, in words. */
+#ifndef RUGO_SCHEMA_STUDY_VALUE_H
+#define RUGO_SCHEMA_STUDY_VALUE_H
+
+#include "schema/json/json.h"
+#include "schema/study/fault.h"
+#include "schema/study/parameter.h"
+
+enum { POINTER_SIZE = 256 };
+
+/* Adds a fault at pointer unless value is one value of the parameter (no list of them); true if
+ * good. */
+bool value_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
+                 struct fault_list *faults);
+/* Whether value is a list of values (a sweep) of the parameter. */
+bool value_is_list(const struct parameter *parameter, const cJSON *value);
+/* The value as it was written, cut to fit: for messages. */
+void value_describe(const cJSON *value, char *text, size_t size);
+/* The allowed range: "(0, 1]". */
+void value_range(const struct parameter *parameter, char *text, size_t size);
+
+#endif

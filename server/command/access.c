@@ -1,0 +1,221 @@
+#include "server/command/access.h"
+#include "schema/study/override.h"
+#include "server/command/api.h"
+#include "server/command/command.h"
+#include "worker/client.h"
+#include "worker/kinds.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct access {
+    struct store *store; /* one of the two */
+    struct client *client;
+};
+
+bool access_options_check(const char *command, const struct access_options *options) {
+    if (options->database && options->server)
+        return usage_error(command, "--db and --server exclude each other");
+    if (options->token_file && !options->server)
+        return usage_error(command, "--token-file goes with --server");
+    return true;
+}
+
+static int open_client(struct access *access, const struct access_options *options,
+                       struct error *err) {
+    char *token = NULL;
+    int status = token_read(options->token_file, &token, err);
+    if (!status)
+        status = client_create(&access->client, options->server, token, err);
+    free(token);
+    return status;
+}
+
+int access_open(struct access **out, const struct access_options *options, enum access_mode mode,
+                struct error *err) {
+    struct access *access = array_create(1, sizeof *access);
+    if (!access)
+        return error_memory(err, sizeof *access, "a store");
+    struct store_options store = {.read_only = mode == ACCESS_READ,
+                                  .existing = mode != ACCESS_CREATE};
+    int status = options->server
+                     ? open_client(access, options, err)
+                     : store_open(&access->store, options->database ? options->database : "rugo.db",
+                                  &store, err);
+    if (status) {
+        access_close(&access);
+        return status;
+    }
+    *out = access;
+    return 0;
+}
+
+void access_close(struct access **access) {
+    if (!*access)
+        return;
+    store_close(&(*access)->store);
+    client_destroy(&(*access)->client);
+    free(*access);
+    *access = NULL;
+}
+
+/* An identifier in a path: anything but letters and digits would change the path's meaning. */
+static bool is_study_id(const char *id) {
+    size_t length = strlen(id);
+    return length && length < STUDY_ID_SIZE && strspn(id, "0123456789abcdef") == length;
+}
+
+static int study_path(char *path, size_t size, const char *id, const char *rest,
+                      struct error *err) {
+    if (!is_study_id(id))
+        return error_set(err, ERROR_ABSENT, "there is no study \"%.40s\"", id);
+    snprintf(path, size, "/v1/studies/%s%s", id, rest);
+    return 0;
+}
+
+static int ask(struct access *access, const char *method, const char *path, const char *body,
+               cJSON **out, struct error *err) {
+    struct request request = {.method = method, .path = path, .body = body};
+    return client_json(access->client, &request, out, err);
+}
+
+static int ask_study(struct access *access, const char *method, const char *id, const char *rest,
+                     cJSON **out, struct error *err) {
+    char path[320];
+    int status = study_path(path, sizeof path, id, rest, err);
+    return status ? status : ask(access, method, path, NULL, out, err);
+}
+
+/* A server has no --set: the changes are made before the study is sent. */
+static int submit_remote(struct access *access, const char *text, size_t size,
+                         const char *const *overrides, cJSON **out, struct fault_list *faults,
+                         struct error *err) {
+    cJSON *document = NULL;
+    int status = json_parse(text, size, NULL, &document, err);
+    for (size_t i = 0; !status && overrides && overrides[i]; i++)
+        status = override_apply(document, overrides[i], err);
+    char *body = status ? NULL : json_print(document);
+    cJSON_Delete(document);
+    if (!status && !body)
+        status = error_memory(err, size, "a study");
+    struct request request = {
+        .method = "POST", .path = "/v1/studies", .body = body, .faults = faults};
+    if (!status)
+        status = client_json(access->client, &request, out, err);
+    free(body);
+    return status;
+}
+
+int access_submit(struct access *access, const char *text, size_t size,
+                  const char *const *overrides, cJSON **out, struct fault_list *faults,
+                  struct error *err) {
+    bool existing;
+    struct study *study = NULL;
+    if (access->client)
+        return submit_remote(access, text, size, overrides, out, faults, err);
+    int status = kinds_read_study(&study, text, size, overrides, faults, err);
+    if (!status)
+        status = api_submit(access->store, study, NULL, out, &existing, err);
+    study_destroy(&study);
+    return status;
+}
+
+int access_status(struct access *access, const char *id, cJSON **out, struct error *err) {
+    return access->client ? ask_study(access, "GET", id, "", out, err)
+                          : api_status(access->store, id, out, err);
+}
+
+enum { PAGE = 100 };
+
+static int list_page(struct access *access, const char *after, cJSON **out, struct error *err) {
+    char path[96];
+    if (!access->client)
+        return api_list(access->store, after, PAGE, out, err);
+    snprintf(path, sizeof path, "/v1/studies?limit=%d%s%s", PAGE, *after ? "&after=" : "", after);
+    return ask(access, "GET", path, NULL, out, err);
+}
+
+/* Moves the studies of a page to the end of all. */
+static void append_studies(cJSON *all, cJSON *page) {
+    cJSON *from = cJSON_GetObjectItemCaseSensitive(page, "studies");
+    cJSON *to = cJSON_GetObjectItemCaseSensitive(all, "studies");
+    for (cJSON *study; from && (study = cJSON_DetachItemFromArray(from, 0)) != NULL;)
+        cJSON_AddItemToArray(to, study);
+}
+
+int access_list(struct access *access, cJSON **out, struct error *err) {
+    char after[STUDY_ID_SIZE] = "";
+    cJSON *all = cJSON_CreateObject();
+    int status = all && cJSON_AddArrayToObject(all, "studies")
+                     ? 0
+                     : error_memory(err, 0, "a list of studies");
+    for (bool more = !status; more;) {
+        cJSON *page = NULL;
+        status = list_page(access, after, &page, err);
+        if (!status)
+            append_studies(all, page);
+        const char *next = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(page, "next"));
+        more = !status && next && is_study_id(next) && strcmp(next, after) != 0;
+        if (more)
+            snprintf(after, sizeof after, "%s", next);
+        cJSON_Delete(page);
+    }
+    if (status)
+        cJSON_Delete(all);
+    else
+        *out = all;
+    return status;
+}
+
+int access_curves(struct access *access, const char *id, const struct curve_filter *filter,
+                  cJSON **out, struct error *err) {
+    char rest[200] = "/curves", separator = '?';
+    size_t used = strlen(rest);
+    if (!access->client)
+        return aggregate_curves(access->store, id, filter, out, err);
+    if (filter->case_number >= 0) {
+        used += (size_t)snprintf(rest + used, sizeof rest - used, "?case=%lld",
+                                 (long long)filter->case_number);
+        separator = '&';
+    }
+    if (filter->quantity) {
+        size_t length = strlen(filter->quantity);
+        if (length > 64 ||
+            strspn(filter->quantity, "abcdefghijklmnopqrstuvwxyz0123456789_") != length)
+            return error_set(err, ERROR_INPUT, "the study has no quantity \"%.64s\"",
+                             filter->quantity);
+        snprintf(rest + used, sizeof rest - used, "%cquantity=%s", separator, filter->quantity);
+    }
+    return ask_study(access, "GET", id, rest, out, err);
+}
+
+int access_report(struct access *access, const char *id, cJSON **out, struct error *err) {
+    return access->client ? ask_study(access, "GET", id, "/report", out, err)
+                          : aggregate_report(access->store, id, out, err);
+}
+
+int access_cancel(struct access *access, const char *id, cJSON **out, struct error *err) {
+    return access->client ? ask_study(access, "DELETE", id, "", out, err)
+                          : api_cancel(access->store, id, out, err);
+}
+
+int access_retry(struct access *access, const char *id, cJSON **out, struct error *err) {
+    return access->client ? ask_study(access, "POST", id, "/retry", out, err)
+                          : api_retry(access->store, id, out, err);
+}
+
+int access_snapshot(struct access *access, const char *path, struct error *err) {
+    if (!access->client)
+        return store_snapshot(access->store, path, err);
+    FILE *file = fopen(path, "wxb");
+    if (!file)
+        return error_set(err, errno == EEXIST ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s", path,
+                         errno == EEXIST ? "exists; a snapshot needs a new file" : strerror(errno));
+    int status = client_download(access->client, "/v1/snapshot", file, err);
+    if (fclose(file) && !status)
+        status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
+    if (status)
+        remove(path);
+    return status;
+}

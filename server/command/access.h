@@ -1,0 +1,41 @@
+/* A store, in a local file or behind a server: each question gives the same document from either.
+ */
+#ifndef RUGO_SERVER_COMMAND_ACCESS_H
+#define RUGO_SERVER_COMMAND_ACCESS_H
+
+#include "schema/study/fault.h"
+#include "server/command/options.h"
+#include "worker/aggregate.h"
+
+struct access_options {
+    const char *database, *server, *token_file; /* as given; database NULL: rugo.db */
+};
+#define ACCESS_OPTION_ROWS(options)                                                                \
+    {"db", OPTION_TEXT, &(options)->database}, {"server", OPTION_TEXT, &(options)->server}, {      \
+        "token-file", OPTION_TEXT, &(options)->token_file                                          \
+    }
+
+enum access_mode { ACCESS_READ, ACCESS_WRITE, ACCESS_CREATE };
+struct access;
+
+/* False after a usage error was told (both places, or a token without a server). */
+bool access_options_check(const char *command, const struct access_options *options);
+int access_open(struct access **out, const struct access_options *options, enum access_mode mode,
+                struct error *err);
+void access_close(struct access **access);
+
+/* Documents of interface.md; the caller deletes them. */
+int access_submit(struct access *access, const char *text, size_t size,
+                  const char *const *overrides, cJSON **out, struct fault_list *faults,
+                  struct error *err);
+int access_status(struct access *access, const char *id, cJSON **out, struct error *err);
+int access_list(struct access *access, cJSON **out, struct error *err); /* of all studies */
+int access_curves(struct access *access, const char *id, const struct curve_filter *filter,
+                  cJSON **out, struct error *err);
+int access_report(struct access *access, const char *id, cJSON **out, struct error *err);
+int access_cancel(struct access *access, const char *id, cJSON **out, struct error *err);
+int access_retry(struct access *access, const char *id, cJSON **out, struct error *err);
+/* path must not exist. */
+int access_snapshot(struct access *access, const char *path, struct error *err);
+
+#endif

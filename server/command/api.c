@@ -1,0 +1,176 @@
+#include "server/command/api.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static bool put(cJSON *object, const char *name, cJSON *value) {
+    if (value && cJSON_AddItemToObject(object, name, value))
+        return true;
+    cJSON_Delete(value);
+    return false;
+}
+
+static bool put_count(cJSON *object, const char *name, uint64_t count) {
+    return put(object, name, cJSON_CreateNumber((double)count));
+}
+
+static int finish(cJSON *document, bool complete, cJSON **out, struct error *err) {
+    if (!document || !complete) {
+        cJSON_Delete(document);
+        return error_memory(err, 0, "a document");
+    }
+    *out = document;
+    return 0;
+}
+
+/* --- submission --- */
+
+static cJSON *submitted(const struct study_status *status, bool *complete) {
+    cJSON *document = cJSON_CreateObject();
+    *complete = document && put(document, "id", cJSON_CreateString(status->id)) &&
+                put(document, "name", cJSON_CreateString(status->name)) &&
+                put(document, "state", cJSON_CreateString(status->state)) &&
+                put_count(document, "cases", status->cases) &&
+                put_count(document, "jobs", status->jobs);
+    return document;
+}
+
+int api_submit(struct store *store, const struct study *study, const char *key, cJSON **out,
+               bool *existing, struct error *err) {
+    char id[STUDY_ID_SIZE];
+    struct study_status now = {0};
+    int status = store_submit(store, study, key, id, existing, err);
+    if (!status)
+        status = store_status(store, id, &now, err);
+    if (status)
+        return status;
+    bool complete;
+    cJSON *document = submitted(&now, &complete);
+    study_status_clear(&now);
+    return finish(document, complete, out, err);
+}
+
+/* --- progress --- */
+
+static bool put_jobs(cJSON *object, const struct study_status *status) {
+    cJSON *jobs = cJSON_AddObjectToObject(object, "jobs");
+    return jobs && put_count(jobs, "total", status->jobs) &&
+           put_count(jobs, "done", status->jobs_done) &&
+           put_count(jobs, "failed", status->jobs_failed) &&
+           put_count(jobs, "running", status->jobs_running) &&
+           put_count(jobs, "waiting", status->jobs_waiting) &&
+           put_count(jobs, "cancelled", status->jobs_cancelled);
+}
+
+static bool put_realisations(cJSON *object, const struct study_status *status) {
+    cJSON *realisations = cJSON_AddObjectToObject(object, "realisations");
+    return realisations && put_count(realisations, "total", status->realisations_total) &&
+           put_count(realisations, "done", status->realisations_done) &&
+           put_count(realisations, "failed", status->realisations_failed);
+}
+
+static bool put_time(cJSON *object, const char *name, const char *time) {
+    return put(object, name, *time ? cJSON_CreateString(time) : cJSON_CreateNull());
+}
+
+/* Time left of a study nobody works on is what one worker would need. */
+static double time_left(const struct study_status *status) {
+    return status->seconds_left / (double)(status->workers ? status->workers : 1);
+}
+
+static cJSON *progress(const struct study_status *status, bool *complete) {
+    char seed[24];
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)status->seed);
+    cJSON *document = cJSON_CreateObject();
+    *complete = document && put(document, "id", cJSON_CreateString(status->id)) &&
+                put(document, "name", cJSON_CreateString(status->name)) &&
+                put(document, "kind", cJSON_CreateString(status->kind)) &&
+                put(document, "state", cJSON_CreateString(status->state)) &&
+                put(document, "seed", cJSON_CreateString(seed)) &&
+                put_count(document, "cases", status->cases) && put_jobs(document, status) &&
+                put_realisations(document, status) &&
+                put_count(document, "workers", status->workers) &&
+                put(document, "seconds", json_number(status->seconds)) &&
+                put(document, "seconds_left", json_number(time_left(status))) &&
+                put_count(document, "revision", status->revision) &&
+                put_time(document, "created", status->created) &&
+                put_time(document, "finished", status->finished);
+    return document;
+}
+
+static bool put_failures(cJSON *document, const struct failure *failures, size_t count) {
+    cJSON *list = cJSON_AddArrayToObject(document, "failures");
+    bool complete = list != NULL;
+    for (size_t i = 0; complete && i < count; i++) {
+        const struct failure *failure = &failures[i];
+        cJSON *entry = cJSON_CreateObject();
+        complete = entry && cJSON_AddItemToArray(list, entry) &&
+                   put_count(entry, "job", (uint64_t)failure->job) &&
+                   put_count(entry, "case", failure->case_number) &&
+                   put_count(entry, "first", failure->first) &&
+                   put_count(entry, "count", failure->count) &&
+                   put_count(entry, "attempts", failure->attempts) &&
+                   put(entry, "worker", cJSON_CreateString(failure->worker)) &&
+                   put(entry, "reason", cJSON_CreateString(failure->reason));
+    }
+    return complete;
+}
+
+int api_status(struct store *store, const char *id, cJSON **out, struct error *err) {
+    struct study_status status = {0};
+    struct failure *failures = NULL;
+    size_t count = 0;
+    int code = store_status(store, id, &status, err);
+    if (!code && status.jobs_failed)
+        code = store_failures(store, id, &failures, &count, err);
+    if (!code) {
+        bool complete;
+        cJSON *document = progress(&status, &complete);
+        complete = complete && put_failures(document, failures, count);
+        code = finish(document, complete, out, err);
+    }
+    failures_free(failures, count);
+    study_status_clear(&status);
+    return code;
+}
+
+int api_list(struct store *store, const char *after, size_t limit, cJSON **out, struct error *err) {
+    struct study_status *list = NULL;
+    size_t count = 0;
+    int status = store_list(store, after, limit, &list, &count, err);
+    if (status)
+        return status;
+    cJSON *document = cJSON_CreateObject();
+    cJSON *studies = document ? cJSON_AddArrayToObject(document, "studies") : NULL;
+    bool complete = studies != NULL;
+    for (size_t i = 0; i < count; i++) {
+        bool whole = false;
+        cJSON *entry = complete ? progress(&list[i], &whole) : NULL;
+        complete = complete && entry && cJSON_AddItemToArray(studies, entry) && whole;
+    }
+    /* A full page may have a next one. */
+    if (complete && count == limit)
+        complete = put(document, "next", cJSON_CreateString(list[count - 1].id));
+    for (size_t i = 0; i < count; i++)
+        study_status_clear(&list[i]);
+    free(list);
+    return finish(document, complete, out, err);
+}
+
+int api_cancel(struct store *store, const char *id, cJSON **out, struct error *err) {
+    int status = store_cancel(store, id, err);
+    return status ? status : api_status(store, id, out, err);
+}
+
+int api_retry(struct store *store, const char *id, cJSON **out, struct error *err) {
+    uint64_t count;
+    int status = store_retry(store, id, &count, err);
+    if (!status)
+        status = api_status(store, id, out, err);
+    if (!status && !put_count(*out, "retried", count)) {
+        cJSON_Delete(*out);
+        *out = NULL;
+        status = error_memory(err, 0, "a document");
+    }
+    return status;
+}

@@ -1,0 +1,16 @@
+/* What can be asked of a store, as the JSON documents of interface.md: the one meaning behind the
+ * HTTP routes and the commands on a local file. All documents are the caller's to delete. */
+#ifndef RUGO_SERVER_COMMAND_API_H
+#define RUGO_SERVER_COMMAND_API_H
+
+#include "schema/store/store.h"
+
+/* Queues a study: {id, name, state, cases, jobs}. ERROR_STATE: key used for another study. */
+int api_submit(struct store *store, const struct study *study, const char *key, cJSON **out,
+               bool *existing, struct error *err);
+int api_status(struct store *store, const char *id, cJSON **out, struct error *err);
+int api_list(struct store *store, const char *after, size_t limit, cJSON **out, struct error *err);
+int api_cancel(struct store *store, const char *id, cJSON **out, struct error *err);
+int api_retry(struct store *store, const char *id, cJSON **out, struct error *err);
+
+#endif

@@ -1,0 +1,202 @@
+/* `rugo check`: what a study would do, and what it would cost; runs nothing. */
+#include "server/command/command.h"
+#include "server/command/options.h"
+#include "server/show/summary.h"
+#include "server/show/text_table.h"
+#include "worker/kinds.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double case_seconds(const struct study *study, size_t c) {
+    return study->cases[c].cost.seconds * (double)study->realisations;
+}
+
+static double case_error(const struct study *study, size_t c) {
+    return study->cases[c].cost.relative_error / sqrt((double)study->realisations);
+}
+
+static double total_seconds(const struct study *study) {
+    double sum = 0;
+    for (size_t c = 0; c < study->case_count; c++)
+        sum += case_seconds(study, c);
+    return sum;
+}
+
+static double largest_memory(const struct study *study) {
+    double most = 0;
+    for (size_t c = 0; c < study->case_count; c++)
+        most = fmax(most, study->cases[c].cost.memory_bytes);
+    return most;
+}
+
+/* --- text --- */
+
+static void print_value(struct text_table *table, const cJSON *value) {
+    char *text = value ? json_print(value) : NULL;
+    size_t length = text ? strlen(text) : 0;
+    bool quoted = length > 1 && text[0] == '"';
+    table_cell(table, "%.*s", text ? (int)(length - 2 * quoted) : 1, text ? text + quoted : "-");
+    free(text);
+}
+
+static void print_cases(const struct study *study) {
+    size_t swept = 0;
+    while (study->swept[swept])
+        swept++;
+    struct text_table table = {.columns = swept + 6};
+    table_cell(&table, "case");
+    for (size_t p = 0; p < swept; p++)
+        table_cell(&table, "%s", strrchr(study->swept[p], '/') + 1);
+    static const char *const HEADINGS[] = {"grid", "memory MiB", "jobs", "CPU time", "error %"};
+    for (size_t h = 0; h < 5; h++)
+        table_cell(&table, "%s", HEADINGS[h]);
+    for (size_t c = 0; c < study->case_count; c++) {
+        const struct study_case *one = &study->cases[c];
+        char time[48];
+        duration_text(case_seconds(study, c), time, sizeof time);
+        table_cell(&table, "%zu", c);
+        for (size_t p = 0; p < swept; p++)
+            print_value(&table, json_at(one->parameters, study->swept[p]));
+        table_cell(&table, "%zu x %zu", one->cost.nx, one->cost.ny);
+        table_cell(&table, "%.1f", one->cost.memory_bytes / 0x1p20);
+        table_cell(&table, "%llu",
+                   (unsigned long long)((study->realisations + one->block - 1) / one->block));
+        table_cell(&table, "%s", time);
+        table_cell(&table, "%.2g", 100 * case_error(study, c));
+    }
+    table_print(&table, stdout);
+    table_clear(&table);
+}
+
+/* Effective values of all cases; what is swept stands in the table. */
+static void print_values(const struct study *study, const cJSON *object, const char *prefix) {
+    for (const cJSON *member = object->child; member; member = member->next) {
+        char pointer[256];
+        snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
+        bool swept = false;
+        for (size_t p = 0; study->swept[p]; p++)
+            swept = swept || strcmp(study->swept[p], pointer) == 0;
+        if (cJSON_IsObject(member)) {
+            print_values(study, member, pointer);
+        } else if (!swept) {
+            char *text = json_print(member);
+            printf("  %-36s %s\n", pointer, text ? text : "?");
+            free(text);
+        }
+    }
+}
+
+static void print_text(const struct study *study) {
+    char cpu[48], wall[48];
+    duration_text(total_seconds(study), cpu, sizeof cpu);
+    duration_text(total_seconds(study) / processors(), wall, sizeof wall);
+    printf("%s (%s), seed %llu: %zu cases of %llu realisations\n", study->name, study->kind->name,
+           (unsigned long long)study->seed, study->case_count,
+           (unsigned long long)study->realisations);
+    print_values(study, study->cases[0].parameters, "");
+    print_cases(study);
+    printf("in all about %s of CPU, %s on %u processors; up to %.0f MiB a worker\n", cpu, wall,
+           processors(), largest_memory(study) / 0x1p20);
+}
+
+/* --- JSON --- */
+
+static bool put(cJSON *object, const char *name, cJSON *value) {
+    if (value && cJSON_AddItemToObject(object, name, value))
+        return true;
+    cJSON_Delete(value);
+    return false;
+}
+
+static cJSON *case_document(const struct study *study, size_t c) {
+    const struct study_case *one = &study->cases[c];
+    cJSON *document = cJSON_CreateObject();
+    bool complete = document && put(document, "case", cJSON_CreateNumber((double)c)) &&
+                    put(document, "parameters", cJSON_Duplicate(one->parameters, true)) &&
+                    put(document, "nx", cJSON_CreateNumber((double)one->cost.nx)) &&
+                    put(document, "ny", cJSON_CreateNumber((double)one->cost.ny)) &&
+                    put(document, "memory_bytes", json_number(one->cost.memory_bytes)) &&
+                    put(document, "block", cJSON_CreateNumber((double)one->block)) &&
+                    put(document, "seconds", json_number(case_seconds(study, c))) &&
+                    put(document, "relative_error", json_number(case_error(study, c)));
+    if (complete)
+        return document;
+    cJSON_Delete(document);
+    return NULL;
+}
+
+static int print_document(cJSON *document, struct error *err) {
+    int status = output_document(document, err);
+    cJSON_Delete(document);
+    return status;
+}
+
+static int print_study_json(const struct study *study, struct error *err) {
+    cJSON *document = cJSON_CreateObject();
+    char seed[24];
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
+    bool complete =
+        document && put(document, "name", cJSON_CreateString(study->name)) &&
+        put(document, "kind", cJSON_CreateString(study->kind->name)) &&
+        put(document, "seed", cJSON_CreateString(seed)) &&
+        put(document, "realisations", cJSON_CreateNumber((double)study->realisations)) &&
+        put(document, "seconds", json_number(total_seconds(study))) &&
+        put(document, "memory_bytes", json_number(largest_memory(study))) &&
+        put(document, "cases", cJSON_CreateArray());
+    cJSON *cases = cJSON_GetObjectItemCaseSensitive(document, "cases");
+    for (size_t c = 0; complete && c < study->case_count; c++) {
+        cJSON *one = case_document(study, c);
+        complete = one && cJSON_AddItemToArray(cases, one);
+    }
+    if (!complete) {
+        cJSON_Delete(document);
+        document = NULL;
+    }
+    return print_document(document, err);
+}
+
+/* --- the command --- */
+
+static int check(const char *file, const char *const *sets, bool json, struct fault_list *faults,
+                 struct error *err) {
+    struct study *study = NULL;
+    int status = study_file_read(&study, file, sets, faults, err);
+    if (!status && json) {
+        status = print_study_json(study, err);
+    } else if (!status) {
+        print_text(study);
+        status = output_flush(err);
+    }
+    study_destroy(&study);
+    return status;
+}
+
+int command_check(int argc, char **argv) {
+    bool schema = false;
+    const char *file = NULL, *format = NULL, **sets = array_create((size_t)argc + 1, sizeof *sets);
+    struct option_row rows[] = {{"set", OPTION_LIST, sets},
+                                {"format", OPTION_TEXT, &format},
+                                {"schema", OPTION_FLAG, &schema},
+                                {0}};
+    struct error err = {0};
+    struct fault_list faults = {0};
+    bool good = sets && options_parse(argc, argv, rows, 0, 1, &file);
+    if (good && format && strcmp(format, "text") != 0 && strcmp(format, "json") != 0)
+        good = usage_error(argv[0], "--format %.40s is neither text nor json", format);
+    if (good && !file && !schema)
+        good = usage_error(argv[0], "an argument is missing");
+    int status = 0;
+    if (good && schema)
+        status = print_document(study_schema(kinds_table(), kinds_count()), &err);
+    else if (good)
+        status = check(file, sets, format && strcmp(format, "json") == 0, &faults, &err);
+    int result = !good          ? EXIT_USAGE
+                 : !status      ? EXIT_DONE
+                 : faults.count ? command_fail_faults(file, &faults)
+                                : command_fail(argv[0], &err);
+    fault_list_clear(&faults);
+    free(sets);
+    return result;
+}

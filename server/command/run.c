@@ -1,0 +1,139 @@
+/* `rugo run`: a study from submission to table in one process; goes on where an earlier run of the
+ * same study stopped. */
+#include "server/command/access.h"
+#include "server/command/command.h"
+#include "server/show/output.h"
+#include "server/show/progress.h"
+#include "server/show/summary.h"
+#include "worker/kinds.h"
+#include "worker/worker.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A run that was killed is started again soon: its blocks need not wait for the usual minute.
+ * Heartbeats come every 5 s. */
+enum { LEASE_MS = 20000 };
+
+struct run {
+    const char *file, *database, *folder, **sets;
+    unsigned threads;
+    struct store *store;
+    char id[STUDY_ID_SIZE];
+    struct fault_list faults;
+};
+
+/* The same study in the same store is the same run: its text is its key. */
+static int submit(struct run *run, struct error *err) {
+    char *key = NULL;
+    struct study *study = NULL;
+    bool existing = false;
+    int status = study_file_read(&study, run->file, run->sets, &run->faults, err);
+    if (!status && asprintf(&key, "run %s", study->source) < 0) {
+        key = NULL;
+        status = error_memory(err, strlen(study->source), "a study's key");
+    }
+    if (!status)
+        status = store_open(&run->store, run->database, NULL, err);
+    if (!status)
+        status = store_submit(run->store, study, key, run->id, &existing, err);
+    study_destroy(&study);
+    free(key);
+    return status;
+}
+
+/* Works until the study has ended; with others at work on it, waits for them too. */
+static int work(struct run *run, struct error *err) {
+    struct progress progress = {.store = run->store, .study = run->id};
+    struct worker_options options = {
+        .source = {.database = run->database, .study = run->id, .lease_ms = LEASE_MS},
+        .threads = run->threads,
+        .drain = true,
+        .stop = &stop_requested,
+        .tick = progress_tick,
+        .context = &progress,
+        .quiet = true,
+    };
+    int status = workers_run(&options, err);
+    progress_end(&progress);
+    return status;
+}
+
+static int check_end(struct run *run, const struct study_status *now, struct error *err) {
+    struct failure *failures = NULL;
+    size_t count = 0;
+    if (strcmp(now->state, "cancelled") == 0)
+        return error_set(err, ERROR_STATE, "study %s was cancelled; rugo retry --db %s %s goes on",
+                         run->id, run->database, run->id);
+    if (!now->jobs_failed)
+        return 0;
+    int status = store_failures(run->store, run->id, &failures, &count, err);
+    if (!status)
+        status = error_set(err, ERROR_STATE,
+                           "study %s: jobs failed: %llu (%.200s); rugo retry --db %s %s queues "
+                           "them again",
+                           run->id, (unsigned long long)now->jobs_failed,
+                           count ? failures[0].reason : "?", run->database, run->id);
+    failures_free(failures, count);
+    return status;
+}
+
+static int present(struct run *run, struct error *err) {
+    cJSON *curves = NULL, *report = NULL;
+    struct curve_filter all = {.case_number = -1};
+    int status = aggregate_curves(run->store, run->id, &all, &curves, err);
+    if (!status)
+        status = aggregate_report(run->store, run->id, &report, err);
+    if (!status && run->folder)
+        status = output_write(curves, run->folder, err);
+    if (!status) {
+        summary_of_curves(curves, report, stdout);
+        status = output_flush(err);
+    }
+    cJSON_Delete(curves);
+    cJSON_Delete(report);
+    return status;
+}
+
+static int perform(struct run *run, struct error *err) {
+    struct study_status now = {0};
+    int status = submit(run, err);
+    if (!status)
+        status = store_status(run->store, run->id, &now, err);
+    if (!status && now.jobs_waiting + now.jobs_running > 0) {
+        study_status_clear(&now);
+        status = work(run, err);
+        if (!status)
+            status = store_status(run->store, run->id, &now, err);
+    }
+    if (!status)
+        status = present(run, err);
+    if (!status)
+        status = check_end(run, &now, err);
+    study_status_clear(&now);
+    return status;
+}
+
+int command_run(int argc, char **argv) {
+    struct run run = {.database = "rugo.db", .threads = processors()};
+    run.sets = array_create((size_t)argc + 1, sizeof *run.sets);
+    struct option_row rows[] = {{"db", OPTION_TEXT, &run.database},
+                                {"workers", OPTION_COUNT, &run.threads},
+                                {"set", OPTION_LIST, run.sets},
+                                {"out", OPTION_TEXT, &run.folder},
+                                {0}};
+    if (!run.sets || !options_parse(argc, argv, rows, 1, 1, &run.file)) {
+        free(run.sets);
+        return EXIT_USAGE;
+    }
+    struct error err = {0};
+    signals_catch();
+    int status = perform(&run, &err);
+    int result = !status            ? EXIT_DONE
+                 : run.faults.count ? command_fail_faults(run.file, &run.faults)
+                                    : command_fail(argv[0], &err);
+    store_close(&run.store);
+    fault_list_clear(&run.faults);
+    free(run.sets);
+    return result;
+}

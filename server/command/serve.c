@@ -1,0 +1,187 @@
+/* `rugo serve`: the HTTP service, with workers of its own if wanted. */
+#include "server/command/command.h"
+#include "server/command/options.h"
+#include "server/http/http.h"
+#include "worker/log.h"
+#include "worker/worker.h"
+#include <arpa/inet.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <time.h>
+
+struct serve {
+    const char *database, *listen, *token_file, **hosts;
+    unsigned workers, lease_s, connections, per_address, deadline_s;
+    char address[INET6_ADDRSTRLEN];
+    uint16_t port;
+    struct service service;
+    struct http *http;
+};
+
+/* "127.0.0.1:8080" or "[::1]:8080". */
+static int read_listen(struct serve *serve, struct error *err) {
+    const char *text = serve->listen, *colon = strrchr(text, ':');
+    char *end = NULL;
+    unsigned long port = colon ? strtoul(colon + 1, &end, 10) : 65536;
+    size_t length = colon ? (size_t)(colon - text) : 0;
+    bool brackets = length > 2 && text[0] == '[' && text[length - 1] == ']';
+    size_t width = length - 2 * brackets;
+    if (!colon || end == colon + 1 || *end || port > 65535 || width == 0 ||
+        width >= sizeof serve->address)
+        return error_set(err, ERROR_INPUT,
+                         "--listen %.60s is not ADDRESS:PORT, e.g. 127.0.0.1:8080 or [::1]:8080",
+                         text);
+    memcpy(serve->address, text + brackets, width);
+    serve->address[width] = 0;
+    serve->port = (uint16_t)port;
+    return 0;
+}
+
+static bool is_loopback(const char *address) {
+    return strncmp(address, "127.", 4) == 0 || strcmp(address, "::1") == 0;
+}
+
+static int read_tokens(struct serve *serve, struct error *err) {
+    if (serve->token_file)
+        return tokens_read(&serve->service.tokens, serve->token_file, err);
+    if (is_loopback(serve->address))
+        return 0;
+    return error_set(
+        err, ERROR_INPUT,
+        "--listen %s is not a loopback address: beyond this machine tokens are needed, "
+        "see --token-file",
+        serve->listen);
+}
+
+/* --- workers of its own --- */
+
+struct crew {
+    struct serve *serve;
+    pthread_t thread;
+    bool started;
+    char url[96], token[TOKEN_SIZE];
+};
+
+static void *crew_thread(void *context) {
+    struct crew *crew = context;
+    struct error err = {0};
+    struct worker_options options = {
+        .source = {.url = crew->url, .token = crew->serve->service.tokens ? crew->token : NULL},
+        .threads = crew->serve->workers,
+        .stop = &stop_requested,
+    };
+    int status = workers_run(&options, &err);
+    if (status && status != ERROR_STOPPED)
+        log_line(LEVEL_ERROR, NULL, "workers: %s", err.text);
+    return NULL;
+}
+
+static void print_url(const struct serve *serve, char *url, size_t size) {
+    bool v6 = strchr(serve->address, ':') != NULL;
+    snprintf(url, size, "http://%s%s%s:%u", v6 ? "[" : "", serve->address, v6 ? "]" : "",
+             http_port(serve->http));
+}
+
+static int crew_start(struct crew *crew, struct error *err) {
+    struct serve *serve = crew->serve;
+    if (!serve->workers)
+        return 0;
+    print_url(serve, crew->url, sizeof crew->url);
+    if (pthread_create(&crew->thread, NULL, crew_thread, crew))
+        return error_set(err, ERROR_SYSTEM, "cannot start the workers");
+    crew->started = true;
+    return 0;
+}
+
+/* A token of this run alone, for the workers in this process. */
+static int crew_token(struct crew *crew, struct error *err) {
+    struct tokens *tokens = crew->serve->service.tokens;
+    unsigned char bytes[(TOKEN_SIZE - 1) / 2];
+    if (!tokens || !crew->serve->workers)
+        return 0;
+    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
+        return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
+    for (size_t i = 0; i < sizeof bytes; i++)
+        snprintf(crew->token + 2 * i, 3, "%02x", bytes[i]);
+    return tokens_add(tokens, ROLE_WORK, crew->token, err);
+}
+
+/* --- the service --- */
+
+static void wait_for_end(void) {
+    struct timespec pause = {0, 100000000};
+    while (!stop_requested)
+        nanosleep(&pause, NULL); /* a signal ends it early */
+}
+
+static void announce(const struct serve *serve) {
+    char url[96];
+    print_url(serve, url, sizeof url);
+    printf("listening on %s\n", url);
+    fflush(stdout);
+    log_line(LEVEL_INFO, NULL, "listening on %s, database %s", url, serve->database);
+}
+
+static int serve_run(struct serve *serve, struct error *err) {
+    struct crew crew = {.serve = serve};
+    int status = read_listen(serve, err);
+    if (!status)
+        status = read_tokens(serve, err);
+    if (!status)
+        status = crew_token(&crew, err);
+    if (!status)
+        status =
+            service_open(&serve->service, serve->database, 1000 * (int64_t)serve->lease_s, err);
+    struct http_options options = {.address = serve->address,
+                                   .port = serve->port,
+                                   .connections = serve->connections,
+                                   .per_address = serve->per_address,
+                                   .deadline_s = serve->deadline_s,
+                                   .hosts = serve->hosts};
+    if (!status)
+        status = http_start(&serve->http, &serve->service, &options, err);
+    if (!status) {
+        announce(serve);
+        status = crew_start(&crew, err);
+    }
+    if (!status)
+        wait_for_end();
+    atomic_store(&serve->service.stopping, true);
+    if (crew.started)
+        pthread_join(crew.thread, NULL); /* hands its jobs back through the server */
+    http_stop(&serve->http);
+    service_close(&serve->service);
+    if (!status)
+        log_line(LEVEL_INFO, NULL, "ended");
+    return status;
+}
+
+int command_serve(int argc, char **argv) {
+    struct serve serve = {.database = "rugo.db",
+                          .listen = "127.0.0.1:8080",
+                          .lease_s = 60,
+                          .connections = 256,
+                          .deadline_s = 30};
+    serve.hosts = array_create((size_t)argc + 1, sizeof *serve.hosts);
+    struct option_row rows[] = {{"db", OPTION_TEXT, &serve.database},
+                                {"listen", OPTION_TEXT, &serve.listen},
+                                {"token-file", OPTION_TEXT, &serve.token_file},
+                                {"workers", OPTION_COUNT, &serve.workers},
+                                {"lease", OPTION_COUNT, &serve.lease_s},
+                                {"connections", OPTION_COUNT, &serve.connections},
+                                {"per-address", OPTION_COUNT, &serve.per_address},
+                                {"deadline", OPTION_COUNT, &serve.deadline_s},
+                                {"allow-host", OPTION_LIST, serve.hosts},
+                                {0}};
+    if (!serve.hosts || !options_parse(argc, argv, rows, 0, 0, NULL)) {
+        free(serve.hosts);
+        return EXIT_USAGE;
+    }
+    struct error err = {0};
+    signals_catch();
+    int status = serve_run(&serve, &err);
+    free(serve.hosts);
+    return status ? command_fail(argv[0], &err) : EXIT_DONE;
+}

@@ -1,0 +1,169 @@
+/* Answers of the routes: documents, texts, problems. */
+#include "server/http/http.h"
+#include "worker/log.h"
+#include <stdlib.h>
+#include <string.h>
+
+void answer_header(struct exchange *exchange, const char *name, const char *value) {
+    if (exchange->response)
+        MHD_add_response_header(exchange->response, name, value);
+}
+
+static void finish(struct exchange *exchange, unsigned status, const char *type,
+                   struct MHD_Response *response) {
+    exchange->status = status;
+    exchange->response = response;
+    if (type)
+        answer_header(exchange, "Content-Type", type);
+    answer_header(exchange, "X-Content-Type-Options", "nosniff");
+    answer_header(exchange, "Referrer-Policy", "no-referrer");
+    answer_header(
+        exchange, "Content-Security-Policy",
+        "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+        "img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+}
+
+void answer_text(struct exchange *exchange, unsigned status, const char *type, char *text) {
+    if (!text) {
+        exchange->status = 500; /* no response: the connection is closed */
+        return;
+    }
+    finish(exchange, status, type,
+           MHD_create_response_from_buffer(strlen(text), text, MHD_RESPMEM_MUST_FREE));
+}
+
+/* Bytes of a well-formed UTF-8 sequence (RFC 3629); 0 if it is none. Reads no further than a NUL.
+ */
+static size_t character_length(const unsigned char *s) {
+    static const unsigned char LEAST_SECOND[5] = {[3] = 0xa0, [4] = 0x90};
+    size_t length = s[0] < 0x80 ? 1 : s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
+    for (size_t i = 1; i < length; i++)
+        if ((s[i] & 0xc0) != 0x80)
+            return 0;
+    bool overlong = (s[0] == 0xe0 || s[0] == 0xf0) && s[1] < LEAST_SECOND[length];
+    bool beyond = s[0] > 0xf4 || (s[0] == 0xf4 && s[1] > 0x8f) || (s[0] == 0xed && s[1] > 0x9f);
+    return overlong || beyond ? 0 : length;
+}
+
+/* What a peer sent is quoted in details as it came, or cut within a character; JSON is UTF-8. */
+static void mend_characters(char *text) {
+    for (size_t length; text && *text; text += length ? length : 1)
+        if ((length = character_length((unsigned char *)text)) == 0)
+            *text = '?';
+}
+
+static void answer_document(struct exchange *exchange, unsigned status, const char *type,
+                            cJSON *document) {
+    char *text = document ? json_print(document) : NULL;
+    cJSON_Delete(document);
+    mend_characters(text);
+    answer_text(exchange, status, type, text);
+}
+
+void answer_json(struct exchange *exchange, unsigned status, cJSON *document) {
+    answer_document(exchange, status, "application/json", document);
+}
+
+void answer_static(struct exchange *exchange, const char *type, const char *data, size_t size) {
+    finish(exchange, 200, type,
+           MHD_create_response_from_buffer(size, (void *)data, MHD_RESPMEM_PERSISTENT));
+}
+
+void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
+                   MHD_ContentReaderCallback read, void *context,
+                   MHD_ContentReaderFreeCallback free_context) {
+    enum { PART = 32768 };
+    if (size == MHD_SIZE_UNKNOWN && strcmp(exchange->method, "HEAD") == 0) {
+        free_context(context); /* the library would send an end of chunks */
+        answer_static(exchange, type, "", 0);
+        return;
+    }
+    finish(exchange, 200, type,
+           MHD_create_response_from_callback(size, PART, read, context, free_context));
+    if (!exchange->response)
+        free_context(context);
+}
+
+void answer_empty(struct exchange *exchange, unsigned status) {
+    finish(exchange, status, NULL,
+           MHD_create_response_from_buffer(0, NULL, MHD_RESPMEM_PERSISTENT));
+}
+
+static const char *problem_title(unsigned status) {
+    switch (status) {
+    case 400:
+        return "Malformed request";
+    case 401:
+        return "A token is needed";
+    case 403:
+        return "Not allowed";
+    case 404:
+        return "Not found";
+    case 405:
+        return "Method not allowed";
+    case 409:
+        return "Conflict";
+    case 413:
+        return "Body too large";
+    case 415:
+        return "Unsupported media type";
+    case 422:
+        return "Invalid content";
+    case 503:
+        return "Not available now";
+    default:
+        return "Server error";
+    }
+}
+
+static bool put_text(cJSON *object, const char *name, const char *text) {
+    return cJSON_AddStringToObject(object, name, text) != NULL;
+}
+
+static bool put_faults(cJSON *problem, const struct fault_list *faults) {
+    cJSON *errors = cJSON_AddArrayToObject(problem, "errors");
+    size_t kept = faults->count < FAULTS_KEPT ? faults->count : FAULTS_KEPT;
+    bool complete = errors != NULL;
+    for (size_t i = 0; complete && faults->faults && i < kept; i++) {
+        const struct fault *fault = &faults->faults[i];
+        cJSON *entry = cJSON_CreateObject();
+        complete = entry && cJSON_AddItemToArray(errors, entry) &&
+                   put_text(entry, "pointer", fault->pointer ? fault->pointer : "") &&
+                   put_text(entry, "detail", fault->detail ? fault->detail : "");
+    }
+    return complete;
+}
+
+void answer_problem(struct exchange *exchange, unsigned status, const char *detail,
+                    const struct fault_list *faults) {
+    cJSON *problem = cJSON_CreateObject();
+    bool complete = problem && put_text(problem, "type", "about:blank") &&
+                    put_text(problem, "title", problem_title(status)) &&
+                    cJSON_AddNumberToObject(problem, "status", status) &&
+                    put_text(problem, "detail", detail) &&
+                    (!faults || !faults->count || put_faults(problem, faults));
+    if (!complete) {
+        cJSON_Delete(problem);
+        problem = NULL;
+    }
+    answer_document(exchange, status, "application/problem+json", problem);
+    if (status == 401)
+        answer_header(exchange, "WWW-Authenticate", "Bearer");
+}
+
+void answer_error(struct exchange *exchange, const struct error *err) {
+    unsigned status = 500;
+    if (err->code == ERROR_INPUT)
+        status = 422;
+    else if (err->code == ERROR_ABSENT)
+        status = 404;
+    else if (err->code == ERROR_STATE)
+        status = 409;
+    else if (err->code == ERROR_SYSTEM || err->code == ERROR_MEMORY)
+        status = 503;
+    if (status >= 500) { /* the server's trouble: its keeper must see why */
+        struct log_about about = {.request = exchange->path, .status = (long)status};
+        log_line(LEVEL_ERROR, &about, "%s", err->text);
+    }
+    answer_problem(exchange, status, err->text, NULL);
+}

@@ -1,0 +1,140 @@
+#include "server/http/checker.h"
+#include "jobs/kind.h"
+#include "schema/json/json.h"
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CASES_KEPT = 4 };
+
+/* An empty merger of one case; never merged into, so that all threads may ask it. */
+struct case_merger {
+    char study[STUDY_ID_SIZE];
+    uint64_t case_number;
+    const struct job_kind *kind;
+    struct job_merger *merger; /* owned */
+    unsigned holders;          /* the checker that keeps it, and each thread that asks it */
+};
+
+struct checker {
+    pthread_mutex_t mutex;                /* guards the list and all counts of holders */
+    struct case_merger *kept[CASES_KEPT]; /* the one used last in front */
+};
+
+static void case_merger_destroy(struct case_merger **one) {
+    if (*one && (*one)->merger)
+        (*one)->kind->merger_destroy(&(*one)->merger);
+    free(*one);
+    *one = NULL;
+}
+
+static int case_merger_create(struct case_merger **out, const struct claimed_job *job,
+                              const struct job_kind *kind, struct error *err) {
+    struct case_merger *one = array_create(1, sizeof *one);
+    cJSON *parameters = NULL;
+    if (!one)
+        return error_memory(err, sizeof *one, "a merger");
+    snprintf(one->study, sizeof one->study, "%s", job->study);
+    one->case_number = job->case_number;
+    one->kind = kind;
+    one->holders = 1;
+    int status = json_parse(job->parameters, strlen(job->parameters), NULL, &parameters, err);
+    if (!status)
+        status = kind->merger_create(&one->merger, parameters, err);
+    cJSON_Delete(parameters);
+    if (status)
+        case_merger_destroy(&one);
+    else
+        *out = one;
+    return status;
+}
+
+static void let_go(struct checker *checker, struct case_merger *one) {
+    pthread_mutex_lock(&checker->mutex);
+    bool last = --one->holders == 0;
+    pthread_mutex_unlock(&checker->mutex);
+    if (last)
+        case_merger_destroy(&one);
+}
+
+/* Moves the case's merger to the front and holds it; NULL when it is not kept. */
+static struct case_merger *take(struct checker *checker, const struct claimed_job *job) {
+    struct case_merger *found = NULL;
+    pthread_mutex_lock(&checker->mutex);
+    for (size_t i = 0; i < CASES_KEPT && checker->kept[i] && !found; i++) {
+        struct case_merger *one = checker->kept[i];
+        if (one->case_number != job->case_number || strcmp(one->study, job->study) != 0)
+            continue;
+        memmove(checker->kept + 1, checker->kept, i * sizeof *checker->kept);
+        checker->kept[0] = found = one;
+        found->holders++;
+    }
+    pthread_mutex_unlock(&checker->mutex);
+    return found;
+}
+
+/* Two threads may keep the same case for a while: the older one drops out at the end. */
+static void keep(struct checker *checker, struct case_merger *one) {
+    pthread_mutex_lock(&checker->mutex);
+    struct case_merger *dropped = checker->kept[CASES_KEPT - 1];
+    memmove(checker->kept + 1, checker->kept, (CASES_KEPT - 1) * sizeof *checker->kept);
+    checker->kept[0] = one;
+    one->holders++;
+    pthread_mutex_unlock(&checker->mutex);
+    if (dropped)
+        let_go(checker, dropped);
+}
+
+static int check_names(const struct job_kind *kind, const struct wire_result *wire,
+                       struct error *err) {
+    size_t n = 0;
+    for (; kind->scalars[n]; n++)
+        if (n >= wire->result.scalar_count || strcmp(kind->scalars[n], wire->names[n]) != 0)
+            return error_set(err, ERROR_INPUT, "scalars: number %zu is not \"%s\"", n,
+                             kind->scalars[n]);
+    if (n != wire->result.scalar_count)
+        return error_set(err, ERROR_INPUT, "scalars: %zu names; allowed: %zu",
+                         wire->result.scalar_count, n);
+    return 0;
+}
+
+int checker_check(struct checker *checker, const struct claimed_job *job,
+                  const struct wire_result *wire, struct error *err) {
+    const struct job_kind *kind = kind_find(job->kind);
+    if (!kind)
+        return error_set(err, ERROR_SYSTEM, "this server does not know the kind %.40s", job->kind);
+    int status = check_names(kind, wire, err);
+    if (status)
+        return status;
+    struct case_merger *one = take(checker, job);
+    if (!one) {
+        status = case_merger_create(&one, job, kind, err);
+        if (status)
+            return status;
+        keep(checker, one);
+    }
+    status = kind->fits(one->merger, &wire->result, err);
+    let_go(checker, one);
+    return status;
+}
+
+int checker_create(struct checker **out, struct error *err) {
+    struct checker *checker = array_create(1, sizeof *checker);
+    if (!checker)
+        return error_memory(err, sizeof *checker, "a checker of results");
+    pthread_mutex_init(&checker->mutex, NULL);
+    *out = checker;
+    return 0;
+}
+
+void checker_destroy(struct checker **checker) {
+    struct checker *c = *checker;
+    if (!c)
+        return;
+    for (size_t i = 0; i < CASES_KEPT; i++)
+        case_merger_destroy(&c->kept[i]);
+    pthread_mutex_destroy(&c->mutex);
+    free(c);
+    *checker = NULL;
+}

@@ -1,0 +1,17 @@
+/* Checks results before they are stored: one that its kind cannot merge would be poison there.
+ *
+ * A merger of a case may take seconds to make (it sums a whole spectrum), and results of few cases
+ * come at a time: the mergers used last are kept. Safe from many threads. */
+#ifndef RUGO_SERVER_HTTP_CHECKER_H
+#define RUGO_SERVER_HTTP_CHECKER_H
+
+#include "worker/wire.h"
+
+struct checker;
+int checker_create(struct checker **out, struct error *err);
+void checker_destroy(struct checker **checker);
+/* ERROR_INPUT when the result is none of this job's case. */
+int checker_check(struct checker *checker, const struct claimed_job *job,
+                  const struct wire_result *wire, struct error *err);
+
+#endif

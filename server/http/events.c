@@ -1,0 +1,124 @@
+/* Server-sent events: a study's progress, until it ends. */
+#include "server/command/api.h"
+#include "server/http/route.h"
+#include "worker/clock.h"
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STREAMS_MOST = 64, LOOK_MS = 300, ALIVE_MS = 15000 };
+
+/* One stream; the library calls next_event on the connection's own thread, which may wait. */
+struct stream {
+    struct exchange *exchange; /* lives as long as the library calls next_event */
+    struct service *service;
+    int socket; /* the library's */
+    char id[SEGMENT_SIZE];
+    double revision; /* told last; -1 at first */
+    int64_t told_ms;
+    bool ended;
+    char *pending; /* owned: text not yet taken */
+    size_t sent;
+};
+
+/* Waits a little; true when the peer has left, which a stream that writes nothing would not notice.
+ */
+static bool peer_leaves(const struct stream *stream) {
+    struct pollfd peer = {.fd = stream->socket, .events = POLLRDHUP};
+    return poll(&peer, 1, LOOK_MS) > 0;
+}
+
+static bool has_ended(const cJSON *status) {
+    const char *state = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(status, "state"));
+    return !state || (strcmp(state, "queued") != 0 && strcmp(state, "running") != 0);
+}
+
+/* The text of the next event, NULL when there is nothing new. */
+static char *look(struct stream *stream) {
+    struct store *reader;
+    struct error err = {0};
+    cJSON *status = NULL;
+    char *text = NULL, *event = NULL;
+    int code = service_reader(stream->service, &reader, &err);
+    if (!code)
+        code = api_status(reader, stream->id, &status, &err);
+    service_give_back(stream->service, reader);
+    if (code) {
+        stream->ended = true;
+        return NULL;
+    }
+    double revision = cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(status, "revision"));
+    if (revision != stream->revision && (text = json_print(status))) {
+        if (asprintf(&event, "event: progress\ndata: %s\n\n", text) < 0)
+            event = NULL;
+        stream->revision = revision;
+        stream->ended = has_ended(status);
+    }
+    free(text);
+    cJSON_Delete(status);
+    return event;
+}
+
+static ssize_t next_event(void *context, uint64_t position, char *buffer, size_t room) {
+    struct stream *stream = context;
+    (void)position;
+    while (!stream->pending) {
+        exchange_renew(stream->exchange);
+        if (stream->ended || atomic_load(&stream->service->stopping))
+            return MHD_CONTENT_READER_END_OF_STREAM;
+        stream->pending = look(stream);
+        stream->sent = 0;
+        if (!stream->pending && clock_ms() - stream->told_ms > ALIVE_MS)
+            stream->pending = strdup(": alive\n\n");
+        if (!stream->pending && !stream->ended)
+            stream->ended = peer_leaves(stream);
+    }
+    exchange_renew(stream->exchange); /* who takes nothing for a whole deadline is cut */
+    size_t left = strlen(stream->pending) - stream->sent, part = left < room ? left : room;
+    memcpy(buffer, stream->pending + stream->sent, part);
+    stream->sent += part;
+    stream->told_ms = clock_ms();
+    if (part == left) {
+        free(stream->pending);
+        stream->pending = NULL;
+    }
+    return (ssize_t)part;
+}
+
+static void stream_free(void *context) {
+    struct stream *stream = context;
+    atomic_fetch_sub(&stream->service->streams, 1);
+    free(stream->pending);
+    free(stream);
+}
+
+void handle_events(struct exchange *exchange, const char *id) {
+    struct store *reader;
+    struct error err = {0};
+    struct study_status status = {0};
+    int code = service_reader(exchange->service, &reader, &err);
+    if (!code)
+        code = store_status(reader, id, &status, &err);
+    service_give_back(exchange->service, reader);
+    study_status_clear(&status);
+    struct stream *stream = code ? NULL : calloc(1, sizeof *stream);
+    if (!stream) {
+        if (!code)
+            error_memory(&err, sizeof *stream, "a stream");
+        answer_error(exchange, &err);
+        return;
+    }
+    stream->exchange = exchange;
+    stream->service = exchange->service;
+    stream->revision = -1;
+    stream->socket = exchange_socket(exchange);
+    snprintf(stream->id, sizeof stream->id, "%s", id);
+    if (atomic_fetch_add(&exchange->service->streams, 1) >= STREAMS_MOST) {
+        stream_free(stream);
+        answer_problem(exchange, 503, "too many streams of events are open", NULL);
+        return;
+    }
+    answer_stream(exchange, "text/event-stream", MHD_SIZE_UNKNOWN, next_event, stream, stream_free);
+    answer_header(exchange, "Cache-Control", "no-store");
+}

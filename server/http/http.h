@@ -1,0 +1,76 @@
+/* The HTTP side: connections with deadlines, bounded bodies, and one exchange at a time for the
+ * routes. */
+#ifndef RUGO_SERVER_HTTP_HTTP_H
+#define RUGO_SERVER_HTTP_HTTP_H
+
+#include "schema/json/json.h"
+#include "schema/study/fault.h"
+#include "server/http/service.h"
+#include <cjson/cJSON.h>
+#include <microhttpd.h>
+
+struct http_options {
+    const char *address;               /* numeric; owned by the caller, as are all strings */
+    uint16_t port;                     /* 0: a free one */
+    unsigned connections, per_address; /* most at a time; per_address 0: no limit */
+    unsigned deadline_s;               /* for one request */
+    const char *const *hosts;          /* names of this server beside localhost, NULL-terminated */
+};
+struct http;
+
+int http_start(struct http **out, struct service *service, const struct http_options *options,
+               struct error *err);
+uint16_t http_port(const struct http *http);
+/* Takes no more connections, lets running requests end (10 s at most), closes. */
+void http_stop(struct http **http);
+
+/* --- for the routes --- */
+
+/* A request and its answer. Routes fill the answer by the functions below, once. */
+struct exchange {
+    struct service *service;
+    struct http *http;
+    struct MHD_Connection *connection;
+    const char *method, *path;
+    char *body;                  /* NUL-terminated, NULL without one */
+    size_t body_size, body_room; /* room without the NUL */
+    int64_t start_ns;
+
+    unsigned status;               /* 0 until answered */
+    struct MHD_Response *response; /* owned until queued */
+};
+
+const char *exchange_query(const struct exchange *exchange, const char *name); /* NULL if absent */
+const char *exchange_header(const struct exchange *exchange, const char *name);
+
+int exchange_socket(const struct exchange *exchange);
+
+/* Takes the document. */
+void answer_json(struct exchange *exchange, unsigned status, cJSON *document);
+/* Takes text (malloc). */
+void answer_text(struct exchange *exchange, unsigned status, const char *type, char *text);
+/* Static data that outlives the server. */
+void answer_static(struct exchange *exchange, const char *type, const char *data, size_t size);
+void answer_empty(struct exchange *exchange, unsigned status);
+/* Adds a header to the answer. */
+void answer_header(struct exchange *exchange, const char *name, const char *value);
+/* RFC 9457. */
+void answer_problem(struct exchange *exchange, unsigned status, const char *detail,
+                    const struct fault_list *faults);
+/* The status that an error code stands for, and its text. */
+void answer_error(struct exchange *exchange, const struct error *err);
+/* Gives the peer the whole deadline again; for streams, each time that it takes a part. */
+void exchange_renew(struct exchange *exchange);
+/* An answer whose parts read gives as the peer takes them; size may be MHD_SIZE_UNKNOWN. Takes
+ * context, to be released by free_context. */
+void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
+                   MHD_ContentReaderCallback read, void *context,
+                   MHD_ContentReaderFreeCallback free_context);
+
+/* route.c: checks who asks for what and answers. Called once before the body comes (body_known
+ * false): may refuse; and once with it. */
+void route_refuse_early(struct exchange *exchange);
+void route_answer(struct exchange *exchange);
+bool http_host_allowed(const struct http *http, const char *host);
+
+#endif

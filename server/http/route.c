@@ -1,0 +1,218 @@
+/* Who may ask for what, and who answers. */
+#include "server/http/route.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static const struct route {
+    const char *method, *pattern; /* * stands for one segment */
+    unsigned roles;               /* any of these; ROLE_NONE: open to all */
+    route_handler *handler;
+    const char *queries[QUERY_NAMES_MOST]; /* below /v1, what a query may hold */
+} ROUTES[] = {
+    {"POST", "/v1/studies", ROLE_SUBMIT, handle_study_create, {NULL}},
+    {"GET", "/v1/studies", ROLE_READ, handle_study_list, {"limit", "after"}},
+    {"GET", "/v1/studies/*", ROLE_READ, handle_study, {NULL}},
+    {"DELETE", "/v1/studies/*", ROLE_SUBMIT, handle_study_cancel, {NULL}},
+    {"POST", "/v1/studies/*/retry", ROLE_SUBMIT, handle_study_retry, {NULL}},
+    {"GET", "/v1/studies/*/curves", ROLE_READ, handle_curves, {"case", "quantity"}},
+    {"GET", "/v1/studies/*/report", ROLE_READ, handle_report, {NULL}},
+    {"GET", "/v1/studies/*/events", ROLE_READ, handle_events, {NULL}},
+    {"POST", "/v1/jobs/claim", ROLE_WORK, handle_claim, {NULL}},
+    {"POST", "/v1/jobs/*/heartbeat", ROLE_WORK, handle_heartbeat, {NULL}},
+    {"POST", "/v1/jobs/*/complete", ROLE_WORK, handle_complete, {NULL}},
+    {"POST", "/v1/jobs/*/fail", ROLE_WORK, handle_fail, {NULL}},
+    {"POST", "/v1/jobs/*/release", ROLE_WORK, handle_release, {NULL}},
+    {"GET", "/v1/snapshot", ROLE_READ, handle_snapshot, {NULL}},
+    {"GET", "/v1/openapi.yaml", ROLE_NONE, handle_openapi, {NULL}},
+    {"GET", "/v1/study.schema.json", ROLE_NONE, handle_schema, {NULL}},
+    {"GET", "/metrics", ROLE_READ, handle_metrics, {NULL}},
+    {"GET", "/healthz", ROLE_NONE, handle_health, {NULL}},
+    {"GET", "/", ROLE_NONE, handle_page, {NULL}},
+    {"GET", "/app.js", ROLE_NONE, handle_script, {NULL}},
+    {"GET", "/style.css", ROLE_NONE, handle_style, {NULL}},
+};
+enum { ROUTE_COUNT = sizeof ROUTES / sizeof *ROUTES };
+
+/* Whether a path fits a pattern; the starred segment goes to id. */
+static bool fits(const char *pattern, const char *path, char id[SEGMENT_SIZE]) {
+    for (; *pattern; pattern++) {
+        if (*pattern != '*') {
+            if (*path++ != *pattern)
+                return false;
+            continue;
+        }
+        size_t length = strcspn(path, "/");
+        if (length == 0 || length >= SEGMENT_SIZE)
+            return false;
+        memcpy(id, path, length);
+        id[length] = 0;
+        path += length;
+    }
+    return *path == 0;
+}
+
+/* HEAD is GET whose body the library leaves out. */
+static bool same_method(const char *asked, const char *method) {
+    return strcmp(asked, method) == 0 || (strcmp(asked, "HEAD") == 0 && strcmp(method, "GET") == 0);
+}
+
+static const struct route *find_route(const struct exchange *exchange, char id[SEGMENT_SIZE]) {
+    for (size_t r = 0; r < ROUTE_COUNT; r++)
+        if (same_method(exchange->method, ROUTES[r].method) &&
+            fits(ROUTES[r].pattern, exchange->path, id))
+            return &ROUTES[r];
+    return NULL;
+}
+
+/* The methods of a path: "" for a path that there is not. */
+static void allowed_methods(const char *path, char *text, size_t size) {
+    char id[SEGMENT_SIZE];
+    size_t used = 0;
+    *text = 0;
+    for (size_t r = 0; r < ROUTE_COUNT; r++) {
+        if (!fits(ROUTES[r].pattern, path, id))
+            continue;
+        bool get = strcmp(ROUTES[r].method, "GET") == 0;
+        used += (size_t)snprintf(text + used, size - used, "%s%s%s", used ? ", " : "",
+                                 ROUTES[r].method, get ? ", HEAD" : "");
+    }
+}
+
+static void refuse_route(struct exchange *exchange) {
+    char methods[96], detail[200];
+    allowed_methods(exchange->path, methods, sizeof methods);
+    if (!*methods) {
+        snprintf(detail, sizeof detail, "there is nothing at %.120s", exchange->path);
+        answer_problem(exchange, 404, detail, NULL);
+        return;
+    }
+    snprintf(detail, sizeof detail, "%.16s is not allowed here; allowed: %s", exchange->method,
+             methods);
+    answer_problem(exchange, 405, detail, NULL);
+    answer_header(exchange, "Allow", methods);
+}
+
+/* --- what the headers must be --- */
+
+struct header_counts {
+    unsigned lengths, hosts, encodings, keys;
+};
+
+static enum MHD_Result count_header(void *context, enum MHD_ValueKind kind, const char *name,
+                                    const char *value) {
+    struct header_counts *counts = context;
+    (void)kind;
+    (void)value;
+    counts->lengths += strcasecmp(name, "Content-Length") == 0;
+    counts->encodings += strcasecmp(name, "Transfer-Encoding") == 0;
+    counts->keys += strcasecmp(name, "Idempotency-Key") == 0;
+    counts->hosts += strcasecmp(name, "Host") == 0;
+    return MHD_YES;
+}
+
+/* Two lengths, or a length beside an encoding, let two readers see two requests in one (RFC
+ * 9112, 6.3). */
+static bool check_headers(struct exchange *exchange) {
+    struct header_counts counts = {0};
+    MHD_get_connection_values(exchange->connection, MHD_HEADER_KIND, count_header, &counts);
+    const char *encoding = exchange_header(exchange, "Transfer-Encoding"), *detail = NULL;
+    if (counts.lengths > 1)
+        detail = "more than one Content-Length";
+    else if (counts.lengths && counts.encodings)
+        detail = "Content-Length beside Transfer-Encoding";
+    else if (counts.hosts > 1)
+        detail = "more than one Host";
+    else if (counts.keys > 1)
+        detail = "more than one Idempotency-Key";
+    else if (counts.encodings > 1 ||
+             (encoding && strcasecmp(encoding, "chunked") != 0)) /* the library knows no other */
+        detail = "a Transfer-Encoding other than chunked";
+    if (detail)
+        answer_problem(exchange, 400, detail, NULL);
+    return !detail;
+}
+
+/* A page of another site, or a name that somebody pointed at this address, may not use this
+ * service. */
+static bool check_origin(struct exchange *exchange) {
+    const char *host = exchange_header(exchange, "Host");
+    const char *origin = exchange_header(exchange, "Origin");
+    if (host && !http_host_allowed(exchange->http, host)) {
+        answer_problem(exchange, 403, "the Host is no name of this server; see serve --allow-host",
+                       NULL);
+        return false;
+    }
+    const char *scheme_end = origin ? strstr(origin, "://") : NULL;
+    if (origin && (!host || !scheme_end || strcmp(scheme_end + 3, host) != 0)) {
+        answer_problem(exchange, 403, "requests of another origin are not answered", NULL);
+        return false;
+    }
+    return true;
+}
+
+static bool check_token(struct exchange *exchange, unsigned wanted) {
+    if (wanted == ROLE_NONE || !exchange->service->tokens)
+        return true;
+    const char *authorization = exchange_header(exchange, "Authorization");
+    bool bearer = authorization && strncasecmp(authorization, "Bearer ", 7) == 0;
+    unsigned roles = tokens_roles(exchange->service->tokens, bearer ? authorization + 7 : NULL);
+    if (roles & wanted)
+        return true;
+    if (roles)
+        answer_problem(exchange, 403, "the token's role does not allow this", NULL);
+    else
+        answer_problem(exchange, 401, bearer ? "the token is unknown" : "no Bearer token", NULL);
+    return false;
+}
+
+static bool has_body(const struct exchange *exchange) {
+    const char *length = exchange_header(exchange, "Content-Length");
+    return (length && strcmp(length, "0") != 0) || exchange_header(exchange, "Transfer-Encoding");
+}
+
+static bool check_media(struct exchange *exchange) {
+    const char *type = exchange_header(exchange, "Content-Type");
+    size_t length = type ? strcspn(type, "; \t") : 0;
+    if (!has_body(exchange) || (length == 16 && strncasecmp(type, "application/json", 16) == 0))
+        return true;
+    answer_problem(exchange, 415, "a body must be application/json", NULL);
+    return false;
+}
+
+void route_refuse_early(struct exchange *exchange) {
+    char id[SEGMENT_SIZE];
+    if (!check_headers(exchange) || !check_origin(exchange))
+        return;
+    const struct route *route = find_route(exchange, id);
+    if (!route)
+        refuse_route(exchange);
+    else if (check_token(exchange, route->roles) && check_media(exchange) &&
+             strncmp(exchange->path, "/v1/", 4) == 0)
+        query_check(exchange, route->queries);
+}
+
+void route_answer(struct exchange *exchange) {
+    char id[SEGMENT_SIZE] = "";
+    find_route(exchange, id)->handler(exchange, id);
+}
+
+bool check_body(struct exchange *exchange) {
+    if (!exchange->body)
+        answer_problem(exchange, 400, "a JSON body is needed", NULL);
+    return exchange->body != NULL;
+}
+
+cJSON *body_json(struct exchange *exchange) {
+    struct error err = {0};
+    cJSON *document = NULL;
+    if (!check_body(exchange))
+        return NULL;
+    if (json_parse(exchange->body, exchange->body_size, NULL, &document, &err)) {
+        unsigned status = err.code == ERROR_INPUT ? 400 : 503;
+        answer_problem(exchange, status, err.text, NULL);
+        return NULL;
+    }
+    return document;
+}

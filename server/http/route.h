@@ -1,0 +1,29 @@
+/* Handlers of the routes; route.c has the table. id is the segment that stands for * in the
+ * pattern. */
+#ifndef RUGO_SERVER_HTTP_ROUTE_H
+#define RUGO_SERVER_HTTP_ROUTE_H
+
+#include "server/http/http.h"
+
+enum { SEGMENT_SIZE = 64, QUERY_NAMES_MOST = 2 };
+typedef void route_handler(struct exchange *exchange, const char *id);
+
+route_handler handle_study_create, handle_study_list, handle_study, handle_study_cancel,
+    handle_study_retry, handle_curves, handle_report, handle_events;
+route_handler handle_claim, handle_heartbeat, handle_complete, handle_fail, handle_release;
+route_handler handle_health, handle_metrics, handle_snapshot, handle_openapi, handle_schema,
+    handle_page, handle_script, handle_style;
+
+/* Whether there is a body; false after a 400. */
+bool check_body(struct exchange *exchange);
+/* The body as JSON; answers 400 itself and gives NULL where it is none. */
+cJSON *body_json(struct exchange *exchange);
+
+/* Whether the query holds nothing but these names (the rest NULL), each once and with a value;
+ * false after a 422. */
+bool query_check(struct exchange *exchange, const char *const names[QUERY_NAMES_MOST]);
+/* A whole number of the query: left alone where it is not there. False after a 422. */
+bool query_number(struct exchange *exchange, const char *name, int64_t least, int64_t most,
+                  int64_t *value);
+
+#endif

@@ -1,0 +1,209 @@
+/* Curves and reports over HTTP. A study of ten thousand cases has gigabytes of them: as JSON they
+ * are read and sent case by case, and end early when the server does. */
+#include "server/http/accept.h"
+#include "server/http/route.h"
+#include "worker/aggregate.h"
+#include "worker/log.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CSV_CASES_MOST = 64 }; /* a table is made as a whole: its columns depend on all cases */
+
+/* An answer on its way. */
+struct stream {
+    struct exchange *exchange; /* lives as long as the library calls next_part */
+    struct aggregate study;    /* owned */
+    bool report;               /* rather than curves */
+    char *quantity;            /* owned; NULL: all */
+    uint64_t next, end;        /* cases */
+    char *text;                /* owned: not yet taken; NULL where nothing waits */
+    size_t sent;
+};
+
+static void stream_free(void *context) {
+    struct stream *stream = context;
+    aggregate_end(&stream->study);
+    free(stream->quantity);
+    free(stream->text);
+    free(stream);
+}
+
+/* {..., "cases":[ of the document, without its end. */
+static char *print_head(const struct stream *stream) {
+    cJSON *cases, *document = aggregate_head(&stream->study, stream->report, &cases);
+    char *text = document ? json_print(document) : NULL;
+    cJSON_Delete(document);
+    if (text)
+        text[strlen(text) - strlen("]}")] = 0;
+    return text;
+}
+
+/* The next case behind what waits, with the end of the document behind the last one. */
+static int append_case(struct stream *stream, const cJSON *item, struct error *err) {
+    bool closes = stream->next + 1 == stream->end;
+    char *all = NULL, *text = json_print(item);
+    if (!text ||
+        asprintf(&all, "%s%s%s", stream->text ? stream->text : ",", text, closes ? "]}" : "") < 0)
+        all = NULL;
+    free(text);
+    free(stream->text);
+    stream->text = all;
+    stream->sent = 0;
+    stream->next++;
+    return all ? 0 : error_memory(err, 0, "an answer");
+}
+
+static int read_case(struct stream *stream, struct error *err) {
+    struct service *service = stream->exchange->service;
+    struct store *reader;
+    cJSON *item = NULL;
+    int status = service_reader(service, &reader, err);
+    if (!status)
+        status = stream->report
+                     ? aggregate_report_case(reader, &stream->study, stream->next, &item, err)
+                     : aggregate_curves_case(reader, &stream->study, stream->next, stream->quantity,
+                                             &item, err);
+    service_give_back(service, reader);
+    if (!status)
+        status = append_case(stream, item, err);
+    cJSON_Delete(item);
+    return status;
+}
+
+static ssize_t next_part(void *context, uint64_t position, char *buffer, size_t room) {
+    struct stream *stream = context;
+    struct error err = {0};
+    (void)position;
+    exchange_renew(stream->exchange); /* who takes nothing for a whole deadline is cut */
+    if (!stream->text && stream->next == stream->end)
+        return MHD_CONTENT_READER_END_OF_STREAM;
+    if (!stream->text && atomic_load(&stream->exchange->service->stopping))
+        return MHD_CONTENT_READER_END_WITH_ERROR;
+    if (!stream->text && read_case(stream, &err)) {
+        struct log_about about = {.study = stream->study.about.id};
+        log_line(LEVEL_ERROR, &about, "%s: %s", stream->report ? "report" : "curves", err.text);
+        return MHD_CONTENT_READER_END_WITH_ERROR;
+    }
+    size_t left = strlen(stream->text + stream->sent), part = left < room ? left : room;
+    memcpy(buffer, stream->text + stream->sent, part);
+    stream->sent += part;
+    if (part == left) {
+        free(stream->text);
+        stream->text = NULL;
+    }
+    return (ssize_t)part;
+}
+
+/* The first case is read before the answer begins: what is wrong is mostly wrong with it. */
+static int open_stream(struct stream *stream, const char *id, const struct curve_filter *filter,
+                       struct error *err) {
+    struct service *service = stream->exchange->service;
+    struct store *reader;
+    int status = service_reader(service, &reader, err);
+    if (!status)
+        status = aggregate_begin(reader, id, &stream->study, err);
+    service_give_back(service, reader);
+    if (status)
+        return status;
+    bool one = filter->case_number >= 0;
+    stream->next = one ? (uint64_t)filter->case_number : 0;
+    stream->end = one ? stream->next + 1 : stream->study.about.cases;
+    stream->quantity = filter->quantity ? strdup(filter->quantity) : NULL;
+    stream->text = print_head(stream);
+    if (!stream->text || (filter->quantity && !stream->quantity))
+        return error_memory(err, 0, "an answer");
+    return read_case(stream, err);
+}
+
+static int send_json(struct exchange *exchange, const char *id, const struct curve_filter *filter,
+                     bool report, struct error *err) {
+    struct stream *stream = array_create(1, sizeof *stream);
+    if (!stream)
+        return error_memory(err, sizeof *stream, "an answer");
+    stream->exchange = exchange;
+    stream->report = report;
+    int status = open_stream(stream, id, filter, err);
+    if (status)
+        stream_free(stream);
+    else
+        answer_stream(exchange, "application/json", MHD_SIZE_UNKNOWN, next_part, stream,
+                      stream_free);
+    return status;
+}
+
+static int send_csv(struct exchange *exchange, const char *id, const struct curve_filter *filter,
+                    uint64_t cases, struct error *err) {
+    struct store *reader;
+    cJSON *document = NULL;
+    char *csv = NULL;
+    if (filter->case_number < 0 && cases > CSV_CASES_MOST)
+        return error_set(err, ERROR_INPUT,
+                         "%llu cases are too many for one table; ask for each with ?case=",
+                         (unsigned long long)cases);
+    int status = service_reader(exchange->service, &reader, err);
+    if (!status)
+        status = aggregate_curves(reader, id, filter, &document, err);
+    service_give_back(exchange->service, reader);
+    if (!status)
+        status = aggregate_csv(document, &csv, err);
+    cJSON_Delete(document);
+    if (!status)
+        answer_text(exchange, 200, "text/csv; charset=utf-8", csv);
+    return status;
+}
+
+static bool wants_csv(const struct exchange *exchange) {
+    const char *accept = exchange_header(exchange, "Accept");
+    return accept_quality(accept, "text/csv") > accept_quality(accept, "application/json");
+}
+
+static bool matches(const struct exchange *exchange, const char *etag) {
+    const char *known = exchange_header(exchange, "If-None-Match");
+    return known && (strcmp(known, "*") == 0 || strstr(known, etag));
+}
+
+static int find_study(struct exchange *exchange, const char *id, struct study_status *out,
+                      struct error *err) {
+    struct store *reader;
+    int status = service_reader(exchange->service, &reader, err);
+    if (!status)
+        status = store_status(reader, id, out, err);
+    service_give_back(exchange->service, reader);
+    return status;
+}
+
+void handle_curves(struct exchange *exchange, const char *id) {
+    struct error err = {0};
+    struct study_status study = {0};
+    struct curve_filter filter = {.case_number = -1,
+                                  .quantity = exchange_query(exchange, "quantity")};
+    char etag[80] = "";
+    if (!query_number(exchange, "case", 0, INT64_MAX - 1, &filter.case_number))
+        return;
+    bool csv = wants_csv(exchange);
+    int status = find_study(exchange, id, &study, &err);
+    /* Every change of a study's results raises its revision: that, and the form, is the answer's
+     * identity. */
+    snprintf(etag, sizeof etag, "\"%s-%llu-%s\"", id, (unsigned long long)study.revision,
+             csv ? "csv" : "json");
+    if (!status && matches(exchange, etag))
+        answer_empty(exchange, 304);
+    else if (!status)
+        status = csv ? send_csv(exchange, id, &filter, study.cases, &err)
+                     : send_json(exchange, id, &filter, false, &err);
+    study_status_clear(&study);
+    if (status) {
+        answer_error(exchange, &err);
+        return;
+    }
+    answer_header(exchange, "ETag", etag);
+    answer_header(exchange, "Vary", "Accept");
+}
+
+void handle_report(struct exchange *exchange, const char *id) {
+    struct error err = {0};
+    struct curve_filter all = {.case_number = -1};
+    if (send_json(exchange, id, &all, true, &err))
+        answer_error(exchange, &err);
+}

@@ -1,0 +1,185 @@
+/* The queue over HTTP; worker/wire.h says what crosses. */
+#include "server/http/checker.h"
+#include "server/http/route.h"
+#include "worker/wire.h"
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A message that does not read: 422 with what is wrong. */
+static void refuse_message(struct exchange *exchange, const struct error *err) {
+    struct fault_list faults = {0};
+    fault_add(&faults, "", "%s", err->text);
+    answer_problem(exchange, err->code == ERROR_MEMORY ? 503 : 422, err->text, &faults);
+    fault_list_clear(&faults);
+}
+
+static bool job_number(struct exchange *exchange, const char *id, int64_t *job) {
+    char *end;
+    errno = 0;
+    *job = strtoll(id, &end, 10);
+    bool good = !errno && end != id && !*end && *job > 0;
+    if (!good)
+        answer_problem(exchange, 404, "there is no such job", NULL);
+    return good;
+}
+
+/* --- claim --- */
+
+struct claiming {
+    struct wire_claim wire;
+    struct claimed_job jobs[WIRE_JOBS_MOST];
+    size_t count;
+};
+
+static int claim_change(struct store *store, void *context, struct error *err) {
+    struct claiming *claiming = context;
+    return store_claim(store, &claiming->wire.claim, claiming->jobs, &claiming->count, err);
+}
+
+void handle_claim(struct exchange *exchange, const char *id) {
+    (void)id;
+    struct claiming claiming = {.count = 0};
+    struct error err = {0};
+    cJSON *body = body_json(exchange);
+    if (!body)
+        return;
+    if (wire_claim_read(body, &claiming.wire, &err))
+        refuse_message(exchange, &err);
+    else if (writer_do(exchange->service->writer, claim_change, &claiming, &err))
+        answer_error(exchange, &err);
+    else if (claiming.count == 0)
+        answer_empty(exchange, 204);
+    else
+        answer_json(exchange, 200, wire_jobs(claiming.jobs, claiming.count));
+    for (size_t j = 0; j < claiming.count; j++)
+        claimed_job_clear(&claiming.jobs[j]);
+    cJSON_Delete(body);
+}
+
+/* --- heartbeat, fail, release --- */
+
+struct reporting {
+    struct wire_report report;
+    int64_t job;
+};
+
+static int heartbeat_change(struct store *store, void *context, struct error *err) {
+    struct reporting *r = context;
+    return store_heartbeat(store, r->job, r->report.token, r->report.done, err);
+}
+
+static int fail_change(struct store *store, void *context, struct error *err) {
+    struct reporting *r = context;
+    const char *reason = *r->report.reason ? r->report.reason : "no reason was given";
+    return store_fail(store, r->job, r->report.token, reason, r->report.permanent, err);
+}
+
+static int release_change(struct store *store, void *context, struct error *err) {
+    struct reporting *r = context;
+    return store_release(store, r->job, r->report.token, err);
+}
+
+static void handle_report_of(struct exchange *exchange, const char *id, store_change *change) {
+    struct reporting reporting;
+    struct error err = {0};
+    if (!job_number(exchange, id, &reporting.job))
+        return;
+    cJSON *body = body_json(exchange);
+    if (!body)
+        return;
+    if (wire_report_read(body, &reporting.report, &err))
+        refuse_message(exchange, &err);
+    else if (writer_do(exchange->service->writer, change, &reporting, &err))
+        answer_error(exchange, &err);
+    else
+        answer_json(exchange, 200, cJSON_CreateObject());
+    cJSON_Delete(body);
+}
+
+void handle_heartbeat(struct exchange *exchange, const char *id) {
+    handle_report_of(exchange, id, heartbeat_change);
+}
+
+void handle_fail(struct exchange *exchange, const char *id) {
+    handle_report_of(exchange, id, fail_change);
+}
+
+void handle_release(struct exchange *exchange, const char *id) {
+    handle_report_of(exchange, id, release_change);
+}
+
+/* --- complete --- */
+
+struct completing {
+    struct block_result block;
+    const char *token;
+    int64_t job;
+    bool first_time, case_done;
+};
+
+static int complete_change(struct store *store, void *context, struct error *err) {
+    struct completing *c = context;
+    return store_complete(store, c->job, c->token, &c->block, &c->first_time, &c->case_done, err);
+}
+
+static int check_against_job(struct exchange *exchange, int64_t id, const struct wire_result *wire,
+                             struct error *err) {
+    struct store *reader;
+    struct claimed_job job = {0};
+    int status = service_reader(exchange->service, &reader, err);
+    if (!status)
+        status = store_job(reader, id, wire->token, &job, err);
+    service_give_back(exchange->service, reader);
+    if (!status)
+        status = checker_check(exchange->service->checker, &job, wire, err);
+    claimed_job_clear(&job);
+    return status;
+}
+
+static void complete(struct exchange *exchange, int64_t job, const struct wire_result *wire) {
+    struct completing completing = {.block = wire_block(wire), .token = wire->token, .job = job};
+    struct block_text text = {0};
+    struct error err = {0};
+    int status = check_against_job(exchange, job, wire, &err);
+    if (!status)
+        status = block_text_create(&text, &completing.block, &err);
+    completing.block.text = &text;
+    if (!status)
+        status = writer_do(exchange->service->writer, complete_change, &completing, &err);
+    block_text_clear(&text);
+    if (status == ERROR_INPUT) {
+        refuse_message(exchange, &err);
+        return;
+    }
+    if (status) {
+        answer_error(exchange, &err);
+        return;
+    }
+    if (completing.case_done && completing.first_time)
+        publisher_wake(exchange->service->publisher);
+    cJSON *document = cJSON_CreateObject();
+    if (document && !cJSON_AddBoolToObject(document, "case_done", completing.case_done)) {
+        cJSON_Delete(document);
+        document = NULL;
+    }
+    answer_json(exchange, 200, document);
+}
+
+void handle_complete(struct exchange *exchange, const char *id) {
+    struct wire_result wire = {.names = NULL};
+    struct error err = {0};
+    int64_t job;
+    if (!job_number(exchange, id, &job))
+        return;
+    cJSON *body = body_json(exchange);
+    if (!body)
+        return;
+    if (wire_result_read(body, &wire, &err)) {
+        refuse_message(exchange, &err);
+    } else {
+        complete(exchange, job, &wire);
+        wire_result_clear(&wire);
+    }
+    cJSON_Delete(body);
+}

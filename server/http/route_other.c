@@ -1,0 +1,148 @@
+/* Health, metrics, snapshot, descriptions and the page. */
+#include "server/http/route.h"
+#include "worker/kinds.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define EMBEDDED(name)                                                                             \
+    extern const char _binary_server_##name##_start[];                                             \
+    extern const char _binary_server_##name##_end[]
+EMBEDDED(http_openapi_yaml);
+EMBEDDED(web_index_html);
+EMBEDDED(web_app_js);
+EMBEDDED(web_style_css);
+
+#define ANSWER_EMBEDDED(exchange, type, name)                                                      \
+    answer_static(exchange, type, _binary_server_##name##_start,                                   \
+                  (size_t)(_binary_server_##name##_end - _binary_server_##name##_start))
+
+void handle_openapi(struct exchange *exchange, const char *id) {
+    (void)id;
+    ANSWER_EMBEDDED(exchange, "application/yaml", http_openapi_yaml);
+}
+
+void handle_page(struct exchange *exchange, const char *id) {
+    (void)id;
+    ANSWER_EMBEDDED(exchange, "text/html; charset=utf-8", web_index_html);
+}
+
+void handle_script(struct exchange *exchange, const char *id) {
+    (void)id;
+    ANSWER_EMBEDDED(exchange, "text/javascript; charset=utf-8", web_app_js);
+}
+
+void handle_style(struct exchange *exchange, const char *id) {
+    (void)id;
+    ANSWER_EMBEDDED(exchange, "text/css; charset=utf-8", web_style_css);
+}
+
+void handle_schema(struct exchange *exchange, const char *id) {
+    (void)id;
+    answer_json(exchange, 200, study_schema(kinds_table(), kinds_count()));
+}
+
+void handle_health(struct exchange *exchange, const char *id) {
+    (void)id;
+    struct store *reader;
+    struct error err = {0};
+    struct store_metrics metrics;
+    int status = service_reader(exchange->service, &reader, &err);
+    if (!status)
+        status = store_metrics(reader, &metrics, &err);
+    service_give_back(exchange->service, reader);
+    if (status) {
+        answer_error(exchange, &err);
+        return;
+    }
+    cJSON *document = cJSON_CreateObject();
+    if (document)
+        cJSON_AddStringToObject(document, "status", "ok");
+    answer_json(exchange, 200, document);
+}
+
+void handle_metrics(struct exchange *exchange, const char *id) {
+    (void)id;
+    struct error err = {0};
+    char *text;
+    if (service_metrics(exchange->service, &text, &err))
+        answer_error(exchange, &err);
+    else
+        answer_text(exchange, 200, "text/plain; version=0.0.4; charset=utf-8", text);
+}
+
+/* --- snapshot --- */
+
+enum { SNAPSHOTS_MOST = 4 }; /* at a time: each is a copy of the whole database */
+
+/* A copy on its way. */
+struct download {
+    struct exchange *exchange; /* lives as long as the library calls read_download */
+    struct service *service;
+    int file; /* -1 until opened */
+};
+
+static ssize_t read_download(void *context, uint64_t position, char *buffer, size_t room) {
+    struct download *download = context;
+    ssize_t got = pread(download->file, buffer, room, (off_t)position);
+    exchange_renew(download->exchange); /* who takes nothing for a whole deadline is cut */
+    return got > 0 ? got : MHD_CONTENT_READER_END_WITH_ERROR;
+}
+
+static void download_free(void *context) {
+    struct download *download = context;
+    atomic_fetch_sub(&download->service->snapshots, 1);
+    if (download->file >= 0)
+        close(download->file);
+    free(download);
+}
+
+/* Copies beside the database, where there is room of the same kind, and opens the copy without a
+ * name: it is gone with the connection, whatever ends it. */
+static int snapshot_file(struct download *download, uint64_t *size, struct error *err) {
+    struct service *service = download->service;
+    struct store *reader;
+    char path[4200];
+    struct stat info;
+    snprintf(path, sizeof path, "%s.snapshot-%d-%p", service->database, (int)getpid(),
+             (void *)download);
+    int status = service_reader(service, &reader, err);
+    if (!status)
+        status = store_snapshot(reader, path, err);
+    service_give_back(service, reader);
+    if (status)
+        return status;
+    download->file = open(path, O_RDONLY | O_CLOEXEC);
+    unlink(path);
+    if (download->file < 0 || fstat(download->file, &info))
+        return error_set(err, ERROR_SYSTEM, "the snapshot cannot be read: %s", strerror(errno));
+    *size = (uint64_t)info.st_size;
+    return 0;
+}
+
+void handle_snapshot(struct exchange *exchange, const char *id) {
+    (void)id;
+    struct error err = {0};
+    uint64_t size;
+    struct download *download = array_create(1, sizeof *download);
+    if (!download) {
+        answer_problem(exchange, 503, "no memory for a snapshot", NULL);
+        return;
+    }
+    *download = (struct download){exchange, exchange->service, -1};
+    if (atomic_fetch_add(&exchange->service->snapshots, 1) >= SNAPSHOTS_MOST) {
+        download_free(download);
+        answer_problem(exchange, 503, "too many snapshots are being sent", NULL);
+    } else if (snapshot_file(download, &size, &err)) {
+        download_free(download);
+        answer_error(exchange, &err);
+    } else {
+        answer_stream(exchange, "application/vnd.sqlite3", size, read_download, download,
+                      download_free);
+        answer_header(exchange, "Content-Disposition", "attachment; filename=\"rugo.db\"");
+    }
+}

@@ -1,0 +1,137 @@
+/* Studies over HTTP: submission, progress. */
+#include "server/command/api.h"
+#include "server/http/route.h"
+#include "worker/kinds.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- changes, through the writer --- */
+
+enum { KEY_MOST = 200 };
+
+struct submission {
+    const struct study *study;
+    const char *key;
+    cJSON *document;
+    bool existing;
+};
+
+static int submit_change(struct store *store, void *context, struct error *err) {
+    struct submission *submission = context;
+    return api_submit(store, submission->study, submission->key, &submission->document,
+                      &submission->existing, err);
+}
+
+static void submit(struct exchange *exchange, const struct study *study) {
+    struct submission submission = {.study = study,
+                                    .key = exchange_header(exchange, "Idempotency-Key")};
+    struct error err = {0};
+    if (writer_do(exchange->service->writer, submit_change, &submission, &err)) {
+        cJSON_Delete(submission.document); /* made, but its commit failed */
+        answer_error(exchange, &err);
+        return;
+    }
+    char location[64];
+    const cJSON *id = cJSON_GetObjectItemCaseSensitive(submission.document, "id");
+    snprintf(location, sizeof location, "/v1/studies/%s", cJSON_GetStringValue(id));
+    answer_json(exchange, submission.existing ? 200 : 201, submission.document);
+    answer_header(exchange, "Location", location);
+}
+
+/* A key that can be told again in an answer. */
+static bool check_key(struct exchange *exchange) {
+    const char *key = exchange_header(exchange, "Idempotency-Key");
+    size_t length = 0;
+    while (key && key[length] > ' ' && key[length] < 0x7f)
+        length++;
+    if (!key || (length && length <= KEY_MOST && !key[length]))
+        return true;
+    answer_problem(exchange, 400, "an Idempotency-Key has 1 to 200 visible ASCII characters", NULL);
+    return false;
+}
+
+/* Checks on the connection's thread: ten thousand cases must not hold up the writer. */
+void handle_study_create(struct exchange *exchange, const char *id) {
+    (void)id;
+    struct fault_list faults = {0};
+    struct study *study = NULL;
+    struct error err = {0};
+    if (!check_key(exchange) || !check_body(exchange))
+        return;
+    int status = kinds_read_study(&study, exchange->body, exchange->body_size, NULL, &faults, &err);
+    if (!status)
+        submit(exchange, study);
+    else if (faults.count)
+        answer_problem(exchange, 422, "the study is not valid", &faults);
+    else if (status == ERROR_INPUT) /* no JSON */
+        answer_problem(exchange, 400, err.text, NULL);
+    else
+        answer_error(exchange, &err);
+    study_destroy(&study);
+    fault_list_clear(&faults);
+}
+
+struct study_change {
+    const char *id;
+    cJSON *document;
+    int (*api)(struct store *store, const char *id, cJSON **out, struct error *err);
+};
+
+static int change_study(struct store *store, void *context, struct error *err) {
+    struct study_change *change = context;
+    return change->api(store, change->id, &change->document, err);
+}
+
+static void answer_change(struct exchange *exchange, struct study_change change) {
+    struct error err = {0};
+    if (writer_do(exchange->service->writer, change_study, &change, &err)) {
+        cJSON_Delete(change.document); /* made, but its commit failed */
+        answer_error(exchange, &err);
+    } else {
+        answer_json(exchange, 200, change.document);
+    }
+}
+
+void handle_study_cancel(struct exchange *exchange, const char *id) {
+    answer_change(exchange, (struct study_change){.id = id, .api = api_cancel});
+}
+
+void handle_study_retry(struct exchange *exchange, const char *id) {
+    answer_change(exchange, (struct study_change){.id = id, .api = api_retry});
+}
+
+/* --- questions, to a reader --- */
+
+void handle_study_list(struct exchange *exchange, const char *id) {
+    (void)id;
+    struct store *reader;
+    struct error err = {0};
+    cJSON *document = NULL;
+    int64_t limit = 100;
+    if (!query_number(exchange, "limit", 1, 1000, &limit))
+        return;
+    int status = service_reader(exchange->service, &reader, &err);
+    if (!status)
+        status =
+            api_list(reader, exchange_query(exchange, "after"), (size_t)limit, &document, &err);
+    service_give_back(exchange->service, reader);
+    if (status)
+        answer_error(exchange, &err);
+    else
+        answer_json(exchange, 200, document);
+}
+
+void handle_study(struct exchange *exchange, const char *id) {
+    struct store *reader;
+    struct error err = {0};
+    cJSON *document = NULL;
+    int status = service_reader(exchange->service, &reader, &err);
+    if (!status)
+        status = api_status(reader, id, &document, &err);
+    service_give_back(exchange->service, reader);
+    if (status)
+        answer_error(exchange, &err);
+    else
+        answer_json(exchange, 200, document);
+}

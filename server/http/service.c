@@ -1,0 +1,118 @@
+#include "server/http/service.h"
+#include "server/http/checker.h"
+#include "worker/clock.h"
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+int service_open(struct service *service, const char *database, int64_t lease_ms,
+                 struct error *err) {
+    struct store_options options = {.lease_ms = lease_ms};
+    service->database = database;
+    service->started_ms = clock_ms();
+    pthread_mutex_init(&service->mutex, NULL);
+    int status = store_open(&service->store, database, &options, err);
+    if (!status)
+        status = writer_create(&service->writer, service->store, err);
+    if (!status)
+        status = publisher_create(&service->publisher, database, err);
+    if (!status)
+        status = checker_create(&service->checker, err);
+    return status;
+}
+
+void service_close(struct service *service) {
+    publisher_destroy(&service->publisher);
+    writer_destroy(&service->writer);
+    for (size_t r = 0; r < service->reader_count; r++)
+        store_close(&service->readers[r]);
+    store_close(&service->store); /* last: a reader cannot clear the write-ahead log away */
+    checker_destroy(&service->checker);
+    tokens_destroy(&service->tokens);
+    pthread_mutex_destroy(&service->mutex);
+}
+
+int service_reader(struct service *service, struct store **out, struct error *err) {
+    *out = NULL;
+    pthread_mutex_lock(&service->mutex);
+    if (service->reader_count)
+        *out = service->readers[--service->reader_count];
+    pthread_mutex_unlock(&service->mutex);
+    struct store_options options = {.read_only = true};
+    return *out ? 0 : store_open(out, service->database, &options, err);
+}
+
+void service_give_back(struct service *service, struct store *reader) {
+    if (!reader)
+        return;
+    pthread_mutex_lock(&service->mutex);
+    if (service->reader_count < READERS_KEPT) {
+        service->readers[service->reader_count++] = reader;
+        reader = NULL;
+    }
+    pthread_mutex_unlock(&service->mutex);
+    store_close(&reader);
+}
+
+static void print_metric(FILE *file, const char *name, const char *type, const char *help,
+                         double value) {
+    fprintf(file, "# HELP rugo_%s %s\n# TYPE rugo_%s %s\nrugo_%s %.17g\n", name, help, name, type,
+            name, value);
+}
+
+static void print_queue(FILE *file, const struct store_metrics *metrics) {
+    const struct {
+        const char *state;
+        uint64_t count;
+    } states[] = {{"waiting", metrics->jobs_waiting},
+                  {"running", metrics->jobs_running},
+                  {"done", metrics->jobs_done},
+                  {"failed", metrics->jobs_failed},
+                  {"cancelled", metrics->jobs_cancelled}};
+    fprintf(file, "# HELP rugo_jobs Jobs by state.\n# TYPE rugo_jobs gauge\n");
+    for (size_t s = 0; s < sizeof states / sizeof *states; s++)
+        fprintf(file, "rugo_jobs{state=\"%s\"} %" PRIu64 "\n", states[s].state, states[s].count);
+}
+
+int service_metrics(struct service *service, char **out, struct error *err) {
+    struct store *reader;
+    struct store_metrics metrics;
+    struct writer_figures writer;
+    size_t size = 0;
+    int status = service_reader(service, &reader, err);
+    if (!status)
+        status = store_metrics(reader, &metrics, err);
+    service_give_back(service, reader);
+    FILE *file = status ? NULL : open_memstream(out, &size);
+    if (!file)
+        return status ? status : error_memory(err, 4096, "metrics");
+    writer_figures(service->writer, &writer);
+    fprintf(file, "# HELP rugo_http_answers_total Answers by class of status.\n"
+                  "# TYPE rugo_http_answers_total counter\n");
+    for (int c = 1; c < STATUS_CLASSES; c++)
+        fprintf(file, "rugo_http_answers_total{status=\"%dxx\"} %" PRIuFAST64 "\n", c,
+                atomic_load(&service->answers[c]));
+    print_metric(file, "http_seconds_total", "counter", "Seconds spent on answers.",
+                 1e-9 * (double)atomic_load(&service->nanoseconds));
+    print_metric(file, "http_connections", "gauge", "Open connections.",
+                 (double)atomic_load(&service->connections));
+    print_metric(file, "event_streams", "gauge", "Open streams of events.",
+                 (double)atomic_load(&service->streams));
+    print_metric(file, "studies", "gauge", "Studies in the store.", (double)metrics.studies);
+    print_queue(file, &metrics);
+    print_metric(file, "changes_total", "counter", "Changes of the store.", (double)writer.changes);
+    print_metric(file, "commits_total", "counter",
+                 "Commits; changes over commits is the batch size.", (double)writer.commits);
+    print_metric(file, "wal_bytes", "gauge", "Size of the write-ahead log.",
+                 (double)metrics.wal_bytes);
+    print_metric(file, "database_bytes", "gauge", "Size of the database file.",
+                 (double)metrics.database_bytes);
+    print_metric(file, "uptime_seconds", "gauge", "Seconds since the start.",
+                 1e-3 * (double)(clock_ms() - service->started_ms));
+    bool failed = ferror(file);
+    if (fclose(file) || failed) {
+        free(*out);
+        return error_memory(err, size, "metrics");
+    }
+    return 0;
+}

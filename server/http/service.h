@@ -1,0 +1,51 @@
+/* What the routes of the HTTP service share: the store's one writer and its readers, the publisher,
+ * tokens and counters. Safe from many threads. */
+#ifndef RUGO_SERVER_HTTP_SERVICE_H
+#define RUGO_SERVER_HTTP_SERVICE_H
+
+#include "server/http/tokens.h"
+#include "server/http/writer.h"
+#include <pthread.h>
+#include <stdatomic.h>
+
+enum { READERS_KEPT = 16, STATUS_CLASSES = 6 };
+
+struct service {
+    const char *database; /* borrowed */
+    struct store *store;  /* the writer's */
+    struct writer *writer;
+    struct publisher *publisher;
+    struct checker *checker; /* of results that come in */
+    struct tokens *tokens;   /* NULL: everyone may do everything (loopback only) */
+    int64_t started_ms;      /* clock_ms */
+    atomic_bool stopping;
+
+    pthread_mutex_t mutex; /* guards the readers kept */
+    struct store *readers[READERS_KEPT];
+    size_t reader_count;
+
+    /* for /metrics */
+    atomic_uint_fast64_t answers[STATUS_CLASSES]; /* by hundreds of the status */
+    atomic_uint_fast64_t nanoseconds;             /* spent on answers */
+    atomic_int_fast64_t connections, streams;     /* open now */
+    atomic_int_fast64_t snapshots;                /* being sent */
+};
+
+int service_open(struct service *service, const char *database, int64_t lease_ms,
+                 struct error *err);
+void service_close(struct service *service);
+
+/* A read-only handle, one thread's at a time; give it back. */
+int service_reader(struct service *service, struct store **out, struct error *err);
+void service_give_back(struct service *service, struct store *reader);
+
+/* Prometheus text; caller frees. */
+int service_metrics(struct service *service, char **out, struct error *err);
+
+/* The publisher merges and publishes, on a thread of its own, every case that is complete and not
+ * yet published; the store itself says which. Wake it when a case is done. */
+int publisher_create(struct publisher **out, const char *database, struct error *err);
+void publisher_destroy(struct publisher **publisher);
+void publisher_wake(struct publisher *publisher);
+
+#endif

@@ -1,0 +1,140 @@
+#include "server/http/writer.h"
+#include <errno.h>
+#include <pthread.h>
+#include <sched.h>
+#include <semaphore.h>
+#include <stdlib.h>
+
+/* A posted change lives on its poster's stack. Each has its semaphore: whoever is woken need not
+ * queue for the mutex, which the writer holds just then. */
+struct post {
+    store_change *change;
+    void *context;
+    struct error error;
+    int status;
+    sem_t ended;
+    struct post *next;
+};
+
+struct writer {
+    struct store *store; /* borrowed */
+    pthread_t thread;
+    pthread_mutex_t mutex; /* guards all below */
+    pthread_cond_t posted;
+    struct post *first, **last;
+    bool stopping;
+    struct writer_figures figures;
+};
+
+enum { BATCH_MOST = 256 };
+
+static void run_batch(struct store *store, struct post *const *batch, size_t count) {
+    struct error error = {0};
+    int status = store_begin(store, &error);
+    for (size_t i = 0; !status && i < count; i++)
+        batch[i]->status = batch[i]->change(store, batch[i]->context, &batch[i]->error);
+    if (!status)
+        status = store_commit(store, &error);
+    for (size_t i = 0; status && i < count; i++) {
+        batch[i]->status = status;
+        batch[i]->error = error;
+    }
+}
+
+static size_t take_batch(struct writer *writer, struct post **batch) {
+    size_t count = 0;
+    while (writer->first && count < BATCH_MOST) {
+        batch[count++] = writer->first;
+        writer->first = writer->first->next;
+    }
+    if (!writer->first)
+        writer->last = &writer->first;
+    return count;
+}
+
+static void *writer_thread(void *context) {
+    struct writer *writer = context;
+    struct post *batch[BATCH_MOST];
+    pthread_mutex_lock(&writer->mutex);
+    for (;;) {
+        while (!writer->first && !writer->stopping)
+            pthread_cond_wait(&writer->posted, &writer->mutex);
+        /* Those who were just answered come back with the next: let them, and commit more at once.
+         */
+        pthread_mutex_unlock(&writer->mutex);
+        sched_yield();
+        pthread_mutex_lock(&writer->mutex);
+        size_t count = take_batch(writer, batch);
+        if (count == 0)
+            break;
+        pthread_mutex_unlock(&writer->mutex);
+        run_batch(writer->store, batch, count);
+        for (size_t i = 0; i < count; i++)
+            sem_post(&batch[i]->ended);
+        pthread_mutex_lock(&writer->mutex);
+        writer->figures.changes += count;
+        writer->figures.commits++;
+    }
+    pthread_mutex_unlock(&writer->mutex);
+    return NULL;
+}
+
+int writer_create(struct writer **out, struct store *store, struct error *err) {
+    struct writer *writer = array_create(1, sizeof *writer);
+    if (!writer)
+        return error_memory(err, sizeof *writer, "the writer");
+    writer->store = store;
+    writer->last = &writer->first;
+    pthread_mutex_init(&writer->mutex, NULL);
+    pthread_cond_init(&writer->posted, NULL);
+    if (pthread_create(&writer->thread, NULL, writer_thread, writer)) {
+        free(writer);
+        return error_set(err, ERROR_SYSTEM, "cannot start the writer's thread");
+    }
+    *out = writer;
+    return 0;
+}
+
+void writer_destroy(struct writer **writer) {
+    struct writer *w = *writer;
+    if (!w)
+        return;
+    pthread_mutex_lock(&w->mutex);
+    w->stopping = true;
+    pthread_cond_signal(&w->posted);
+    pthread_mutex_unlock(&w->mutex);
+    pthread_join(w->thread, NULL);
+    pthread_mutex_destroy(&w->mutex);
+    pthread_cond_destroy(&w->posted);
+    free(w);
+    *writer = NULL;
+}
+
+int writer_do(struct writer *writer, store_change *change, void *context, struct error *err) {
+    struct post post = {.change = change, .context = context};
+    sem_init(&post.ended, 0, 0);
+    pthread_mutex_lock(&writer->mutex);
+    bool taken = !writer->stopping;
+    if (taken) {
+        *writer->last = &post;
+        writer->last = &post.next;
+        pthread_cond_signal(&writer->posted);
+    }
+    pthread_mutex_unlock(&writer->mutex);
+    if (taken) {
+        while (sem_wait(&post.ended) && errno == EINTR)
+            continue;
+    } else {
+        post.status = error_set(&post.error, ERROR_SYSTEM, "the server is ending");
+    }
+    sem_destroy(&post.ended);
+    if (post.status && err)
+        *err = post.error;
+    return post.status;
+}
+
+void writer_figures(struct writer *writer, struct writer_figures *out) {
+    pthread_mutex_lock(&writer->mutex);
+    *out = writer->figures;
+    pthread_mutex_unlock(&writer->mutex);
+}

@@ -1,0 +1,25 @@
+/* The one writer of a served store: requests post a change and wait until it is on disk.
+ *
+ * The thread takes all changes that wait and commits them together (group commit), each still all
+ * or nothing. A change is not acknowledged before its commit; when the commit fails every change in
+ * it failed. */
+#ifndef RUGO_SERVER_HTTP_WRITER_H
+#define RUGO_SERVER_HTTP_WRITER_H
+
+#include "schema/store/store.h"
+
+typedef int store_change(struct store *store, void *context, struct error *err);
+struct writer;
+
+/* Borrows the store until writer_destroy, which finishes what was posted. */
+int writer_create(struct writer **out, struct store *store, struct error *err);
+void writer_destroy(struct writer **writer);
+/* Runs change on the writer's thread; returns its status once committed, or the commit's error. */
+int writer_do(struct writer *writer, store_change *change, void *context, struct error *err);
+
+struct writer_figures {
+    uint64_t changes, commits; /* since the start */
+};
+void writer_figures(struct writer *writer, struct writer_figures *out);
+
+#endif

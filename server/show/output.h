@@ -1,0 +1,11 @@
+/* The files of `rugo run --out`: curves.json, a CSV a curve, an SVG a quantity. */
+#ifndef RUGO_SERVER_SHOW_OUTPUT_H
+#define RUGO_SERVER_SHOW_OUTPUT_H
+
+#include "core/error.h"
+#include <cjson/cJSON.h>
+
+/* Makes the folder if it is missing; replaces files of an earlier run. */
+int output_write(const cJSON *curves, const char *folder, struct error *err);
+
+#endif

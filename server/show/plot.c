@@ -1,0 +1,300 @@
+#include "server/show/plot.h"
+#include "server/show/document.h"
+#include "server/show/plot_choice.h"
+#include "server/show/plot_frame.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The picture, in SVG user units, and its legend at the right. LETTER: about a letter's width. */
+enum { WIDTH = 960, HEIGHT = 570, LEGEND = FRAME_RIGHT + 48, LETTER = 7 };
+
+/* The first seven after Okabe & Ito (2008): told apart by every reader. */
+static const char *const COLOURS[PLOT_LINES] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                "#e69f00", "#56b4e9", "#000000", "#8a8a00",
+                                                "#7f3b08", "#6a51a3", "#999999", "#a50026"};
+/* Of theories, told apart by their dashes. */
+static const char *const DASHES[] = {"7 4", "2 3", "12 3 2 3", "4 2 1 2 1 2", "14 5", "1 5"};
+enum { DASH_COUNT = sizeof DASHES / sizeof *DASHES };
+
+/* Coarser levels are fainter. */
+static const char *const LEVEL_STYLES[] = {
+    " stroke-width=\"1.8\"", " stroke-opacity=\".65\" stroke-width=\"1.2\"",
+    " stroke-opacity=\".45\" stroke-width=\".9\"", " stroke-opacity=\".3\" stroke-width=\".7\""};
+enum { STYLE_COUNT = sizeof LEVEL_STYLES / sizeof *LEVEL_STYLES };
+
+/* What the pen is about to draw of a quantity. */
+struct plot {
+    FILE *file;
+    struct frame frame;
+    struct plot_choice choice;
+    int rows;     /* of the legend, so far */
+    bool partial; /* some points are means over fewer realisations */
+};
+
+/* --- curves --- */
+
+/* A bar of one standard error to either side, where the error can be seen. */
+static void draw_bars(FILE *file, const struct frame *frame, const cJSON *curve,
+                      const char *colour) {
+    const cJSON *x = first_of(curve, "x"), *y = first_of(curve, "y");
+    const cJSON *deviation = first_of(curve, "standard_error");
+    for (; x && y && deviation; x = x->next, y = y->next, deviation = deviation->next) {
+        if (!frame_has_place(frame, x, y) || !cJSON_IsNumber(deviation))
+            continue;
+        double low = y->valuedouble - deviation->valuedouble;
+        double high = y->valuedouble + deviation->valuedouble;
+        if (frame->y.logarithmic && low <= 0)
+            continue;
+        double top = frame_y(frame, fmin(high, frame->y.high));
+        double bottom = frame_y(frame, fmax(low, frame->y.low));
+        if (bottom - top > 1)
+            fprintf(file, "<path d=\"M%.2f %.2fV%.2f\" class=\"bar\" stroke=\"%s\"/>",
+                    frame_x(frame, x->valuedouble), top, bottom, colour);
+    }
+    fputc('\n', file);
+}
+
+static bool is_inside(const struct frame *frame, const cJSON *x, const cJSON *y) {
+    return frame_has_place(frame, x, y) && x->valuedouble >= frame->x.low &&
+           x->valuedouble <= frame->x.high && y->valuedouble <= frame->y.high &&
+           y->valuedouble >= frame->y.low;
+}
+
+/* An open circle where some realisations have no value. */
+static void draw_partial(struct plot *plot, const cJSON *curve, const char *colour) {
+    const cJSON *x = first_of(curve, "x"), *y = first_of(curve, "y");
+    const cJSON *valueless = first_of(curve, "valueless");
+    for (; x && y && valueless; x = x->next, y = y->next, valueless = valueless->next) {
+        if (!(valueless->valuedouble > 0) || !is_inside(&plot->frame, x, y))
+            continue;
+        fprintf(plot->file,
+                "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" class=\"partial\" stroke=\"%s\"/>\n",
+                frame_x(&plot->frame, x->valuedouble), frame_y(&plot->frame, y->valuedouble),
+                colour);
+        plot->partial = true;
+    }
+}
+
+/* style: attributes of the path. */
+static void draw_line(FILE *file, const struct frame *frame, const cJSON *x, const cJSON *y,
+                      const char *style) {
+    bool pen_down = false;
+    fprintf(file, "<path %s d=\"", style);
+    for (; x && y; x = x->next, y = y->next) {
+        bool inside = is_inside(frame, x, y);
+        if (inside)
+            fprintf(file, "%c%.2f %.2f", pen_down ? 'L' : 'M', frame_x(frame, x->valuedouble),
+                    frame_y(frame, y->valuedouble));
+        pen_down = inside;
+    }
+    fputs("\"/>\n", file);
+}
+
+enum { STYLE_SIZE = 128 };
+
+static void curve_style(const struct plot_line *line, char style[STYLE_SIZE]) {
+    size_t level = line->coarseness < STYLE_COUNT ? line->coarseness : STYLE_COUNT - 1;
+    snprintf(style, STYLE_SIZE, "class=\"curve\" stroke=\"%s\"%s", COLOURS[line->colour],
+             LEVEL_STYLES[level]);
+}
+
+static void theory_style(size_t dash, const char *colour, char style[STYLE_SIZE]) {
+    snprintf(style, STYLE_SIZE, "class=\"theory\" stroke=\"%s\" stroke-dasharray=\"%s\"", colour,
+             DASHES[dash % DASH_COUNT]);
+}
+
+static void draw_legend(struct plot *plot, const char *label, const char *style) {
+    int y = FRAME_TOP + 12 + 20 * plot->rows++;
+    fprintf(plot->file, "<path d=\"M%d %dh26\" %s/><text x=\"%d\" y=\"%d\">", FRAME_RIGHT + 16,
+            y - 4, style, LEGEND, y);
+    svg_text(plot->file, label);
+    fputs("</text>\n", plot->file);
+}
+
+static void draw_note(struct plot *plot, const char *text) {
+    fprintf(plot->file, "<text x=\"%d\" y=\"%d\" class=\"note\">", FRAME_RIGHT + 16,
+            FRAME_TOP + 16 + 20 * plot->rows++);
+    svg_text(plot->file, text);
+    fputs("</text>\n", plot->file);
+}
+
+/* Coarse levels first, so that the finest lies on top; without their bars, which are much the same.
+ */
+static void draw_curves(struct plot *plot) {
+    const struct plot_choice *choice = &plot->choice;
+    char style[STYLE_SIZE], label[PLOT_LABEL_SIZE];
+    for (size_t n = choice->count; n > 0; n--) {
+        const struct plot_line *line = &choice->lines[n - 1];
+        curve_style(line, style);
+        if (line->coarseness == 0)
+            draw_bars(plot->file, &plot->frame, line->curve, COLOURS[line->colour]);
+        draw_line(plot->file, &plot->frame, first_of(line->curve, "x"), first_of(line->curve, "y"),
+                  style);
+        draw_partial(plot, line->curve, COLOURS[line->colour]);
+    }
+    for (size_t n = 0; n < choice->count; n++) {
+        curve_style(&choice->lines[n], style);
+        plot_label(choice, n, label);
+        draw_legend(plot, label, style);
+    }
+}
+
+/* --- theories --- */
+
+static const cJSON *theory_of(const struct plot_line *line, const char *name) {
+    return member(member(line->curve, "theory"), name);
+}
+
+/* Whether two lines have the same theory of this name, or one of them has none. */
+static bool same_theory(const struct plot_line *a, const struct plot_line *b, const char *name) {
+    const cJSON *one = theory_of(a, name), *other = theory_of(b, name);
+    return !one || !other ||
+           (cJSON_Compare(member(a->curve, "x"), member(b->curve, "x"), true) &&
+            cJSON_Compare(one, other, true));
+}
+
+/* Whether the theory of this name was met at a line before this one; alike: with the same values.
+ */
+static bool met_before(const struct plot_choice *choice, size_t line, const char *name,
+                       bool alike) {
+    for (size_t n = 0; n < line; n++)
+        if (theory_of(&choice->lines[n], name) &&
+            (!alike || same_theory(&choice->lines[n], &choice->lines[line], name)))
+            return true;
+    return false;
+}
+
+static bool is_shared(const struct plot_choice *choice, const char *name) {
+    size_t first = 0;
+    while (!theory_of(&choice->lines[first], name))
+        first++;
+    for (size_t n = first + 1; n < choice->count; n++)
+        if (!same_theory(&choice->lines[first], &choice->lines[n], name))
+            return false;
+    return true;
+}
+
+/* One that all curves share is black; otherwise each has the colour of its curve. */
+static void draw_theory(struct plot *plot, const char *name, size_t dash) {
+    const struct plot_choice *choice = &plot->choice;
+    char style[STYLE_SIZE], label[PLOT_LABEL_SIZE];
+    bool shared = is_shared(choice, name);
+    for (size_t n = 0; n < choice->count; n++) {
+        const struct plot_line *line = &choice->lines[n];
+        const cJSON *theory = theory_of(line, name);
+        if (!theory || met_before(choice, n, name, true))
+            continue;
+        theory_style(dash, shared ? "#222" : COLOURS[line->colour], style);
+        draw_line(plot->file, &plot->frame, first_of(line->curve, "x"), theory->child, style);
+    }
+    snprintf(label, sizeof label, "theory: %.80s%s", name, shared ? "" : " of each");
+    theory_style(dash, shared ? "#222" : "#777", style);
+    draw_legend(plot, label, style);
+}
+
+/* On top of all curves, in the order in which they are met. */
+static void draw_theories(struct plot *plot) {
+    size_t dash = 0;
+    for (size_t n = 0; n < plot->choice.count; n++) {
+        const cJSON *theory = first_of(plot->choice.lines[n].curve, "theory");
+        for (; theory; theory = theory->next)
+            if (!met_before(&plot->choice, n, theory->string, false))
+                draw_theory(plot, theory->string, dash++);
+    }
+}
+
+/* --- the picture --- */
+
+static void draw_notes(struct plot *plot) {
+    draw_note(plot, "bars: one standard error");
+    if (plot->partial)
+        draw_note(plot, "circles: not over all realisations");
+    if (*plot->choice.left_out) {
+        char text[PLOT_LABEL_SIZE + 16];
+        snprintf(text, sizeof text, "shown: %s", plot->choice.left_out);
+        draw_note(plot, text);
+    }
+}
+
+/* Loads in geometric steps: their middle one lies near the geometric mean of the ends. */
+static bool is_geometric(const cJSON *x) {
+    int n = cJSON_GetArraySize(x);
+    const cJSON *first = n > 4 ? x->child : NULL;
+    if (!first || !(first->valuedouble > 0))
+        return false;
+    double last = cJSON_GetArrayItem(x, n - 1)->valuedouble;
+    return last > 10 * first->valuedouble && cJSON_GetArrayItem(x, n / 2)->valuedouble < last / 4;
+}
+
+/* Theories are seen as far as the curves go; on logarithmic axes, where they are near, as a whole.
+ */
+static void include(struct frame *frame, const cJSON *curve, bool theories) {
+    const cJSON *x = first_of(curve, "x"), *theory = theories ? first_of(curve, "theory") : NULL;
+    frame_include(frame, x, first_of(curve, "y"));
+    for (; theory; theory = theory->next)
+        frame_include(frame, x, theory->child);
+}
+
+static bool fit(struct plot *plot, const struct plot_request *request) {
+    const struct plot_choice *choice = &plot->choice;
+    bool spectrum = strcmp(request->quantity, "psd") == 0; /* spans decades */
+    bool both = request->logarithmic || spectrum;
+    frame_start(&plot->frame, both || is_geometric(member(choice->lines[0].curve, "x")), both);
+    for (size_t n = 0; n < choice->count; n++)
+        include(&plot->frame, choice->lines[n].curve, request->logarithmic);
+    return frame_finish(&plot->frame);
+}
+
+/* As wide as the longest label of the legend needs. */
+static int width_of(const struct plot_choice *choice) {
+    int width = WIDTH;
+    for (size_t n = 0; n < choice->count; n++) {
+        char label[PLOT_LABEL_SIZE];
+        plot_label(choice, n, label);
+        int needed = LEGEND + LETTER * (int)strlen(label) + 16;
+        width = needed > width ? needed : width;
+    }
+    int note = FRAME_RIGHT + 16 + LETTER * (int)(strlen(choice->left_out) + 8) + 16;
+    return note > width ? note : width;
+}
+
+/* title for readers of the file and for those of the picture. */
+static void draw_title(const struct plot *plot, const char *name, const char *quantity) {
+    char title[PLOT_LABEL_SIZE];
+    snprintf(title, sizeof title, "%.120s: %.60s", name, quantity);
+    fputs("<title>", plot->file);
+    svg_text(plot->file, title);
+    fprintf(plot->file, "</title>\n<text x=\"%d\" y=\"%d\" class=\"title\">", FRAME_LEFT,
+            FRAME_TOP - 14);
+    svg_text(plot->file, title);
+    fputs("</text>\n", plot->file);
+}
+
+int plot_quantity(const cJSON *curves, const struct plot_request *request, FILE *file,
+                  struct error *err) {
+    struct plot plot = {.file = file};
+    plot_choose(&plot.choice, curves, request->quantity, request->y_label);
+    if (!plot.choice.count)
+        return error_set(err, ERROR_ABSENT, "no case has the quantity \"%.60s\"",
+                         request->quantity);
+    const cJSON *first = plot.choice.lines[0].curve;
+    int width = width_of(&plot.choice);
+    fprintf(file,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" "
+            "height=\"%d\">\n<style>text{font:13px system-ui,sans-serif;fill:#222}"
+            ".title{font-weight:600}.middle{text-anchor:middle}.end{text-anchor:end}"
+            ".note{fill:#666;font-size:12px}.grid{stroke:#e4e4e4}.frame{fill:none;stroke:#444}"
+            ".curve{fill:none;stroke-linejoin:round}.theory{fill:none;stroke-width:1.4}"
+            ".bar{stroke-width:1.4;stroke-opacity:.45}.partial{fill:#fff}</style>\n"
+            "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
+            width, HEIGHT, width, HEIGHT, width, HEIGHT);
+    draw_title(&plot, text_of(curves, "name", ""), request->quantity);
+    if (fit(&plot, request)) {
+        frame_draw(file, &plot.frame, text_of(first, "x_label", ""), text_of(first, "y_label", ""));
+        draw_curves(&plot);
+        draw_theories(&plot);
+        draw_notes(&plot);
+    }
+    fputs("</svg>\n", file);
+    return 0;
+}

@@ -1,0 +1,149 @@
+#include "server/show/plot_frame.h"
+#include "server/show/document.h"
+
+static void axis_include(struct axis *axis, double value) {
+    if (!isfinite(value) || (axis->logarithmic && value <= 0))
+        return;
+    axis->low = fmin(axis->low, value);
+    axis->high = fmax(axis->high, value);
+}
+
+static double axis_place(const struct axis *axis, double value) {
+    if (axis->logarithmic)
+        return log(value / axis->low) / log(axis->high / axis->low);
+    return (value - axis->low) / (axis->high - axis->low);
+}
+
+double frame_x(const struct frame *frame, double x) {
+    return FRAME_LEFT + (FRAME_RIGHT - FRAME_LEFT) * axis_place(&frame->x, x);
+}
+
+double frame_y(const struct frame *frame, double y) {
+    return FRAME_BOTTOM - (FRAME_BOTTOM - FRAME_TOP) * axis_place(&frame->y, y);
+}
+
+bool frame_has_place(const struct frame *frame, const cJSON *x, const cJSON *y) {
+    return cJSON_IsNumber(x) && cJSON_IsNumber(y) &&
+           (!frame->x.logarithmic || x->valuedouble > 0) &&
+           (!frame->y.logarithmic || y->valuedouble > 0);
+}
+
+void frame_include(struct frame *frame, const cJSON *x, const cJSON *y) {
+    for (; x && y; x = x->next, y = y->next) {
+        /* Points at zero at the ends of a histogram say nothing: they do not widen the frame. */
+        if (!frame_has_place(frame, x, y) || y->valuedouble == 0)
+            continue;
+        axis_include(&frame->x, x->valuedouble);
+        axis_include(&frame->y, y->valuedouble);
+    }
+}
+
+void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
+    frame->x = (struct axis){INFINITY, -INFINITY, x_logarithmic};
+    frame->y = (struct axis){INFINITY, -INFINITY, y_logarithmic};
+}
+
+/* Zero belongs to an axis that begins near it. */
+static void axis_begin_at_zero(struct axis *axis) {
+    if (!axis->logarithmic && axis->low > 0 && axis->low < axis->high / 2)
+        axis->low = 0;
+}
+
+bool frame_finish(struct frame *frame) {
+    if (!(frame->x.low <= frame->x.high))
+        return false;
+    axis_begin_at_zero(&frame->x);
+    axis_begin_at_zero(&frame->y);
+    struct axis *axes[] = {&frame->x, &frame->y};
+    for (int a = 0; a < 2; a++)
+        if (axes[a]->low == axes[a]->high) {
+            axes[a]->high = axes[a]->logarithmic ? 2 * axes[a]->low : axes[a]->low + 1;
+        } else if (a == 1 && !axes[a]->logarithmic) {
+            double margin = 0.06 * (axes[a]->high - axes[a]->low);
+            axes[a]->high += margin;
+            axes[a]->low -= axes[a]->low < 0 ? margin : 0;
+        } else if (a == 1) {
+            axes[a]->high *= 1.5;
+            axes[a]->low /= 1.5;
+        }
+    return true;
+}
+
+/* A step of 1, 2 or 5 times a power of ten, with about five of them along the axis. */
+static double tick_step(const struct axis *axis) {
+    double rough = (axis->high - axis->low) / 5, power = pow(10, floor(log10(rough)));
+    double relative = rough / power;
+    return power * (relative < 1.5 ? 1 : relative < 3.5 ? 2 : relative < 7.5 ? 5 : 10);
+}
+
+/* Zero, where a multiple of the step misses it by rounding. */
+static double tick_value(double value, const struct axis *axis) {
+    return fabs(value) < 1e-12 * (axis->high - axis->low) ? 0.0 : value;
+}
+
+static void draw_tick(FILE *file, const struct frame *frame, bool horizontal, double value,
+                      bool numbered) {
+    double x = horizontal ? frame_x(frame, value) : FRAME_LEFT;
+    double y = horizontal ? FRAME_BOTTOM : frame_y(frame, value);
+    fprintf(file, "<path d=\"M%.1f %.1f%c%d\" class=\"grid\"/>", x, y, horizontal ? 'V' : 'H',
+            horizontal ? FRAME_TOP : FRAME_RIGHT);
+    if (numbered)
+        fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">%.4g</text>",
+                horizontal ? x : x - 8, horizontal ? y + 18 : y + 4, horizontal ? "middle" : "end",
+                value);
+    fputc('\n', file);
+}
+
+/* Lines at 1, 2 and 5 of each decade; numbers at all of them where they do not crowd. */
+static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool horizontal) {
+    const struct axis *axis = horizontal ? &frame->x : &frame->y;
+    static const double STEPS[] = {1, 2, 5};
+    bool crowded = log10(axis->high / axis->low) > 4;
+    for (int decade = (int)floor(log10(axis->low)); pow(10, decade) <= axis->high; decade++)
+        for (int s = 0; s < 3; s++) {
+            double value = STEPS[s] * pow(10, decade);
+            if (value >= axis->low && value <= axis->high)
+                draw_tick(file, frame, horizontal, value, s == 0 || !crowded);
+        }
+}
+
+static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
+    const struct axis *axis = horizontal ? &frame->x : &frame->y;
+    if (axis->logarithmic) {
+        draw_logarithmic_ticks(file, frame, horizontal);
+        return;
+    }
+    double step = tick_step(axis);
+    long last = lrint(floor(axis->high / step));
+    for (long n = lrint(ceil(axis->low / step)); n <= last; n++)
+        draw_tick(file, frame, horizontal, tick_value((double)n * step, axis), true);
+}
+
+void svg_text(FILE *file, const char *text) {
+    for (; *text; text++) {
+        const char *entity = *text == '<'   ? "&lt;"
+                             : *text == '>' ? "&gt;"
+                             : *text == '&' ? "&amp;"
+                             : *text == '"' ? "&quot;"
+                                            : NULL;
+        if (entity)
+            fputs(entity, file);
+        else
+            fputc(*text, file);
+    }
+}
+
+void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label) {
+    fputs("<g>\n", file);
+    draw_ticks(file, frame, true);
+    draw_ticks(file, frame, false);
+    fprintf(file, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" class=\"frame\"/>\n",
+            FRAME_LEFT, FRAME_TOP, FRAME_RIGHT - FRAME_LEFT, FRAME_BOTTOM - FRAME_TOP);
+    fprintf(file, "<text x=\"%d\" y=\"%d\" class=\"middle\">", (FRAME_LEFT + FRAME_RIGHT) / 2,
+            FRAME_BOTTOM + 44);
+    svg_text(file, x_label);
+    fprintf(file, "</text>\n<text transform=\"translate(20 %d) rotate(-90)\" class=\"middle\">",
+            (FRAME_TOP + FRAME_BOTTOM) / 2);
+    svg_text(file, y_label);
+    fputs("</text></g>\n", file);
+}

@@ -1,0 +1,145 @@
+#include "server/show/text_table.h"
+#include "core/error.h"
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+static void append(struct text_table *table, char *text) {
+    if (table->cells == table->capacity) {
+        size_t capacity = table->capacity ? 2 * table->capacity : 256;
+        char **larger = realloc(table->text, capacity * sizeof *larger);
+        if (!larger) {
+            free(text);
+            table->failed = true;
+            return;
+        }
+        table->text = larger;
+        table->capacity = capacity;
+    }
+    table->text[table->cells++] = text;
+}
+
+void table_cell(struct text_table *table, const char *format, ...) {
+    va_list arguments;
+    char *text = NULL;
+    va_start(arguments, format);
+    if (table->failed || vasprintf(&text, format, arguments) < 0)
+        table->failed = true;
+    else
+        append(table, text);
+    va_end(arguments);
+}
+
+void table_number(struct text_table *table, double value) {
+    if (isnan(value))
+        table_cell(table, "-");
+    else
+        table_cell(table, "%.5g", value);
+}
+
+/* Characters on a screen: bytes that begin a UTF-8 sequence. */
+static size_t width_of(const char *text) {
+    size_t width = 0;
+    for (; *text; text++)
+        width += ((unsigned char)*text & 0xc0) != 0x80;
+    return width;
+}
+
+static bool is_numeric(const char *text) {
+    return isdigit((unsigned char)*text) || ((*text == '-' || *text == '+') && text[1] != '-');
+}
+
+/* How a column looks: its width, and whether all cells below the heading are numbers. */
+struct look {
+    size_t width;
+    bool numeric;
+};
+
+static struct look look_of(const struct text_table *table, size_t column) {
+    size_t rows = table->cells / table->columns;
+    struct look look = {0, rows > 1};
+    for (size_t row = 0; row < rows; row++) {
+        const char *cell = table->text[row * table->columns + column];
+        size_t width = width_of(cell);
+        look.width = width > look.width ? width : look.width;
+        look.numeric = look.numeric && (row == 0 || is_numeric(cell));
+    }
+    return look;
+}
+
+static void print_cell(const char *cell, const struct look *look, bool first, bool last,
+                       FILE *file) {
+    int padding = (int)(look->width - width_of(cell));
+    fprintf(file, "%s%*s%s%*s", first ? "" : "  ", look->numeric ? padding : 0, "", cell,
+            look->numeric || last ? 0 : padding, "");
+}
+
+/* Columns begin to end - 1 of all rows, with the first `keys` columns in front of them. */
+static void print_part(const struct text_table *table, const struct look *looks, size_t keys,
+                       size_t begin, size_t end, FILE *file) {
+    for (size_t row = 0; row < table->cells / table->columns; row++) {
+        char *const *cells = table->text + row * table->columns;
+        for (size_t c = 0; c < keys && begin > 0; c++)
+            print_cell(cells[c], &looks[c], c == 0, false, file);
+        for (size_t c = begin; c < end; c++)
+            print_cell(cells[c], &looks[c], c == 0, c + 1 == end, file);
+        fputc('\n', file);
+    }
+}
+
+static size_t width_between(const struct look *looks, size_t begin, size_t end) {
+    size_t width = 0;
+    for (size_t c = begin; c < end; c++)
+        width += looks[c].width + 2;
+    return width;
+}
+
+/* Columns of the terminal; everything else has room. */
+static size_t room_of(FILE *file) {
+    struct winsize size;
+    bool known = isatty(fileno(file)) && ioctl(fileno(file), TIOCGWINSZ, &size) == 0;
+    return known && size.ws_col ? size.ws_col : SIZE_MAX / 2;
+}
+
+void table_fold(struct text_table *table) {
+    if (table->fold_count < TABLE_FOLDS_MOST)
+        table->folds[table->fold_count++] = table->cells;
+}
+
+void table_print(const struct text_table *table, FILE *file) {
+    struct look *looks = table->failed ? NULL : array_create(table->columns, sizeof *looks);
+    if (!looks || !table->columns) {
+        free(looks);
+        fprintf(file, "(no memory for a table)\n");
+        return;
+    }
+    for (size_t c = 0; c < table->columns; c++)
+        looks[c] = look_of(table, c);
+    size_t keys = table->fold_count ? table->folds[0] : 0, room = room_of(file);
+    size_t begin = 0, end = 0, key_width = width_between(looks, 0, keys);
+    for (size_t fold = 0; fold <= table->fold_count; fold++) {
+        size_t next = fold < table->fold_count ? table->folds[fold] : table->columns;
+        /* the last gap is no width */
+        bool fits = (begin ? key_width : 0) + width_between(looks, begin, next) <= room + 2;
+        if (!fits && end > keys) {
+            print_part(table, looks, keys, begin, end, file);
+            fputc('\n', file);
+            begin = end;
+        }
+        end = next;
+    }
+    print_part(table, looks, keys, begin, end, file);
+    free(looks);
+}
+
+void table_clear(struct text_table *table) {
+    for (size_t i = 0; i < table->cells; i++)
+        free(table->text[i]);
+    free(table->text);
+    *table = (struct text_table){.columns = table->columns};
+}
