@@ -1,0 +1,157 @@
+/* What came out of a case: curves, scalars and notes, each number with its errors by source.
+ *
+ * Everything above the job kinds takes these structs: merging fills them, tables, pictures, reports
+ * and exports read them, and each format (JSON, CSV, the store's bytes and rows) has one writer and
+ * one reader beside this file. What tells curves apart is a row of CURVE_ATTRIBUTES, a source of
+ * error a row of ERROR_SOURCES: one more of either is one row more, and no file above changes.
+ *
+ * A case_result owns all that it points to in one arena: texts and arrays are made by result_text
+ * and result_numbers, live until result_clear, and are never freed one by one. */
+#ifndef RUGO_SCHEMA_RESULT_RESULT_H
+#define RUGO_SCHEMA_RESULT_RESULT_H
+
+#include "core/error.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+/* --- errors by source --- */
+
+/* The statistical error stands beside each value as its standard error; these are the others. */
+enum error_source {
+    ERROR_DISCRETISATION, /* this mesh less the limit of the levels */
+    ERROR_MODEL,          /* this model less the most complete one */
+    ERROR_SOURCES
+};
+struct error_source_row {
+    const char *name;               /* "discretisation": in reports */
+    const char *key;                /* in JSON, CSV and views: "discretisation_error" */
+    const char *standard_error_key; /* in JSON */
+    const char *order_key;          /* in JSON; NULL: a source without an order */
+};
+extern const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES];
+
+/* What a curve owes to one source: told less true, in the units of y and as long as it. */
+struct curve_error {
+    const double *value; /* NULL: not known */
+    const double *standard_error;
+    double order;        /* of convergence; NaN: none */
+    bool order_observed; /* on three levels; else assumed */
+};
+
+/* --- curves --- */
+
+struct theory {
+    const char *name;
+    const double *y; /* as long as the curve's y; NULL: made on demand by the kind */
+};
+enum { THEORIES_MOST = 8 };
+
+/* Points over x, or, where columns > 0, a matrix over x and x2 of which only the occupied cells are
+ * kept. NaN stands for a number that cannot be had. */
+struct curve {
+    const char *quantity, *x_label, *y_label;
+    /* What tells curves of one quantity apart (CURVE_ATTRIBUTES); NULL or NaN: without it. */
+    const char *series; /* "" without */
+    const char *model;
+    const char *kinematics; /* of strain, in a model that has several */
+    double level;           /* points a shortest wave */
+    double points;          /* of the whole grid of the level */
+    double pressure;        /* at which the curve was taken */
+
+    size_t n; /* points, or rows of a matrix */
+    const double *x;
+    const double *y, *standard_error; /* n values, or cell_count of a matrix */
+    size_t columns;                   /* 0, or of a matrix */
+    const double *x2;                 /* columns */
+    const char *x2_label;
+    size_t cell_count;                    /* of a matrix: occupied cells */
+    const uint32_t *cells;                /* row * columns + column, rising */
+    double empty_y, empty_standard_error; /* of all other cells: 0, or NaN where nothing is known */
+
+    size_t theory_count;
+    struct theory theories[THEORIES_MOST]; /* of a matrix: dense, n x columns */
+    struct curve_error errors[ERROR_SOURCES];
+    const double *valueless;    /* realisations that have no value at a point; NULL: not told */
+    bool counted;               /* from a histogram: with what fell outside of the bins */
+    double underflow, overflow; /* counts */
+};
+
+enum attribute_type { ATTRIBUTE_TEXT, ATTRIBUTE_NUMBER };
+struct curve_attribute {
+    const char *key; /* in JSON, CSV and views */
+    enum attribute_type type;
+    size_t offset;     /* in struct curve */
+    bool tells_series; /* of one estimator at one pressure: other than by model and mesh */
+    bool in_tables;    /* a column of CSV and views */
+};
+enum { CURVE_ATTRIBUTE_COUNT = 6 };
+extern const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT];
+/* NULL for a number's; NaN for a text's. */
+const char *curve_attribute_text(const struct curve *curve, const struct curve_attribute *row);
+double curve_attribute_number(const struct curve *curve, const struct curve_attribute *row);
+
+/* --- scalars, notes, the case --- */
+
+struct scalar {
+    const char *name;
+    double value, standard_error; /* NaN: none */
+    double theory;                /* NaN: none */
+    bool has_theory;
+};
+
+struct result_note {
+    uint64_t realisation;
+    const char *text;
+};
+
+/* A parameter of the case as people filter by it: "/surface/hurst". */
+struct result_parameter {
+    const char *pointer;
+    const char *text; /* NULL: a number */
+    double number;
+    bool is_boolean; /* number is 0 or 1 */
+};
+
+struct arena; /* private */
+struct case_result {
+    uint64_t case_number, realisations;
+    size_t parameter_count, scalar_count, curve_count, note_count; /* notes that are kept */
+    struct result_parameter *parameters;
+    struct scalar *scalars;
+    struct curve *curves; /* those of one quantity together, in the order of the kind */
+    struct result_note *notes;
+    uint64_t notes_all; /* kept or not */
+    struct arena *arena;
+};
+/* Of a whole study, or of those of its cases that were asked for. Owns its texts and cases. */
+struct study_result {
+    char *id, *name, *kind, *state;
+    size_t case_count;
+    struct case_result *cases;
+};
+
+/* Initialise with {0}. Frees all that the result owns. */
+void result_clear(struct case_result *result);
+void study_result_clear(struct study_result *study);
+
+/* From the arena; NULL when out of memory. Zeroed. */
+void *result_room(struct case_result *result, size_t count, size_t size);
+double *result_numbers(struct case_result *result, size_t n);
+const char *result_text(struct case_result *result, const char *text); /* NULL for NULL */
+/* Appends a copy of the struct, whose arrays and texts the arena owns or which are static. The
+ * lists of curves and scalars may move. */
+int result_add_curve(struct case_result *result, const struct curve *curve, struct error *err);
+int result_add_scalar(struct case_result *result, const struct scalar *scalar, struct error *err);
+
+const struct scalar *result_scalar(const struct case_result *result,
+                                   const char *name); /* or NULL */
+/* The first curve of a quantity, or NULL; those behind it of the same quantity follow it. */
+const struct curve *result_curve(const struct case_result *result, const char *quantity);
+/* NULL, or the parameter at that pointer. */
+const struct result_parameter *result_parameter(const struct case_result *result,
+                                                const char *pointer);
+
+/* Whether two curves are of the same quantity and of the same series (attributes that tell it). */
+bool curve_same_series(const struct curve *a, const struct curve *b);
+
+#endif
