@@ -11,12 +11,12 @@ const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES] = {
 };
 
 const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT] = {
-    {"series", ATTRIBUTE_TEXT, offsetof(struct curve, series), true, true},
-    {"model", ATTRIBUTE_TEXT, offsetof(struct curve, model), false, true},
-    {"kinematics", ATTRIBUTE_TEXT, offsetof(struct curve, kinematics), false, true},
-    {"level", ATTRIBUTE_NUMBER, offsetof(struct curve, level), false, true},
-    {"points", ATTRIBUTE_NUMBER, offsetof(struct curve, points), false, false},
-    {"pressure", ATTRIBUTE_NUMBER, offsetof(struct curve, pressure), true, true},
+    {"series", offsetof(struct curve, series), ATTRIBUTE_TEXT, true, true},
+    {"model", offsetof(struct curve, model), ATTRIBUTE_TEXT, false, true},
+    {"kinematics", offsetof(struct curve, kinematics), ATTRIBUTE_TEXT, false, true},
+    {"level", offsetof(struct curve, level), ATTRIBUTE_NUMBER, false, true},
+    {"points", offsetof(struct curve, points), ATTRIBUTE_NUMBER, false, false},
+    {"pressure", offsetof(struct curve, pressure), ATTRIBUTE_NUMBER, true, true},
 };
 
 const char *curve_attribute_text(const struct curve *curve, const struct curve_attribute *row) {

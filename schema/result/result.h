@@ -79,8 +79,8 @@ struct curve {
 enum attribute_type { ATTRIBUTE_TEXT, ATTRIBUTE_NUMBER };
 struct curve_attribute {
     const char *key; /* in JSON, CSV and views */
+    size_t offset;   /* in struct curve */
     enum attribute_type type;
-    size_t offset;     /* in struct curve */
     bool tells_series; /* of one estimator at one pressure: other than by model and mesh */
     bool in_tables;    /* a column of CSV and views */
 };
