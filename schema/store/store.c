@@ -85,6 +85,14 @@ char *column_copy(sqlite3_stmt *statement, int column) {
     return strdup(text ? (const char *)text : "");
 }
 
+int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err) {
+    static const struct json_limits limits = {.bytes = SIZE_MAX, .depth = 32, .values = SIZE_MAX};
+    const char *text = (const char *)sqlite3_column_text(row, column);
+    size_t size = (size_t)sqlite3_column_bytes(row, column);
+    int status = json_parse(text != NULL ? text : "", size, &limits, out, err);
+    return status != 0 ? error_context(err, "the database holds malformed JSON") : 0;
+}
+
 /* --- statements --- */
 
 static int find_statement(struct store *store, const char *sql, sqlite3_stmt **out,

@@ -47,6 +47,8 @@ const char *store_time(struct store *store);
 int random_text(char *text, size_t digits,
                 struct error *err); /* hex digits from the kernel, NUL-terminated */
 char *column_copy(sqlite3_stmt *statement, int column); /* "" for NULL; NULL out of memory */
+/* Reads a JSON text that this program stored, whatever its size; caller deletes *out. */
+int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 
 /* Row of a study; ERROR_ABSENT with a sentence when there is none. */
 int study_row(struct store *store, const char *id, int64_t *row, struct error *err);
