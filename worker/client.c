@@ -52,9 +52,8 @@ static bool is_loopback(const char *host) {
 static int url_check(const char *url, bool *loopback, struct error *err) {
     char *scheme = NULL, *host = NULL, *path = NULL, *user = NULL, *query = NULL;
     CURLU *parts = curl_url();
-    if (!parts) {
+    if (parts == NULL)
         return error_memory(err, 1, "a URL");
-    }
     bool good = curl_url_set(parts, CURLUPART_URL, url, 0) == CURLUE_OK &&
                 curl_url_get(parts, CURLUPART_SCHEME, &scheme, 0) == CURLUE_OK &&
                 curl_url_get(parts, CURLUPART_HOST, &host, 0) == CURLUE_OK &&
@@ -77,11 +76,9 @@ static int url_check(const char *url, bool *loopback, struct error *err) {
 
 /* A line break in a token would start another header. */
 static bool token_is_valid(const char *token) {
-    for (; *token; token++) {
-        if (*token <= ' ' || *token > '~') {
+    for (; *token; token++)
+        if (*token <= ' ' || *token > '~')
             return false;
-        }
-    }
     return true;
 }
 
@@ -106,18 +103,15 @@ static int client_fill(struct client *client, const char *url, const char *token
     size_t length = strlen(url);
     client->url = strdup(url);
     client->curl = curl_easy_init();
-    if (!client->url || !client->curl) {
+    if (client->url == NULL || client->curl == NULL)
         return error_memory(err, length + sizeof *client, "a client");
-    }
-    if (length > 0 && url[length - 1] == '/') {
+    if (length > 0 && url[length - 1] == '/')
         client->url[length - 1] = '\0';
-    }
-    if (token) {
+    if (token != NULL) {
         size_t size = strlen(token) + sizeof "Authorization: Bearer ";
         client->authorisation = malloc(size);
-        if (!client->authorisation) {
+        if (client->authorisation == NULL)
             return error_memory(err, size, "a header");
-        }
         snprintf(client->authorisation, size, "Authorization: Bearer %s", token);
     }
     return client_options(client, loopback, err);
@@ -126,18 +120,15 @@ static int client_fill(struct client *client, const char *url, const char *token
 int client_create(struct client **out, const char *url, const char *token, struct error *err) {
     bool loopback = false;
     int status = url_check(url, &loopback, err);
-    if (status) {
+    if (status != 0)
         return status;
-    }
-    if (token && !token_is_valid(token)) {
+    if (token != NULL && !token_is_valid(token))
         return error_set(err, ERROR_INPUT, "the token holds a space or a control character");
-    }
     struct client *client = calloc(1, sizeof *client);
-    if (!client) {
+    if (client == NULL)
         return error_memory(err, sizeof *client, "a client");
-    }
     status = client_fill(client, url, token, loopback, err);
-    if (status) {
+    if (status != 0) {
         client_destroy(&client);
         return status;
     }
@@ -147,13 +138,11 @@ int client_create(struct client **out, const char *url, const char *token, struc
 
 void client_destroy(struct client **client) {
     struct client *gone = *client;
-    if (!gone) {
+    if (gone == NULL)
         return;
-    }
     curl_easy_cleanup(gone->curl);
-    if (gone->authorisation) {
+    if (gone->authorisation != NULL)
         explicit_bzero(gone->authorisation, strlen(gone->authorisation));
-    }
     free(gone->authorisation);
     free(gone->url);
     free(gone);
@@ -177,7 +166,7 @@ static size_t sink_keep(struct sink *sink, const char *bytes, size_t size) {
     if (needed > sink->capacity) {
         size_t capacity = needed < 4096 ? 4096 : needed * 2;
         char *body = realloc(reply->body, capacity);
-        if (!body) {
+        if (body == NULL) {
             sink->fault = "no memory left for the reply";
             return 0;
         }
@@ -196,9 +185,8 @@ static size_t sink_write(char *bytes, size_t unit, size_t count, void *context) 
     size_t size = unit * count; /* unit is always 1 */
     long status = 0;
     curl_easy_getinfo(sink->curl, CURLINFO_RESPONSE_CODE, &status);
-    if (!sink->file || status < 200 || status > 299) {
+    if (sink->file == NULL || status < 200 || status > 299)
         return sink_keep(sink, bytes, size);
-    }
     if (fwrite(bytes, 1, size, sink->file) != size) {
         sink->fault = "the file cannot be written";
         return 0;
@@ -209,33 +197,32 @@ static size_t sink_write(char *bytes, size_t unit, size_t count, void *context) 
 static bool header_add(struct curl_slist **headers, const char *name, const char *value) {
     char line[256];
     int length = snprintf(line, sizeof line, "%s: %s", name, value);
-    if (length < 0 || (size_t)length >= sizeof line || strpbrk(line, "\r\n")) {
+    if (length < 0 || (size_t)length >= sizeof line || strpbrk(line, "\r\n") != NULL)
         return false;
-    }
     struct curl_slist *longer = curl_slist_append(*headers, line);
-    *headers = longer ? longer : *headers;
+    *headers = longer != NULL ? longer : *headers;
     return longer != NULL;
 }
 
 static bool headers_make(const struct client *client, const struct request *request,
                          struct curl_slist **headers) {
-    if (client->authorisation) {
+    if (client->authorisation != NULL) {
         *headers = curl_slist_append(NULL, client->authorisation);
-        if (!*headers) {
+        if (*headers == NULL)
             return false;
-        }
     }
-    return header_add(headers, "Accept", request->accept ? request->accept : "application/json") &&
+    return header_add(headers, "Accept",
+                      request->accept != NULL ? request->accept : "application/json") &&
            header_add(headers, "Expect", "") &&
-           (!request->body || header_add(headers, "Content-Type", "application/json")) &&
-           (!request->idempotency_key ||
+           (request->body == NULL || header_add(headers, "Content-Type", "application/json")) &&
+           (request->idempotency_key == NULL ||
             header_add(headers, "Idempotency-Key", request->idempotency_key));
 }
 
 static bool request_options(CURL *curl, const struct request *request, const char *url,
                             struct curl_slist *headers, struct sink *sink) {
     bool post = strcmp(request->method, "POST") == 0;
-    const char *body = request->body ? request->body : "";
+    const char *body = request->body != NULL ? request->body : "";
     long total = request->timeout_ms ? request->timeout_ms : TOTAL_MS;
     bool good =
         !curl_easy_setopt(curl, CURLOPT_URL, url) &&
@@ -275,9 +262,9 @@ static int exchange(struct client *client, const struct request *request, FILE *
     size_t size = strlen(client->url) + strlen(request->path) + 1;
     char *url = malloc(size);
     int status = 0;
-    if (!url || !headers_make(client, request, &headers)) {
+    if (url == NULL || !headers_make(client, request, &headers)) {
         status = error_memory(err, size, "a request");
-    } else if (request->path[0] != '/' || strpbrk(request->path, " \t\r\n")) {
+    } else if (request->path[0] != '/' || strpbrk(request->path, " \t\r\n") != NULL) {
         status = error_set(err, ERROR_INPUT, "'%s' is no path of a request", request->path);
     } else {
         snprintf(url, size, "%s%s", client->url, request->path);
@@ -287,12 +274,10 @@ static int exchange(struct client *client, const struct request *request, FILE *
     }
     curl_slist_free_all(headers);
     free(url);
-    if (!status && !reply->body && !(reply->body = calloc(1, 1))) {
+    if (status == 0 && reply->body == NULL && (reply->body = calloc(1, 1)) == NULL)
         status = error_memory(err, 1, "a reply");
-    }
-    if (status) {
+    if (status != 0)
         reply_clear(reply);
-    }
     return status;
 }
 
@@ -327,11 +312,10 @@ static void append_faults(const cJSON *problem, char *text, size_t size,
         const char *detail =
             cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(fault, "detail"));
         size_t length = strlen(text);
-        if (pointer && detail) {
+        if (pointer != NULL && detail != NULL) {
             snprintf(text + length, size - length, "; %s: %s", pointer, detail);
-            if (faults) {
+            if (faults != NULL)
                 fault_add(faults, pointer, "%s", detail);
-            }
         }
     }
 }
@@ -344,10 +328,11 @@ static int reply_error(const struct reply *reply, struct fault_list *faults, str
     const char *detail = NULL;
     if (json_parse(reply->body, reply->size, NULL, &problem, &ignored) == 0) {
         detail = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(problem, "detail"));
-        detail = detail ? detail
-                        : cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(problem, "title"));
+        detail = detail != NULL
+                     ? detail
+                     : cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(problem, "title"));
     }
-    if (detail) {
+    if (detail != NULL) {
         snprintf(text, sizeof text, "%s", detail);
         append_faults(problem, text, sizeof text, faults);
     } else {
@@ -361,9 +346,8 @@ int client_json(struct client *client, const struct request *request, cJSON **ou
                 struct error *err) {
     struct reply reply;
     int status = exchange(client, request, NULL, &reply, err);
-    if (status) {
+    if (status != 0)
         return status;
-    }
     cJSON *value = NULL;
     if (reply.status < 200 || reply.status > 299) {
         status = reply_error(&reply, request->faults, err);
@@ -377,9 +361,8 @@ int client_json(struct client *client, const struct request *request, cJSON **ou
         }
     }
     reply_clear(&reply);
-    if (!status) {
+    if (status == 0)
         *out = value;
-    }
     return status;
 }
 
@@ -387,9 +370,8 @@ int client_download(struct client *client, const char *path, FILE *file, struct 
     struct request request = {.method = "GET", .path = path, .accept = "*/*"};
     struct reply reply;
     int status = exchange(client, &request, file, &reply, err);
-    if (!status && (reply.status < 200 || reply.status > 299)) {
+    if (status == 0 && (reply.status < 200 || reply.status > 299))
         status = reply_error(&reply, NULL, err);
-    }
     reply_clear(&reply);
     return status;
 }

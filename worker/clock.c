@@ -11,11 +11,10 @@ int64_t clock_ms(void) {
 int clock_cond_init(pthread_cond_t *cond) {
     pthread_condattr_t attributes;
     int status = pthread_condattr_init(&attributes);
-    if (status) {
+    if (status != 0)
         return status;
-    }
     status = pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    status = status ? status : pthread_cond_init(cond, &attributes);
+    status = status != 0 ? status : pthread_cond_init(cond, &attributes);
     pthread_condattr_destroy(&attributes);
     return status;
 }

@@ -11,7 +11,7 @@ static int check_kind(const void *context, const cJSON *parameters, struct fault
     const struct job_kind *kind = context;
     struct job_estimate estimate = {0};
     int status = kind->check(parameters, faults, &estimate, err);
-    if (!status) {
+    if (status == 0) {
         *cost = (struct study_cost){
             .nx = estimate.nx,
             .ny = estimate.ny,

@@ -13,15 +13,13 @@ struct line {
 };
 
 static void line_byte(struct line *line, char byte) {
-    if (line->length < line->size) {
+    if (line->length < line->size)
         line->text[line->length++] = byte;
-    }
 }
 
 static void line_text(struct line *line, const char *text) {
-    for (; *text; text++) {
+    for (; *text; text++)
         line_byte(line, *text);
-    }
 }
 
 __attribute__((format(printf, 2, 3))) static void line_print(struct line *line, const char *format,
@@ -31,9 +29,8 @@ __attribute__((format(printf, 2, 3))) static void line_print(struct line *line, 
     va_start(arguments, format);
     int length = vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    if (length > 0) {
+    if (length > 0)
         line_text(line, text);
-    }
 }
 
 /* Bare where logfmt allows it, else quoted, with control bytes escaped so that no value can start a
@@ -52,21 +49,20 @@ static void line_value(struct line *line, const char *value) {
     line_byte(line, '"');
     for (size_t n = 0; n < length; n++) {
         unsigned char byte = (unsigned char)value[n];
-        if (byte == '"' || byte == '\\') {
+        if (byte == '"' || byte == '\\')
             line_print(line, "\\%c", byte);
-        } else if (byte == '\n') {
+        else if (byte == '\n')
             line_text(line, "\\n");
-        } else if (byte < ' ' || byte == 0x7f) {
+        else if (byte < ' ' || byte == 0x7f)
             line_print(line, "\\x%02x", byte);
-        } else {
+        else
             line_byte(line, (char)byte);
-        }
     }
     line_byte(line, '"');
 }
 
 static void line_field(struct line *line, const char *key, const char *value) {
-    if (value) {
+    if (value != NULL) {
         line_print(line, " %s=", key);
         line_value(line, value);
     }
@@ -76,42 +72,35 @@ static void line_time(struct line *line, int64_t time_ms) {
     time_t seconds = (time_t)(time_ms / 1000);
     struct tm utc = {0};
     char text[32] = "";
-    if (gmtime_r(&seconds, &utc)) {
+    if (gmtime_r(&seconds, &utc) != NULL)
         strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
-    }
     line_print(line, "time=%s.%03dZ", text, (int)(time_ms % 1000));
 }
 
 static void line_about(struct line *line, const struct log_about *about) {
     line_field(line, "worker", about->worker);
     line_field(line, "study", about->study);
-    if (about->job) {
+    if (about->job)
         line_print(line, " job=%lld", (long long)about->job);
-    }
-    if (about->attempt) {
+    if (about->attempt)
         line_print(line, " attempt=%llu", (unsigned long long)about->attempt);
-    }
     line_field(line, "request", about->request);
-    if (about->status) {
+    if (about->status)
         line_print(line, " status=%ld", about->status);
-    }
-    if (about->seconds > 0) {
+    if (about->seconds > 0)
         line_print(line, " seconds=%.6f", about->seconds);
-    }
 }
 
 size_t log_format(char *line, size_t size, int64_t time_ms, enum log_level level,
                   const struct log_about *about, const char *message) {
     static const char *const names[] = {"debug", "info", "warning", "error"};
-    if (size < 2) {
+    if (size < 2)
         return 0;
-    }
     struct line made = {line, size - 2, 0};
     line_time(&made, time_ms);
     line_field(&made, "level", names[level]);
-    if (about) {
+    if (about != NULL)
         line_about(&made, about);
-    }
     line_field(&made, "msg", message);
     line[made.length++] = '\n';
     line[made.length] = '\0';

@@ -12,9 +12,8 @@
 static double file_number(const char *path) {
     char text[64] = "";
     FILE *file = fopen(path, "re");
-    if (!file) {
+    if (file == NULL)
         return INFINITY;
-    }
     bool read = fgets(text, sizeof text, file) != NULL;
     (void)fclose(file);
     char *end = text;
@@ -31,9 +30,8 @@ static double group_limit(const char *root, char *folder, const char *name) {
         snprintf(path, sizeof path, "%s%s/%s", root, folder, name);
         least = fmin(least, file_number(path));
         char *slash = strrchr(folder, '/');
-        if (!slash) {
+        if (slash == NULL)
             return least;
-        }
         *slash = '\0';
     }
 }
@@ -41,18 +39,16 @@ static double group_limit(const char *root, char *folder, const char *name) {
 /* /proc/self/cgroup has lines HIERARCHY:CONTROLLERS:FOLDER; version 2 is "0::FOLDER". */
 static double cgroup_limit(void) {
     FILE *file = fopen("/proc/self/cgroup", "re");
-    if (!file) {
+    if (file == NULL)
         return INFINITY;
-    }
     double least = INFINITY;
     char line[PATH_MAX];
-    while (fgets(line, sizeof line, file)) {
+    while (fgets(line, sizeof line, file) != NULL) {
         line[strcspn(line, "\n")] = '\0';
         char *controllers = strchr(line, ':');
-        char *folder = controllers ? strchr(controllers + 1, ':') : NULL;
-        if (!folder) {
+        char *folder = controllers != NULL ? strchr(controllers + 1, ':') : NULL;
+        if (folder == NULL)
             continue;
-        }
         *folder++ = '\0';
         if (strcmp(controllers + 1, "") == 0) {
             least = fmin(least, group_limit("/sys/fs/cgroup", folder, "memory.max"));

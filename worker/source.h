@@ -1,5 +1,5 @@
-/* Where a worker's jobs come from: the local store or a server, behind one face. One thread each.
- */
+/* Where a worker's jobs come from: a local store or a server, behind the same functions. A source
+ * must be used by one thread at a time. */
 #ifndef RUGO_WORKER_SOURCE_H
 #define RUGO_WORKER_SOURCE_H
 
@@ -8,25 +8,25 @@
 
 struct source;
 struct source_options {
-    const char *database; /* one of database and url */
+    const char *database; /* exactly one of database and url is set */
     const char *url;
     const char *token;
-    const char *study; /* only this study's jobs; NULL any (store only) */
+    const char *study; /* claims jobs of this study only; NULL: of any (store only) */
     const char *worker, *host;
     int64_t lease_ms; /* of jobs claimed here (store only); 0: the store's default */
 };
 int source_create(struct source **out, const struct source_options *options, struct error *err);
 void source_destroy(struct source **source);
 
-/* Codes as store.h: ERROR_STATE lost lease or cancelled; ERROR_SYSTEM: no answer or busy, try
- * again. */
+/* Failures have the codes of store.h: ERROR_STATE when the lease is lost or the study cancelled,
+ * ERROR_SYSTEM when there is no answer or the store is busy, so that a retry may succeed. */
 int source_claim(struct source *source, struct claimed_job *job, int *found, struct error *err);
-/* Whether jobs wait or run anywhere, so that more may come. A server is asked only for what it
- * lists to this token; where it refuses, nothing is left. */
+/* *left: whether a job waits or runs anywhere, so that one may still have to be claimed. Of a
+ * server, only studies that this token may list count; *left is 0 when it may list none. */
 int source_left(struct source *source, int *left, struct error *err);
 int source_heartbeat(struct source *source, const struct claimed_job *job, uint64_t done,
                      struct error *err);
-/* With a store, also publishes the case when this was its last block. */
+/* A source of a store also publishes the case after its last block. */
 int source_complete(struct source *source, const struct claimed_job *job,
                     const struct job_kind *kind, const struct job_result *result,
                     struct error *err);

@@ -1,6 +1,6 @@
 /* Jobs from a server, over HTTP; wire.h says what crosses. */
 #include "worker/client.h"
-#include "worker/source_way.h"
+#include "worker/source_backend.h"
 #include "worker/wire.h"
 
 #include <stdio.h>
@@ -16,36 +16,34 @@ struct remote {
     struct client *client;
 };
 
-static void remote_destroy(void *way) {
-    struct remote *remote = way;
-    if (remote) {
+static void remote_destroy(void *self) {
+    struct remote *remote = self;
+    if (remote != NULL) {
         client_destroy(&remote->client);
         free(remote);
     }
 }
 
-static int remote_create(void **way, const struct source_options *options, struct error *err) {
+static int remote_create(void **self, const struct source_options *options, struct error *err) {
     struct remote *remote = calloc(1, sizeof *remote);
-    if (!remote) {
+    if (remote == NULL)
         return error_memory(err, sizeof *remote, "a source of jobs");
-    }
     int status = client_create(&remote->client, options->url, options->token, err);
-    if (status) {
+    if (status != 0) {
         remote_destroy(remote);
         return status;
     }
-    *way = remote;
+    *self = remote;
     return 0;
 }
 
 /* Takes body (NULL: out of memory) and posts it; *answer may be NULL for an empty one. */
 static int remote_post(struct remote *remote, const char *path, cJSON *body, long timeout_ms,
                        cJSON **answer, struct error *err) {
-    char *text = body ? json_print(body) : NULL;
+    char *text = body != NULL ? json_print(body) : NULL;
     cJSON_Delete(body);
-    if (!text) {
+    if (text == NULL)
         return error_set(err, ERROR_MEMORY, "no memory left for a request");
-    }
     struct request request = {
         .method = "POST", .path = path, .body = text, .timeout_ms = timeout_ms};
     int status = client_json(remote->client, &request, answer, err);
@@ -53,28 +51,24 @@ static int remote_post(struct remote *remote, const char *path, cJSON *body, lon
     return status;
 }
 
-static int remote_claim(void *way, const struct claim *claim, struct claimed_job *job, int *found,
+static int remote_claim(void *self, const struct claim *claim, struct claimed_job *job, int *found,
                         struct error *err) {
     cJSON *answer = NULL;
-    int status = remote_post(way, "/v1/jobs/claim", wire_claim(claim), 0, &answer, err);
-    if (status == ERROR_STATE) { /* of no job of ours: the server cannot do it just now */
+    int status = remote_post(self, "/v1/jobs/claim", wire_claim(claim), 0, &answer, err);
+    if (status == ERROR_STATE) /* of no job of ours: the server cannot do it just now */
         return err->code = ERROR_SYSTEM;
-    }
-    if (status) {
+    if (status != 0)
         return status;
-    }
     size_t count = 0;
-    if (answer) {
+    if (answer != NULL)
         status = wire_jobs_read(answer, job, 1, &count, err);
-    }
     cJSON_Delete(answer);
     if (status == ERROR_INPUT) { /* what came is wrong, not what was asked */
         err->code = ERROR_SYSTEM;
         status = error_context(err, "the server's answer to a claim");
     }
-    if (!status) {
+    if (status == 0)
         *found = count > 0;
-    }
     return status;
 }
 
@@ -87,45 +81,44 @@ static int remote_report(struct remote *remote, const struct claimed_job *job, c
     snprintf(path, sizeof path, "/v1/jobs/%lld/%s", (long long)job->id, verb);
     int status = remote_post(remote, path, body, timeout_ms, &answer, err);
     cJSON_Delete(answer);
-    if (status == ERROR_ABSENT) {
+    if (status == ERROR_ABSENT)
         status = err->code = ERROR_STATE;
-    }
     return status;
 }
 
-static int remote_heartbeat(void *way, const struct claimed_job *job, uint64_t done,
+static int remote_heartbeat(void *self, const struct claimed_job *job, uint64_t done,
                             struct error *err) {
-    return remote_report(way, job, "heartbeat", wire_heartbeat(job->token, done), HEARTBEAT_MS,
+    return remote_report(self, job, "heartbeat", wire_heartbeat(job->token, done), HEARTBEAT_MS,
                          err);
 }
 
-static int remote_complete(void *way, const struct claimed_job *job, const struct job_kind *kind,
+static int remote_complete(void *self, const struct claimed_job *job, const struct job_kind *kind,
                            const struct job_result *result, struct error *err) {
-    return remote_report(way, job, "complete", wire_result(job->token, kind->scalars, result),
+    return remote_report(self, job, "complete", wire_result(job->token, kind->scalars, result),
                          RESULT_MS, err);
 }
 
-static int remote_fail(void *way, const struct claimed_job *job, const char *reason, int permanent,
+static int remote_fail(void *self, const struct claimed_job *job, const char *reason, int permanent,
                        struct error *err) {
-    return remote_report(way, job, "fail", wire_fail(job->token, reason, permanent != 0), 0, err);
+    return remote_report(self, job, "fail", wire_fail(job->token, reason, permanent != 0), 0, err);
 }
 
-static int remote_release(void *way, const struct claimed_job *job, struct error *err) {
-    return remote_report(way, job, "release", wire_release(job->token), HEARTBEAT_MS, err);
+static int remote_release(void *self, const struct claimed_job *job, struct error *err) {
+    return remote_report(self, job, "release", wire_release(job->token), HEARTBEAT_MS, err);
 }
 
 static bool study_goes_on(const cJSON *study) {
     const char *state = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(study, "state"));
-    return state && (strcmp(state, "queued") == 0 || strcmp(state, "running") == 0);
+    return state != NULL && (strcmp(state, "queued") == 0 || strcmp(state, "running") == 0);
 }
 
 /* Pages through the server's list of studies until one goes on. */
-static int remote_left(void *way, int *left, struct error *err) {
-    struct remote *remote = way;
+static int remote_left(void *self, int *left, struct error *err) {
+    struct remote *remote = self;
     char after[STUDY_ID_SIZE] = "";
     bool more = true, found = false;
     int status = 0;
-    while (more && !found && !status) {
+    while (more && !found && status == 0) {
         char path[96];
         cJSON *page = NULL;
         const cJSON *study;
@@ -136,23 +129,20 @@ static int remote_left(void *way, int *left, struct error *err) {
         cJSON_ArrayForEach(study, cJSON_GetObjectItemCaseSensitive(page, "studies")) {
             const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(study, "id"));
             found = found || study_goes_on(study);
-            more = id && strlen(id) < sizeof after && strcmp(id, after) != 0;
-            if (more) {
+            more = id != NULL && strlen(id) < sizeof after && strcmp(id, after) != 0;
+            if (more)
                 memcpy(after, id, strlen(id) + 1);
-            }
         }
         cJSON_Delete(page);
     }
-    if (status == ERROR_INPUT) { /* not for this token to see */
+    if (status == ERROR_INPUT) /* not for this token to see */
         status = 0;
-    }
-    if (!status) {
+    if (status == 0)
         *left = found;
-    }
     return status;
 }
 
-const struct source_way SOURCE_SERVER = {
+const struct source_backend SOURCE_SERVER = {
     .create = remote_create,
     .destroy = remote_destroy,
     .claim = remote_claim,

@@ -1,7 +1,7 @@
 /* Jobs out of a local store, which other processes may have open as well. */
 #include "worker/aggregate.h"
 #include "worker/log.h"
-#include "worker/source_way.h"
+#include "worker/source_backend.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,46 +12,43 @@ struct local {
     char study[STUDY_ID_SIZE]; /* "": any */
 };
 
-static void local_destroy(void *way) {
-    struct local *local = way;
-    if (local) {
+static void local_destroy(void *self) {
+    struct local *local = self;
+    if (local != NULL) {
         store_close(&local->store);
         free(local);
     }
 }
 
-static int local_create(void **way, const struct source_options *options, struct error *err) {
+static int local_create(void **self, const struct source_options *options, struct error *err) {
     struct local *local = calloc(1, sizeof *local);
-    if (!local) {
+    if (local == NULL)
         return error_memory(err, sizeof *local, "a source of jobs");
-    }
-    if (options->study) {
+    if (options->study != NULL)
         snprintf(local->study, sizeof local->study, "%s", options->study);
-    }
     struct store_options store_options = {.lease_ms = options->lease_ms};
     int status = store_open(&local->store, options->database, &store_options, err);
-    if (status) {
+    if (status != 0) {
         local_destroy(local);
         return status;
     }
-    *way = local;
+    *self = local;
     return 0;
 }
 
-static int local_claim(void *way, const struct claim *claim, struct claimed_job *job, int *found,
+static int local_claim(void *self, const struct claim *claim, struct claimed_job *job, int *found,
                        struct error *err) {
-    struct local *local = way;
+    struct local *local = self;
     size_t count = 0;
     int status = store_claim(local->store, claim, job, &count, err);
-    if (!status) {
+    if (status == 0)
         *found = count > 0;
-    }
     return status;
 }
 
-static int local_heartbeat(void *way, const struct claimed_job *job, uint64_t done,
+static int local_heartbeat(void *self, const struct claimed_job *job, uint64_t done,
                            struct error *err) {
-    struct local *local = way;
+    struct local *local = self;
     return store_heartbeat(local->store, job->id, job->token, done, err);
 }
 
@@ -66,9 +63,9 @@ static void local_publish(struct local *local, const struct claimed_job *job) {
     }
 }
 
-static int local_complete(void *way, const struct claimed_job *job, const struct job_kind *kind,
+static int local_complete(void *self, const struct claimed_job *job, const struct job_kind *kind,
                           const struct job_result *result, struct error *err) {
-    struct local *local = way;
+    struct local *local = self;
     bool first_time = false, case_done = false;
     struct block_result block = {
         .first = result->first,
@@ -82,29 +79,28 @@ static int local_complete(void *way, const struct claimed_job *job, const struct
     };
     int status =
         store_complete(local->store, job->id, job->token, &block, &first_time, &case_done, err);
-    if (!status && case_done) {
+    if (status == 0 && case_done)
         local_publish(local, job);
-    }
     return status;
 }
 
-static int local_fail(void *way, const struct claimed_job *job, const char *reason, int permanent,
+static int local_fail(void *self, const struct claimed_job *job, const char *reason, int permanent,
                       struct error *err) {
-    struct local *local = way;
+    struct local *local = self;
     return store_fail(local->store, job->id, job->token, reason, permanent != 0, err);
 }
 
-static int local_release(void *way, const struct claimed_job *job, struct error *err) {
-    struct local *local = way;
+static int local_release(void *self, const struct claimed_job *job, struct error *err) {
+    struct local *local = self;
     return store_release(local->store, job->id, job->token, err);
 }
 
-static int local_left(void *way, int *left, struct error *err) {
-    struct local *local = way;
+static int local_left(void *self, int *left, struct error *err) {
+    struct local *local = self;
     if (local->study[0]) {
         struct study_status study = {0};
         int status = store_status(local->store, local->study, &study, err);
-        if (!status) {
+        if (status == 0) {
             *left = study.jobs_waiting + study.jobs_running > 0;
             study_status_clear(&study);
         }
@@ -112,13 +108,12 @@ static int local_left(void *way, int *left, struct error *err) {
     }
     struct store_metrics metrics = {0};
     int status = store_metrics(local->store, &metrics, err);
-    if (!status) {
+    if (status == 0)
         *left = metrics.jobs_waiting + metrics.jobs_running > 0;
-    }
     return status;
 }
 
-const struct source_way SOURCE_STORE = {
+const struct source_backend SOURCE_STORE = {
     .create = local_create,
     .destroy = local_destroy,
     .claim = local_claim,

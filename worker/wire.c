@@ -10,24 +10,22 @@
 static cJSON *texts(const char *const *strings) {
     cJSON *array = cJSON_CreateArray();
     bool complete = array != NULL;
-    for (size_t n = 0; complete && strings[n]; n++) {
+    for (size_t n = 0; complete && strings[n] != NULL; n++) {
         cJSON *item = cJSON_CreateString(strings[n]);
-        complete = item && cJSON_AddItemToArray(array, item);
-        if (!complete) {
+        complete = item != NULL && cJSON_AddItemToArray(array, item);
+        if (!complete)
             cJSON_Delete(item);
-        }
     }
     return fields_finish(array, complete);
 }
 
 static int read_seed(const cJSON *object, uint64_t *out, struct error *err) {
     const char *text = cJSON_GetStringValue(field_at(object, "seed"));
-    bool digits = text && *text && strspn(text, "0123456789") == strlen(text);
+    bool digits = text != NULL && *text && strspn(text, "0123456789") == strlen(text);
     errno = 0;
     unsigned long long seed = digits ? strtoull(text, NULL, 10) : 0;
-    if (!digits || errno) {
+    if (!digits || errno)
         return field_fault("seed", "a decimal string of at most 2^64 - 1", err);
-    }
     *out = seed;
     return 0;
 }
@@ -36,23 +34,21 @@ static int read_seed(const cJSON *object, uint64_t *out, struct error *err) {
 
 cJSON *wire_claim(const struct claim *claim) {
     cJSON *value = cJSON_CreateObject();
-    return fields_finish(value,
-                         value && field_put_text(value, "worker", claim->worker) &&
-                             field_put_text(value, "host", claim->host ? claim->host : "") &&
-                             (!claim->kinds || field_put(value, "kinds", texts(claim->kinds))) &&
-                             field_put_count(value, "count", claim->count));
+    return fields_finish(
+        value, value != NULL && field_put_text(value, "worker", claim->worker) &&
+                   field_put_text(value, "host", claim->host != NULL ? claim->host : "") &&
+                   (claim->kinds == NULL || field_put(value, "kinds", texts(claim->kinds))) &&
+                   field_put_count(value, "count", claim->count));
 }
 
 static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
-    if (!cJSON_IsArray(kinds) || cJSON_GetArraySize(kinds) > WIRE_KINDS_MOST) {
+    if (!cJSON_IsArray(kinds) || cJSON_GetArraySize(kinds) > WIRE_KINDS_MOST)
         return field_fault("kinds", "an array of at most 32 names", err);
-    }
     size_t count = 0;
     const cJSON *kind;
     cJSON_ArrayForEach(kind, kinds) {
-        if (!cJSON_IsString(kind)) {
+        if (!cJSON_IsString(kind))
             return field_fault("kinds", "an array of at most 32 names", err);
-        }
         out[count++] = kind->valuestring;
     }
     out[count] = NULL;
@@ -60,30 +56,25 @@ static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
 }
 
 int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *err) {
-    if (!cJSON_IsObject(value)) {
+    if (!cJSON_IsObject(value))
         return error_set(err, ERROR_INPUT, "a claim must be an object");
-    }
     struct claim claim = {0};
     const char *kinds[WIRE_KINDS_MOST + 1] = {NULL};
     uint64_t count = 1;
     int status = field_text(value, "worker", 256, &claim.worker, err);
     const cJSON *host = field_at(value, "host");
-    if (!status && host && !cJSON_IsString(host)) {
+    if (status == 0 && host != NULL && !cJSON_IsString(host))
         status = field_fault("host", "a string", err);
-    }
-    claim.host = host ? cJSON_GetStringValue(host) : "";
-    if (!status && field_at(value, "kinds")) {
+    claim.host = host != NULL ? cJSON_GetStringValue(host) : "";
+    if (status == 0 && field_at(value, "kinds") != NULL)
         status = read_kinds(field_at(value, "kinds"), kinds, err);
-    }
-    if (!status && field_at(value, "count")) {
+    if (status == 0 && field_at(value, "count") != NULL)
         status = field_count(value, "count", &count, err);
-    }
-    if (status) {
+    if (status != 0)
         return status;
-    }
     claim.count = count < WIRE_JOBS_MOST ? (size_t)count : WIRE_JOBS_MOST;
     memcpy(out->kinds, kinds, sizeof kinds);
-    claim.kinds = field_at(value, "kinds") ? out->kinds : NULL;
+    claim.kinds = field_at(value, "kinds") != NULL ? out->kinds : NULL;
     out->claim = claim;
     return 0;
 }
@@ -96,7 +87,7 @@ static cJSON *wire_job(const struct claimed_job *job) {
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)job->seed);
     bool complete =
-        value && field_put(value, "id", cJSON_CreateNumber((double)job->id)) &&
+        value != NULL && field_put(value, "id", cJSON_CreateNumber((double)job->id)) &&
         field_put_text(value, "study", job->study) && field_put_text(value, "kind", job->kind) &&
         field_put_count(value, "case", job->case_number) && field_put_text(value, "seed", seed) &&
         field_put_count(value, "first", job->first) &&
@@ -111,13 +102,12 @@ static cJSON *wire_job(const struct claimed_job *job) {
 
 cJSON *wire_jobs(const struct claimed_job *jobs, size_t count) {
     cJSON *value = cJSON_CreateObject(), *array = cJSON_CreateArray();
-    bool complete = value && field_put(value, "jobs", array);
+    bool complete = value != NULL && field_put(value, "jobs", array);
     for (size_t n = 0; complete && n < count; n++) {
         cJSON *job = wire_job(&jobs[n]);
-        complete = job && cJSON_AddItemToArray(array, job);
-        if (!complete) {
+        complete = job != NULL && cJSON_AddItemToArray(array, job);
+        if (!complete)
             cJSON_Delete(job);
-        }
     }
     return fields_finish(value, complete);
 }
@@ -127,16 +117,15 @@ static int read_numbers(const cJSON *value, struct claimed_job *job, struct erro
     double lease = 0;
     int status = field_count(value, "id", &id, err);
     job->id = (int64_t)id;
-    status = status ? status : field_count(value, "case", &job->case_number, err);
-    status = status ? status : read_seed(value, &job->seed, err);
-    status = status ? status : field_count(value, "first", &job->first, err);
-    status = status ? status : field_count(value, "count", &job->count, err);
-    status = status ? status : field_count(value, "attempt", &job->attempt, err);
-    status = status ? status : field_seconds(value, "lease_seconds", &lease, err);
+    status = status != 0 ? status : field_count(value, "case", &job->case_number, err);
+    status = status != 0 ? status : read_seed(value, &job->seed, err);
+    status = status != 0 ? status : field_count(value, "first", &job->first, err);
+    status = status != 0 ? status : field_count(value, "count", &job->count, err);
+    status = status != 0 ? status : field_count(value, "attempt", &job->attempt, err);
+    status = status != 0 ? status : field_seconds(value, "lease_seconds", &lease, err);
     job->lease_ms = lease > 1e9 ? 1000000000000 : llround(lease * 1000.0);
-    if (!status && job->count == 0) {
+    if (status == 0 && job->count == 0)
         status = field_fault("count", "at least 1", err);
-    }
     return status;
 }
 
@@ -144,18 +133,16 @@ static int wire_job_read(const cJSON *value, struct claimed_job *out, struct err
     struct claimed_job job = {0};
     const char *kind = "";
     int status = read_numbers(value, &job, err);
-    status = status ? status : field_copy(value, "study", STUDY_ID_SIZE, job.study, err);
-    status = status ? status : field_copy(value, "token", TOKEN_SIZE, job.token, err);
-    status = status ? status : field_text(value, "kind", 64, &kind, err);
-    if (!status && !cJSON_IsObject(field_at(value, "parameters"))) {
+    status = status != 0 ? status : field_copy(value, "study", STUDY_ID_SIZE, job.study, err);
+    status = status != 0 ? status : field_copy(value, "token", TOKEN_SIZE, job.token, err);
+    status = status != 0 ? status : field_text(value, "kind", 64, &kind, err);
+    if (status == 0 && !cJSON_IsObject(field_at(value, "parameters")))
         status = field_fault("parameters", "an object", err);
-    }
-    if (status) {
+    if (status != 0)
         return status;
-    }
     job.kind = strdup(kind);
     job.parameters = json_print(field_at(value, "parameters"));
-    if (!job.kind || !job.parameters) {
+    if (job.kind == NULL || job.parameters == NULL) {
         claimed_job_clear(&job);
         return error_set(err, ERROR_MEMORY, "no memory left to read a job");
     }
@@ -166,22 +153,19 @@ static int wire_job_read(const cJSON *value, struct claimed_job *out, struct err
 int wire_jobs_read(const cJSON *value, struct claimed_job *jobs, size_t most, size_t *count,
                    struct error *err) {
     const cJSON *array = field_at(value, "jobs"), *item;
-    if (!cJSON_IsArray(array) || (size_t)cJSON_GetArraySize(array) > most) {
+    if (!cJSON_IsArray(array) || (size_t)cJSON_GetArraySize(array) > most)
         return error_set(err, ERROR_INPUT, "\"jobs\" must be an array of at most %zu", most);
-    }
     size_t n = 0;
     int status = 0;
     cJSON_ArrayForEach(item, array) {
         status = wire_job_read(item, &jobs[n], err);
-        if (status) {
+        if (status != 0)
             break;
-        }
         n++;
     }
-    if (status) {
-        while (n > 0) {
+    if (status != 0) {
+        while (n > 0)
             claimed_job_clear(&jobs[--n]);
-        }
         return status;
     }
     *count = n;
@@ -195,10 +179,9 @@ static cJSON *scalar_rows(const struct job_result *result) {
     bool complete = rows != NULL;
     for (uint64_t r = 0; complete && r < result->count; r++) {
         cJSON *row = json_numbers(result->scalars + r * result->scalar_count, result->scalar_count);
-        complete = row && cJSON_AddItemToArray(rows, row);
-        if (!complete) {
+        complete = row != NULL && cJSON_AddItemToArray(rows, row);
+        if (!complete)
             cJSON_Delete(row);
-        }
     }
     return fields_finish(rows, complete);
 }
@@ -206,12 +189,11 @@ static cJSON *scalar_rows(const struct job_result *result) {
 cJSON *wire_result(const char *token, const char *const *names, const struct job_result *result) {
     char *data = NULL;
     struct error ignored;
-    if (base64_encode(result->data, result->size, &data, &ignored) != 0) {
+    if (base64_encode(result->data, result->size, &data, &ignored) != 0)
         return NULL;
-    }
     cJSON *value = cJSON_CreateObject(), *scalars = cJSON_CreateObject();
     bool complete =
-        value && field_put(value, "scalars", scalars) &&
+        value != NULL && field_put(value, "scalars", scalars) &&
         field_put(scalars, "names", texts(names)) &&
         field_put(scalars, "rows", scalar_rows(result)) && field_put_text(value, "token", token) &&
         field_put(value, "seconds", json_number(result->seconds)) &&
@@ -229,18 +211,15 @@ void wire_result_clear(struct wire_result *result) {
 
 static int read_names(const cJSON *scalars, struct wire_result *out, struct error *err) {
     const cJSON *names = field_at(scalars, "names"), *name;
-    if (!cJSON_IsArray(names)) {
+    if (!cJSON_IsArray(names))
         return field_fault("names", "an array of strings", err);
-    }
     size_t count = (size_t)cJSON_GetArraySize(names), n = 0;
     out->names = array_create(count + 1, sizeof *out->names);
-    if (!out->names) {
+    if (out->names == NULL)
         return error_memory(err, (count + 1) * sizeof *out->names, "names of scalars");
-    }
     cJSON_ArrayForEach(name, names) {
-        if (!cJSON_IsString(name)) {
+        if (!cJSON_IsString(name))
             return field_fault("names", "an array of strings", err);
-        }
         out->names[n++] = name->valuestring;
     }
     out->result.scalar_count = count;
@@ -250,13 +229,11 @@ static int read_names(const cJSON *scalars, struct wire_result *out, struct erro
 static int read_row(const cJSON *row, double *values, size_t count, struct error *err) {
     size_t n = 0;
     const cJSON *item;
-    if (!cJSON_IsArray(row)) {
+    if (!cJSON_IsArray(row))
         return field_fault("rows", "an array of arrays", err);
-    }
     cJSON_ArrayForEach(item, row) {
-        if (n == count || !(cJSON_IsNumber(item) || cJSON_IsNull(item))) {
+        if (n == count || !(cJSON_IsNumber(item) || cJSON_IsNull(item)))
             return field_fault("rows", "numbers or null, one for each name", err);
-        }
         values[n++] = cJSON_IsNull(item) ? (double)NAN : item->valuedouble;
     }
     return n == count ? 0 : field_fault("rows", "numbers or null, one for each name", err);
@@ -265,20 +242,17 @@ static int read_row(const cJSON *row, double *values, size_t count, struct error
 /* Memory follows the rows that are there, never a count that was only claimed. */
 static int read_rows(const cJSON *scalars, struct job_result *out, struct error *err) {
     const cJSON *rows = field_at(scalars, "rows"), *row;
-    if (!cJSON_IsArray(rows) || (uint64_t)cJSON_GetArraySize(rows) != out->count) {
+    if (!cJSON_IsArray(rows) || (uint64_t)cJSON_GetArraySize(rows) != out->count)
         return field_fault("rows", "an array of as many rows as \"count\"", err);
-    }
     size_t count = (size_t)out->count, width = out->scalar_count;
     out->scalars = array_create(count * (width ? width : 1), sizeof *out->scalars);
-    if (!out->scalars) {
+    if (out->scalars == NULL)
         return error_memory(err, count * width * sizeof *out->scalars, "scalars of a result");
-    }
     size_t r = 0;
     cJSON_ArrayForEach(row, rows) {
         int status = read_row(row, out->scalars + r * width, width, err);
-        if (status) {
+        if (status != 0)
             return status;
-        }
         r++;
     }
     return 0;
@@ -287,26 +261,24 @@ static int read_rows(const cJSON *scalars, struct job_result *out, struct error 
 static int read_result(const cJSON *value, struct wire_result *out, struct error *err) {
     struct job_result *result = &out->result;
     int status = field_copy(value, "token", TOKEN_SIZE, out->token, err);
-    status = status ? status : field_seconds(value, "seconds", &result->seconds, err);
-    status = status ? status : field_count(value, "first", &result->first, err);
-    status = status ? status : field_count(value, "count", &result->count, err);
-    status = status ? status : read_names(field_at(value, "scalars"), out, err);
-    status = status ? status : read_rows(field_at(value, "scalars"), result, err);
-    if (status) {
+    status = status != 0 ? status : field_seconds(value, "seconds", &result->seconds, err);
+    status = status != 0 ? status : field_count(value, "first", &result->first, err);
+    status = status != 0 ? status : field_count(value, "count", &result->count, err);
+    status = status != 0 ? status : read_names(field_at(value, "scalars"), out, err);
+    status = status != 0 ? status : read_rows(field_at(value, "scalars"), result, err);
+    if (status != 0)
         return status;
-    }
     const char *data = cJSON_GetStringValue(field_at(value, "data"));
-    if (!data) {
+    if (data == NULL)
         return field_fault("data", "a base64 string", err);
-    }
     status = base64_decode(data, &result->data, &result->size, err);
-    return status ? error_context(err, "\"data\"") : 0;
+    return status != 0 ? error_context(err, "\"data\"") : 0;
 }
 
 int wire_result_read(const cJSON *value, struct wire_result *out, struct error *err) {
     struct wire_result read = {0};
     int status = read_result(value, &read, err);
-    if (status) {
+    if (status != 0) {
         wire_result_clear(&read);
         return status;
     }
@@ -332,18 +304,18 @@ struct block_result wire_block(const struct wire_result *result) {
 
 cJSON *wire_heartbeat(const char *token, uint64_t done) {
     cJSON *value = wire_release(token);
-    return fields_finish(value, value && field_put_count(value, "done", done));
+    return fields_finish(value, value != NULL && field_put_count(value, "done", done));
 }
 
 cJSON *wire_fail(const char *token, const char *reason, bool permanent) {
     cJSON *value = wire_release(token);
-    return fields_finish(value, value && field_put_text(value, "reason", reason) &&
+    return fields_finish(value, value != NULL && field_put_text(value, "reason", reason) &&
                                     field_put(value, "permanent", cJSON_CreateBool(permanent)));
 }
 
 cJSON *wire_release(const char *token) {
     cJSON *value = cJSON_CreateObject();
-    return fields_finish(value, value && field_put_text(value, "token", token));
+    return fields_finish(value, value != NULL && field_put_text(value, "token", token));
 }
 
 /* Copies what fits, without a broken UTF-8 character at the cut. */
@@ -351,9 +323,8 @@ static void text_cut(char *out, size_t size, const char *text) {
     size_t length = strlen(text);
     if (length >= size) {
         length = size - 1;
-        while (length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80) {
+        while (length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80)
             length--;
-        }
     }
     memcpy(out, text, length);
     out[length] = '\0';
@@ -362,20 +333,16 @@ static void text_cut(char *out, size_t size, const char *text) {
 int wire_report_read(const cJSON *value, struct wire_report *out, struct error *err) {
     struct wire_report report = {0};
     int status = field_copy(value, "token", TOKEN_SIZE, report.token, err);
-    if (!status && field_at(value, "done")) {
+    if (status == 0 && field_at(value, "done") != NULL)
         status = field_count(value, "done", &report.done, err);
-    }
-    status = status ? status : field_bool(value, "permanent", &report.permanent, err);
+    status = status != 0 ? status : field_bool(value, "permanent", &report.permanent, err);
     const cJSON *reason = field_at(value, "reason");
-    if (!status && reason && !cJSON_IsString(reason)) {
+    if (status == 0 && reason != NULL && !cJSON_IsString(reason))
         status = field_fault("reason", "a string", err);
-    }
-    if (status) {
+    if (status != 0)
         return status;
-    }
-    if (reason) {
+    if (reason != NULL)
         text_cut(report.reason, sizeof report.reason, reason->valuestring);
-    }
     *out = report;
     return 0;
 }

@@ -1,126 +1,88 @@
 #include "worker/worker.h"
 #include "worker/clock.h"
-#include "worker/hand.h"
+#include "worker/worker_thread.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/random.h>
 #include <unistd.h>
 
 enum {
     THREADS_MOST = 1024,
     STOP_POLL_MS = 100,
     TICK_MS = 500,
-    PAUSE_FIRST_MS = 50,
-    GRACE_MS = 2000 /* for the realisation under way, once told to end */
+    GRACE_MS = 2000 /* how long a realisation under way may go on after a stop */
 };
 
-void crew_end(struct crew *crew) {
-    pthread_mutex_lock(&crew->lock);
-    atomic_store(&crew->ending, true);
-    pthread_cond_broadcast(&crew->changed);
-    pthread_mutex_unlock(&crew->lock);
-}
-
-void crew_fail(struct crew *crew, const struct error *err) {
-    pthread_mutex_lock(&crew->lock);
-    if (!crew->status) {
-        crew->status = err->code;
-        crew->err = *err;
-    }
-    pthread_mutex_unlock(&crew->lock);
-    crew_end(crew);
-}
-
-/* The upper half of a pause is random. */
-void crew_pause(struct crew *crew, struct backoff *backoff, int64_t most_ms) {
-    int64_t pause = backoff->ms ? 2 * backoff->ms : PAUSE_FIRST_MS;
-    backoff->ms = pause < most_ms ? pause : most_ms;
-    uint32_t word = 0;
-    if (getrandom(&word, sizeof word, GRND_NONBLOCK) != (ssize_t)sizeof word) {
-        word = 0; /* no jitter then */
-    }
-    int64_t until = clock_ms() + backoff->ms / 2 + (backoff->ms / 2) * (int64_t)word / UINT32_MAX;
-    pthread_mutex_lock(&crew->lock);
-    while (!atomic_load(&crew->ending) && clock_ms() < until) {
-        clock_cond_wait(&crew->changed, &crew->lock, until);
-    }
-    pthread_mutex_unlock(&crew->lock);
-}
-
-/* Watches over the threads until all have ended; true when it was told to end them. */
-static bool crew_watch(struct crew *crew) {
-    const struct worker_options *options = crew->options;
+/* Waits until all threads have ended; returns true when options->stop or tick asked them to end. */
+static bool worker_pool_watch(struct worker_pool *pool) {
+    const struct worker_options *options = pool->options;
     int64_t tick_ms = clock_ms() + TICK_MS, give_back_ms = INT64_MAX;
     bool stopped = false, at_work = true;
     while (at_work) {
-        pthread_mutex_lock(&crew->lock);
-        if (crew->at_work > 0) {
-            clock_cond_wait(&crew->changed, &crew->lock, clock_ms() + STOP_POLL_MS);
-        }
-        at_work = crew->at_work > 0;
-        pthread_mutex_unlock(&crew->lock);
-        bool stop = options->stop && *options->stop;
-        if (options->tick && clock_ms() >= tick_ms) {
+        pthread_mutex_lock(&pool->lock);
+        if (pool->at_work > 0)
+            clock_cond_wait(&pool->changed, &pool->lock, clock_ms() + STOP_POLL_MS);
+        at_work = pool->at_work > 0;
+        pthread_mutex_unlock(&pool->lock);
+        bool stop = options->stop != NULL && *options->stop;
+        if (options->tick != NULL && clock_ms() >= tick_ms) {
             stop = options->tick(options->context) != 0 || stop;
             tick_ms = clock_ms() + TICK_MS;
         }
         if (stop && !stopped) {
             stopped = true;
             give_back_ms = clock_ms() + GRACE_MS;
-            crew_end(crew);
+            worker_pool_end(pool);
         }
         if (clock_ms() >= give_back_ms) {
             give_back_ms = INT64_MAX;
-            keeper_give_back(crew->keeper);
+            lease_keeper_give_back(pool->keeper);
         }
     }
     return stopped;
 }
 
-static int hand_start(struct hand *hand, struct error *err) {
-    struct crew *crew = hand->crew;
-    struct source_options options = crew->options->source;
-    snprintf(hand->name, sizeof hand->name, "%.200s-%u", crew->name, hand->slot);
-    options.worker = hand->name;
-    int status = source_create(&hand->source, &options, err);
-    if (status) {
+static int thread_start(struct worker_thread *thread, struct error *err) {
+    struct worker_pool *pool = thread->pool;
+    struct source_options options = pool->options->source;
+    snprintf(thread->name, sizeof thread->name, "%.200s-%u", pool->name, thread->slot);
+    options.worker = thread->name;
+    int status = source_create(&thread->source, &options, err);
+    if (status != 0)
         return status;
-    }
-    pthread_mutex_lock(&crew->lock);
-    bool started = pthread_create(&hand->thread, NULL, hand_main, hand) == 0;
-    crew->at_work += started;
-    pthread_mutex_unlock(&crew->lock);
+    pthread_mutex_lock(&pool->lock);
+    bool started = pthread_create(&thread->handle, NULL, worker_thread_main, thread) == 0;
+    pool->at_work += started;
+    pthread_mutex_unlock(&pool->lock);
     if (!started) {
-        source_destroy(&hand->source);
+        source_destroy(&thread->source);
         return error_set(err, ERROR_SYSTEM, "cannot start a worker thread");
     }
     return 0;
 }
 
-static int crew_work(struct crew *crew, struct hand *hands, struct error *err) {
+static int worker_pool_work(struct worker_pool *pool, struct worker_thread *threads,
+                            struct error *err) {
     unsigned started = 0;
     int status = 0;
-    while (started < crew->options->threads && !status) {
-        hands[started] = (struct hand){.crew = crew, .slot = started};
-        status = hand_start(&hands[started], err);
+    while (started < pool->options->threads && status == 0) {
+        threads[started] = (struct worker_thread){.pool = pool, .slot = started};
+        status = thread_start(&threads[started], err);
         started += status == 0;
     }
-    if (status) {
-        crew_end(crew);
-    }
-    bool stopped = crew_watch(crew);
+    if (status != 0)
+        worker_pool_end(pool);
+    bool stopped = worker_pool_watch(pool);
     for (unsigned n = 0; n < started; n++) {
-        pthread_join(hands[n].thread, NULL);
-        source_destroy(&hands[n].source);
+        pthread_join(threads[n].handle, NULL);
+        source_destroy(&threads[n].source);
     }
-    if (!status && crew->status) {
-        *err = crew->err;
-        status = crew->status;
+    if (status == 0 && pool->status != 0) {
+        *err = pool->err;
+        status = pool->status;
     }
-    if (!status && stopped) {
+    if (status == 0 && stopped)
         status = error_set(err, ERROR_STOPPED, "stopped");
-    }
     return status;
 }
 
@@ -136,32 +98,30 @@ int workers_run(const struct worker_options *options, struct error *err) {
     }
     char host[128] = "host";
     struct worker_options own = *options;
-    struct crew crew = {.options = &own, .lock = PTHREAD_MUTEX_INITIALIZER};
+    struct worker_pool pool = {.options = &own, .lock = PTHREAD_MUTEX_INITIALIZER};
     (void)gethostname(host, sizeof host - 1);
-    own.source.host = options->source.host ? options->source.host : host;
-    if (options->source.worker) {
-        snprintf(crew.name, sizeof crew.name, "%.200s", options->source.worker);
-    } else {
-        name_default(crew.name, sizeof crew.name, own.source.host);
-    }
-    own.source.worker = crew.name;
-    atomic_init(&crew.ending, false);
-    struct hand *hands = array_create(own.threads, sizeof *hands);
-    if (!hands) {
-        return error_memory(err, own.threads * sizeof *hands, "threads");
-    }
-    if (clock_cond_init(&crew.changed) != 0) {
-        free(hands);
+    own.source.host = options->source.host != NULL ? options->source.host : host;
+    if (options->source.worker != NULL)
+        snprintf(pool.name, sizeof pool.name, "%.200s", options->source.worker);
+    else
+        name_default(pool.name, sizeof pool.name, own.source.host);
+    own.source.worker = pool.name;
+    atomic_init(&pool.ending, false);
+    struct worker_thread *threads = array_create(own.threads, sizeof *threads);
+    if (threads == NULL)
+        return error_memory(err, own.threads * sizeof *threads, "threads");
+    if (clock_cond_init(&pool.changed) != 0) {
+        free(threads);
         return error_set(err, ERROR_SYSTEM, "cannot make a condition");
     }
-    int status = shared_parts_init(&crew.parts, err);
-    if (!status) {
-        status = keeper_create(&crew.keeper, &own.source, own.threads, err);
-        status = status ? status : crew_work(&crew, hands, err);
-        keeper_destroy(&crew.keeper);
-        shared_parts_destroy(&crew.parts);
+    int status = shared_parts_init(&pool.parts, err);
+    if (status == 0) {
+        status = lease_keeper_create(&pool.keeper, &own.source, own.threads, err);
+        status = status != 0 ? status : worker_pool_work(&pool, threads, err);
+        lease_keeper_destroy(&pool.keeper);
+        shared_parts_destroy(&pool.parts);
     }
-    free(hands);
-    pthread_cond_destroy(&crew.changed);
+    free(threads);
+    pthread_cond_destroy(&pool.changed);
     return status;
 }

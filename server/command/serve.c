@@ -24,11 +24,11 @@ struct serve {
 static int read_listen(struct serve *serve, struct error *err) {
     const char *text = serve->listen, *colon = strrchr(text, ':');
     char *end = NULL;
-    unsigned long port = colon ? strtoul(colon + 1, &end, 10) : 65536;
-    size_t length = colon ? (size_t)(colon - text) : 0;
+    unsigned long port = colon != NULL ? strtoul(colon + 1, &end, 10) : 65536;
+    size_t length = colon != NULL ? (size_t)(colon - text) : 0;
     bool brackets = length > 2 && text[0] == '[' && text[length - 1] == ']';
     size_t width = length - 2 * brackets;
-    if (!colon || end == colon + 1 || *end || port > 65535 || width == 0 ||
+    if (colon == NULL || end == colon + 1 || *end || port > 65535 || width == 0 ||
         width >= sizeof serve->address)
         return error_set(err, ERROR_INPUT,
                          "--listen %.60s is not ADDRESS:PORT, e.g. 127.0.0.1:8080 or [::1]:8080",
@@ -44,7 +44,7 @@ static bool is_loopback(const char *address) {
 }
 
 static int read_tokens(struct serve *serve, struct error *err) {
-    if (serve->token_file)
+    if (serve->token_file != NULL)
         return tokens_read(&serve->service.tokens, serve->token_file, err);
     if (is_loopback(serve->address))
         return 0;
@@ -57,23 +57,24 @@ static int read_tokens(struct serve *serve, struct error *err) {
 
 /* --- workers of its own --- */
 
-struct crew {
+struct local_workers {
     struct serve *serve;
     pthread_t thread;
     bool started;
     char url[96], token[TOKEN_SIZE];
 };
 
-static void *crew_thread(void *context) {
-    struct crew *crew = context;
+static void *local_workers_thread(void *context) {
+    struct local_workers *workers = context;
     struct error err = {0};
     struct worker_options options = {
-        .source = {.url = crew->url, .token = crew->serve->service.tokens ? crew->token : NULL},
-        .threads = crew->serve->workers,
+        .source = {.url = workers->url,
+                   .token = workers->serve->service.tokens != NULL ? workers->token : NULL},
+        .threads = workers->serve->workers,
         .stop = &stop_requested,
     };
     int status = workers_run(&options, &err);
-    if (status && status != ERROR_STOPPED)
+    if (status != 0 && status != ERROR_STOPPED)
         log_line(LEVEL_ERROR, NULL, "workers: %s", err.text);
     return NULL;
 }
@@ -84,28 +85,28 @@ static void print_url(const struct serve *serve, char *url, size_t size) {
              http_port(serve->http));
 }
 
-static int crew_start(struct crew *crew, struct error *err) {
-    struct serve *serve = crew->serve;
+static int local_workers_start(struct local_workers *workers, struct error *err) {
+    struct serve *serve = workers->serve;
     if (!serve->workers)
         return 0;
-    print_url(serve, crew->url, sizeof crew->url);
-    if (pthread_create(&crew->thread, NULL, crew_thread, crew))
+    print_url(serve, workers->url, sizeof workers->url);
+    if (pthread_create(&workers->thread, NULL, local_workers_thread, workers) != 0)
         return error_set(err, ERROR_SYSTEM, "cannot start the workers");
-    crew->started = true;
+    workers->started = true;
     return 0;
 }
 
 /* A token of this run alone, for the workers in this process. */
-static int crew_token(struct crew *crew, struct error *err) {
-    struct tokens *tokens = crew->serve->service.tokens;
+static int local_workers_token(struct local_workers *workers, struct error *err) {
+    struct tokens *tokens = workers->serve->service.tokens;
     unsigned char bytes[(TOKEN_SIZE - 1) / 2];
-    if (!tokens || !crew->serve->workers)
+    if (tokens == NULL || !workers->serve->workers)
         return 0;
     if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
         return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
     for (size_t i = 0; i < sizeof bytes; i++)
-        snprintf(crew->token + 2 * i, 3, "%02x", bytes[i]);
-    return tokens_add(tokens, ROLE_WORK, crew->token, err);
+        snprintf(workers->token + 2 * i, 3, "%02x", bytes[i]);
+    return tokens_add(tokens, ROLE_WORK, workers->token, err);
 }
 
 /* --- the service --- */
@@ -125,13 +126,13 @@ static void announce(const struct serve *serve) {
 }
 
 static int serve_run(struct serve *serve, struct error *err) {
-    struct crew crew = {.serve = serve};
+    struct local_workers workers = {.serve = serve};
     int status = read_listen(serve, err);
-    if (!status)
+    if (status == 0)
         status = read_tokens(serve, err);
-    if (!status)
-        status = crew_token(&crew, err);
-    if (!status)
+    if (status == 0)
+        status = local_workers_token(&workers, err);
+    if (status == 0)
         status =
             service_open(&serve->service, serve->database, 1000 * (int64_t)serve->lease_s, err);
     struct http_options options = {.address = serve->address,
@@ -140,20 +141,20 @@ static int serve_run(struct serve *serve, struct error *err) {
                                    .per_address = serve->per_address,
                                    .deadline_s = serve->deadline_s,
                                    .hosts = serve->hosts};
-    if (!status)
+    if (status == 0)
         status = http_start(&serve->http, &serve->service, &options, err);
-    if (!status) {
+    if (status == 0) {
         announce(serve);
-        status = crew_start(&crew, err);
+        status = local_workers_start(&workers, err);
     }
-    if (!status)
+    if (status == 0)
         wait_for_end();
     atomic_store(&serve->service.stopping, true);
-    if (crew.started)
-        pthread_join(crew.thread, NULL); /* hands its jobs back through the server */
+    if (workers.started)
+        pthread_join(workers.thread, NULL); /* hands its jobs back through the server */
     http_stop(&serve->http);
     service_close(&serve->service);
-    if (!status)
+    if (status == 0)
         log_line(LEVEL_INFO, NULL, "ended");
     return status;
 }
@@ -175,7 +176,7 @@ int command_serve(int argc, char **argv) {
                                 {"deadline", OPTION_COUNT, &serve.deadline_s},
                                 {"allow-host", OPTION_LIST, serve.hosts},
                                 {0}};
-    if (!serve.hosts || !options_parse(argc, argv, rows, 0, 0, NULL)) {
+    if (serve.hosts == NULL || !options_parse(argc, argv, rows, 0, 0, NULL)) {
         free(serve.hosts);
         return EXIT_USAGE;
     }
@@ -183,5 +184,5 @@ int command_serve(int argc, char **argv) {
     signals_catch();
     int status = serve_run(&serve, &err);
     free(serve.hosts);
-    return status ? command_fail(argv[0], &err) : EXIT_DONE;
+    return status != 0 ? command_fail(argv[0], &err) : EXIT_DONE;
 }

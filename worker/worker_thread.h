@@ -1,0 +1,33 @@
+/* One worker thread, which claims jobs, runs them and reports how they ended, until its pool ends.
+ * Private to worker/.
+ *
+ *     claim -> hold the lease -> runner of the case -> run -> complete
+ *                                                         -> fail      (with the reason)
+ *                                                         -> release   (the pool ends)
+ *                                                         -> nothing   (the lease is lost or the
+ *                                                                       study cancelled) */
+#ifndef RUGO_WORKER_WORKER_THREAD_H
+#define RUGO_WORKER_WORKER_THREAD_H
+
+#include "worker/worker_pool.h"
+
+struct worker_thread {
+    struct worker_pool *pool; /* borrowed */
+    unsigned slot;            /* the thread's number, and its slot in the lease keeper */
+    pthread_t handle;
+    char name[NAME_MOST + 16];
+    struct source *source; /* owned by worker.c */
+    /* The runner of the last job, or NULL. It is kept because all jobs of a case use the same
+     * Fourier transform plans and matrix factorisations. */
+    struct job_runner *runner;
+    struct shared_part *part; /* what the runner borrows; NULL: nothing */
+    /* The kind, study and case of the runner. */
+    const struct job_kind *kind;
+    char study[STUDY_ID_SIZE];
+    uint64_t case_number;
+};
+
+/* The thread's body; context is a struct worker_thread with pool, slot, name and source set. */
+void *worker_thread_main(void *context);
+
+#endif
