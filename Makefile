@@ -2,9 +2,10 @@
 #   BUILD=dir        where objects go (build)
 #   V=1              show each command
 #   SAN=address,undefined | SAN=thread   sanitizers      COV=1 coverage      DEBUG=1 no optimisation
+#   CI=1             warnings are errors
+# CC, AR, CPPFLAGS, CFLAGS, LDFLAGS and LDLIBS are the user's, from the command line or the environment.
 BUILD  ?= build
 PREFIX ?= /usr/local
-CC     ?= cc
 
 Q      = $(if $(V),,@)
 say    = $(if $(V),@:,@echo)
@@ -13,24 +14,22 @@ PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl nettle cmocka
 APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev libsuitesparse-dev \
            libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev nettle-dev libcmocka-dev
 # those without a pkg-config file
-HEADERS  = /usr/include/Random123/philox.h /usr/include/suitesparse/cholmod.h
+HEADERS  = Random123/philox.h suitesparse/cholmod.h
 
-WARN   = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
-OPT    = -O3
-ifdef DEBUG
-OPT    = -O0
-endif
-ifdef SAN
-OPT    = -O1 -fno-omit-frame-pointer -fsanitize=$(SAN) -fno-sanitize-recover=all
-endif
-ifdef COV
-OPT    = -O0 --coverage
-endif
+MODE     = $(SAN)$(COV)$(DEBUG)
+CFLAGS  ?= -g $(if $(SAN),-O1,$(if $(MODE),-O0,-O3)) -fstack-protector-strong \
+           $(if $(MODE),,-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
+LDFLAGS ?= -Wl,-z,relro,-z,now
+
+# What the code needs stands before and after the user's flags, whatever these are.
+WARN     = -Wall -Wextra -Wpedantic -Wshadow -Wconversion $(if $(CI),-Werror)
+TESTED   = $(if $(SAN),-fsanitize=$(SAN)) $(if $(COV),--coverage)
 # No contraction and no fast-math: one realisation gives the same digits whatever the vector width.
-FORTIFY = $(if $(or $(SAN),$(DEBUG),$(COV)),,-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
-CFLAGS  = -std=c11 -D_GNU_SOURCE -g $(OPT) $(WARN) -ffp-contract=off -fno-math-errno -fno-trapping-math \
-          -fstack-protector-strong -fPIE -pthread $(FORTIFY) -I.
-LDFLAGS = -pie -Wl,-z,relro,-z,now -pthread $(if $(SAN),-fsanitize=$(SAN)) $(if $(COV),--coverage)
+LANGUAGE = -std=c11 -D_GNU_SOURCE -I.
+NEEDED   = $(LANGUAGE) -ffp-contract=off -fno-math-errno -fno-trapping-math -fPIC -fvisibility=hidden -pthread \
+           $(TESTED) $(if $(SAN),-fno-omit-frame-pointer -fno-sanitize-recover=all)
+COMPILE  = $(CC) $(WARN) $(CPPFLAGS) $(CFLAGS) $(NEEDED)
+LINK     = $(CC) $(CFLAGS) $(LDFLAGS) -pthread $(TESTED)
 LIBS_core   = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
 LIBS_schema = -lcjson -lsqlite3 $(LIBS_core)
 LIBS_jobs   = $(LIBS_schema)
@@ -55,10 +54,16 @@ archive  = $(patsubst %,$(BUILD)/lib%.a,$(1))
 .PHONY: all deps run test unit validation system bench lint format check-format install clean
 all: $(BUILD)/rugo
 
-$(BUILD)/%.c.o: %.c
+# Rewritten when the flags change; all that they make depends on it.
+export FLAGS = $(COMPILE) / $(LINK) / $(LDLIBS)
+$(BUILD)/flags: FORCE
+	@mkdir -p $(@D); echo "$$FLAGS" | cmp -s - $@ || echo "$$FLAGS" >$@
+FORCE:
+
+$(BUILD)/%.c.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(say) CC $<
-	$(Q)$(CC) $(CFLAGS) -MMD -MP -c $< -o $@
+	$(Q)$(COMPILE) -MMD -MP -c $< -o $@
 
 $(BUILD)/%.data.o: %
 	@mkdir -p $(@D)
@@ -73,7 +78,7 @@ $(foreach layer,$(LAYERS),$(eval $(call LAYER,$(layer))))
 
 $(BUILD)/rugo: $(call objects,$(MAIN)) $(call archive,$(BELOW_server))
 	$(say) LD $@
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LIBS_server)
+	$(Q)$(LINK) -pie -o $@ $^ $(LIBS_server) $(LDLIBS)
 
 # Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them.
 SUPPORT = $(call objects,$(wildcard tests/support/*.c))
@@ -81,7 +86,7 @@ define TESTS
 TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c))
 $$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(call archive,$(BELOW_$(2)))
 	$(say) LD $$@
-	$(Q)$(CC) $(LDFLAGS) -o $$@ $$^ -lcmocka $(LIBS_$(2))
+	$(Q)$(LINK) -pie -o $$@ $$^ -lcmocka $(LIBS_$(2)) $(LDLIBS)
 $(1)-$(2): $$(TESTS_$(1)_$(2))
 	tests/run-tests $$^
 .PHONY: $(1)-$(2)
@@ -110,7 +115,7 @@ run-threads:
 .PHONY: run-unit run-threads
 
 deps:
-	@tests/install-deps "$(PACKAGES)" "$(APT)" cc pkg-config $(HEADERS)
+	@CC="$(CC) $(CPPFLAGS)" tests/install-deps "$(PACKAGES)" "$(APT)" $(firstword $(CC)) pkg-config $(HEADERS)
 
 run: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all
@@ -128,7 +133,8 @@ check-format:
 	@clang-format --dry-run --Werror $(SOURCES)
 lint: lint-deps check-format check-layers
 	@printf '%s\n' $(filter %.c,$(SOURCES)) | \
-	    xargs -P $$(nproc) -n 1 sh -c 'clang-tidy --quiet "$$0" -- -std=c11 -D_GNU_SOURCE -I. 2>/dev/null || exit 255'
+	    xargs -P $$(nproc) -I {} bash -o pipefail -c \
+	        "clang-tidy --quiet {} -- $(LANGUAGE) 2>&1 | sed '/^[0-9]* warnings* generated/d'"
 	@echo "lint: $(words $(filter %.c,$(SOURCES))) files clean"
 lint-deps: deps
 	@tests/install-deps "" "clang-format clang-tidy" clang-format clang-tidy
@@ -137,8 +143,8 @@ lint-deps: deps
 # Each archive needs nothing but those of the layers below it: linked whole, it leaves no symbol open.
 define WHOLE
 $(BUILD)/whole-$(1): $(call archive,$(BELOW_$(1)))
-	$(Q)echo 'int main(void) { return 0; }' | $(CC) $(LDFLAGS) -o $$@ -x c - -x none \
-	    -Wl,--whole-archive $(BUILD)/lib$(1).a -Wl,--no-whole-archive $$^ $(LIBS_$(1))
+	$(Q)echo 'int main(void) { return 0; }' | $(LINK) -o $$@ -x c - -x none \
+	    -Wl,--whole-archive $(BUILD)/lib$(1).a -Wl,--no-whole-archive $$^ $(LIBS_$(1)) $(LDLIBS)
 endef
 $(foreach layer,$(LAYERS),$(eval $(call WHOLE,$(layer))))
 check-layers: $(patsubst %,$(BUILD)/whole-%,$(LAYERS))
@@ -148,6 +154,6 @@ check-layers: $(patsubst %,$(BUILD)/whole-%,$(LAYERS))
 install: all
 	install -D $(BUILD)/rugo $(DESTDIR)$(PREFIX)/bin/rugo
 clean:
-	rm -rf $(BUILD)
+	rm -rf $(BUILD) $(dir $(wildcard build*/flags))
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
