@@ -37,7 +37,10 @@ LIBS_worker = -lcurl $(LIBS_jobs)
 LIBS_server = -lmicrohttpd -lnettle $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
-embedded = $(wildcard $(1)/store/migrations/*.sql $(1)/web/* $(1)/http/*.yaml)
+embedded = $(wildcard $(1)/web/* $(1)/http/*.yaml)
+# The migrations of the store as one piece of data in the order of their names, each ended by a NUL.
+MIGRATIONS = $(sort $(wildcard schema/store/migrations/*.sql))
+DATA_schema = $(BUILD)/schema/store/migrations.data.o
 
 # Each layer is an archive; a layer's tests link it and the layers below, so that one can work on one layer alone.
 LAYERS   = core schema jobs worker server
@@ -65,12 +68,18 @@ $(BUILD)/%.c.o: %.c $(BUILD)/flags
 	$(say) CC $<
 	$(Q)$(COMPILE) -MMD -MP -c $< -o $@
 
+$(DATA_schema): $(MIGRATIONS) schema/store/migrations
+	@mkdir -p $(@D)
+	$(Q)for file in $(MIGRATIONS); do cat $$file && printf '\0' || exit; done > $(@D)/migrations.sql
+	$(Q)cd $(@D) && $(LD) -r -b binary -z noexecstack migrations.sql -o $(abspath $@)
+
 $(BUILD)/%.data.o: %
 	@mkdir -p $(@D)
 	$(Q)$(LD) -r -b binary -z noexecstack $< -o $@
 
 define LAYER
-$(BUILD)/lib$(1).a: $(call objects,$(call sources,$(1))) $(patsubst %,$(BUILD)/%.data.o,$(call embedded,$(1)))
+$(BUILD)/lib$(1).a: $(call objects,$(call sources,$(1))) $(patsubst %,$(BUILD)/%.data.o,$(call embedded,$(1))) \
+    $(DATA_$(1))
 	@mkdir -p $$(@D); rm -f $$@
 	$(Q)$(AR) rcs $$@ $$^
 endef

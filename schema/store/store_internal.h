@@ -6,7 +6,7 @@
 #include <sqlite3.h>
 #include <time.h>
 
-enum { STATEMENTS = 96, BOOT_SIZE = 40 };
+enum { STATEMENTS = 96, BOOT_SIZE = 40, BUSY_MS = 30000 /* waited for a lock */ };
 
 struct store {
     sqlite3 *db;
@@ -36,9 +36,14 @@ int store_run(struct store *store, struct error *err, const char *sql, const cha
  * untouched). */
 int store_integer(struct store *store, int64_t *out, struct error *err, const char *sql,
                   const char *format, ...);
+/* Runs statements that are not kept, several if the text has several. */
+int store_execute(struct store *store, const char *sql, struct error *err);
 /* A change: all of it or nothing. End it with its status, which is returned, or the commit's. */
 int change_begin(struct store *store, struct error *err);
 int change_end(struct store *store, int status, struct error *err);
+
+/* Refuses what is no store, or one of a newer program; brings an older one up to date. */
+int version_bring_up(struct store *store, struct error *err);
 
 int store_error(struct store *store, struct error *err); /* from SQLite's last error */
 int64_t store_now(const struct store *store);

@@ -1,0 +1,215 @@
+/* How the store speaks to SQLite: errors, statements prepared once, transactions. */
+#include "schema/store/store_internal.h"
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <time.h>
+
+int store_error(struct store *store, struct error *err) {
+    int code = sqlite3_errcode(store->db);
+    const char *what = sqlite3_errmsg(store->db);
+    switch (code & 0xff) {
+    case SQLITE_NOMEM:
+        return error_set(err, ERROR_MEMORY, "database %s: out of memory", store->path);
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+        return error_set(err, ERROR_SYSTEM,
+                         "the database is busy: %s was locked by another process for %d s",
+                         store->path, BUSY_MS / 1000);
+    case SQLITE_FULL:
+        return error_set(err, ERROR_SYSTEM, "the disk of database %s is full", store->path);
+    case SQLITE_READONLY:
+        return error_set(err, ERROR_SYSTEM, "database %s cannot be written: read-only",
+                         store->path);
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+        return error_set(err, ERROR_SYSTEM, "database %s is damaged or no database: %s",
+                         store->path, what);
+    default:
+        return error_set(err, ERROR_SYSTEM, "database %s: %s", store->path, what);
+    }
+}
+
+int64_t store_now(const struct store *store) {
+    if (store->options.now_ms)
+        return store->options.now_ms(store->options.context);
+    struct timespec now;
+    clock_gettime(CLOCK_BOOTTIME, &now);
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+const char *store_time(struct store *store) {
+    time_t now = time(NULL);
+    struct tm utc = {0};
+    if (now != store->time || !*store->time_text) {
+        gmtime_r(&now, &utc);
+        strftime(store->time_text, sizeof store->time_text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+        store->time = now;
+    }
+    return store->time_text;
+}
+
+int random_text(char *text, size_t digits, struct error *err) {
+    unsigned char bytes[32];
+    if (digits / 2 > sizeof bytes || getrandom(bytes, digits / 2, 0) != (ssize_t)(digits / 2))
+        return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
+    for (size_t i = 0; i < digits; i++)
+        text[i] = "0123456789abcdef"[bytes[i / 2] >> (i % 2 ? 0 : 4) & 15];
+    text[digits] = 0;
+    return 0;
+}
+
+char *column_copy(sqlite3_stmt *statement, int column) {
+    const unsigned char *text = sqlite3_column_text(statement, column);
+    return strdup(text ? (const char *)text : "");
+}
+
+int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err) {
+    static const struct json_limits limits = {.bytes = SIZE_MAX, .depth = 32, .values = SIZE_MAX};
+    const char *text = (const char *)sqlite3_column_text(row, column);
+    size_t size = (size_t)sqlite3_column_bytes(row, column);
+    int status = json_parse(text != NULL ? text : "", size, &limits, out, err);
+    return status != 0 ? error_context(err, "the database holds malformed JSON") : 0;
+}
+
+/* --- statements --- */
+
+static int find_statement(struct store *store, const char *sql, sqlite3_stmt **out,
+                          struct error *err) {
+    for (size_t i = 0; i < store->statement_count; i++)
+        if (store->statements[i].sql == sql) {
+            *out = store->statements[i].statement;
+            sqlite3_reset(*out);
+            return 0;
+        }
+    if (store->statement_count == STATEMENTS)
+        return error_set(err, ERROR_SYSTEM, "more than %d statements are prepared", STATEMENTS);
+    if (sqlite3_prepare_v3(store->db, sql, -1, SQLITE_PREPARE_PERSISTENT, out, NULL))
+        return store_error(store, err);
+    store->statements[store->statement_count].sql = sql;
+    store->statements[store->statement_count++].statement = *out;
+    return 0;
+}
+
+static int bind(sqlite3_stmt *statement, sqlite3_destructor_type life, const char *format,
+                va_list arguments) {
+    int code = SQLITE_OK;
+    for (int column = 1; !code && *format; format++, column++) {
+        if (*format == 'i') {
+            code = sqlite3_bind_int64(statement, column, va_arg(arguments, int64_t));
+        } else if (*format == 'd') {
+            code = sqlite3_bind_double(statement, column, va_arg(arguments, double));
+        } else if (*format == 't') {
+            const char *text = va_arg(arguments, const char *);
+            code = sqlite3_bind_text(statement, column, text, -1, life);
+        } else {
+            const void *data = va_arg(arguments, const void *);
+            size_t size = va_arg(arguments, size_t);
+            code = size ? sqlite3_bind_blob64(statement, column, data, size, life)
+                        : sqlite3_bind_zeroblob(statement, column, 0);
+        }
+    }
+    return code;
+}
+
+/* life: SQLITE_TRANSIENT copies what is bound, SQLITE_STATIC does not. */
+static int query(struct store *store, sqlite3_stmt **out, sqlite3_destructor_type life,
+                 struct error *err, const char *sql, const char *format, va_list arguments) {
+    int status = find_statement(store, sql, out, err);
+    if (!status && bind(*out, life, format, arguments))
+        status = store_error(store, err);
+    return status;
+}
+
+int store_query(struct store *store, sqlite3_stmt **out, struct error *err, const char *sql,
+                const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int status = query(store, out, SQLITE_TRANSIENT, err, sql, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+int store_step(struct store *store, sqlite3_stmt *statement, struct error *err) {
+    int code = sqlite3_step(statement);
+    if (code == SQLITE_ROW)
+        return 1;
+    int status = code == SQLITE_DONE ? 0 : store_error(store, err);
+    sqlite3_reset(statement);
+    return status;
+}
+
+int store_run(struct store *store, struct error *err, const char *sql, const char *format, ...) {
+    sqlite3_stmt *statement = NULL;
+    va_list arguments;
+    va_start(arguments, format);
+    int status = query(store, &statement, SQLITE_STATIC, err, sql, format, arguments);
+    va_end(arguments);
+    if (!status)
+        status = store_step(store, statement, err);
+    if (status > 0) {
+        sqlite3_reset(statement);
+        status = 0;
+    }
+    return status;
+}
+
+int store_integer(struct store *store, int64_t *out, struct error *err, const char *sql,
+                  const char *format, ...) {
+    sqlite3_stmt *statement = NULL;
+    va_list arguments;
+    va_start(arguments, format);
+    int status = query(store, &statement, SQLITE_STATIC, err, sql, format, arguments);
+    va_end(arguments);
+    if (!status)
+        status = store_step(store, statement, err);
+    if (status == 0)
+        return ERROR_ABSENT;
+    if (status < 0)
+        return status;
+    *out = sqlite3_column_int64(statement, 0);
+    sqlite3_reset(statement);
+    return 0;
+}
+
+/* --- transactions --- */
+
+int store_execute(struct store *store, const char *sql, struct error *err) {
+    return sqlite3_exec(store->db, sql, NULL, NULL, NULL) ? store_error(store, err) : 0;
+}
+
+int change_begin(struct store *store, struct error *err) {
+    if (store->options.read_only)
+        return error_set(err, ERROR_SYSTEM, "database %s was opened for reading only", store->path);
+    return store_run(store, err, store->batch ? "SAVEPOINT change" : "BEGIN IMMEDIATE", "");
+}
+
+int change_end(struct store *store, int status, struct error *err) {
+    if (!status)
+        status = store_run(store, err, store->batch ? "RELEASE change" : "COMMIT", "");
+    /* After a full disk SQLite may have rolled back by itself: then there is nothing left to undo.
+     */
+    if (status && !sqlite3_get_autocommit(store->db)) {
+        if (store->batch)
+            store_run(store, NULL, "ROLLBACK TO change", "");
+        store_run(store, NULL, store->batch ? "RELEASE change" : "ROLLBACK", "");
+    }
+    return status;
+}
+
+int store_begin(struct store *store, struct error *err) {
+    int status = change_begin(store, err);
+    store->batch = !status;
+    return status;
+}
+
+int store_commit(struct store *store, struct error *err) {
+    store->batch = 0;
+    if (sqlite3_get_autocommit(store->db))
+        return error_set(err, ERROR_SYSTEM, "database %s: the transaction was rolled back",
+                         store->path);
+    return change_end(store, 0, err);
+}
