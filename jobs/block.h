@@ -9,6 +9,7 @@
 struct block_work {
     void *context;
     size_t scalar_count;
+    const char *const *names; /* of the scalars */
     /* The realisation, before which so many of the block are done, into the kind's sums and into
      * scalars[scalar_count]. */
     int (*realise)(void *context, uint64_t realisation, uint64_t done, double *scalars,
@@ -21,6 +22,6 @@ struct block_work {
 bool block_stopped(const struct job_control *control, uint64_t done);
 /* As run of struct job_kind. */
 int block_run(const struct block_work *work, uint64_t first, uint64_t count,
-              const struct job_control *control, struct job_result *out, struct error *err);
+              const struct job_control *control, struct block_result *out, struct error *err);
 
 #endif

@@ -1,5 +1,4 @@
 #include "jobs/kind.h"
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -18,12 +17,6 @@ const struct job_kind *kind_find(const char *name) {
         if (strcmp(JOB_KINDS[a]->name, name) == 0)
             return JOB_KINDS[a];
     return NULL;
-}
-
-void job_result_clear(struct job_result *result) {
-    free(result->scalars);
-    free(result->data);
-    *result = (struct job_result){0};
 }
 
 double job_clock(void) {

@@ -9,6 +9,7 @@
 #define RUGO_JOBS_KIND_H
 
 #include "core/error.h"
+#include "schema/result/block_result.h"
 #include "schema/study/fault.h"
 #include "schema/study/parameter.h"
 #include <cjson/cJSON.h>
@@ -21,17 +22,6 @@ struct job_estimate {
     double seconds;        /* CPU seconds a realisation on a 3 GHz core */
     double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
 };
-
-/* Outcome of one block of realisations. */
-struct job_result {
-    uint64_t first, count; /* realisations first .. first + count - 1 of the case */
-    size_t scalar_count;   /* as many as the kind's scalars */
-    double *scalars;       /* owned, count x scalar_count, realisation by realisation; NaN: none */
-    unsigned char *data;   /* owned: the kind's accumulators, portable, versioned */
-    size_t size;           /* bytes of data */
-    double seconds;        /* wall seconds that it took */
-};
-void job_result_clear(struct job_result *result);
 
 /* Asked between realisations, and again and again within one that may take long: how many of the
  * block are done; non-zero stops with ERROR_STOPPED. */
@@ -68,21 +58,21 @@ struct job_kind {
     void (*runner_destroy)(struct job_runner **runner);
     /* Runs realisations first .. first + count - 1 into out (untouched on failure). */
     int (*run)(struct job_runner *runner, uint64_t first, uint64_t count,
-               const struct job_control *control, struct job_result *out, struct error *err);
+               const struct job_control *control, struct block_result *out, struct error *err);
 
     int (*merger_create)(struct job_merger **out, const cJSON *parameters, struct error *err);
     void (*merger_destroy)(struct job_merger **merger);
     /* Whether merge would take the block: 0 or its error. Changes nothing, so that many threads may
      * ask one merger. */
-    int (*fits)(const struct job_merger *merger, const struct job_result *result,
+    int (*fits)(const struct job_merger *merger, const struct block_result *result,
                 struct error *err);
     /* Decodes and adds one block; ERROR_INPUT for data that is not this case's (nothing added). */
-    int (*merge)(struct job_merger *merger, const struct job_result *result, struct error *err);
+    int (*merge)(struct job_merger *merger, const struct block_result *result, struct error *err);
     /* {"realisations": n, "scalars": {...}, "curves": [...]} of interface.md; caller deletes. */
     int (*curves)(struct job_merger *merger, cJSON **out, struct error *err);
 };
 
-/* Seconds on a clock that never steps: for job_result.seconds. */
+/* Seconds on a clock that never steps: for block_result.seconds. */
 double job_clock(void);
 
 /* All kinds, in a fixed order; kind_find gives NULL for an unknown name. */

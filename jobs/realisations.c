@@ -22,7 +22,7 @@ static size_t place_of(const struct realisations *set, uint64_t first) {
     return low;
 }
 
-int realisations_check(const struct realisations *set, const struct job_result *result,
+int realisations_check(const struct realisations *set, const struct block_result *result,
                        struct error *err) {
     if (result->scalar_count != set->scalar_count || result->scalars == NULL)
         return error_set(err, ERROR_INPUT, "the result has %zu scalars a realisation, not %zu",
@@ -42,7 +42,8 @@ int realisations_check(const struct realisations *set, const struct job_result *
     return 0;
 }
 
-int realisations_add(struct realisations *set, const struct job_result *result, struct error *err) {
+int realisations_add(struct realisations *set, const struct block_result *result,
+                     struct error *err) {
     if (set->block_count == set->capacity) {
         size_t capacity = set->capacity == 0 ? 16 : 2 * set->capacity;
         struct realisation_block *blocks = realloc(set->blocks, capacity * sizeof *blocks);

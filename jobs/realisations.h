@@ -16,10 +16,11 @@ struct realisations {
 };
 void realisations_clear(struct realisations *set);
 /* Whether the block is one of this kind that overlaps none so far; ERROR_INPUT with the reason. */
-int realisations_check(const struct realisations *set, const struct job_result *result,
+int realisations_check(const struct realisations *set, const struct block_result *result,
                        struct error *err);
 /* Copies the scalars of a block that realisations_check took. Nothing is added on failure. */
-int realisations_add(struct realisations *set, const struct job_result *result, struct error *err);
+int realisations_add(struct realisations *set, const struct block_result *result,
+                     struct error *err);
 /* Scalar number `scalar` of every realisation, in order, into out[count]. */
 void realisations_column(const struct realisations *set, size_t scalar, double *out);
 

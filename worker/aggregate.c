@@ -35,17 +35,7 @@ static int merge_block(void *context, const struct block_result *block, struct e
                          (unsigned long long)block->first,
                          (unsigned long long)(block->first + block->count - 1), merge->kind->name);
     }
-    /* the merger reads only: the casts hand over what the block lends */
-    struct job_result result = {
-        .first = block->first,
-        .count = block->count,
-        .scalar_count = block->scalar_count,
-        .scalars = (double *)block->scalars,
-        .data = (unsigned char *)block->data,
-        .size = block->size,
-        .seconds = block->seconds,
-    };
-    return merge->kind->merge(merge->merger, &result, err);
+    return merge->kind->merge(merge->merger, block, err);
 }
 
 static int case_merge(struct store *store, const char *study, uint64_t case_number,

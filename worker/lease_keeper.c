@@ -152,7 +152,8 @@ void lease_keeper_hold(struct lease_keeper *keeper, unsigned slot, const struct 
     struct slot *held = &keeper->slots[slot];
     pthread_mutex_lock(&keeper->lock);
     held->job = *job;
-    held->job.kind = held->job.parameters = NULL;
+    held->job.kind = NULL;
+    held->job.parameters = NULL;
     held->hold++;
     held->due_ms = clock_ms() + interval_ms(job);
     held->give_back = false;

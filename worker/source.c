@@ -87,9 +87,8 @@ int source_heartbeat(struct source *source, const struct claimed_job *job, uint6
 }
 
 int source_complete(struct source *source, const struct claimed_job *job,
-                    const struct job_kind *kind, const struct job_result *result,
-                    struct error *err) {
-    return source->backend->complete(source->self, job, kind, result, err);
+                    const struct block_result *result, struct error *err) {
+    return source->backend->complete(source->self, job, result, err);
 }
 
 int source_fail(struct source *source, const struct claimed_job *job, const char *reason,

@@ -28,8 +28,7 @@ int source_heartbeat(struct source *source, const struct claimed_job *job, uint6
                      struct error *err);
 /* A source of a store also publishes the case after its last block. */
 int source_complete(struct source *source, const struct claimed_job *job,
-                    const struct job_kind *kind, const struct job_result *result,
-                    struct error *err);
+                    const struct block_result *result, struct error *err);
 int source_fail(struct source *source, const struct claimed_job *job, const char *reason,
                 int permanent, struct error *err);
 int source_release(struct source *source, const struct claimed_job *job, struct error *err);

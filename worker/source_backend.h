@@ -13,8 +13,8 @@ struct source_backend {
     int (*claim)(void *self, const struct claim *claim, struct claimed_job *job, int *found,
                  struct error *err);
     int (*heartbeat)(void *self, const struct claimed_job *job, uint64_t done, struct error *err);
-    int (*complete)(void *self, const struct claimed_job *job, const struct job_kind *kind,
-                    const struct job_result *result, struct error *err);
+    int (*complete)(void *self, const struct claimed_job *job, const struct block_result *result,
+                    struct error *err);
     int (*fail)(void *self, const struct claimed_job *job, const char *reason, int permanent,
                 struct error *err);
     int (*release)(void *self, const struct claimed_job *job, struct error *err);

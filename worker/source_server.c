@@ -92,10 +92,9 @@ static int remote_heartbeat(void *self, const struct claimed_job *job, uint64_t 
                          err);
 }
 
-static int remote_complete(void *self, const struct claimed_job *job, const struct job_kind *kind,
-                           const struct job_result *result, struct error *err) {
-    return remote_report(self, job, "complete", wire_result(job->token, kind->scalars, result),
-                         RESULT_MS, err);
+static int remote_complete(void *self, const struct claimed_job *job,
+                           const struct block_result *result, struct error *err) {
+    return remote_report(self, job, "complete", wire_result(job->token, result), RESULT_MS, err);
 }
 
 static int remote_fail(void *self, const struct claimed_job *job, const char *reason, int permanent,

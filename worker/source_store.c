@@ -63,22 +63,12 @@ static void local_publish(struct local *local, const struct claimed_job *job) {
     }
 }
 
-static int local_complete(void *self, const struct claimed_job *job, const struct job_kind *kind,
-                          const struct job_result *result, struct error *err) {
+static int local_complete(void *self, const struct claimed_job *job,
+                          const struct block_result *result, struct error *err) {
     struct local *local = self;
     bool first_time = false, case_done = false;
-    struct block_result block = {
-        .first = result->first,
-        .count = result->count,
-        .scalar_count = result->scalar_count,
-        .names = kind->scalars,
-        .scalars = result->scalars,
-        .data = result->data,
-        .size = result->size,
-        .seconds = result->seconds,
-    };
     int status =
-        store_complete(local->store, job->id, job->token, &block, &first_time, &case_done, err);
+        store_complete(local->store, job->id, job->token, result, &first_time, &case_done, err);
     if (status == 0 && case_done)
         local_publish(local, job);
     return status;

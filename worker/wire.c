@@ -82,8 +82,7 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
 /* --- jobs --- */
 
 static cJSON *wire_job(const struct claimed_job *job) {
-    cJSON *value = cJSON_CreateObject(), *parameters = NULL;
-    struct error ignored;
+    cJSON *value = cJSON_CreateObject();
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)job->seed);
     bool complete =
@@ -95,8 +94,7 @@ static cJSON *wire_job(const struct claimed_job *job) {
         field_put_count(value, "attempt", job->attempt) &&
         field_put_text(value, "token", job->token) &&
         field_put(value, "lease_seconds", cJSON_CreateNumber((double)job->lease_ms / 1000.0)) &&
-        json_parse(job->parameters, strlen(job->parameters), NULL, &parameters, &ignored) == 0 &&
-        field_put(value, "parameters", parameters);
+        cJSON_AddItemReferenceToObject(value, "parameters", job->parameters);
     return fields_finish(value, complete);
 }
 
@@ -129,7 +127,7 @@ static int read_numbers(const cJSON *value, struct claimed_job *job, struct erro
     return status;
 }
 
-static int wire_job_read(const cJSON *value, struct claimed_job *out, struct error *err) {
+static int wire_job_read(cJSON *value, struct claimed_job *out, struct error *err) {
     struct claimed_job job = {0};
     const char *kind = "";
     int status = read_numbers(value, &job, err);
@@ -141,18 +139,17 @@ static int wire_job_read(const cJSON *value, struct claimed_job *out, struct err
     if (status != 0)
         return status;
     job.kind = strdup(kind);
-    job.parameters = json_print(field_at(value, "parameters"));
-    if (job.kind == NULL || job.parameters == NULL) {
-        claimed_job_clear(&job);
+    if (job.kind == NULL)
         return error_set(err, ERROR_MEMORY, "no memory left to read a job");
-    }
+    job.parameters = cJSON_DetachItemFromObjectCaseSensitive(value, "parameters");
     *out = job;
     return 0;
 }
 
-int wire_jobs_read(const cJSON *value, struct claimed_job *jobs, size_t most, size_t *count,
+int wire_jobs_read(cJSON *value, struct claimed_job *jobs, size_t most, size_t *count,
                    struct error *err) {
-    const cJSON *array = field_at(value, "jobs"), *item;
+    const cJSON *array = field_at(value, "jobs");
+    cJSON *item;
     if (!cJSON_IsArray(array) || (size_t)cJSON_GetArraySize(array) > most)
         return error_set(err, ERROR_INPUT, "\"jobs\" must be an array of at most %zu", most);
     size_t n = 0;
@@ -174,7 +171,11 @@ int wire_jobs_read(const cJSON *value, struct claimed_job *jobs, size_t most, si
 
 /* --- results --- */
 
-static cJSON *scalar_rows(const struct job_result *result) {
+static cJSON *names_of(const struct block_result *result) {
+    return cJSON_CreateStringArray(result->names, (int)result->scalar_count);
+}
+
+static cJSON *scalar_rows(const struct block_result *result) {
     cJSON *rows = cJSON_CreateArray();
     bool complete = rows != NULL;
     for (uint64_t r = 0; complete && r < result->count; r++) {
@@ -186,7 +187,7 @@ static cJSON *scalar_rows(const struct job_result *result) {
     return fields_finish(rows, complete);
 }
 
-cJSON *wire_result(const char *token, const char *const *names, const struct job_result *result) {
+cJSON *wire_result(const char *token, const struct block_result *result) {
     char *data = NULL;
     struct error ignored;
     if (base64_encode(result->data, result->size, &data, &ignored) != 0)
@@ -194,7 +195,7 @@ cJSON *wire_result(const char *token, const char *const *names, const struct job
     cJSON *value = cJSON_CreateObject(), *scalars = cJSON_CreateObject();
     bool complete =
         value != NULL && field_put(value, "scalars", scalars) &&
-        field_put(scalars, "names", texts(names)) &&
+        field_put(scalars, "names", names_of(result)) &&
         field_put(scalars, "rows", scalar_rows(result)) && field_put_text(value, "token", token) &&
         field_put(value, "seconds", json_number(result->seconds)) &&
         field_put_count(value, "first", result->first) &&
@@ -203,26 +204,21 @@ cJSON *wire_result(const char *token, const char *const *names, const struct job
     return fields_finish(value, complete);
 }
 
-void wire_result_clear(struct wire_result *result) {
-    free(result->names);
-    result->names = NULL;
-    job_result_clear(&result->result);
-}
-
-static int read_names(const cJSON *scalars, struct wire_result *out, struct error *err) {
+static int read_names(const cJSON *scalars, struct block_result *out, struct error *err) {
     const cJSON *names = field_at(scalars, "names"), *name;
     if (!cJSON_IsArray(names))
         return field_fault("names", "an array of strings", err);
     size_t count = (size_t)cJSON_GetArraySize(names), n = 0;
-    out->names = array_create(count + 1, sizeof *out->names);
-    if (out->names == NULL)
-        return error_memory(err, (count + 1) * sizeof *out->names, "names of scalars");
+    const char **texts_read = array_create(count, sizeof *texts_read);
+    if (texts_read == NULL)
+        return error_memory(err, count * sizeof *texts_read, "names of scalars");
+    out->names = texts_read;
     cJSON_ArrayForEach(name, names) {
         if (!cJSON_IsString(name))
             return field_fault("names", "an array of strings", err);
-        out->names[n++] = name->valuestring;
+        texts_read[n++] = name->valuestring;
     }
-    out->result.scalar_count = count;
+    out->scalar_count = count;
     return 0;
 }
 
@@ -240,17 +236,18 @@ static int read_row(const cJSON *row, double *values, size_t count, struct error
 }
 
 /* Memory follows the rows that are there, never a count that was only claimed. */
-static int read_rows(const cJSON *scalars, struct job_result *out, struct error *err) {
+static int read_rows(const cJSON *scalars, struct block_result *out, struct error *err) {
     const cJSON *rows = field_at(scalars, "rows"), *row;
     if (!cJSON_IsArray(rows) || (uint64_t)cJSON_GetArraySize(rows) != out->count)
         return field_fault("rows", "an array of as many rows as \"count\"", err);
     size_t count = (size_t)out->count, width = out->scalar_count;
-    out->scalars = array_create(count * (width ? width : 1), sizeof *out->scalars);
-    if (out->scalars == NULL)
-        return error_memory(err, count * width * sizeof *out->scalars, "scalars of a result");
+    double *values = array_create(count * (width > 0 ? width : 1), sizeof *values);
+    out->scalars = values;
+    if (values == NULL)
+        return error_memory(err, count * width * sizeof *values, "scalars of a result");
     size_t r = 0;
     cJSON_ArrayForEach(row, rows) {
-        int status = read_row(row, out->scalars + r * width, width, err);
+        int status = read_row(row, values + r * width, width, err);
         if (status != 0)
             return status;
         r++;
@@ -258,46 +255,34 @@ static int read_rows(const cJSON *scalars, struct job_result *out, struct error 
     return 0;
 }
 
-static int read_result(const cJSON *value, struct wire_result *out, struct error *err) {
-    struct job_result *result = &out->result;
-    int status = field_copy(value, "token", TOKEN_SIZE, out->token, err);
-    status = status != 0 ? status : field_seconds(value, "seconds", &result->seconds, err);
-    status = status != 0 ? status : field_count(value, "first", &result->first, err);
-    status = status != 0 ? status : field_count(value, "count", &result->count, err);
-    status = status != 0 ? status : read_names(field_at(value, "scalars"), out, err);
-    status = status != 0 ? status : read_rows(field_at(value, "scalars"), result, err);
+static int read_result(const cJSON *value, struct block_result *out, struct error *err) {
+    int status = field_seconds(value, "seconds", &out->seconds, err);
+    status = status ? status : field_count(value, "first", &out->first, err);
+    status = status ? status : field_count(value, "count", &out->count, err);
+    status = status ? status : read_names(field_at(value, "scalars"), out, err);
+    status = status ? status : read_rows(field_at(value, "scalars"), out, err);
     if (status != 0)
         return status;
     const char *data = cJSON_GetStringValue(field_at(value, "data"));
     if (data == NULL)
         return field_fault("data", "a base64 string", err);
-    status = base64_decode(data, &result->data, &result->size, err);
+    unsigned char *decoded = NULL;
+    status = base64_decode(data, &decoded, &out->size, err);
+    out->data = decoded;
     return status != 0 ? error_context(err, "\"data\"") : 0;
 }
 
-int wire_result_read(const cJSON *value, struct wire_result *out, struct error *err) {
-    struct wire_result read = {0};
-    int status = read_result(value, &read, err);
-    if (status != 0) {
-        wire_result_clear(&read);
-        return status;
-    }
-    *out = read;
-    return 0;
-}
-
-struct block_result wire_block(const struct wire_result *result) {
-    const struct job_result *from = &result->result;
-    return (struct block_result){
-        .first = from->first,
-        .count = from->count,
-        .scalar_count = from->scalar_count,
-        .names = result->names,
-        .scalars = from->scalars,
-        .data = from->data,
-        .size = from->size,
-        .seconds = from->seconds,
-    };
+int wire_result_read(const cJSON *value, char token[TOKEN_SIZE], struct block_result *out,
+                     struct error *err) {
+    struct block_result result = {0};
+    int status = field_copy(value, "token", TOKEN_SIZE, token, err);
+    if (status == 0)
+        status = read_result(value, &result, err);
+    if (status != 0)
+        block_result_clear(&result);
+    else
+        *out = result;
+    return status;
 }
 
 /* --- heartbeat, fail, release --- */

@@ -32,24 +32,19 @@ struct wire_claim {
 int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *err);
 
 /* --- jobs --- */
+/* Refers to the jobs' parameters: print and delete it before they are cleared. */
 cJSON *wire_jobs(const struct claimed_job *jobs, size_t count);
-/* Fills at most `most` jobs, the rest is ERROR_INPUT; claimed_job_clear each of the *count. */
-int wire_jobs_read(const cJSON *value, struct claimed_job *jobs, size_t most, size_t *count,
+/* Fills at most `most` jobs, the rest is ERROR_INPUT; claimed_job_clear each of the *count. Their
+ * parameters are taken out of value, also on failure. */
+int wire_jobs_read(cJSON *value, struct claimed_job *jobs, size_t most, size_t *count,
                    struct error *err);
 
 /* --- results --- */
-/* names: NULL-terminated, as many as the result's scalars. */
-cJSON *wire_result(const char *token, const char *const *names, const struct job_result *result);
-struct wire_result {
-    char token[TOKEN_SIZE];
-    const char *
-        *names; /* owned array of strings borrowed from the document read, NULL-terminated */
-    struct job_result result; /* owned */
-};
-int wire_result_read(const cJSON *value, struct wire_result *out, struct error *err);
-void wire_result_clear(struct wire_result *result);
-/* The same result as the store takes it; borrows from `result`. */
-struct block_result wire_block(const struct wire_result *result);
+cJSON *wire_result(const char *token, const struct block_result *result);
+/* The names are texts of `value`, which must outlive them; block_result_clear frees the rest. token
+ * may be written on failure. */
+int wire_result_read(const cJSON *value, char token[TOKEN_SIZE], struct block_result *out,
+                     struct error *err);
 
 /* --- heartbeat, fail, release --- */
 struct wire_report {

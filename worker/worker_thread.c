@@ -16,8 +16,8 @@ enum outcome { OUTCOME_COMPLETE, OUTCOME_FAIL, OUTCOME_RELEASE };
 struct job_report {
     enum outcome outcome;
     const struct job_kind *kind;
-    struct job_result result; /* valid for OUTCOME_COMPLETE */
-    struct error reason;      /* valid for OUTCOME_FAIL */
+    struct block_result result; /* valid for OUTCOME_COMPLETE */
+    struct error reason;        /* valid for OUTCOME_FAIL */
 };
 
 /* Logs a line about the job, or about the thread when job is NULL. The option quiet suppresses what
@@ -63,17 +63,12 @@ static int runner_prepare(struct worker_thread *thread, const struct claimed_job
         strcmp(thread->study, job->study) == 0)
         return 0;
     runner_drop(thread);
-    cJSON *parameters = NULL;
-    int status = json_parse(job->parameters, strlen(job->parameters), NULL, &parameters, err);
-    if (status == 0) {
-        status = shared_parts_take(&thread->pool->parts, kind, job->study, job->case_number,
-                                   parameters, &thread->part, err);
-    }
-    if (status == 0) {
-        status = kind->runner_create(&thread->runner, parameters, shared_part_content(thread->part),
-                                     job->seed, job->case_number, err);
-    }
-    cJSON_Delete(parameters);
+    int status = shared_parts_take(&thread->pool->parts, kind, job->study, job->case_number,
+                                   job->parameters, &thread->part, err);
+    if (status == 0)
+        status =
+            kind->runner_create(&thread->runner, job->parameters, shared_part_content(thread->part),
+                                job->seed, job->case_number, err);
     if (status != 0) {
         runner_drop(thread);
     } else {
@@ -110,7 +105,7 @@ static int report_send(struct worker_thread *thread, const struct claimed_job *j
                        const struct job_report *report, struct error *err) {
     switch (report->outcome) {
     case OUTCOME_COMPLETE:
-        return source_complete(thread->source, job, report->kind, &report->result, err);
+        return source_complete(thread->source, job, &report->result, err);
     case OUTCOME_FAIL:
         return source_fail(thread->source, job, report->reason.text,
                            report->reason.code == ERROR_INPUT, err);
@@ -181,7 +176,7 @@ static void job_work(struct worker_thread *thread, const struct claimed_job *job
         report_deliver(thread, job, &report);
     }
     lease_keeper_let_go(keeper, thread->slot);
-    job_result_clear(&report.result);
+    block_result_clear(&report.result);
     if (status != 0)
         runner_drop(thread); /* a failed or stopped run leaves it in an unknown state */
 }

@@ -164,9 +164,9 @@ static int encode(void *context, unsigned char **data, size_t *size, struct erro
 }
 
 static int run(struct job_runner *runner, uint64_t first, uint64_t count,
-               const struct job_control *control, struct job_result *out, struct error *err) {
+               const struct job_control *control, struct block_result *out, struct error *err) {
     struct batch batch = {.runner = runner, .control = control};
-    const struct block_work work = {&batch, CONTACT_SCALAR_COUNT, realise, encode};
+    const struct block_work work = {&batch, CONTACT_SCALAR_COUNT, CONTACT_SCALARS, realise, encode};
     int status = contact_tally_create(&batch.tally, &runner->study, err);
     if (status != 0)
         return status;
@@ -217,7 +217,7 @@ static int merger_create(struct job_merger **out, const cJSON *parameters, struc
 }
 
 /* Whether the scalars, the tally and the notes of a block tell of the same realisations. */
-static int check_block(const struct job_result *result, const struct contact_tally *tally,
+static int check_block(const struct block_result *result, const struct contact_tally *tally,
                        struct error *err) {
     const struct contact_case *study = tally->study;
     double scalars = 0, tallied = 0;
@@ -236,7 +236,7 @@ static int check_block(const struct job_result *result, const struct contact_tal
 }
 
 /* Decodes a block that the merger could take; *tally is the caller's to clear, also on failure. */
-static int read_block(const struct job_merger *merger, const struct job_result *result,
+static int read_block(const struct job_merger *merger, const struct block_result *result,
                       struct contact_tally *tally, struct error *err) {
     *tally = (struct contact_tally){0};
     int status = realisations_check(&merger->realisations, result, err);
@@ -247,7 +247,7 @@ static int read_block(const struct job_merger *merger, const struct job_result *
     return status ? status : check_block(result, tally, err);
 }
 
-static int fits(const struct job_merger *merger, const struct job_result *result,
+static int fits(const struct job_merger *merger, const struct block_result *result,
                 struct error *err) {
     struct contact_tally tally;
     int status = read_block(merger, result, &tally, err);
@@ -255,7 +255,7 @@ static int fits(const struct job_merger *merger, const struct job_result *result
     return status;
 }
 
-static int merge(struct job_merger *merger, const struct job_result *result, struct error *err) {
+static int merge(struct job_merger *merger, const struct block_result *result, struct error *err) {
     struct contact_tally tally;
     int status = read_block(merger, result, &tally, err);
     if (status == 0)

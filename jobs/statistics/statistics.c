@@ -127,9 +127,9 @@ static int encode(void *context, unsigned char **data, size_t *size, struct erro
 }
 
 static int run(struct job_runner *runner, uint64_t first, uint64_t count,
-               const struct job_control *control, struct job_result *out, struct error *err) {
+               const struct job_control *control, struct block_result *out, struct error *err) {
     struct batch batch = {.runner = runner};
-    const struct block_work work = {&batch, SCALAR_COUNT, realise, encode};
+    const struct block_work work = {&batch, SCALAR_COUNT, STATISTICS_SCALARS, realise, encode};
     int status =
         statistics_tally_create(&batch.tally, &runner->study, &runner->moments,
                                 runner->spectra.densities, runner->spectra.correlations, err);
@@ -187,7 +187,7 @@ static int merger_create(struct job_merger **out, const cJSON *parameters, struc
 }
 
 /* Whether the scalars and the tally of a block tell of the same realisations. */
-static int check_block(const struct job_result *result, const struct statistics_tally *tally,
+static int check_block(const struct block_result *result, const struct statistics_tally *tally,
                        struct error *err) {
     double summits = 0;
     for (uint64_t r = 0; r < result->count; r++)
@@ -199,7 +199,7 @@ static int check_block(const struct job_result *result, const struct statistics_
 }
 
 /* Decodes a block that the merger could take; *tally is the caller's to clear, also on failure. */
-static int read_block(const struct job_merger *merger, const struct job_result *result,
+static int read_block(const struct job_merger *merger, const struct block_result *result,
                       struct statistics_tally *tally, struct error *err) {
     *tally = (struct statistics_tally){0};
     int status = realisations_check(&merger->realisations, result, err);
@@ -210,7 +210,7 @@ static int read_block(const struct job_merger *merger, const struct job_result *
     return status ? status : check_block(result, tally, err);
 }
 
-static int fits(const struct job_merger *merger, const struct job_result *result,
+static int fits(const struct job_merger *merger, const struct block_result *result,
                 struct error *err) {
     struct statistics_tally tally;
     int status = read_block(merger, result, &tally, err);
@@ -218,7 +218,7 @@ static int fits(const struct job_merger *merger, const struct job_result *result
     return status;
 }
 
-static int merge(struct job_merger *merger, const struct job_result *result, struct error *err) {
+static int merge(struct job_merger *merger, const struct block_result *result, struct error *err) {
     struct statistics_tally tally;
     int status = read_block(merger, result, &tally, err);
     if (status == 0)

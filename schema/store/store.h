@@ -10,6 +10,7 @@
 #ifndef RUGO_SCHEMA_STORE_STORE_H
 #define RUGO_SCHEMA_STORE_STORE_H
 
+#include "schema/result/block_result.h"
 #include "schema/study/study.h"
 #include <stdbool.h>
 
@@ -76,7 +77,8 @@ void failures_free(struct failure *failures, size_t count);
 struct claimed_job {
     int64_t id;
     char study[STUDY_ID_SIZE], token[TOKEN_SIZE]; /* token: the fence of this lease */
-    char *kind, *parameters;                      /* owned; parameters is JSON text */
+    char *kind;                                   /* owned */
+    cJSON *parameters;                            /* owned: of the case, as it was checked */
     uint64_t seed, case_number, first, count, attempt;
     int64_t lease_ms;
 };
@@ -97,17 +99,8 @@ int store_claim(struct store *store, const struct claim *claim, struct claimed_j
 int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_t done,
                     struct error *err);
 
-struct block_result {
-    uint64_t first, count;
-    size_t scalar_count;
-    const char *const *names; /* scalar_count names */
-    const double *scalars;    /* count x scalar_count */
-    const unsigned char *data;
-    size_t size;
-    double seconds;
-    const struct block_text *text; /* NULL: store_complete makes it */
-};
-/* Names and scalars as they are stored. Whoever queues for the one writer makes them beforehand. */
+/* Names and scalars as they are stored. Whoever queues for the one writer makes them beforehand;
+ * store_complete makes those of a result without. */
 struct block_text {
     char *names, *scalars; /* owned */
 };
@@ -126,7 +119,7 @@ int store_fail(struct store *store, int64_t job, const char *token, const char *
 /* Hands a job back unharmed: the attempt does not count. */
 int store_release(struct store *store, int64_t job, const char *token, struct error *err);
 /* Study, case and expected block of a job under a live lease or done under this token (to check a
- * result before it is taken). Fills job without parameters unless with_parameters. */
+ * result before it is taken). */
 int store_job(struct store *store, int64_t job, const char *token, struct claimed_job *out,
               struct error *err);
 

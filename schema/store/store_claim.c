@@ -107,9 +107,9 @@ static int copy_parameters(struct store *store, int64_t study, struct claimed_jo
     if (status <= 0)
         return status ? status
                       : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
-    job->parameters = column_copy(row, 0);
+    status = column_json(row, 0, &job->parameters, err);
     sqlite3_reset(row);
-    return job->parameters ? 0 : error_memory(err, 0, "a job's parameters");
+    return status;
 }
 
 /* The counters change with every claim; the state only with the first, as it is indexed. */

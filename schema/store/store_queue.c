@@ -6,7 +6,7 @@
 
 void claimed_job_clear(struct claimed_job *job) {
     free(job->kind);
-    free(job->parameters);
+    cJSON_Delete(job->parameters);
     *job = (struct claimed_job){0};
 }
 
@@ -154,9 +154,9 @@ static int copy_study(struct store *store, int64_t study, struct claimed_job *jo
     snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 0));
     job->kind = column_copy(row, 1);
     job->seed = strtoull((const char *)sqlite3_column_text(row, 2), NULL, 10);
-    job->parameters = column_copy(row, 3);
+    status = column_json(row, 3, &job->parameters, err);
     sqlite3_reset(row);
-    return job->kind && job->parameters ? 0 : error_memory(err, 0, "a job's parameters");
+    return job->kind != NULL || status != 0 ? status : error_memory(err, 0, "a job's kind");
 }
 
 int store_job(struct store *store, int64_t job, const char *token, struct claimed_job *out,

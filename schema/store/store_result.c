@@ -46,28 +46,28 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
 
 struct stored_block {
     cJSON *names, *rows;
-    const char **name_list;
-    double *scalars;
 };
 
 static void stored_block_clear(struct stored_block *block) {
     cJSON_Delete(block->names);
     cJSON_Delete(block->rows);
-    free(block->name_list);
-    free(block->scalars);
 }
 
-static int fill_scalars(struct stored_block *block, size_t count, size_t rows, struct error *err) {
-    block->name_list = array_create(count, sizeof *block->name_list);
-    block->scalars = array_create(count * rows, sizeof *block->scalars);
-    if (!block->name_list || !block->scalars)
-        return error_memory(err, count * rows * sizeof *block->scalars, "scalars");
+static int fill_scalars(const struct stored_block *block, struct block_result *out,
+                        struct error *err) {
+    size_t count = out->scalar_count, rows = (size_t)out->count;
+    const char **names = array_create(count, sizeof *names);
+    double *scalars = array_create(count * rows, sizeof *scalars);
+    out->names = names;
+    out->scalars = scalars;
+    if (names == NULL || scalars == NULL)
+        return error_memory(err, count * rows * sizeof *scalars, "scalars");
     size_t n = 0, s = 0;
     for (const cJSON *name = block->names->child; name; name = name->next)
-        block->name_list[n++] = cJSON_IsString(name) ? name->valuestring : "";
+        names[n++] = cJSON_IsString(name) ? name->valuestring : "";
     for (const cJSON *row = block->rows->child; row; row = row->next)
         for (const cJSON *value = row->child; value && s < count * rows; value = value->next)
-            block->scalars[s++] = cJSON_IsNumber(value) ? value->valuedouble : NAN;
+            scalars[s++] = cJSON_IsNumber(value) ? value->valuedouble : NAN;
     if (s != count * rows)
         return error_set(err, ERROR_SYSTEM, "a stored result has %zu scalars instead of %zu", s,
                          count * rows);
@@ -87,9 +87,7 @@ static int read_block(sqlite3_stmt *row, struct stored_block *block, struct bloc
                                     .size = (size_t)sqlite3_column_bytes(row, 4),
                                     .seconds = sqlite3_column_double(row, 5)};
     if (!status)
-        status = fill_scalars(block, count, (size_t)result->count, err);
-    result->names = block->name_list;
-    result->scalars = block->scalars;
+        status = fill_scalars(block, result, err);
     return status;
 }
 
@@ -113,6 +111,8 @@ int store_results(struct store *store, const char *study, uint64_t case_number, 
         status = read_block(row, &block, &result, err);
         if (!status)
             status = visit(context, &result, err);
+        result.data = NULL; /* the row's */
+        block_result_clear(&result);
         stored_block_clear(&block);
         if (status)
             break;

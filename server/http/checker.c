@@ -32,18 +32,14 @@ static void case_merger_destroy(struct case_merger **one) {
 static int case_merger_create(struct case_merger **out, const struct claimed_job *job,
                               const struct job_kind *kind, struct error *err) {
     struct case_merger *one = array_create(1, sizeof *one);
-    cJSON *parameters = NULL;
     if (!one)
         return error_memory(err, sizeof *one, "a merger");
     snprintf(one->study, sizeof one->study, "%s", job->study);
     one->case_number = job->case_number;
     one->kind = kind;
     one->holders = 1;
-    int status = json_parse(job->parameters, strlen(job->parameters), NULL, &parameters, err);
-    if (!status)
-        status = kind->merger_create(&one->merger, parameters, err);
-    cJSON_Delete(parameters);
-    if (status)
+    int status = kind->merger_create(&one->merger, job->parameters, err);
+    if (status != 0)
         case_merger_destroy(&one);
     else
         *out = one;
@@ -86,25 +82,25 @@ static void keep(struct checker *checker, struct case_merger *one) {
         let_go(checker, dropped);
 }
 
-static int check_names(const struct job_kind *kind, const struct wire_result *wire,
+static int check_names(const struct job_kind *kind, const struct block_result *result,
                        struct error *err) {
     size_t n = 0;
     for (; kind->scalars[n]; n++)
-        if (n >= wire->result.scalar_count || strcmp(kind->scalars[n], wire->names[n]) != 0)
+        if (n >= result->scalar_count || strcmp(kind->scalars[n], result->names[n]) != 0)
             return error_set(err, ERROR_INPUT, "scalars: number %zu is not \"%s\"", n,
                              kind->scalars[n]);
-    if (n != wire->result.scalar_count)
-        return error_set(err, ERROR_INPUT, "scalars: %zu names; allowed: %zu",
-                         wire->result.scalar_count, n);
+    if (n != result->scalar_count)
+        return error_set(err, ERROR_INPUT, "scalars: %zu names; allowed: %zu", result->scalar_count,
+                         n);
     return 0;
 }
 
 int checker_check(struct checker *checker, const struct claimed_job *job,
-                  const struct wire_result *wire, struct error *err) {
+                  const struct block_result *result, struct error *err) {
     const struct job_kind *kind = kind_find(job->kind);
     if (!kind)
         return error_set(err, ERROR_SYSTEM, "this server does not know the kind %.40s", job->kind);
-    int status = check_names(kind, wire, err);
+    int status = check_names(kind, result, err);
     if (status)
         return status;
     struct case_merger *one = take(checker, job);
@@ -114,7 +110,7 @@ int checker_check(struct checker *checker, const struct claimed_job *job,
             return status;
         keep(checker, one);
     }
-    status = kind->fits(one->merger, &wire->result, err);
+    status = kind->fits(one->merger, result, err);
     let_go(checker, one);
     return status;
 }

@@ -5,13 +5,13 @@
 #ifndef RUGO_SERVER_HTTP_CHECKER_H
 #define RUGO_SERVER_HTTP_CHECKER_H
 
-#include "worker/wire.h"
+#include "schema/store/store.h"
 
 struct checker;
 int checker_create(struct checker **out, struct error *err);
 void checker_destroy(struct checker **checker);
 /* ERROR_INPUT when the result is none of this job's case. */
 int checker_check(struct checker *checker, const struct claimed_job *job,
-                  const struct wire_result *wire, struct error *err);
+                  const struct block_result *result, struct error *err);
 
 #endif

@@ -113,7 +113,7 @@ void handle_release(struct exchange *exchange, const char *id) {
 
 struct completing {
     struct block_result block;
-    const char *token;
+    char token[TOKEN_SIZE];
     int64_t job;
     bool first_time, case_done;
 };
@@ -123,31 +123,31 @@ static int complete_change(struct store *store, void *context, struct error *err
     return store_complete(store, c->job, c->token, &c->block, &c->first_time, &c->case_done, err);
 }
 
-static int check_against_job(struct exchange *exchange, int64_t id, const struct wire_result *wire,
+static int check_against_job(struct exchange *exchange, const struct completing *completing,
                              struct error *err) {
     struct store *reader;
     struct claimed_job job = {0};
     int status = service_reader(exchange->service, &reader, err);
     if (!status)
-        status = store_job(reader, id, wire->token, &job, err);
+        status = store_job(reader, completing->job, completing->token, &job, err);
     service_give_back(exchange->service, reader);
     if (!status)
-        status = checker_check(exchange->service->checker, &job, wire, err);
+        status = checker_check(exchange->service->checker, &job, &completing->block, err);
     claimed_job_clear(&job);
     return status;
 }
 
-static void complete(struct exchange *exchange, int64_t job, const struct wire_result *wire) {
-    struct completing completing = {.block = wire_block(wire), .token = wire->token, .job = job};
+static void complete(struct exchange *exchange, struct completing *completing) {
     struct block_text text = {0};
     struct error err = {0};
-    int status = check_against_job(exchange, job, wire, &err);
+    int status = check_against_job(exchange, completing, &err);
     if (!status)
-        status = block_text_create(&text, &completing.block, &err);
-    completing.block.text = &text;
+        status = block_text_create(&text, &completing->block, &err);
+    completing->block.text = &text;
     if (!status)
-        status = writer_do(exchange->service->writer, complete_change, &completing, &err);
+        status = writer_do(exchange->service->writer, complete_change, completing, &err);
     block_text_clear(&text);
+    completing->block.text = NULL;
     if (status == ERROR_INPUT) {
         refuse_message(exchange, &err);
         return;
@@ -156,10 +156,10 @@ static void complete(struct exchange *exchange, int64_t job, const struct wire_r
         answer_error(exchange, &err);
         return;
     }
-    if (completing.case_done && completing.first_time)
+    if (completing->case_done && completing->first_time)
         publisher_wake(exchange->service->publisher);
     cJSON *document = cJSON_CreateObject();
-    if (document && !cJSON_AddBoolToObject(document, "case_done", completing.case_done)) {
+    if (document && !cJSON_AddBoolToObject(document, "case_done", completing->case_done)) {
         cJSON_Delete(document);
         document = NULL;
     }
@@ -167,19 +167,17 @@ static void complete(struct exchange *exchange, int64_t job, const struct wire_r
 }
 
 void handle_complete(struct exchange *exchange, const char *id) {
-    struct wire_result wire = {.names = NULL};
+    struct completing completing = {.job = 0};
     struct error err = {0};
-    int64_t job;
-    if (!job_number(exchange, id, &job))
+    if (!job_number(exchange, id, &completing.job))
         return;
     cJSON *body = body_json(exchange);
-    if (!body)
+    if (body == NULL)
         return;
-    if (wire_result_read(body, &wire, &err)) {
+    if (wire_result_read(body, completing.token, &completing.block, &err) != 0)
         refuse_message(exchange, &err);
-    } else {
-        complete(exchange, job, &wire);
-        wire_result_clear(&wire);
-    }
+    else
+        complete(exchange, &completing);
+    block_result_clear(&completing.block);
     cJSON_Delete(body);
 }

@@ -20,7 +20,7 @@ static inline cJSON *solve(const char *study, uint64_t count) {
     const struct job_kind *kind = kind_find("contact");
     struct job_runner *runner = NULL;
     struct job_merger *merger = NULL;
-    struct job_result result = {0};
+    struct block_result result = {0};
     struct error err = {0};
     cJSON *document = NULL, *parameters = cJSON_Parse(study);
     assert_non_null(parameters);
@@ -29,7 +29,7 @@ static inline cJSON *solve(const char *study, uint64_t count) {
         kind->run(runner, 0, count, NULL, &result, &err) != 0 ||
         kind->merge(merger, &result, &err) != 0 || kind->curves(merger, &document, &err) != 0)
         fail_msg("%s: %s", study, err.text);
-    job_result_clear(&result);
+    block_result_clear(&result);
     kind->runner_destroy(&runner);
     kind->merger_destroy(&merger);
     cJSON_Delete(parameters);

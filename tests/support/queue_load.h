@@ -68,7 +68,7 @@ static inline int queue_create(const char *database, unsigned jobs, struct error
 }
 
 /* The block of realisation 0: what every job of the queue has to compute. */
-static inline int queue_compute(struct job_result *result, struct error *err) {
+static inline int queue_compute(struct block_result *result, struct error *err) {
     struct job_runner *runner = NULL;
     const struct job_kind *kind = kind_find("statistics");
     struct study *study = queue_study(1, err);
@@ -80,15 +80,6 @@ static inline int queue_compute(struct job_result *result, struct error *err) {
         kind->runner_destroy(&runner);
     study_destroy(&study);
     return status;
-}
-
-static inline struct block_result queue_block(const struct job_result *result) {
-    return (struct block_result){.count = 1,
-                                 .scalar_count = result->scalar_count,
-                                 .names = kind_find("statistics")->scalars,
-                                 .scalars = result->scalars,
-                                 .data = result->data,
-                                 .size = result->size};
 }
 
 #endif

@@ -163,8 +163,8 @@ static void *remote_thread(void *context) {
 }
 
 /* The message of a result, without its opening brace, token and first. */
-static char *body_text(const struct job_result *result) {
-    cJSON *message = wire_result("token", kind_find("statistics")->scalars, result);
+static char *body_text(const struct block_result *result) {
+    cJSON *message = wire_result("token", result);
     cJSON_DeleteItemFromObject(message, "token");
     cJSON_DeleteItemFromObject(message, "first");
     char *text = message ? json_print(message) : NULL;
@@ -221,9 +221,9 @@ static size_t run_clients(const char *name, void *(*body)(void *), const struct 
     return total;
 }
 
-static int bench_bare(const struct job_result *result, double *latencies, struct error *err) {
+static int bench_bare(const struct block_result *result, double *latencies, struct error *err) {
     struct store *store = NULL;
-    struct bench_client model = {.block = queue_block(result)};
+    struct bench_client model = {.block = *result};
     int status = queue_create("bare.db", JOBS, err);
     if (!status)
         status = store_open(&store, "bare.db", NULL, err);
@@ -241,7 +241,7 @@ static double cpu_us(const struct timeval *time) {
     return 1e6 * (double)time->tv_sec + (double)time->tv_usec;
 }
 
-static int bench_http(const struct job_result *result, double *latencies, struct error *err) {
+static int bench_http(const struct block_result *result, double *latencies, struct error *err) {
     pid_t server = 0;
     char *body = body_text(result);
     int status = body ? queue_create("http.db", JOBS, err) : error_memory(err, 0, "a message");
@@ -261,7 +261,7 @@ static int bench_http(const struct job_result *result, double *latencies, struct
 
 int main(void) {
     struct error err = {0};
-    struct job_result result = {0};
+    struct block_result result = {0};
     double *latencies = calloc((size_t)CLIENTS * JOBS, sizeof *latencies);
     int status = latencies ? queue_compute(&result, &err) : ERROR_MEMORY;
     if (!status) {
@@ -276,7 +276,7 @@ int main(void) {
         probe_disk();
     else
         fprintf(stderr, "bench_queue: %s\n", err.text);
-    job_result_clear(&result);
+    block_result_clear(&result);
     free(latencies);
     return status ? 1 : 0;
 }

@@ -64,9 +64,10 @@ struct process_report {
 };
 
 /* Claims and completes for SECONDS. */
-static int work(const struct job_result *result, struct process_report *report, struct error *err) {
+static int work(const struct block_result *result, struct process_report *report,
+                struct error *err) {
     struct store *store = NULL;
-    struct block_result block = queue_block(result);
+    struct block_result block = *result;
     int status = store_open(&store, "many.db", NULL, err);
     double until = seconds() + SECONDS, start = seconds();
     while (!status && start < until) {
@@ -89,7 +90,7 @@ static int work(const struct job_result *result, struct process_report *report, 
     return status;
 }
 
-static int bench_processes(const struct job_result *result, struct error *err) {
+static int bench_processes(const struct block_result *result, struct error *err) {
     struct process_report *reports = mmap(NULL, PROCESSES * sizeof *reports, PROT_READ | PROT_WRITE,
                                           MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (reports == MAP_FAILED)
@@ -122,7 +123,7 @@ static int bench_processes(const struct job_result *result, struct error *err) {
 
 int main(void) {
     struct error err = {0};
-    struct job_result result = {0};
+    struct block_result result = {0};
     int status = queue_compute(&result, &err);
     for (unsigned jobs = 10000; !status && jobs <= 1000000; jobs *= 10)
         status = bench_growth(jobs, &err);
@@ -130,6 +131,6 @@ int main(void) {
         status = bench_processes(&result, &err);
     if (status)
         fprintf(stderr, "bench_queue_growth: %s\n", err.text);
-    job_result_clear(&result);
+    block_result_clear(&result);
     return status ? 1 : 0;
 }

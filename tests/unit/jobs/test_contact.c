@@ -89,15 +89,15 @@ static struct job_merger *merger_of(const char *study) {
     return merger;
 }
 
-static struct job_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
-    struct job_result result = {0};
+static struct block_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
+    struct block_result result = {0};
     struct error err = {0};
     if (kind()->run(runner, first, count, NULL, &result, &err) != 0)
         fail_msg("%s", err.text);
     return result;
 }
 
-static void merge(struct job_merger *merger, const struct job_result *result) {
+static void merge(struct job_merger *merger, const struct block_result *result) {
     struct error err = {0};
     if (kind()->merge(merger, result, &err) != 0)
         fail_msg("%s", err.text);
@@ -123,10 +123,10 @@ static char *text_of(struct job_merger *merger) {
 static cJSON *document_of(const char *study, uint64_t count) {
     struct job_runner *runner = runner_of(study, NULL);
     struct job_merger *merger = merger_of(study);
-    struct job_result result = run(runner, 0, count);
+    struct block_result result = run(runner, 0, count);
     merge(merger, &result);
     cJSON *document = curves_of(merger);
-    job_result_clear(&result);
+    block_result_clear(&result);
     kind()->merger_destroy(&merger);
     kind()->runner_destroy(&runner);
     return document;
@@ -170,7 +170,7 @@ static void any_split_and_order(void **state) {
         cJSON_Delete(whole);
         for (int trial = 0; trial < 3; trial++) {
             struct job_merger *merger = merger_of(STUDIES[s]);
-            struct job_result parts[REALISATIONS];
+            struct block_result parts[REALISATIONS];
             size_t count = 0;
             for (uint64_t first = 0; first < REALISATIONS;) {
                 uint64_t size = 1 + next_word(&seed) % 5;
@@ -182,7 +182,7 @@ static void any_split_and_order(void **state) {
             for (size_t left = count; left > 0; left--) {
                 size_t pick = (size_t)(next_word(&seed) % left);
                 merge(merger, &parts[pick]);
-                job_result_clear(&parts[pick]);
+                block_result_clear(&parts[pick]);
                 parts[pick] = parts[left - 1];
             }
             char *got = text_of(merger);
@@ -197,7 +197,7 @@ static void any_split_and_order(void **state) {
     }
 }
 
-static void assert_refused(struct job_merger *merger, const struct job_result *result,
+static void assert_refused(struct job_merger *merger, const struct block_result *result,
                            const char *words) {
     struct error err = {0};
     int status = kind()->merge(merger, result, &err);
@@ -210,13 +210,13 @@ static void foreign_and_damaged(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(LEVELS, NULL), *other = runner_of(FULL, NULL);
     struct job_merger *merger = merger_of(LEVELS);
-    struct job_result good = run(runner, 3, 2), next = run(runner, 7, 2);
-    struct job_result foreign = run(other, 0, 2);
+    struct block_result good = run(runner, 3, 2), next = run(runner, 7, 2);
+    struct block_result foreign = run(other, 0, 2);
     merge(merger, &good);
     char *before = text_of(merger);
     assert_refused(merger, &good, "realisation 3 is there already");
     assert_refused(merger, &foreign, "other parameters");
-    struct job_result bad = next;
+    struct block_result bad = next;
     bad.count = 1;
     assert_refused(merger, &bad, "scalars beside it");
     bad = good;
@@ -233,18 +233,18 @@ static void foreign_and_damaged(void **state) {
         assert_refused(merger, &bad, "the partial result");
     }
     for (size_t bit = 0; bit < 8 * next.size; bit += 1 + next.size / 97) {
-        next.data[bit / 8] ^= (unsigned char)(1u << (bit % 8));
+        ((unsigned char *)next.data)[bit / 8] ^= (unsigned char)(1u << (bit % 8));
         assert_refused(merger, &next, "the partial result");
-        next.data[bit / 8] ^= (unsigned char)(1u << (bit % 8));
+        ((unsigned char *)next.data)[bit / 8] ^= (unsigned char)(1u << (bit % 8));
     }
     char *after = text_of(merger);
     assert_string_equal(after, before);
     merge(merger, &next);
     free(before);
     free(after);
-    job_result_clear(&good);
-    job_result_clear(&next);
-    job_result_clear(&foreign);
+    block_result_clear(&good);
+    block_result_clear(&next);
+    block_result_clear(&foreign);
     kind()->merger_destroy(&merger);
     kind()->runner_destroy(&runner);
     kind()->runner_destroy(&other);
@@ -258,12 +258,12 @@ static void malicious(void **state) {
     printf("seed %llu\n", (unsigned long long)seed);
     struct job_runner *runner = runner_of(FULL, NULL);
     struct job_merger *merger = merger_of(FULL);
-    struct job_result good = run(runner, 0, 2);
+    struct block_result good = run(runner, 0, 2);
     unsigned char *copy = malloc(good.size);
     assert_non_null(copy);
     size_t taken = 0;
     for (int trial = 0; trial < 5000; trial++) {
-        struct job_result bad = good;
+        struct block_result bad = good;
         memcpy(copy, good.data, good.size);
         bad.data = copy;
         bad.first = (uint64_t)trial * 2;
@@ -281,7 +281,7 @@ static void malicious(void **state) {
     assert_true(taken > 300); /* the unchanged ones at least: the seal is made as it should be */
     cJSON_Delete(curves_of(merger));
     free(copy);
-    job_result_clear(&good);
+    block_result_clear(&good);
     kind()->merger_destroy(&merger);
     kind()->runner_destroy(&runner);
 }
@@ -292,14 +292,14 @@ static void each_realisation(const char *series, const char *model, double level
     struct job_runner *runner = runner_of(LEVELS, NULL);
     for (uint64_t r = 0; r < REALISATIONS; r++) {
         struct job_merger *single = merger_of(LEVELS);
-        struct job_result result = run(runner, r, 1);
+        struct block_result result = run(runner, r, 1);
         merge(single, &result);
         cJSON *document = curves_of(single);
         const cJSON *curve = curve_of(document, "contact_area", series, model, level);
         y[r] = at(curve, "/y", point);
         assert_true(isnan(at(curve, "/standard_error", point)));
         cJSON_Delete(document);
-        job_result_clear(&result);
+        block_result_clear(&result);
         kind()->merger_destroy(&single);
     }
     kind()->runner_destroy(&runner);
@@ -362,7 +362,7 @@ static void failures_are_told(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(STEEP, NULL);
     struct job_merger *merger = merger_of(STEEP);
-    struct job_result result = run(runner, 0, REALISATIONS), moved = result;
+    struct block_result result = run(runner, 0, REALISATIONS), moved = result;
     moved.first = REALISATIONS;
     assert_refused(merger, &moved, "does not belong to the scalars");
     merge(merger, &result);
@@ -388,7 +388,7 @@ static void failures_are_told(void **state) {
     document = document_of(LEVELS, 1);
     assert_null(value_at(document, "/notes"));
     cJSON_Delete(document);
-    job_result_clear(&result);
+    block_result_clear(&result);
     kind()->merger_destroy(&merger);
     kind()->runner_destroy(&runner);
 }
@@ -462,7 +462,7 @@ static void stopping(void **state) {
     struct job_runner *runner = runner_of(FULL, NULL);
     int asked = 0;
     const struct job_control control = {stop_at_last, &asked};
-    struct job_result result = {.first = 77};
+    struct block_result result = {.first = 77};
     struct error err = {0};
     assert_int_equal(kind()->run(runner, 0, 9, &control, &result, &err), ERROR_STOPPED);
     assert_true(result.first == 77 && result.data == NULL);
@@ -481,7 +481,7 @@ static int stop_at_number(void *context, uint64_t done) {
 static void stopping_within_a_load(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(STEEP, NULL);
-    struct job_result whole = run(runner, 0, 2), result = {0};
+    struct block_result whole = run(runner, 0, 2), result = {0};
     struct error err = {0};
     int step = 1;
     for (int number = 0;; number += step, step += 7) {
@@ -496,8 +496,8 @@ static void stopping_within_a_load(void **state) {
     assert_true(step > 7 * 7); /* far more questions than realisations, levels and loads: 38 */
     assert_int_equal(result.size, whole.size);
     assert_memory_equal(result.data, whole.data, whole.size);
-    job_result_clear(&whole);
-    job_result_clear(&result);
+    block_result_clear(&whole);
+    block_result_clear(&result);
     kind()->runner_destroy(&runner);
 }
 

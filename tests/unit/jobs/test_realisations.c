@@ -13,7 +13,7 @@ static int add(struct realisations *set, uint64_t first, uint64_t count, struct 
         scalars[2 * r] = (double)(first + r);
         scalars[2 * r + 1] = -(double)(first + r);
     }
-    const struct job_result result = {
+    const struct block_result result = {
         .first = first, .count = count, .scalar_count = 2, .scalars = scalars};
     int status = realisations_check(set, &result, err);
     return status != 0 ? status : realisations_add(set, &result, err);

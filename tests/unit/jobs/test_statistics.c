@@ -69,15 +69,15 @@ static struct job_merger *merger_of(const char *study) {
     return merger;
 }
 
-static struct job_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
-    struct job_result result = {0};
+static struct block_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
+    struct block_result result = {0};
     struct error err = {0};
     if (kind()->run(runner, first, count, NULL, &result, &err) != 0)
         fail_msg("%s", err.text);
     return result;
 }
 
-static void merge(struct job_merger *merger, const struct job_result *result) {
+static void merge(struct job_merger *merger, const struct block_result *result) {
     struct error err = {0};
     if (kind()->merge(merger, result, &err) != 0)
         fail_msg("%s", err.text);
@@ -130,13 +130,13 @@ static void any_split_and_order(void **state) {
     for (int s = 0; s < STUDY_COUNT; s++) {
         struct job_runner *runners[] = {runner_of(STUDIES[s]), runner_of(STUDIES[s])};
         struct job_merger *whole = merger_of(STUDIES[s]);
-        struct job_result result = run(runners[0], 0, REALISATIONS);
+        struct block_result result = run(runners[0], 0, REALISATIONS);
         merge(whole, &result);
-        job_result_clear(&result);
+        block_result_clear(&result);
         char *expected = text_of(whole);
         for (int trial = 0; trial < 3; trial++) {
             struct job_merger *merger = merger_of(STUDIES[s]);
-            struct job_result parts[REALISATIONS];
+            struct block_result parts[REALISATIONS];
             size_t count = 0;
             for (uint64_t first = 0; first < REALISATIONS;) {
                 uint64_t size = 1 + next_word(&seed) % 9;
@@ -148,7 +148,7 @@ static void any_split_and_order(void **state) {
             for (size_t left = count; left > 0; left--) {
                 size_t pick = (size_t)(next_word(&seed) % left);
                 merge(merger, &parts[pick]);
-                job_result_clear(&parts[pick]);
+                block_result_clear(&parts[pick]);
                 parts[pick] = parts[left - 1];
             }
             char *got = text_of(merger);
@@ -163,7 +163,7 @@ static void any_split_and_order(void **state) {
     }
 }
 
-static void assert_refused(struct job_merger *merger, const struct job_result *result,
+static void assert_refused(struct job_merger *merger, const struct block_result *result,
                            const char *words) {
     struct error err = {0};
     int status = kind()->merge(merger, result, &err);
@@ -176,13 +176,13 @@ static void foreign_and_damaged(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(GAUSSIAN), *other = runner_of(PROFILE);
     struct job_merger *merger = merger_of(GAUSSIAN);
-    struct job_result good = run(runner, 3, 4), next = run(runner, 7, 4);
-    struct job_result foreign = run(other, 0, 2);
+    struct block_result good = run(runner, 3, 4), next = run(runner, 7, 4);
+    struct block_result foreign = run(other, 0, 2);
     merge(merger, &good);
     char *before = text_of(merger);
     assert_refused(merger, &good, "realisation 3 is there already");
     assert_refused(merger, &foreign, "other parameters");
-    struct job_result bad = next;
+    struct block_result bad = next;
     bad.first = 6;
     assert_refused(merger, &bad, "realisation 6 is there already");
     bad.first = 0;
@@ -199,18 +199,18 @@ static void foreign_and_damaged(void **state) {
         assert_refused(merger, &bad, "the partial result");
     }
     for (size_t bit = 0; bit < 8 * next.size; bit += 1 + next.size / 97) {
-        next.data[bit / 8] ^= (unsigned char)(1u << (bit % 8));
+        ((unsigned char *)next.data)[bit / 8] ^= (unsigned char)(1u << (bit % 8));
         assert_refused(merger, &next, "the partial result");
-        next.data[bit / 8] ^= (unsigned char)(1u << (bit % 8));
+        ((unsigned char *)next.data)[bit / 8] ^= (unsigned char)(1u << (bit % 8));
     }
     char *after = text_of(merger);
     assert_string_equal(after, before);
     merge(merger, &next);
     free(before);
     free(after);
-    job_result_clear(&good);
-    job_result_clear(&next);
-    job_result_clear(&foreign);
+    block_result_clear(&good);
+    block_result_clear(&next);
+    block_result_clear(&foreign);
     kind()->merger_destroy(&merger);
     kind()->runner_destroy(&runner);
     kind()->runner_destroy(&other);
@@ -224,12 +224,12 @@ static void malicious(void **state) {
     printf("seed %llu\n", (unsigned long long)seed);
     struct job_runner *runner = runner_of(GAUSSIAN);
     struct job_merger *merger = merger_of(GAUSSIAN);
-    struct job_result good = run(runner, 0, 2);
+    struct block_result good = run(runner, 0, 2);
     unsigned char *copy = malloc(good.size);
     assert_non_null(copy);
     size_t taken = 0;
     for (int trial = 0; trial < 20000; trial++) {
-        struct job_result bad = good;
+        struct block_result bad = good;
         memcpy(copy, good.data, good.size);
         bad.data = copy;
         bad.first = (uint64_t)trial * 2;
@@ -247,7 +247,7 @@ static void malicious(void **state) {
     assert_true(taken > 1000); /* the unchanged ones at least: the seal is made as it should be */
     cJSON_Delete(curves_of(merger));
     free(copy);
-    job_result_clear(&good);
+    block_result_clear(&good);
     kind()->merger_destroy(&merger);
     kind()->runner_destroy(&runner);
 }
@@ -262,7 +262,7 @@ static void curves_against_brute_force(void **state) {
     const int bin = 4; /* [0.8, 1): well filled */
     for (uint64_t r = 0; r < REALISATIONS; r++) {
         struct job_merger *single = merger_of(GAUSSIAN);
-        struct job_result result = run(runner, r, 1);
+        struct block_result result = run(runner, r, 1);
         merge(single, &result);
         merge(merger, &result);
         cJSON *document = curves_of(single);
@@ -270,7 +270,7 @@ static void curves_against_brute_force(void **state) {
         share[r] = at(curve_of(document, "summit_height_pdf"), "/y", bin) * 0.2;
         assert_true(isnan(at(curve_of(document, "summit_height_pdf"), "/standard_error", bin)));
         cJSON_Delete(document);
-        job_result_clear(&result);
+        block_result_clear(&result);
         kind()->merger_destroy(&single);
         total += n[r];
         sum += n[r] * share[r];
@@ -294,7 +294,7 @@ static void normalisation(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(GAUSSIAN);
     struct job_merger *merger = merger_of(GAUSSIAN);
-    struct job_result result = run(runner, 0, REALISATIONS);
+    struct block_result result = run(runner, 0, REALISATIONS);
     merge(merger, &result);
     cJSON *document = curves_of(merger);
     const cJSON *pdf = curve_of(document, "summit_height_pdf");
@@ -316,7 +316,7 @@ static void normalisation(void **state) {
     const cJSON *heights = curve_of(document, "height_pdf");
     assert_true(value_at(heights, "/underflow")->valuedouble > 0);
     cJSON_Delete(document);
-    job_result_clear(&result);
+    block_result_clear(&result);
     kind()->merger_destroy(&merger);
     kind()->runner_destroy(&runner);
 }
@@ -330,7 +330,7 @@ static void bins_that_miss(void **state) {
         " \"statistics\": {\"bins\": {\"height\": [50, 60, 3], \"curvature\": [1, 2, 2]}}}";
     struct job_runner *runner = runner_of(study);
     struct job_merger *merger = merger_of(study);
-    struct job_result result = run(runner, 0, 3);
+    struct block_result result = run(runner, 0, 3);
     merge(merger, &result);
     cJSON *document = curves_of(merger);
     const cJSON *pdf = curve_of(document, "summit_height_pdf");
@@ -338,7 +338,7 @@ static void bins_that_miss(void **state) {
     assert_true(value_at(pdf, "/underflow")->valuedouble ==
                 3 * scalar(document, "summits", "value"));
     cJSON_Delete(document);
-    job_result_clear(&result);
+    block_result_clear(&result);
     kind()->merger_destroy(&merger);
     kind()->runner_destroy(&runner);
 }
@@ -364,7 +364,7 @@ static void stopping(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(GAUSSIAN);
     const struct job_control control = {stop_at_two, NULL};
-    struct job_result result = {.first = 77};
+    struct block_result result = {.first = 77};
     struct error err = {0};
     assert_int_equal(kind()->run(runner, 0, 5, &control, &result, &err), ERROR_STOPPED);
     assert_non_null(strstr(err.text, "2 of 5"));

@@ -43,21 +43,19 @@ static void run_one(struct fixture *fixture) {
     struct source_options options = {.database = fixture->database, .worker = "one"};
     struct claimed_job job = {0};
     struct job_runner *runner = NULL;
-    struct job_result result = {0};
+    struct block_result result = {0};
     int found = 0;
     assert_int_equal(source_create(&source, &options, &err), 0);
     assert_int_equal(source_claim(source, &job, &found, &err), 0);
     assert_int_equal(found, 1);
     const struct job_kind *kind = kind_find(job.kind);
-    cJSON *parameters = cJSON_Parse(job.parameters);
     assert_int_equal(
-        kind->runner_create(&runner, parameters, NULL, job.seed, job.case_number, &err), 0);
+        kind->runner_create(&runner, job.parameters, NULL, job.seed, job.case_number, &err), 0);
     assert_int_equal(kind->run(runner, job.first, job.count, NULL, &result, &err), 0);
-    assert_int_equal(source_complete(source, &job, kind, &result, &err), 0);
+    assert_int_equal(source_complete(source, &job, &result, &err), 0);
     kind->runner_destroy(&runner);
-    job_result_clear(&result);
+    block_result_clear(&result);
     claimed_job_clear(&job);
-    cJSON_Delete(parameters);
     source_destroy(&source);
 }
 

@@ -122,8 +122,12 @@ static void result_arrives(void **state) {
     const struct job_kind *kind = JOB_KINDS[0];
     double scalars[64];
     unsigned char data[3] = {0, 255, 7};
-    struct job_result result = {
-        .first = 10, .count = 1, .scalars = scalars, .data = data, .size = sizeof data};
+    struct block_result result = {.first = 10,
+                                  .count = 1,
+                                  .names = kind->scalars,
+                                  .scalars = scalars,
+                                  .data = data,
+                                  .size = sizeof data};
     while (kind->scalars[result.scalar_count]) {
         scalars[result.scalar_count] = 1.0 / (double)(result.scalar_count + 3);
         result.scalar_count++;
@@ -137,22 +141,23 @@ static void result_arrives(void **state) {
                         .answer = reply(text, sizeof text, "200 OK", "{\"case_done\":true}")};
     stub_start(&stub);
     struct source *source = source_of(&stub);
-    assert_int_equal(source_complete(source, &job, kind, &result, &err), 0);
+    assert_int_equal(source_complete(source, &job, &result, &err), 0);
     source_destroy(&source);
     stub_stop(&stub);
     assert_non_null(strstr(stub.request, "POST /v1/jobs/9000000000/complete "));
     const char *body = strstr(stub.request, "\r\n\r\n") + 4;
     cJSON *value = NULL;
-    struct wire_result got;
+    struct block_result got;
+    char token[TOKEN_SIZE];
     assert_int_equal(json_parse(body, strlen(body), NULL, &value, &err), 0);
-    assert_int_equal(wire_result_read(value, &got, &err), 0);
-    assert_string_equal(got.token, TOKEN);
-    assert_int_equal(got.result.scalar_count, result.scalar_count);
-    assert_true(isnan(got.result.scalars[0]));
-    assert_true(got.result.scalars[1] == scalars[1]);
+    assert_int_equal(wire_result_read(value, token, &got, &err), 0);
+    assert_string_equal(token, TOKEN);
+    assert_int_equal(got.scalar_count, result.scalar_count);
+    assert_true(isnan(got.scalars[0]));
+    assert_true(got.scalars[1] == scalars[1]);
     assert_string_equal(got.names[1], kind->scalars[1]);
-    assert_memory_equal(got.result.data, data, sizeof data);
-    wire_result_clear(&got);
+    assert_memory_equal(got.data, data, sizeof data);
+    block_result_clear(&got);
     cJSON_Delete(value);
 }
 

@@ -31,11 +31,14 @@ static cJSON *cross(cJSON *value) {
     return read;
 }
 
+static const char PARAMETERS[] = "{\"surface\":{\"hurst\":0.1,\"list\":[1,2.5e-300,null]}}";
+
+/* cJSON_Delete its parameters. */
 static struct claimed_job some_job(void) {
     struct claimed_job job = {
         .id = 9007199254740991, /* 2^53 - 1 */
         .kind = (char *)"statistics",
-        .parameters = (char *)"{\"surface\":{\"hurst\":0.1,\"list\":[1,2.5e-300,null]}}",
+        .parameters = cJSON_Parse(PARAMETERS),
         .seed = UINT64_MAX,
         .case_number = 9999,
         .first = 4294967296,
@@ -63,9 +66,12 @@ static void job_crosses_unchanged(void **state) {
     assert_string_equal(got.study, STUDY);
     assert_string_equal(got.token, TOKEN);
     assert_string_equal(got.kind, "statistics");
-    assert_string_equal(got.parameters, sent.parameters);
+    char *parameters = json_print(got.parameters);
+    assert_string_equal(parameters, PARAMETERS);
+    free(parameters);
     claimed_job_clear(&got);
     cJSON_Delete(value);
+    cJSON_Delete(sent.parameters);
 }
 
 static void no_jobs_cross(void **state) {
@@ -111,6 +117,7 @@ static void malformed_jobs_are_refused(void **state) {
         assert_null(got.kind);
         cJSON_Delete(value);
     }
+    cJSON_Delete(job.parameters);
 }
 
 static void more_jobs_than_room_are_refused(void **state) {
@@ -121,6 +128,8 @@ static void more_jobs_than_room_are_refused(void **state) {
     cJSON *value = cross(wire_jobs(jobs, 2));
     assert_int_equal(wire_jobs_read(value, got, 1, &count, &err), ERROR_INPUT);
     cJSON_Delete(value);
+    cJSON_Delete(jobs[0].parameters);
+    cJSON_Delete(jobs[1].parameters);
 }
 
 static void claim_crosses(void **state) {
@@ -202,25 +211,26 @@ static void result_crosses_bit_for_bit(void **state) {
     (void)state;
     static double scalars[RANDOM * WIDTH];
     static unsigned char data[1000];
-    const char *const names[] = {"m0", "eps_h", "a", "b", NULL};
+    const char *const names[] = {"m0", "eps_h", "a", "b"};
     fill(scalars, RANDOM * WIDTH);
     scalars[17] = (double)NAN;
     for (size_t n = 0; n < sizeof data; n++) {
         data[n] = (unsigned char)(n * 37);
     }
-    struct job_result sent = {.first = 12,
-                              .count = RANDOM,
-                              .scalar_count = WIDTH,
-                              .scalars = scalars,
-                              .data = data,
-                              .size = sizeof data,
-                              .seconds = 0.1};
-    struct wire_result got;
+    struct block_result sent = {.first = 12,
+                                .count = RANDOM,
+                                .scalar_count = WIDTH,
+                                .names = names,
+                                .scalars = scalars,
+                                .data = data,
+                                .size = sizeof data,
+                                .seconds = 0.1};
+    struct block_result block;
+    char token[TOKEN_SIZE];
     struct error err = {0};
-    cJSON *value = cross(wire_result(TOKEN, names, &sent));
-    assert_int_equal(wire_result_read(value, &got, &err), 0);
-    struct block_result block = wire_block(&got);
-    assert_string_equal(got.token, TOKEN);
+    cJSON *value = cross(wire_result(TOKEN, &sent));
+    assert_int_equal(wire_result_read(value, token, &block, &err), 0);
+    assert_string_equal(token, TOKEN);
     assert_true(block.first == 12 && block.count == RANDOM && block.scalar_count == WIDTH);
     assert_string_equal(block.names[3], "b");
     assert_true(isnan(block.scalars[17]));
@@ -232,7 +242,7 @@ static void result_crosses_bit_for_bit(void **state) {
     assert_int_equal(block.size, sizeof data);
     assert_memory_equal(block.data, data, sizeof data);
     assert_true(block.seconds == 0.1);
-    wire_result_clear(&got);
+    block_result_clear(&block);
     cJSON_Delete(value);
 }
 
@@ -264,11 +274,12 @@ static void malformed_results_are_refused(void **state) {
         "\"scalars\":{\"names\":[\"a\"],\"rows\":[3]}}",
     };
     for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
-        struct wire_result got;
+        struct block_result got;
+        char token[TOKEN_SIZE];
         struct error err = {0};
         cJSON *value = cJSON_Parse(table[n]);
         assert_non_null(value);
-        assert_int_equal(wire_result_read(value, &got, &err), ERROR_INPUT);
+        assert_int_equal(wire_result_read(value, token, &got, &err), ERROR_INPUT);
         assert_true(err.text[0] != '\0');
         cJSON_Delete(value);
     }

@@ -129,7 +129,7 @@ static void run_case(const struct hard_case *hard) {
     struct job_estimate estimate;
     struct job_runner *runner = NULL;
     struct job_merger *merger = NULL;
-    struct job_result result = {0};
+    struct block_result result = {0};
     struct error err = {0};
     cJSON *parameters = parameters_of(hard), *document = NULL;
     assert_int_equal(kind->check(parameters, &faults, &estimate, &err), 0);
@@ -155,7 +155,7 @@ static void run_case(const struct hard_case *hard) {
     assert_finite(hard, document, "/scalars/summits/value");
     assert_numbers(hard, document);
     cJSON_Delete(document);
-    job_result_clear(&result);
+    block_result_clear(&result);
     kind->runner_destroy(&runner);
     kind->merger_destroy(&merger);
     cJSON_Delete(parameters);
@@ -164,7 +164,7 @@ static void run_case(const struct hard_case *hard) {
 static double scalar_of(const char *scale, const char *name) {
     const struct job_kind *kind = kind_find("statistics");
     struct job_runner *runner = NULL;
-    struct job_result result = {0};
+    struct block_result result = {0};
     struct error err = {0};
     char text[200];
     snprintf(text, sizeof text, "{'surface': {'hurst': 0.6, 'wavelength_ratio': 8, %s}}", scale);
@@ -176,7 +176,7 @@ static double scalar_of(const char *scale, const char *name) {
     while (strcmp(kind->scalars[at], name) != 0)
         at++;
     double value = result.scalars != NULL ? result.scalars[at] : NAN;
-    job_result_clear(&result);
+    block_result_clear(&result);
     kind->runner_destroy(&runner);
     cJSON_Delete(parameters);
     return value;

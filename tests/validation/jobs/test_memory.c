@@ -35,11 +35,11 @@ static const struct {
 
 static int run_one(const struct job_kind *kind, const cJSON *parameters) {
     struct job_runner *runner = NULL;
-    struct job_result result = {0};
+    struct block_result result = {0};
     int status = kind->runner_create(&runner, parameters, NULL, 1, 0, NULL);
     if (status == 0)
         status = kind->run(runner, 0, 1, NULL, &result, NULL);
-    job_result_clear(&result);
+    block_result_clear(&result);
     kind->runner_destroy(&runner);
     return status == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -18,7 +18,7 @@ __attribute__((format(printf, 2, 3))) static cJSON *study(uint64_t count, const 
     const struct job_kind *kind = kind_find("statistics");
     struct job_runner *runner = NULL;
     struct job_merger *merger = NULL;
-    struct job_result result = {0};
+    struct block_result result = {0};
     struct error err = {0};
     cJSON *curves = NULL;
     char text[1000];
@@ -38,7 +38,7 @@ __attribute__((format(printf, 2, 3))) static cJSON *study(uint64_t count, const 
         fail_msg("%s: %s", text, err.text);
     kind->runner_destroy(&runner);
     kind->merger_destroy(&merger);
-    job_result_clear(&result);
+    block_result_clear(&result);
     cJSON_Delete(parameters);
     return curves;
 }

@@ -1,0 +1,25 @@
+/* What came out of one block of realisations, from the runner that made it to the store. */
+#ifndef RUGO_SCHEMA_RESULT_BLOCK_RESULT_H
+#define RUGO_SCHEMA_RESULT_BLOCK_RESULT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct block_text; /* schema/store/store.h */
+
+/* Its arrays belong to whoever made it: a runner and the reader of a message hand them over, to be
+ * freed by block_result_clear; the store lends those that it reads. */
+struct block_result {
+    uint64_t first, count;         /* realisations first .. first + count - 1 of the case */
+    size_t scalar_count;           /* as many as the kind's scalars */
+    const char *const *names;      /* scalar_count; texts of the kind, or of what was read */
+    const double *scalars;         /* count x scalar_count, realisation by realisation; NaN: none */
+    const unsigned char *data;     /* the kind's accumulators, portable, versioned */
+    size_t size;                   /* bytes of data */
+    double seconds;                /* wall seconds that it took */
+    const struct block_text *text; /* borrowed: its texts in the store; NULL: not made yet */
+};
+/* Frees names, scalars and data. */
+void block_result_clear(struct block_result *result);
+
+#endif
