@@ -1,5 +1,5 @@
 #include "core/contact/contact.h"
-#include "core/contact/descent.h"
+#include "core/contact/conjugate_gradient.h"
 #include "core/sum.h"
 #include <fftw3.h>
 #include <float.h>
@@ -15,17 +15,17 @@ const struct contact_options CONTACT_DEFAULTS = {
 struct contact {
     const struct compliance *compliance; /* borrowed */
     struct contact_options options;
-    struct descent descent; /* its heights are weighted */
-    double *z;              /* heights, mean 0 */
-    double *pressure, *gap; /* what is told: the user's units */
-    double *opening;        /* gap where there is no weighting */
-    double unit;            /* RMS height, the grid's length; 0 for a flat surface */
-    double full;            /* smallest mean pressure of full contact */
-    double mean;            /* of the descent's p: the load that it solves; 0 for none */
+    struct conjugate_gradient solver; /* its heights are weighted */
+    double *z;                        /* heights, mean 0 */
+    double *pressure, *gap;           /* what is told: the user's units */
+    double *opening;                  /* gap where there is no weighting */
+    double unit;                      /* RMS height, the grid's length; 0 for a flat surface */
+    double full;                      /* smallest mean pressure of full contact */
+    double mean;                      /* of the descent's p: the load that it solves; 0 for none */
 };
 
 double contact_bytes(const struct grid *grid) {
-    return 4.0 * sizeof(double) * (double)grid_points(grid) + descent_bytes(grid);
+    return 4.0 * sizeof(double) * (double)grid_points(grid) + conjugate_gradient_bytes(grid);
 }
 
 int contact_create(struct contact **out, const struct compliance *compliance,
@@ -38,8 +38,8 @@ int contact_create(struct contact **out, const struct compliance *compliance,
         return error_memory(err, sizeof *c, "a contact");
     c->compliance = compliance;
     c->options = *options;
-    int status = descent_create(&c->descent, compliance, err);
-    size_t n = c->descent.n;
+    int status = conjugate_gradient_create(&c->solver, compliance, err);
+    size_t n = c->solver.n;
     double **const arrays[] = {&c->z, &c->pressure, &c->gap};
     for (size_t a = 0; status == 0 && a < sizeof arrays / sizeof *arrays; a++) {
         *arrays[a] = array_create(n, sizeof(double));
@@ -61,7 +61,7 @@ void contact_destroy(struct contact **contact) {
     struct contact *c = *contact;
     if (c == NULL)
         return;
-    descent_clear(&c->descent);
+    conjugate_gradient_clear(&c->solver);
     if (c->opening != c->gap)
         free(c->opening);
     free(c->z);
@@ -73,12 +73,12 @@ void contact_destroy(struct contact **contact) {
 
 /* Pressures are told in E*: this much a scaled one. */
 static double pressure_unit(const struct contact *c) {
-    return c->unit / c->descent.largest;
+    return c->unit / c->solver.largest;
 }
 
 /* Fills z, mean 0 and RMS 1 (0 for a flat surface), and unit. */
 static int take_heights(struct contact *c, const double *z, struct error *err) {
-    size_t n = c->descent.n;
+    size_t n = c->solver.n;
     double most = 0;
     struct sum sum = {0}, square = {0};
     for (size_t i = 0; i < n; i++) {
@@ -104,7 +104,7 @@ static int take_heights(struct contact *c, const double *z, struct error *err) {
 }
 
 int contact_begin(struct contact *c, const double *z, struct error *err) {
-    struct descent *d = &c->descent;
+    struct conjugate_gradient *d = &c->solver;
     c->mean = 0;
     int status = take_heights(c, z, err);
     if (status != 0)
@@ -126,8 +126,8 @@ double contact_full_pressure(const struct contact *c) {
 }
 
 /* Nothing touches, or one point without force: the block hangs on its highest point. */
-static void tell_open(struct contact *c, struct contact_state *out) {
-    const struct descent *d = &c->descent;
+static void fill_open(struct contact *c, struct contact_state *out) {
+    const struct conjugate_gradient *d = &c->solver;
     double highest = 0;
     for (size_t i = 0; i < d->n; i++)
         highest = fmax(highest, d->z[i]);
@@ -140,8 +140,8 @@ static void tell_open(struct contact *c, struct contact_state *out) {
 }
 
 /* The flat fills every valley: the pressures are those that flatten the surface (Johnson 1985). */
-static void tell_full(struct contact *c, double pressure, struct contact_state *out) {
-    struct descent *d = &c->descent;
+static void fill_full(struct contact *c, double pressure, struct contact_state *out) {
+    struct conjugate_gradient *d = &c->solver;
     transform_filter(d->transform, d->stiff, pressure_unit(c), d->z, c->pressure);
     for (size_t i = 0; i < d->n; i++) {
         c->pressure[i] = fmax(DBL_MIN, c->pressure[i] + pressure); /* in contact, if barely */
@@ -152,9 +152,9 @@ static void tell_full(struct contact *c, double pressure, struct contact_state *
     out->work = 2 * (double)d->n;
 }
 
-static void tell_partial(struct contact *c, const struct descent_end *end,
+static void fill_partial(struct contact *c, const struct conjugate_gradient_end *end,
                          struct contact_state *out) {
-    struct descent *d = &c->descent;
+    struct conjugate_gradient *d = &c->solver;
     struct sum gap = {0};
     for (size_t i = 0; i < d->n; i++)
         c->opening[i] = (d->u[i] - d->z[i] + end->approach) * c->unit;
@@ -172,12 +172,13 @@ static void tell_partial(struct contact *c, const struct descent_end *end,
     out->violation = fmax(end->inside, end->penetration);
     out->penetration = end->penetration;
     /* All nodes in contact, a rounding error below the load of full contact. */
-    out->stiffness = out->nodes == d->n ? INFINITY : 1 / (descent_tangent(d) * d->largest);
+    out->stiffness =
+        out->nodes == d->n ? INFINITY : 1 / (conjugate_gradient_tangent(d) * d->largest);
 }
 
 /* The pressures of the last load, moved along their tangent to a mean; uniform before the first. */
 static void predict(struct contact *c, double mean) {
-    struct descent *d = &c->descent;
+    struct conjugate_gradient *d = &c->solver;
     double sum = 0;
     for (size_t i = 0; i < d->n; i++) {
         double p = c->mean > 0 ? d->p[i] + (mean - c->mean) * d->q[i] : mean;
@@ -192,13 +193,13 @@ static void predict(struct contact *c, double mean) {
 
 static int press_partial(struct contact *c, double pressure, struct contact_state *out,
                          struct error *err) {
-    struct descent *d = &c->descent;
-    struct descent_end end;
+    struct conjugate_gradient *d = &c->solver;
+    struct conjugate_gradient_end end;
     double mean = pressure / pressure_unit(c);
     d->transforms = 0;
     predict(c, mean);
-    descent_run(d, mean, c->options.tolerance, c->options.stall_iterations,
-                c->options.max_iterations, &end);
+    conjugate_gradient_run(d, mean, c->options.tolerance, c->options.stall_iterations,
+                           c->options.max_iterations, &end);
     if (!end.converged) {
         c->mean = 0;
         return error_set(err, ERROR_NUMERIC,
@@ -207,7 +208,7 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
                          pressure, end.iterations, end.inside, end.penetration);
     }
     c->mean = mean;
-    tell_partial(c, &end, out);
+    fill_partial(c, &end, out);
     out->work = d->transforms * (double)d->n;
     return 0;
 }
@@ -220,9 +221,9 @@ int contact_press(struct contact *c, double pressure, struct contact_state *out,
     struct contact_state state = {
         .pressure = pressure, .p = c->pressure, .gap = c->gap, .opening = c->opening};
     if (pressure == 0)
-        tell_open(c, &state);
+        fill_open(c, &state);
     else if (pressure >= contact_full_pressure(c))
-        tell_full(c, pressure, &state);
+        fill_full(c, pressure, &state);
     else {
         int status = press_partial(c, pressure, &state, err);
         if (status != 0)

@@ -17,7 +17,7 @@ struct contact_options {
                                 displacement from the mean; default 1e-8; 1e-12 is reachable */
     size_t max_iterations;   /* a load; default 5000 */
     size_t stall_iterations; /* without halving the violation, after which steps become careful
-                                (descent.h); default 400 */
+                                (conjugate_gradient.h); default 400 */
 };
 extern const struct contact_options CONTACT_DEFAULTS;
 

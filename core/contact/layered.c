@@ -68,7 +68,7 @@ static struct symbols symbols_of(size_t mode, size_t n, double distance) {
 
 /* The waves under way; lanes from count on hold anything, and nobody reads what becomes of them. Of
  * symmetric matrices one half; terms left out are 0. */
-struct waves {
+struct wave_lanes {
     lane axx, axy, ayy, azz; /* A */
     lane bxx, bxy, byy;      /* the part of A that sees the mean of phi: zeta zeta is h/4 */
     lane cxz, cyz, czx, czy; /* C: row phi, column phi' */
@@ -79,7 +79,7 @@ struct waves {
     size_t count;
 };
 
-static void wave_add(struct waves *w, const struct layered_material *material,
+static void wave_add(struct wave_lanes *w, const struct layered_material *material,
                      const struct symbols *x, const struct symbols *y) {
     size_t l = w->count++;
     double mu = material->mu, local = material->local, mean = material->mean;
@@ -102,7 +102,7 @@ static void wave_add(struct waves *w, const struct layered_material *material,
     w->fz[l] = (2 * mu + local) * mass + mean * tz * tz;
 }
 
-struct row {
+struct layer_row {
     double x, y, z;
 };
 
@@ -111,13 +111,13 @@ struct symmetric {
 };
 
 /* H = L D L^T, L with ones on its diagonal. */
-struct factor {
+struct cholesky {
     double x, y, z;    /* 1/D */
     double yx, zx, zy; /* L */
 };
 
-static inline struct factor factorise(struct symmetric h) {
-    struct factor f;
+static inline struct cholesky factorise(struct symmetric h) {
+    struct cholesky f;
     f.x = 1 / h.xx;
     f.yx = h.xy * f.x;
     f.zx = h.xz * f.x;
@@ -129,22 +129,22 @@ static inline struct factor factorise(struct symmetric h) {
 }
 
 /* L^-1 g */
-static inline struct row forward(struct factor f, struct row g) {
-    struct row u = {.x = g.x};
+static inline struct layer_row forward(struct cholesky f, struct layer_row g) {
+    struct layer_row u = {.x = g.x};
     u.y = g.y - f.yx * u.x;
     u.z = g.z - f.zx * u.x - f.zy * u.y;
     return u;
 }
 
-static inline double product(struct factor f, struct row u, struct row v) {
+static inline double product(struct cholesky f, struct layer_row u, struct layer_row v) {
     return u.x * v.x * f.x + u.y * v.y * f.y + u.z * v.z * f.z;
 }
 
 /* M = N - G H^-1 G^T, rows of G as given, into lane l. */
-static inline void condense(struct waves *w, size_t l, struct symmetric n, struct symmetric h,
-                            struct row gx, struct row gy, struct row gz) {
-    struct factor f = factorise(h);
-    struct row x = forward(f, gx), y = forward(f, gy), z = forward(f, gz);
+static inline void condense(struct wave_lanes *w, size_t l, struct symmetric n, struct symmetric h,
+                            struct layer_row gx, struct layer_row gy, struct layer_row gz) {
+    struct cholesky f = factorise(h);
+    struct layer_row x = forward(f, gx), y = forward(f, gy), z = forward(f, gz);
     w->mxx[l] = n.xx - product(f, x, x);
     w->mxy[l] = n.xy - product(f, x, y);
     w->myy[l] = n.yy - product(f, y, y);
@@ -155,7 +155,7 @@ static inline void condense(struct waves *w, size_t l, struct symmetric n, struc
 
 /* The layer on the far side, where Z = 0 and X, Y are free: Z of w is that of the near face and
  * stays; X and Y of w go, and a unit pivot stands in for Z. */
-WIDE_VECTORS static void far_layer(struct waves *w, double h) {
+WIDE_VECTORS static void far_layer(struct wave_lanes *w, double h) {
     double a = h / 2, b = h / 3, c = h / 12;
     for (size_t l = 0; l < LANES; l++) {
         struct symmetric n = {h * w->axx[l], h * w->axy[l], h * w->ayy[l],
@@ -165,16 +165,16 @@ WIDE_VECTORS static void far_layer(struct waves *w, double h) {
                                   .xy = b * w->axy[l] - c * w->bxy[l],
                                   .yy = b * w->ayy[l] - c * w->byy[l] + shear,
                                   .zz = 1};
-        struct row gx = {-a * w->axx[l], -a * w->axy[l], 0};
-        struct row gy = {-a * w->axy[l], -a * w->ayy[l], 0};
-        struct row gz = {(w->czx[l] - w->cxz[l]) / 2, (w->czy[l] - w->cyz[l]) / 2, 0};
+        struct layer_row gx = {-a * w->axx[l], -a * w->axy[l], 0};
+        struct layer_row gy = {-a * w->axy[l], -a * w->ayy[l], 0};
+        struct layer_row gz = {(w->czx[l] - w->cxz[l]) / 2, (w->czy[l] - w->cyz[l]) / 2, 0};
         condense(w, l, n, pivot, gx, gy, gz);
     }
 }
 
 /* Any other layer. Its energy has blocks P for v v, Q for v w, R for w w; v is the near face less
  * w, so that w meets G = N - Q and H = N - Q - Q^T + R, with N = M + P. */
-WIDE_VECTORS static void next_layer(struct waves *w, double h) {
+WIDE_VECTORS static void next_layer(struct wave_lanes *w, double h) {
     double a = h / 2, b = h / 3, c = h / 12;
     for (size_t l = 0; l < LANES; l++) {
         struct symmetric m = {w->mxx[l], w->mxy[l], w->myy[l], w->mxz[l], w->myz[l], w->mzz[l]};
@@ -187,15 +187,15 @@ WIDE_VECTORS static void next_layer(struct waves *w, double h) {
             m.yy + b * w->ayy[l] - c * w->byy[l] + shear, m.xz - (w->cxz[l] + w->czx[l]) / 2,
             m.yz - (w->cyz[l] + w->czy[l]) / 2,           m.zz + b * w->azz[l] + w->fz[l] / h};
         double gxy = m.xy + a * w->axy[l];
-        struct row gx = {m.xx + a * w->axx[l], gxy, m.xz - w->cxz[l]};
-        struct row gy = {gxy, m.yy + a * w->ayy[l], m.yz - w->cyz[l]};
-        struct row gz = {m.xz - w->czx[l], m.yz - w->czy[l], m.zz + a * w->azz[l]};
+        struct layer_row gx = {m.xx + a * w->axx[l], gxy, m.xz - w->cxz[l]};
+        struct layer_row gy = {gxy, m.yy + a * w->ayy[l], m.yz - w->cyz[l]};
+        struct layer_row gz = {m.xz - w->czx[l], m.yz - w->czy[l], m.zz + a * w->azz[l]};
         condense(w, l, n, pivot, gx, gy, gz);
     }
 }
 
 /* Z of the face under a unit pressure, X and Y free: (M^-1)_zz. */
-WIDE_VECTORS static void face(struct waves *w) {
+WIDE_VECTORS static void face(struct wave_lanes *w) {
     for (size_t l = 0; l < LANES; l++) {
         struct symmetric m = {w->mxx[l], w->mxy[l], w->myy[l], w->mxz[l], w->myz[l], w->mzz[l]};
         w->compliance[l] = factorise(m).z;
@@ -203,13 +203,13 @@ WIDE_VECTORS static void face(struct waves *w) {
 }
 
 /* A mesh under way; lengths in units of dx, so that no unit of the user's overflows. */
-struct mesh {
+struct layered_mesh {
     struct compliance *compliance;
     struct layered_material material;
     double *thickness;     /* layers, from the face down */
     struct symbols *x, *y; /* nx/2 + 1, ny/2 + 1 */
     bool square;           /* x and y may be swapped */
-    struct waves waves;
+    struct wave_lanes waves;
 };
 
 /* |mx| and |my| stand for all signs, and on a square grid for both orders. */
@@ -221,8 +221,8 @@ static void length_store(struct compliance *compliance, size_t mx, size_t my, do
 }
 
 /* Takes the waves through the layers and stores what comes out. */
-static void waves_solve(struct mesh *mesh) {
-    struct waves *w = &mesh->waves;
+static void waves_solve(struct layered_mesh *mesh) {
+    struct wave_lanes *w = &mesh->waves;
     size_t layers = mesh->compliance->layers;
     far_layer(w, mesh->thickness[layers - 1]);
     for (size_t k = layers - 1; k-- > 0;)
@@ -237,9 +237,9 @@ static void waves_solve(struct mesh *mesh) {
     w->count = 0;
 }
 
-static void mesh_solve(struct mesh *mesh) {
+static void mesh_solve(struct layered_mesh *mesh) {
     const struct grid *grid = &mesh->compliance->grid;
-    struct waves *w = &mesh->waves;
+    struct wave_lanes *w = &mesh->waves;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
         for (size_t my = mx == 0; my <= (mesh->square ? mx : grid->ny / 2); my++) {
             w->mx[w->count] = mx;
@@ -253,7 +253,7 @@ static void mesh_solve(struct mesh *mesh) {
 }
 
 /* Layers and symbols; the block's height is checked, so that only its ratio to dx can fail. */
-static int mesh_prepare(struct mesh *mesh, struct error *err) {
+static int mesh_prepare(struct layered_mesh *mesh, struct error *err) {
     struct compliance *compliance = mesh->compliance;
     const struct grid *grid = &compliance->grid;
     double dx = grid_dx(grid), dy = grid_is_profile(grid) ? dx : grid_dy(grid);
@@ -277,17 +277,17 @@ static int mesh_prepare(struct mesh *mesh, struct error *err) {
 int layered_lengths(struct compliance *compliance, struct error *err) {
     const struct grid *grid = &compliance->grid;
     size_t symbols = grid->nx / 2 + 1 + grid->ny / 2 + 1;
-    struct mesh *mesh = array_create(1, sizeof *mesh);
+    struct layered_mesh *mesh = array_create(1, sizeof *mesh);
     double *thickness = array_create(LAYERS_MOST, sizeof *thickness);
     struct symbols *directions = array_create(symbols, sizeof *directions);
     int status = 0;
     if (!mesh || !thickness || !directions) {
         status = error_memory(err, symbols * sizeof *directions, "the mesh of the block");
     } else {
-        *mesh = (struct mesh){.compliance = compliance,
-                              .thickness = thickness,
-                              .x = directions,
-                              .y = directions + grid->nx / 2 + 1};
+        *mesh = (struct layered_mesh){.compliance = compliance,
+                                      .thickness = thickness,
+                                      .x = directions,
+                                      .y = directions + grid->nx / 2 + 1};
         status = mesh_prepare(mesh, err);
         if (!status)
             mesh_solve(mesh);

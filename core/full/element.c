@@ -1,4 +1,5 @@
 #include "core/full/element.h"
+#include "core/full/material_law.h"
 #include "core/vectors.h"
 #include <math.h>
 #include <stddef.h>
@@ -111,7 +112,7 @@ struct field {
     struct strained point;
     pointwise gradient[8][3]; /* in space, [a][k][q] */
     nodes across[8][3];       /* the same, [q][k][a] */
-    nodes bulk[3];            /* [i][a]: V d growth/du */
+    nodes growth_gradient[3]; /* [i][a]: V d growth/du */
     double growth;            /* mean of the points' dilatation */
 };
 
@@ -131,7 +132,7 @@ INLINE void divergence(int d, const pointwise weight, pointwise tensor[3][3], no
     }
 }
 
-INLINE bool field_make(int d, const struct solid *solid, const struct element_shape *shape,
+INLINE bool field_make(int d, const struct material *material, const struct element_shape *shape,
                        double u[8][3], struct field *f) {
     pointwise h[3][3];
     for (int i = 0; i < d; i++)
@@ -142,7 +143,7 @@ INLINE bool field_make(int d, const struct solid *solid, const struct element_sh
                     sum += u[a][i] * shape->gradient[a][k][q];
                 h[i][k][q] = sum;
             }
-    if (!solid_strain(d, solid, h, &f->point))
+    if (!material_strain(d, material, h, &f->point))
         return false;
     double growth = 0;
     for (int q = 0; q < 1 << d; q++)
@@ -159,27 +160,30 @@ INLINE bool field_make(int d, const struct solid *solid, const struct element_sh
         for (int k = 0; k < d; k++)
             for (int a = 0; a < 1 << d; a++)
                 f->across[q][k][a] = f->gradient[a][k][q];
-    divergence(d, shape->weight, f->point.spread, f->across, f->bulk);
+    divergence(d, shape->weight, f->point.spread, f->across, f->growth_gradient);
     f->growth = growth / shape->volume;
-    return solid->kinematics == KINEMATICS_ST_VENANT || f->growth > -1;
+    return f->growth > material->law->growth_least;
 }
 
 /* Of the mean dilatation: its energy over V, the pull outward and what it adds to the stiffness,
  * times V, all by its growth; the slope of its strain e by growth, and the pressure that it
  * makes. */
-struct bulk {
+struct mean_dilatation {
     double energy, pull, stiffness, slope, bound;
 };
 
-INLINE struct bulk bulk_of(const struct solid *solid, double growth, const double *pressure) {
-    bool hencky = solid->kinematics == KINEMATICS_HENCKY;
-    double strain = hencky ? log1p(growth) : growth, slope = hencky ? 1 / (1 + growth) : 1;
-    double bound = solid->mean * strain, p = pressure != NULL ? *pressure : bound;
-    return (struct bulk){.energy = bound * strain / 2,
-                         .pull = p * slope,
-                         .stiffness = (solid->mean - (hencky ? p : 0)) * slope * slope,
-                         .slope = slope,
-                         .bound = bound};
+INLINE struct mean_dilatation mean_dilatation_of(const struct material *material, double growth,
+                                                 const double *pressure) {
+    bool logarithmic = material->law->logarithmic;
+    double strain = logarithmic ? log1p(growth) : growth,
+           slope = logarithmic ? 1 / (1 + growth) : 1;
+    double bound = material->mean * strain, p = pressure != NULL ? *pressure : bound;
+    return (struct mean_dilatation){.energy = bound * strain / 2,
+                                    .pull = p * slope,
+                                    .stiffness =
+                                        (material->mean - (logarithmic ? p : 0)) * slope * slope,
+                                    .slope = slope,
+                                    .bound = bound};
 }
 
 /* Of one node: t[i*d + k][j], the first Piola-Kirchhoff stress (in space) by its displacement j. */
@@ -216,19 +220,19 @@ INLINE void blocks_add(int d, pointwise t[9][3], nodes across[8][3], nodes out[3
                 }
 }
 
-INLINE void stiffnesses(int d, const struct solid *solid, const struct element_shape *shape,
-                        struct field *f, const struct bulk *bulk,
-                        double (*stiffness)[ELEMENT_FREEDOMS]) {
+INLINE void stiffnesses(int d, const struct material *material, const struct element_shape *shape,
+                        struct field *f, const struct mean_dilatation *mean,
+                        double (*stiffness)[ELEMENT_DEGREES_OF_FREEDOM]) {
     struct moduli moduli;
-    double factor = bulk->stiffness / shape->volume;
-    solid_moduli(d, solid, &f->point, bulk->pull, shape->weight, &moduli);
+    double factor = mean->stiffness / shape->volume;
+    material_moduli(d, material, &f->point, mean->pull, shape->weight, &moduli);
     for (int b = 0; b < 1 << d; b++) {
         nodes block[3][3];
         pointwise t[9][3];
         for (int i = 0; i < d; i++)
             for (int j = 0; j < d; j++)
                 for (int a = 0; a < 1 << d; a++)
-                    block[i][j][a] = factor * f->bulk[j][b] * f->bulk[i][a];
+                    block[i][j][a] = factor * f->growth_gradient[j][b] * f->growth_gradient[i][a];
         stresses_by(d, f->gradient[b], &moduli, t);
         blocks_add(d, t, f->across, block);
         for (int a = 0; a <= b; a++)
@@ -239,15 +243,16 @@ INLINE void stiffnesses(int d, const struct solid *solid, const struct element_s
     }
 }
 
-INLINE bool evaluate(int d, const struct solid *solid, const struct element_shape *shape,
+INLINE bool evaluate(int d, const struct material *material, const struct element_shape *shape,
                      double u[8][3], const double *pressure, double *energy, double *force,
-                     double (*stiffness)[ELEMENT_FREEDOMS], struct element_bulk *out) {
+                     double (*stiffness)[ELEMENT_DEGREES_OF_FREEDOM],
+                     struct element_volumetric *out) {
     struct field f;
-    if (!field_make(d, solid, shape, u, &f))
+    if (!field_make(d, material, shape, u, &f))
         return false;
-    struct bulk bulk = bulk_of(solid, f.growth, pressure);
+    struct mean_dilatation mean = mean_dilatation_of(material, f.growth, pressure);
     if (energy != NULL) {
-        *energy = shape->volume * bulk.energy;
+        *energy = shape->volume * mean.energy;
         for (int q = 0; q < 1 << d; q++)
             *energy += shape->weight[q] * f.point.energy[q];
     }
@@ -256,25 +261,26 @@ INLINE bool evaluate(int d, const struct solid *solid, const struct element_shap
         divergence(d, shape->weight, f.point.stress, f.across, inner);
         for (int a = 0; a < 1 << d; a++)
             for (int i = 0; i < d; i++)
-                force[a * d + i] = inner[i][a] + bulk.pull * f.bulk[i][a];
+                force[a * d + i] = inner[i][a] + mean.pull * f.growth_gradient[i][a];
     }
     if (stiffness != NULL)
-        stiffnesses(d, solid, shape, &f, &bulk, stiffness);
+        stiffnesses(d, material, shape, &f, &mean, stiffness);
     if (out != NULL) {
-        out->stiffness = solid->mean / shape->volume;
-        out->bound = bulk.bound;
+        out->stiffness = material->mean / shape->volume;
+        out->bound = mean.bound;
         for (int a = 0; a < 1 << d; a++)
             for (int i = 0; i < d; i++)
-                out->gradient[a * d + i] = bulk.slope * f.bulk[i][a];
+                out->gradient[a * d + i] = mean.slope * f.growth_gradient[i][a];
     }
     return true;
 }
 
-WIDE_VECTORS bool element_evaluate(int dimension, const struct solid *solid,
+WIDE_VECTORS bool element_evaluate(int dimension, const struct material *material,
                                    const struct element_shape *shape, double u[8][3],
                                    const double *pressure, double *energy, double *force,
-                                   double (*stiffness)[ELEMENT_FREEDOMS],
-                                   struct element_bulk *bulk) {
-    return dimension == 2 ? evaluate(2, solid, shape, u, pressure, energy, force, stiffness, bulk)
-                          : evaluate(3, solid, shape, u, pressure, energy, force, stiffness, bulk);
+                                   double (*stiffness)[ELEMENT_DEGREES_OF_FREEDOM],
+                                   struct element_volumetric *volumetric) {
+    return dimension == 2
+               ? evaluate(2, material, shape, u, pressure, energy, force, stiffness, volumetric)
+               : evaluate(3, material, shape, u, pressure, energy, force, stiffness, volumetric);
 }

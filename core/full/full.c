@@ -25,7 +25,7 @@ struct full {
     double *z;                        /* heights, mean 0, in steps */
     double *pressure, *gap, *opening; /* face: what is told */
     double *kept;                     /* displacements of the last load that went well */
-    double *told;                     /* displacements, in the user's unit */
+    double *displacement;             /* displacements, in the user's unit */
     bool *kept_active;                /* face: its active set */
     bool *guess, *touches;            /* face: the linear model's, at that load and predicted */
     double load;                      /* that load; 0: lifted off */
@@ -43,7 +43,7 @@ static int options_check(const struct full_options *options, struct error *err) 
 }
 
 static int arrays_create(struct full *f, struct error *err) {
-    size_t face = f->mesh->face, freedoms = mesh_freedoms(f->mesh);
+    size_t face = f->mesh->face, degrees_of_freedom = mesh_degrees_of_freedom(f->mesh);
     f->z = array_create(face, sizeof *f->z);
     f->pressure = array_create(face, sizeof *f->pressure);
     f->gap = array_create(face, sizeof *f->gap);
@@ -52,10 +52,10 @@ static int arrays_create(struct full *f, struct error *err) {
     f->guess = array_create(face, sizeof *f->guess);
     f->touches = array_create(face, sizeof *f->touches);
     f->kept = array_create(newton_unknowns(&f->newton), sizeof *f->kept);
-    f->told = array_create(freedoms, sizeof *f->told);
+    f->displacement = array_create(degrees_of_freedom, sizeof *f->displacement);
     if (!f->z || !f->pressure || !f->gap || !f->opening || !f->kept_active || !f->guess ||
-        !f->touches || !f->kept || !f->told)
-        return error_memory(err, 2 * freedoms * sizeof(double), "finite elements");
+        !f->touches || !f->kept || !f->displacement)
+        return error_memory(err, 2 * degrees_of_freedom * sizeof(double), "finite elements");
     return 0;
 }
 
@@ -70,7 +70,7 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
         return error_memory(err, sizeof *f, "finite elements");
     struct block linear = *block;
     struct contact_options loose = CONTACT_DEFAULTS;
-    struct solid solid = solid_of(block->poisson, options->kinematics);
+    struct material material = material_of(block->poisson, options->kinematics);
     linear.model = MODEL_LAYERED;
     loose.tolerance = 1e-5;
     f->grid = *grid;
@@ -81,7 +81,8 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
     if (status == 0)
         status = contact_create(&f->linear, f->compliance, &loose, err);
     if (status == 0)
-        status = newton_create(&f->newton, f->mesh, &solid, block->weighting, options->solver, err);
+        status =
+            newton_create(&f->newton, f->mesh, &material, block->weighting, options->solver, err);
     if (status == 0)
         status = arrays_create(f, err);
     if (status != 0)
@@ -110,20 +111,20 @@ void full_destroy(struct full **full) {
     free(f->guess);
     free(f->touches);
     free(f->kept);
-    free(f->told);
+    free(f->displacement);
     free(f);
     *full = NULL;
 }
 
-size_t full_freedoms(const struct grid *grid, const struct block *block,
-                     const struct full_options *options) {
+size_t full_degrees_of_freedom(const struct grid *grid, const struct block *block,
+                               const struct full_options *options) {
     struct mesh *mesh = NULL;
     struct error ignored;
     if (mesh_create(&mesh, grid, block, options->transition, &ignored) != 0)
         return 0;
-    size_t freedoms = mesh_freedoms(mesh);
+    size_t degrees_of_freedom = mesh_degrees_of_freedom(mesh);
     mesh_destroy(&mesh);
-    return freedoms;
+    return degrees_of_freedom;
 }
 
 double full_bytes(const struct grid *grid, const struct block *block,
@@ -132,13 +133,13 @@ double full_bytes(const struct grid *grid, const struct block *block,
     if (mesh_create(&mesh, grid, block, options->transition, NULL) != 0)
         return NAN;
     enum { VECTORS = 6, FACES = 7 }; /* newton.h and this file: unknowns, face */
-    struct solid solid = solid_of(block->poisson, options->kinematics);
-    bool bulk = krylov_needs_bulk(&solid);
-    double unknowns = (double)mesh_unknowns(mesh, bulk);
+    struct material material = material_of(block->poisson, options->kinematics);
+    bool pressures = gmres_needs_pressures(&material);
+    double unknowns = (double)mesh_unknowns(mesh, pressures);
     double bytes =
         sizeof(double) * (VECTORS * unknowns + FACES * (double)mesh->face + (double)mesh->nodes) +
-        stencil_bytes(mesh, bulk) + krylov_bytes(mesh, &solid, iterations) + contact_bytes(grid) +
-        compliance_bytes(grid, block);
+        tangent_bytes(mesh, pressures) + gmres_bytes(mesh, &material, iterations) +
+        contact_bytes(grid) + compliance_bytes(grid, block);
     mesh_destroy(&mesh);
     return bytes;
 }
@@ -316,7 +317,7 @@ static double height_scale(const struct full *f) {
     return f->rms > 0 ? f->rms : 1;
 }
 
-static void tell_report(const struct full *f, const struct newton_end *end,
+static void fill_report(const struct full *f, const struct newton_end *end,
                         const struct contact_state *state, struct full_report *report) {
     struct sum force = {0};
     for (size_t node = 0; node < f->mesh->face; node++)
@@ -335,8 +336,8 @@ static void tell_report(const struct full *f, const struct newton_end *end,
     memcpy(report->history, end->history, sizeof report->history);
 }
 
-static int tell(struct full *f, const struct newton_end *end, struct contact_state *out,
-                struct error *err) {
+static int fill_state(struct full *f, const struct newton_end *end, struct contact_state *out,
+                      struct error *err) {
     struct newton *n = &f->newton;
     size_t face = f->mesh->face;
     newton_measure_gaps(n);
@@ -378,12 +379,12 @@ int full_press(struct full *f, double pressure, struct contact_state *out,
     else
         status = raise_load(f, pressure, &end, &full_report, err);
     if (status == 0)
-        status = tell(f, &end, &state, err);
+        status = fill_state(f, &end, &state, err);
     full_report.reached = f->load;
     if (status == 0) {
-        tell_report(f, &end, &state, &full_report);
+        fill_report(f, &end, &state, &full_report);
         state.iterations = full_report.newton;
-        state.work = (double)full_report.newton * (double)mesh_freedoms(f->mesh);
+        state.work = (double)full_report.newton * (double)mesh_degrees_of_freedom(f->mesh);
         *out = state;
     }
     if (report != NULL)
@@ -396,7 +397,7 @@ const struct mesh *full_mesh(const struct full *f) {
 }
 
 const double *full_displacement(struct full *f) {
-    for (size_t i = 0; i < mesh_freedoms(f->mesh); i++)
-        f->told[i] = f->newton.u[i] * f->mesh->unit;
-    return f->told;
+    for (size_t i = 0; i < mesh_degrees_of_freedom(f->mesh); i++)
+        f->displacement[i] = f->newton.u[i] * f->mesh->unit;
+    return f->displacement;
 }

@@ -1,5 +1,5 @@
 /* Elastic, frictionless contact of a rough block on a rigid flat by finite elements on the rough
- * geometry itself: finite strain (hencky.h), dual mortar contact, Newton with an active set.
+ * geometry itself: finite strain (material.h), dual mortar contact, Newton with an active set.
  *
  * The scene and what is told are those of core/contact/contact.h. The linear layered model of the
  * same block guesses which nodes touch at each load; it has no part in the answer. Pressures p are
@@ -56,8 +56,8 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
                 const struct full_options *options, struct error *err);
 void full_destroy(struct full **full);
 /* Of the mesh; 0 where there is none for the block. */
-size_t full_freedoms(const struct grid *grid, const struct block *block,
-                     const struct full_options *options);
+size_t full_degrees_of_freedom(const struct grid *grid, const struct block *block,
+                               const struct full_options *options);
 /* Memory of a solver that takes so many iterations of the linear equations in each of Newton's; NaN
  * where there is no mesh for the block. A factorisation, where one is needed, is not in it. */
 double full_bytes(const struct grid *grid, const struct block *block,

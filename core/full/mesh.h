@@ -70,15 +70,15 @@ void mesh_position(const struct mesh *mesh, const struct mesh_element *element,
                    double position[8][3]);
 
 /* Area of the face's cell in row j, column i as seen from the flat under displacements u
- * (mesh_freedoms), over that undeformed: half of the cross product of its diagonals. */
+ * (mesh_degrees_of_freedom), over that undeformed: half of the cross product of its diagonals. */
 double mesh_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i);
 
-static inline size_t mesh_freedoms(const struct mesh *mesh) {
+static inline size_t mesh_degrees_of_freedom(const struct mesh *mesh) {
     return mesh->nodes * (size_t)mesh->dimension;
 }
-/* With the pressures of elements, where these are unknowns of their own (krylov.h). */
-static inline size_t mesh_unknowns(const struct mesh *mesh, bool bulk) {
-    return mesh_freedoms(mesh) + (bulk ? mesh->elements : 0);
+/* With the pressures of elements, where these are unknowns of their own (gmres.h). */
+static inline size_t mesh_unknowns(const struct mesh *mesh, bool pressures) {
+    return mesh_degrees_of_freedom(mesh) + (pressures ? mesh->elements : 0);
 }
 /* Freedom of a node's vertical displacement. */
 static inline size_t mesh_vertical(const struct mesh *mesh, size_t node) {

@@ -5,21 +5,21 @@
 
 enum { VTK_QUAD = 9, VTK_HEXAHEDRON = 12 };
 
-struct writer {
+struct vtu_writer {
     FILE *file;
     const struct mesh *mesh;
     const struct mesh_step *step; /* may be NULL */
 };
 
-static void array_open(const struct writer *w, const char *type, const char *name, int components,
-                       const char *attributes) {
+static void array_open(const struct vtu_writer *w, const char *type, const char *name,
+                       int components, const char *attributes) {
     fprintf(w->file,
             "        <DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\"%s "
             "format=\"ascii\">\n",
             type, name, components, attributes);
 }
 
-static void array_close(const struct writer *w) {
+static void array_close(const struct vtu_writer *w) {
     fputs("        </DataArray>\n", w->file);
 }
 
@@ -29,23 +29,24 @@ static void array_close(const struct writer *w) {
  * columns widen, one more behind it: of the narrower columns' corners, which lie between its nodes.
  */
 
-struct point {
+struct vtu_point {
     double x, y; /* in steps */
     size_t count, node[4];
 };
 
 /* Of a level whose nodes are `wide` columns apart. */
-static struct point point_of(const struct mesh *mesh, size_t k, size_t wide, size_t j, size_t i) {
+static struct vtu_point point_of(const struct mesh *mesh, size_t k, size_t wide, size_t j,
+                                 size_t i) {
     const struct level *level = &mesh->level[k];
     size_t width = level->width / wide;
-    struct point point = {.x = (double)(i * width), .y = (double)(j * width) * mesh->across};
+    struct vtu_point point = {.x = (double)(i * width), .y = (double)(j * width) * mesh->across};
     for (size_t back = 0; back <= j % wide; back++)
         for (size_t right = 0; right <= i % wide; right++)
             point.node[point.count++] = level_node(level, j / wide + back, i / wide + right);
     return point;
 }
 
-static double mean_at(const struct point *point, const double *field, size_t components,
+static double mean_at(const struct vtu_point *point, const double *field, size_t components,
                       size_t component) {
     double sum = 0;
     for (size_t a = 0; a < point->count; a++)
@@ -53,7 +54,7 @@ static double mean_at(const struct point *point, const double *field, size_t com
     return sum / (double)point->count;
 }
 
-static void put_position(const struct writer *w, const struct point *point) {
+static void put_position(const struct vtu_writer *w, const struct vtu_point *point) {
     const struct mesh *mesh = w->mesh;
     double up = mean_at(point, mesh->height, 1, 0) * mesh->unit;
     if (mesh->dimension == 2)
@@ -62,7 +63,7 @@ static void put_position(const struct writer *w, const struct point *point) {
         fprintf(w->file, "%.9g %.9g %.9g\n", point->x * mesh->unit, point->y * mesh->unit, up);
 }
 
-static void put_displacement(const struct writer *w, const struct point *point) {
+static void put_displacement(const struct vtu_writer *w, const struct vtu_point *point) {
     double u[3] = {0};
     size_t d = (size_t)w->mesh->dimension;
     for (size_t k = 0; k < d; k++)
@@ -70,17 +71,17 @@ static void put_displacement(const struct writer *w, const struct point *point) 
     fprintf(w->file, "%.9g %.9g %.9g\n", u[0], u[1], u[2]);
 }
 
-static void put_of_face(const struct writer *w, const struct point *point, const double *field,
-                        double unit) {
+static void put_of_face(const struct vtu_writer *w, const struct vtu_point *point,
+                        const double *field, double unit) {
     bool face = point->node[0] < w->mesh->face;
     fprintf(w->file, "%.9g\n", face ? field[point->node[0]] / unit : 0);
 }
 
-static void put_pressure(const struct writer *w, const struct point *point) {
+static void put_pressure(const struct vtu_writer *w, const struct vtu_point *point) {
     put_of_face(w, point, w->step->face.p, w->step->unit);
 }
 
-static void put_gap(const struct writer *w, const struct point *point) {
+static void put_gap(const struct vtu_writer *w, const struct vtu_point *point) {
     put_of_face(w, point, w->step->face.gap, 1);
 }
 
@@ -98,19 +99,19 @@ static size_t plane_points(const struct mesh *mesh, size_t level) {
     return points;
 }
 
-static void each_point(const struct writer *w,
-                       void (*put)(const struct writer *w, const struct point *point)) {
+static void each_point(const struct vtu_writer *w,
+                       void (*put)(const struct vtu_writer *w, const struct vtu_point *point)) {
     const struct mesh *mesh = w->mesh;
     for (size_t k = 0; k <= mesh->layers; k++)
         for (size_t wide = 1; wide <= (k > 0 && mesh_widens(mesh, k - 1) ? 2 : 1); wide++)
             for (size_t j = 0; j < plane_rows(mesh, k + 1 - wide); j++)
                 for (size_t i = 0; i < plane_columns(mesh, k + 1 - wide); i++) {
-                    struct point point = point_of(mesh, k, wide, j, i);
+                    struct vtu_point point = point_of(mesh, k, wide, j, i);
                     put(w, &point);
                 }
 }
 
-static void write_points(const struct writer *w) {
+static void write_points(const struct vtu_writer *w) {
     fputs("      <Points>\n", w->file);
     array_open(w, "Float64", "Points", 3, "");
     each_point(w, put_position);
@@ -134,12 +135,12 @@ static void write_points(const struct writer *w) {
 /* --- elements --- */
 
 /* Where it is, and its number before those of its layer's upper and lower side. */
-struct cell {
+struct vtu_cell {
     size_t layer, j, i, upper, lower;
 };
 
 /* VTK goes around each face; the mesh counts in binary (element.h). */
-static void put_corners(const struct writer *w, const struct cell *cell) {
+static void put_corners(const struct vtu_writer *w, const struct vtu_cell *cell) {
     static const int AROUND[] = {0, 1, 3, 2, 4, 5, 7, 6};
     bool profile = w->mesh->dimension == 2;
     for (int corner = 0; corner < 1 << w->mesh->dimension; corner++) {
@@ -151,7 +152,7 @@ static void put_corners(const struct writer *w, const struct cell *cell) {
     fputc('\n', w->file);
 }
 
-static void put_quality(const struct writer *w, const struct cell *cell) {
+static void put_quality(const struct vtu_writer *w, const struct vtu_cell *cell) {
     double position[8][3];
     struct mesh_element element;
     mesh_element(w->mesh, cell->layer, cell->j, cell->i, &element);
@@ -161,16 +162,16 @@ static void put_quality(const struct writer *w, const struct cell *cell) {
 
 /* Mean Cauchy stress: the sum of the nodes' inner forces times their places is the volume integral
  * of the stress, now; of the linear strain, before. False for an element that is inside out. */
-static bool element_stress(const struct writer *w, double position[8][3], double u[8][3],
+static bool element_stress(const struct vtu_writer *w, double position[8][3], double u[8][3],
                            double stress[3][3]) {
     int d = w->mesh->dimension, nodes = 1 << d;
-    const struct solid *solid = &w->step->solid;
-    double force[ELEMENT_FREEDOMS];
+    const struct material *material = &w->step->material;
+    double force[ELEMENT_DEGREES_OF_FREEDOM];
     struct element_shape shape, now;
     if (!element_shape_make(d, position, &shape) ||
-        !element_evaluate(d, solid, &shape, u, NULL, NULL, force, NULL, NULL))
+        !element_evaluate(d, material, &shape, u, NULL, NULL, force, NULL, NULL))
         return false;
-    for (int a = 0; a < nodes && solid->kinematics != KINEMATICS_SMALL; a++)
+    for (int a = 0; a < nodes && material->kinematics != KINEMATICS_SMALL; a++)
         for (int k = 0; k < d; k++)
             position[a][k] += u[a][k];
     if (!element_shape_make(d, position, &now))
@@ -184,7 +185,7 @@ static bool element_stress(const struct writer *w, double position[8][3], double
     return true;
 }
 
-static void put_stress(const struct writer *w, const struct cell *cell) {
+static void put_stress(const struct vtu_writer *w, const struct vtu_cell *cell) {
     const struct mesh *mesh = w->mesh;
     size_t d = (size_t)mesh->dimension;
     struct mesh_element element;
@@ -205,15 +206,15 @@ static void put_stress(const struct writer *w, const struct cell *cell) {
                 (s[1][2] + s[2][1]) / 2, (s[0][2] + s[2][0]) / 2);
 }
 
-static void each_element(const struct writer *w,
-                         void (*put)(const struct writer *w, const struct cell *cell)) {
+static void each_element(const struct vtu_writer *w,
+                         void (*put)(const struct vtu_writer *w, const struct vtu_cell *cell)) {
     const struct mesh *mesh = w->mesh;
     size_t first = 0;
     for (size_t k = 0; k < mesh->layers; k++) {
         size_t next = first + plane_points(mesh, k);
         size_t hanging =
             mesh_widens(mesh, k) ? plane_columns(mesh, k + 1) * plane_rows(mesh, k + 1) : 0;
-        struct cell cell = {.layer = k, .upper = first, .lower = next + hanging};
+        struct vtu_cell cell = {.layer = k, .upper = first, .lower = next + hanging};
         for (cell.j = 0; cell.j < mesh->level[k].ny; cell.j++)
             for (cell.i = 0; cell.i < mesh->level[k].nx; cell.i++)
                 put(w, &cell);
@@ -221,7 +222,7 @@ static void each_element(const struct writer *w,
     }
 }
 
-static void write_elements(const struct writer *w) {
+static void write_elements(const struct vtu_writer *w) {
     bool profile = w->mesh->dimension == 2;
     size_t elements = w->mesh->elements, corners = profile ? 4 : 8;
     fputs("      <Cells>\n", w->file);
@@ -239,7 +240,7 @@ static void write_elements(const struct writer *w) {
     fputs("      </Cells>\n", w->file);
 }
 
-static void write_element_data(const struct writer *w) {
+static void write_element_data(const struct vtu_writer *w) {
     static const char PLANE[] =
         " ComponentName0=\"XX\" ComponentName1=\"YY\" ComponentName2=\"XY\"";
     static const char SPACE[] =
@@ -260,7 +261,7 @@ static void write_element_data(const struct writer *w) {
 
 int mesh_file_write(FILE *file, const char *title, const struct mesh *mesh,
                     const struct mesh_step *step, struct error *err) {
-    struct writer w = {file, mesh, step};
+    struct vtu_writer w = {file, mesh, step};
     size_t points = 0;
     for (size_t level = 0; level <= mesh->layers; level++)
         points += plane_points(mesh, level);

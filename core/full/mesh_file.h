@@ -13,7 +13,7 @@
 #include <stdio.h>
 
 struct mesh_step {
-    struct solid solid;
+    struct material material;
     const double *u;           /* full_displacement */
     struct contact_state face; /* its pressures and gaps */
     double unit;               /* of pressures and stresses, in E*: they are told over it */

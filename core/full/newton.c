@@ -19,14 +19,14 @@ static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
 /* At most: halvings of a step; rounds with the same set since the best one; sets that come back. */
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
 
-int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
+int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
-    *out = (struct newton){.mesh = mesh, .solid = *solid, .solver = solver};
+    *out = (struct newton){.mesh = mesh, .material = *material, .solver = solver};
     double **const arrays[] = {&out->u, &out->force, &out->before, &out->change};
     double **const faces[] = {&out->gap, &out->opening};
-    int status = stencil_create(&out->tangent, mesh, krylov_needs_bulk(solid), err);
+    int status = tangent_create(&out->tangent, mesh, gmres_needs_pressures(material), err);
     if (status == 0)
-        status = krylov_create(&out->krylov, mesh, solid, weighting, err);
+        status = gmres_create(&out->gmres, mesh, material, weighting, err);
     for (size_t a = 0; status == 0 && a < sizeof arrays / sizeof *arrays; a++) {
         *arrays[a] = array_create(newton_unknowns(out), sizeof(double));
         if (*arrays[a] == NULL)
@@ -48,13 +48,13 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct soli
 }
 
 size_t newton_unknowns(const struct newton *n) {
-    return stencil_unknowns(n->tangent);
+    return tangent_unknowns(n->tangent);
 }
 
 void newton_clear(struct newton *n) {
-    stencil_destroy(&n->tangent);
-    factor_destroy(&n->factor);
-    krylov_destroy(&n->krylov);
+    tangent_destroy(&n->tangent);
+    factorisation_destroy(&n->factorisation);
+    gmres_destroy(&n->gmres);
     free(n->u);
     free(n->force);
     free(n->before);
@@ -68,7 +68,7 @@ void newton_clear(struct newton *n) {
 void newton_measure_gaps(struct newton *n) {
     for (size_t node = 0; node < n->mesh->face; node++)
         n->gap[node] = n->mesh->height[node] + n->u[mesh_vertical(n->mesh, node)] - n->flat;
-    krylov_weigh(n->krylov, n->gap, n->opening);
+    gmres_weigh(n->gmres, n->gap, n->opening);
 }
 
 double newton_node_area(const struct newton *n) {
@@ -85,7 +85,7 @@ static double gap_rounding(const struct newton *n) {
     return ROUNDINGS * DBL_EPSILON * fabs(n->flat);
 }
 static double force_rounding(const struct newton *n) {
-    double stiffness = 2 * n->solid.shear + n->solid.local + n->solid.mean;
+    double stiffness = 2 * n->material.shear + n->material.local + n->material.mean;
     return gap_rounding(n) * stiffness * newton_node_area(n);
 }
 
@@ -157,19 +157,19 @@ static uint64_t active_hash(const struct newton *n) {
 }
 
 enum { REMEMBERED = 64 };
-struct memory {
+struct set_history {
     uint64_t hash[REMEMBERED];
     size_t count;
 };
 
 /* Whether this set was met before; it is now. After a meeting memory is empty. */
-static bool memory_meets(struct memory *memory, uint64_t hash) {
-    for (size_t a = 0; a < memory->count && a < REMEMBERED; a++)
-        if (memory->hash[a] == hash) {
-            memory->count = 0;
+static bool set_history_meets(struct set_history *history, uint64_t hash) {
+    for (size_t a = 0; a < history->count && a < REMEMBERED; a++)
+        if (history->hash[a] == hash) {
+            history->count = 0;
             return true;
         }
-    memory->hash[memory->count++ % REMEMBERED] = hash;
+    history->hash[history->count++ % REMEMBERED] = hash;
     return false;
 }
 
@@ -212,10 +212,11 @@ static void measure(const struct newton *n, struct newton_end *end) {
 /* Forces and tangent at u. Factorisations are for the displacements alone: pressures follow
  * them there. */
 static bool evaluate(struct newton *n) {
-    size_t freedoms = mesh_freedoms(n->mesh);
+    size_t degrees_of_freedom = mesh_degrees_of_freedom(n->mesh);
     n->tangent->bound = n->factored;
-    n->evaluated = stencil_evaluate(n->mesh, &n->solid, n->u, NULL, n->force, n->tangent);
-    for (size_t f = freedoms; n->factored && n->evaluated && f < newton_unknowns(n); f++) {
+    n->evaluated = tangent_evaluate(n->mesh, &n->material, n->u, NULL, n->force, n->tangent);
+    for (size_t f = degrees_of_freedom; n->factored && n->evaluated && f < newton_unknowns(n);
+         f++) {
         n->u[f] -= n->force[f];
         n->force[f] = 0;
     }
@@ -224,32 +225,34 @@ static bool evaluate(struct newton *n) {
 
 /* Some ten seconds a factorisation with the reference BLAS, and a GB. */
 static bool factorable(const struct mesh *mesh) {
-    return mesh_freedoms(mesh) <= (mesh->dimension == 2 ? 500000 : 20000);
+    return mesh_degrees_of_freedom(mesh) <= (mesh->dimension == 2 ? 500000 : 20000);
 }
 
 /* Displacements for the forces in change, which they replace. */
 static int solve_factored(struct newton *n, double tolerance, struct newton_end *end,
                           struct error *err) {
-    int status = n->factor == NULL ? factor_create(&n->factor, n->mesh, err) : 0;
+    int status =
+        n->factorisation == NULL ? factorisation_create(&n->factorisation, n->mesh, err) : 0;
     if (status == 0)
-        status = factor_run(n->factor, n->tangent, n->active, err);
+        status = factorisation_run(n->factorisation, n->tangent, n->active, err);
     if (status == ERROR_NUMERIC) { /* where stress outweighs stiffness, the guide does without it */
-        n->solid.convex = true;
-        status = evaluate(n) ? factor_run(n->factor, n->tangent, n->active, err) : status;
-        n->solid.convex = false;
+        n->material.convex = true;
+        status =
+            evaluate(n) ? factorisation_run(n->factorisation, n->tangent, n->active, err) : status;
+        n->material.convex = false;
         (void)evaluate(n); /* as it did before */
     }
     if (status != 0)
         return status;
     end->factored++;
-    struct equations equations = {n->tangent, n->active, n->factor};
-    return krylov_solve(n->krylov, &equations, tolerance, n->change, &end->linear, err);
+    struct linear_system system = {n->tangent, n->active, n->factorisation};
+    return gmres_solve(n->gmres, &system, tolerance, n->change, &end->linear, err);
 }
 
 static int solve_iterated(struct newton *n, double tolerance, struct newton_end *end,
                           struct error *err) {
-    struct equations equations = {n->tangent, n->active, NULL};
-    return krylov_solve(n->krylov, &equations, tolerance, n->change, &end->linear, err);
+    struct linear_system system = {n->tangent, n->active, NULL};
+    return gmres_solve(n->gmres, &system, tolerance, n->change, &end->linear, err);
 }
 
 /* Newton's change for the out-of-balance forces in change, which it replaces. off: how far off the
@@ -314,8 +317,8 @@ struct round {
 /* Gaps and forces at u; from the second go on, what they say of the set. A set that was there
  * before would go on coming back: from then on it changes a node at a time, and only near balance.
  * One that comes back even so tells of no equilibrium. */
-static struct round look(struct newton *n, double pressure, bool first, struct memory *memory,
-                         struct newton_end *end) {
+static struct round assess(struct newton *n, double pressure, bool first,
+                           struct set_history *history, struct newton_end *end) {
     struct round round = {.largest = 0};
     newton_measure_gaps(n);
     round.largest = fmax(largest_force(n), pressure * newton_node_area(n));
@@ -326,7 +329,7 @@ static struct round look(struct newton *n, double pressure, bool first, struct m
     if (round.changes > 0) {
         end->changes += round.changes;
         round.residual = residual(n, pressure, n->change);
-        end->cycles += memory_meets(memory, active_hash(n));
+        end->cycles += set_history_meets(history, active_hash(n));
     }
     measure(n, end);
     round.inside = end->inside;
@@ -338,13 +341,13 @@ static struct round look(struct newton *n, double pressure, bool first, struct m
 }
 
 /* The best round with the active set as it is. */
-struct progress {
+struct newton_progress {
     double least;  /* off */
     size_t rounds; /* since */
 };
 
 /* Whether to go on from a round that is off by so much. */
-static int check_progress(const struct newton *n, struct progress *progress, double off,
+static int check_progress(const struct newton *n, struct newton_progress *progress, double off,
                           bool changed, const struct newton_end *end, struct error *err) {
     bool better = changed || off < progress->least;
     progress->least = better ? off : progress->least;
@@ -362,8 +365,8 @@ static int check_progress(const struct newton *n, struct progress *progress, dou
 }
 
 int newton_settle(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
-    struct memory memory = {0};
-    struct progress progress = {.least = INFINITY};
+    struct set_history history = {0};
+    struct newton_progress progress = {.least = INFINITY};
     *end = (struct newton_end){0};
     n->factored = n->solver == SOLVER_FACTORED;
     double load = pressure * newton_node_area(n) * (double)n->mesh->face;
@@ -374,10 +377,10 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
         return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
     newton_measure_gaps(n);
     active_fill(n);
-    (void)memory_meets(&memory, active_hash(n));
+    (void)set_history_meets(&history, active_hash(n));
     for (;;) {
         bool first = end->iterations == 0;
-        struct round round = look(n, pressure, first, &memory, end);
+        struct round round = assess(n, pressure, first, &history, end);
         if (!first && round.changes == 0 && round.residual <= round.balanced &&
             round.inside <= round.closed)
             return 0;

@@ -8,26 +8,26 @@
 #ifndef RUGO_CORE_FULL_NEWTON_H
 #define RUGO_CORE_FULL_NEWTON_H
 
-#include "core/full/factor.h"
-#include "core/full/krylov.h"
+#include "core/full/factorisation.h"
+#include "core/full/gmres.h"
 
 enum { NEWTON_HISTORY = 64 };
 
 /* How the linear equations of a step are solved: by iterations with the flat block, and where they
- * fail, on meshes of up to 500 000 freedoms in profiles and 20 000 on surfaces, with a
+ * fail, on meshes of up to 500 000 degrees_of_freedom in profiles and 20 000 on surfaces, with a
  * factorisation for the rest of the load; or always with a factorisation. */
 enum equation_solver { SOLVER_ITERATED, SOLVER_FACTORED };
 
 struct newton {
     const struct mesh *mesh; /* borrowed */
-    struct solid solid;
-    struct stencil *tangent; /* owned, as all below */
+    struct material material;
+    struct tangent *tangent; /* owned, as all below */
     enum equation_solver solver;
-    struct factor *factor; /* NULL until one is needed */
-    bool factored;         /* factor is of the last tangent, and takes the rest of the load */
-    struct krylov *krylov;
+    struct factorisation *factorisation; /* NULL until one is needed */
+    bool factored; /* factor is of the last tangent, and takes the rest of the load */
+    struct gmres *gmres;
     double *u;      /* newton_unknowns: displacements, and pressures of elements where these are
-                       unknowns of their own (stencil.h); who changes them clears evaluated */
+                       unknowns of their own (tangent.h); who changes them clears evaluated */
     double *force;  /* newton_unknowns: inner forces, those of the contact on the face, and what the
                        pressures are beyond those of the dilatation */
     bool evaluated; /* force and tangent are those of u */
@@ -41,7 +41,7 @@ struct newton {
     void *context;
 };
 
-int newton_create(struct newton *out, const struct mesh *mesh, const struct solid *solid,
+int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err);
 
 size_t newton_unknowns(const struct newton *newton);

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-struct contact {
+struct asperity_contact {
     double load, area;
 };
 
@@ -63,10 +63,10 @@ static struct spheres spheres_of(double alpha) {
                             .area = sqrt(3 * M_PI * alpha) / 48 * deviation};
 }
 
-static struct contact spheres_contact(const void *theory, double separation) {
+static struct asperity_contact spheres_contact(const void *theory, double separation) {
     const struct spheres *t = theory;
     double x = (separation - t->mean) / t->deviation;
-    return (struct contact){t->load * three_halves_moment(x), t->area * first_moment(x)};
+    return (struct asperity_contact){t->load * three_halves_moment(x), t->area * first_moment(x)};
 }
 
 /* Bush, Gibson & Thomas (1975). A summit of compression w and curvatures (s, rho) has the area
@@ -134,7 +134,8 @@ static void ellipses_fill(struct ellipses *t, double alpha) {
 }
 
 /* Both integrands over s, over heights and shapes already integrated. */
-static struct contact ellipses_of_curvature(const struct ellipses *t, double separation, double s) {
+static struct asperity_contact ellipses_of_curvature(const struct ellipses *t, double separation,
+                                                     double s) {
     double area = 0, load = 0;
     for (size_t n = 0; n < SHAPES; n++) {
         double exponent = s * s / 2 * t->shapes.square[n];
@@ -146,8 +147,8 @@ static struct contact ellipses_of_curvature(const struct ellipses *t, double sep
     }
     double x = (separation - t->rise * s) / t->deviation;
     double common = s * s * s * exp(-s * s / 4);
-    return (struct contact){load * common * sqrt(s) * three_halves_moment(x),
-                            area * common * first_moment(x)};
+    return (struct asperity_contact){load * common * sqrt(s) * three_halves_moment(x),
+                                     area * common * first_moment(x)};
 }
 
 /* Adds the integrals between the curvatures from and to. They turn around the curvature
@@ -158,7 +159,7 @@ struct stretch {
     double from, to, turn, width, longest;
 };
 static void ellipses_add(const struct ellipses *t, double separation, struct stretch stretch,
-                         struct contact *sum) {
+                         struct asperity_contact *sum) {
     double sign = stretch.to > stretch.from ? 1 : -1, at = stretch.from;
     while (sign * (stretch.to - at) > 0) {
         double length = fmin(stretch.longest, stretch.width + fabs(at - stretch.turn));
@@ -166,7 +167,8 @@ static void ellipses_add(const struct ellipses *t, double separation, struct str
         double root[QUADRATURE_NODES], weight[QUADRATURE_NODES];
         quadrature_panel(sqrt(fmin(at, next)), sqrt(fmax(at, next)), root, weight);
         for (size_t node = 0; node < QUADRATURE_NODES; node++) {
-            struct contact part = ellipses_of_curvature(t, separation, root[node] * root[node]);
+            struct asperity_contact part =
+                ellipses_of_curvature(t, separation, root[node] * root[node]);
             sum->load += 2 * root[node] * weight[node] * part.load;
             sum->area += 2 * root[node] * weight[node] * part.area;
         }
@@ -174,10 +176,10 @@ static void ellipses_add(const struct ellipses *t, double separation, struct str
     }
 }
 
-static struct contact ellipses_contact(const void *theory, double separation) {
+static struct asperity_contact ellipses_contact(const void *theory, double separation) {
     const struct ellipses *t = theory;
     if (separation > 40) /* exp(-d^2/2) underflows; far out, panels would vanish in rounding */
-        return (struct contact){0, 0};
+        return (struct asperity_contact){0, 0};
     /* The integrand's exponent is -s^2/4 - C1 max(0, d - rise s)^2: for d > 0 it is -d^2/2 at its
      * peak s = 2 rise d, with the second derivative -C1 as far as the turn. */
     double turn = separation / t->rise, above = fmax(separation, 0);
@@ -186,15 +188,15 @@ static struct contact ellipses_contact(const void *theory, double separation) {
     double high =
         separation > 0 && peak + reach < turn ? peak + reach : 2 * sqrt(above * above / 2 + DEPTH);
     double start = fmin(fmax(turn, low), high), width = 2 * t->deviation / t->rise;
-    struct contact sum = {0, 0};
+    struct asperity_contact sum = {0, 0};
     ellipses_add(t, separation, (struct stretch){start, high, turn, width, 3.5}, &sum);
     ellipses_add(t, separation, (struct stretch){start, low, turn, width, 2.5 / sqrt(t->c1)}, &sum);
-    return (struct contact){t->load * sum.load, t->area * sum.area};
+    return (struct asperity_contact){t->load * sum.load, t->area * sum.area};
 }
 
 /* Curves and their inversion, for both. */
 
-typedef struct contact contact_at(const void *theory, double separation);
+typedef struct asperity_contact contact_at(const void *theory, double separation);
 
 static bool in_domain(double alpha) {
     return alpha > 1.5 && isfinite(alpha);
@@ -203,7 +205,7 @@ static bool in_domain(double alpha) {
 static void curve(contact_at *at, const void *theory, size_t n, const double *separation,
                   double *load, double *area) {
     for (size_t i = 0; i < n; i++) {
-        struct contact contact = {NAN, NAN};
+        struct asperity_contact contact = {NAN, NAN};
         if (theory && isfinite(separation[i]))
             contact = at(theory, separation[i]);
         load[i] = contact.load;
@@ -232,7 +234,7 @@ struct inversion {
 
 static double excess(double separation, void *context) {
     struct inversion *inversion = context;
-    struct contact contact = inversion->at(inversion->theory, separation);
+    struct asperity_contact contact = inversion->at(inversion->theory, separation);
     /* Loads underflow at separations near 38. */
     double logarithm = log(fmax(contact.load, DBL_MIN) / inversion->load);
     if (fabs(logarithm) < inversion->closest) {

@@ -74,11 +74,12 @@ struct contact_full_size contact_full_size(const struct contact_case *study, siz
     bool profile = grid_is_profile(grid);
     double over = 1 / (1 - 2 * block->poisson); /* bulk over shear modulus, about */
     double steep = 16 * slope * (1 + slope) * pow(0.4 * fmin(over, 10), 0.4);
-    struct solid solid = solid_of(block->poisson, options.kinematics);
-    struct contact_full_size size = {.freedoms = (double)full_freedoms(grid, block, &options),
+    struct material solid = material_of(block->poisson, options.kinematics);
+    struct contact_full_size size = {.freedoms =
+                                         (double)full_degrees_of_freedom(grid, block, &options),
                                      .newton = 2 + (profile ? 0.22 : 0.5) * log2((double)grid->nx),
                                      .linear = 2 + steep,
-                                     .bulk = krylov_needs_bulk(&solid)};
+                                     .bulk = gmres_needs_pressures(&solid)};
     size.factored = size.linear > LINEAR_MOST && (profile || size.freedoms <= SURFACE_FACTORED);
     if (size.bulk)
         size.linear += 0.12 * pow(over, 0.55);

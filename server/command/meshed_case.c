@@ -78,7 +78,7 @@ int meshed_case_write(const char *path, const cJSON *parameters, const double *z
     if (status == 0 && pressure > 0) {
         enum kinematics kinematics = meshed.study.kinematics;
         status = full_press(meshed.full, pressure * meshed.rms_slope, &step.face, NULL, err);
-        step.solid = solid_of(meshed.study.blocks[meshed.model].poisson, kinematics);
+        step.material = material_of(meshed.study.blocks[meshed.model].poisson, kinematics);
         step.unit = meshed.rms_slope;
         snprintf(title, sizeof title,
                  "lengths in lambda_s; pressure and stress in E* h'; mean pressure %.9g; "

@@ -46,16 +46,16 @@ static int run_loads(const struct run *run, struct error *err) {
     }
     double seconds = cpu_seconds() - start;
     if (!status)
-        printf("%5zu x %-4zu %8zu equations %8.2f s  %5.1f us an equation and step  %3zu steps of "
-               "Newton's, %4zu linear, %2zu factored, %zu cuts  slope <= %.3f  fraction %.4f x "
-               "%.4f  mean gap %.5g  stiffness %.5g  %5.0f MB\n",
-               run->grid.nx, run->grid.ny, mesh_freedoms(full_mesh(full)), seconds,
-               1e6 * seconds / (double)mesh_freedoms(full_mesh(full)) / (double)sum.newton,
-               sum.newton, sum.linear, sum.factored, sum.cuts, report.slope,
-               (double)state.nodes / (double)points, report.stretch, state.mean_gap,
-               state.stiffness,
-               1e-6 * full_bytes(&run->grid, &run->block, &run->options,
-                                 (double)sum.linear / (double)sum.newton));
+        printf(
+            "%5zu x %-4zu %8zu equations %8.2f s  %5.1f us an equation and step  %3zu steps of "
+            "Newton's, %4zu linear, %2zu factored, %zu cuts  slope <= %.3f  fraction %.4f x "
+            "%.4f  mean gap %.5g  stiffness %.5g  %5.0f MB\n",
+            run->grid.nx, run->grid.ny, mesh_degrees_of_freedom(full_mesh(full)), seconds,
+            1e6 * seconds / (double)mesh_degrees_of_freedom(full_mesh(full)) / (double)sum.newton,
+            sum.newton, sum.linear, sum.factored, sum.cuts, report.slope,
+            (double)state.nodes / (double)points, report.stretch, state.mean_gap, state.stiffness,
+            1e-6 * full_bytes(&run->grid, &run->block, &run->options,
+                              (double)sum.linear / (double)sum.newton));
     full_destroy(&full);
     return status;
 }

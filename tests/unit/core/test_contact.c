@@ -259,7 +259,7 @@ static void any_path_of_loads(void **state) {
         for (size_t b = 0; b < LOADS; b++)
             if (up[b] == load) {
                 /* Gaps are right to the tolerance of 1e-12, pressures to that times the stiffness
-                 * of the shortest waves; the tangent's stiffness to 1e-5 (descent.c). */
+                 * of the shortest waves; the tangent's stiffness to 1e-5 (conjugate_gradient.c). */
                 double most = largest(POINTS, p[b]);
                 assert_true(apart(POINTS, p[b], scene.state.p) <= 1e-9 * fmax(most, full));
                 check_close(scene.state.mean_gap, gap[b], 1e-10);

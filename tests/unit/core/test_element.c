@@ -36,12 +36,13 @@ static void patch_test(void **state) {
     (void)state;
     for (uint64_t draw = 0; draw < 30; draw++) {
         int d = 2 + (int)(draw % 2);
-        struct solid solid = solid_of(draw % 5 == 0 ? 0.4999 : 0.3, KINEMATICS[draw / 2 % 3]);
+        struct material material =
+            material_of(draw % 5 == 0 ? 0.4999 : 0.3, KINEMATICS[draw / 2 % 3]);
         double moved[27][3], h[3][3], sum[3] = {0}, scale = 0;
         random_numbers(draw, 81, 0.2, &moved[0][0]);
         random_numbers(100 + draw, 9, 0.2, &h[0][0]);
         for (int e = 0; e < 1 << d; e++) {
-            double position[8][3], u[8][3], force[ELEMENT_FREEDOMS];
+            double position[8][3], u[8][3], force[ELEMENT_DEGREES_OF_FREEDOM];
             struct element_shape element;
             for (int a = 0; a < 1 << d; a++) {
                 int lattice = 0, power = 1;
@@ -58,7 +59,7 @@ static void patch_test(void **state) {
                 }
             }
             shape(d, position, &element);
-            assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, force, NULL, NULL));
+            assert_true(element_evaluate(d, &material, &element, u, NULL, NULL, force, NULL, NULL));
             int middle = (1 << d) - 1 - e;
             for (int i = 0; i < d; i++) {
                 sum[i] += force[middle * d + i];
@@ -76,23 +77,27 @@ static void forces_and_stiffness_are_derivatives(void **state) {
     (void)state;
     static const double STEP = 1e-5;
     for (uint64_t draw = 0; draw < 36; draw++) {
-        int d = 2 + (int)(draw % 2), freedoms = d << d;
-        struct solid solid = solid_of(draw % 4 == 0 ? 0.49 : 0.3, KINEMATICS[draw / 2 % 3]);
+        int d = 2 + (int)(draw % 2), degrees_of_freedom = d << d;
+        struct material material =
+            material_of(draw % 4 == 0 ? 0.49 : 0.3, KINEMATICS[draw / 2 % 3]);
         double position[8][3], u[8][3], force[24], stiffness[24][24];
         struct element_shape element;
         distorted(d, draw, 0.2, position);
         shape(d, position, &element);
         random_numbers(200 + draw, 24, draw < 6 ? 0 : 0.1, &u[0][0]);
-        assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, force, stiffness, NULL));
-        for (int n = 0; n < freedoms; n++) {
-            double low, high, before[24], after[24], *freedom = &u[n / d][n % d];
-            *freedom += STEP;
-            assert_true(element_evaluate(d, &solid, &element, u, NULL, &high, after, NULL, NULL));
-            *freedom -= 2 * STEP;
-            assert_true(element_evaluate(d, &solid, &element, u, NULL, &low, before, NULL, NULL));
-            *freedom += STEP;
+        assert_true(
+            element_evaluate(d, &material, &element, u, NULL, NULL, force, stiffness, NULL));
+        for (int n = 0; n < degrees_of_freedom; n++) {
+            double low, high, before[24], after[24], *value = &u[n / d][n % d];
+            *value += STEP;
+            assert_true(
+                element_evaluate(d, &material, &element, u, NULL, &high, after, NULL, NULL));
+            *value -= 2 * STEP;
+            assert_true(
+                element_evaluate(d, &material, &element, u, NULL, &low, before, NULL, NULL));
+            *value += STEP;
             check_close((high - low) / (2 * STEP), force[n], 1e-7);
-            for (int m = 0; m < freedoms; m++) {
+            for (int m = 0; m < degrees_of_freedom; m++) {
                 check_close((after[m] - before[m]) / (2 * STEP), stiffness[m][n], 1e-6);
                 check_close(stiffness[m][n], stiffness[n][m], 1e-13);
             }
@@ -105,7 +110,7 @@ static void a_rotated_element_gives_rotated_forces(void **state) {
     (void)state;
     for (uint64_t draw = 0; draw < 20; draw++) {
         int d = 2 + (int)(draw % 2);
-        struct solid solid = solid_of(0.3, KINEMATICS[draw / 2 % 2]);
+        struct material material = material_of(0.3, KINEMATICS[draw / 2 % 2]);
         double position[8][3], u[8][3], turned[8][3], force[24], after[24], energy, same;
         double c = cos(1 + (double)draw), s = sin(1 + (double)draw);
         double r[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
@@ -119,8 +124,9 @@ static void a_rotated_element_gives_rotated_forces(void **state) {
                 for (int k = 0; k < d; k++)
                     turned[a][i] += r[i][k] * (position[a][k] + u[a][k]);
             }
-        assert_true(element_evaluate(d, &solid, &element, u, NULL, &energy, force, NULL, NULL));
-        assert_true(element_evaluate(d, &solid, &element, turned, NULL, &same, after, NULL, NULL));
+        assert_true(element_evaluate(d, &material, &element, u, NULL, &energy, force, NULL, NULL));
+        assert_true(
+            element_evaluate(d, &material, &element, turned, NULL, &same, after, NULL, NULL));
         check_close(same, energy, 1e-13);
         for (int a = 0; a < 1 << d; a++)
             for (int i = 0; i < d; i++) {
@@ -198,8 +204,9 @@ static struct uniform sheared(int d, enum kinematics k, double mu, double lambda
     return u;
 }
 
-/* The solid's closed forms with the whole of lambda, from the energy and the forces of a distorted
- * element: the sum of force times place (small: place before) is the stress times the volume. */
+/* The material's closed forms with the whole of lambda, from the energy and the forces of a
+ * distorted element: the sum of force times place (small: place before) is the stress times the
+ * volume. */
 static void uniform_strain_is_the_solids(void **state) {
     (void)state;
     static struct uniform (*const STRAIN[])(int, enum kinematics, double, double,
@@ -208,10 +215,10 @@ static void uniform_strain_is_the_solids(void **state) {
     for (size_t c = 0; c < (size_t)2 * 3 * 3 * 4; c++) {
         int d = 2 + (int)(c % 2);
         enum kinematics kinematics = KINEMATICS[c / 2 % 3];
-        struct solid solid = solid_of(0.3, kinematics);
-        struct uniform expected = STRAIN[c / 6 % 3](d, kinematics, solid.shear,
-                                                    solid.local + solid.mean, STRETCHES[c / 18]);
-        double position[8][3], u[8][3], force[ELEMENT_FREEDOMS], energy;
+        struct material material = material_of(0.3, kinematics);
+        struct uniform expected = STRAIN[c / 6 % 3](
+            d, kinematics, material.shear, material.local + material.mean, STRETCHES[c / 18]);
+        double position[8][3], u[8][3], force[ELEMENT_DEGREES_OF_FREEDOM], energy;
         struct element_shape element;
         distorted(d, c, 0.2, position);
         shape(d, position, &element);
@@ -221,7 +228,7 @@ static void uniform_strain_is_the_solids(void **state) {
                 for (int k = 0; k < d; k++)
                     u[a][i] += expected.h[i][k] * position[a][k];
             }
-        assert_true(element_evaluate(d, &solid, &element, u, NULL, &energy, force, NULL, NULL));
+        assert_true(element_evaluate(d, &material, &element, u, NULL, &energy, force, NULL, NULL));
         check_close(energy, element.volume * expected.energy, 1e-14);
         for (int i = 0; i < d; i++)
             for (int k = 0; k < d; k++) {
@@ -242,21 +249,21 @@ static void uniform_strain_is_the_solids(void **state) {
 static void small_strains_are_linear(void **state) {
     (void)state;
     for (uint64_t draw = 0; draw < 12; draw++) {
-        int d = 2 + (int)(draw % 2), freedoms = d << d;
-        struct solid solid = solid_of(draw < 6 ? 0.3 : 0.4999, KINEMATICS_SMALL);
+        int d = 2 + (int)(draw % 2), degrees_of_freedom = d << d;
+        struct material material = material_of(draw < 6 ? 0.3 : 0.4999, KINEMATICS_SMALL);
         double position[8][3], u[8][3] = {{0}}, linear[24][24], force[24], stiffness[24][24];
         struct element_shape element;
         distorted(d, draw, 0.2, position);
         shape(d, position, &element);
-        assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, NULL, linear, NULL));
-        solid.kinematics = KINEMATICS[draw / 2 % 2];
-        assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, NULL, stiffness, NULL));
+        assert_true(element_evaluate(d, &material, &element, u, NULL, NULL, NULL, linear, NULL));
+        material.kinematics = KINEMATICS[draw / 2 % 2];
+        assert_true(element_evaluate(d, &material, &element, u, NULL, NULL, NULL, stiffness, NULL));
         random_numbers(400 + draw, 24, 1e-12, &u[0][0]);
-        assert_true(element_evaluate(d, &solid, &element, u, NULL, NULL, force, NULL, NULL));
-        double size = (solid.local + solid.mean) / 0.525;
-        for (int m = 0; m < freedoms; m++) {
+        assert_true(element_evaluate(d, &material, &element, u, NULL, NULL, force, NULL, NULL));
+        double size = (material.local + material.mean) / 0.525;
+        for (int m = 0; m < degrees_of_freedom; m++) {
             double expected = 0;
-            for (int n = 0; n < freedoms; n++) {
+            for (int n = 0; n < degrees_of_freedom; n++) {
                 check_close(stiffness[m][n], linear[m][n], 1e-14 * size);
                 expected += linear[m][n] * u[n / d][n % d];
             }
@@ -289,15 +296,15 @@ static void bad_shapes_are_found(void **state) {
 
 static void inside_out_is_refused(void **state) {
     (void)state;
-    struct solid solid = solid_of(0.3, KINEMATICS_HENCKY);
+    struct material material = material_of(0.3, KINEMATICS_HENCKY);
     double position[8][3], u[8][3] = {{0}}, force[24];
     struct element_shape element;
     distorted(2, 0, 0, position);
     shape(2, position, &element);
     u[2][1] = u[3][1] = -1.01;
-    assert_false(element_evaluate(2, &solid, &element, u, NULL, NULL, force, NULL, NULL));
+    assert_false(element_evaluate(2, &material, &element, u, NULL, NULL, force, NULL, NULL));
     u[2][1] = NAN;
-    assert_false(element_evaluate(2, &solid, &element, u, NULL, NULL, force, NULL, NULL));
+    assert_false(element_evaluate(2, &material, &element, u, NULL, NULL, force, NULL, NULL));
 }
 
 int main(void) {

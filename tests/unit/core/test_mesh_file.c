@@ -206,7 +206,7 @@ static void one_file(struct grid grid, enum kinematics kinematics, size_t wideni
     }
     options.kinematics = kinematics;
     options.transition = 6;
-    struct mesh_step step = {.solid = solid_of(block.poisson, kinematics), .unit = SLOPE};
+    struct mesh_step step = {.material = material_of(block.poisson, kinematics), .unit = SLOPE};
     if (full_create(&full, &grid, &block, &options, &err) != 0 || full_begin(full, z, &err) != 0 ||
         full_press(full, LOAD * SLOPE, &step.face, NULL, &err) != 0)
         fail_msg("%s", err.text);

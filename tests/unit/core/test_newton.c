@@ -7,22 +7,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct work {
+struct equilibrium_work {
     struct mesh *mesh;
     struct newton newton;
     double *z;
 };
 
 /* Random heights, up to `rough` steps from their mean. */
-static void open_work(struct work *w, struct grid grid, enum gap_weighting weighting,
+static void open_work(struct equilibrium_work *w, struct grid grid, enum gap_weighting weighting,
                       double rough) {
     struct error err = {0};
     struct block block = {.poisson = 0.3, .height = 6 * grid_dx(&grid), .layer_growth = 1.3};
-    struct solid solid = solid_of(block.poisson, KINEMATICS_HENCKY);
+    struct material material = material_of(block.poisson, KINEMATICS_HENCKY);
     double mean = 0, highest = -INFINITY;
-    *w = (struct work){0};
+    *w = (struct equilibrium_work){0};
     if (mesh_create(&w->mesh, &grid, &block, INFINITY, &err) != 0 ||
-        newton_create(&w->newton, w->mesh, &solid, weighting, SOLVER_ITERATED, &err) != 0)
+        newton_create(&w->newton, w->mesh, &material, weighting, SOLVER_ITERATED, &err) != 0)
         fail_msg("%s", err.text);
     size_t face = w->mesh->face;
     w->z = array_create(face, sizeof *w->z);
@@ -41,26 +41,26 @@ static void open_work(struct work *w, struct grid grid, enum gap_weighting weigh
     w->newton.max_iterations = 200;
 }
 
-static void close_work(struct work *w) {
+static void close_work(struct equilibrium_work *w) {
     newton_clear(&w->newton);
     mesh_destroy(&w->mesh);
     free(w->z);
 }
 
 /* From rest, with a set of its own: none, all, every other node, a random half. */
-static void start(struct work *w, int which) {
+static void start(struct equilibrium_work *w, int which) {
     struct newton *n = &w->newton;
     double draw[64];
     assert_true(w->mesh->face <= 64);
     random_uniform((struct random_key){.seed = 9, .realisation = (uint64_t)which}, 0, 0, 64, draw);
-    memset(n->u, 0, mesh_freedoms(w->mesh) * sizeof *n->u);
+    memset(n->u, 0, mesh_degrees_of_freedom(w->mesh) * sizeof *n->u);
     n->evaluated = false;
     for (size_t i = 0; i < w->mesh->face; i++)
         n->active[i] = which == 1 || (which == 2 && i % 2 == 0) || (which > 2 && draw[i] < 0.5);
 }
 
 /* The conditions of contact, to the tolerance. */
-static void check_contact(struct work *w, double pressure) {
+static void check_contact(struct equilibrium_work *w, double pressure) {
     struct newton *n = &w->newton;
     double sum = 0, most = 0;
     newton_measure_gaps(n);
@@ -79,7 +79,7 @@ static void every_start_ends_at_the_same_set(void **state) {
     (void)state;
     static const struct grid GRIDS[] = {{48, 1, 1, 1}, {8, 8, 1, 1}};
     for (size_t c = 0; c < 4; c++) {
-        struct work w;
+        struct equilibrium_work w;
         struct newton_end end;
         struct error err = {0};
         double force[64] = {0};
@@ -106,7 +106,7 @@ static void every_start_ends_at_the_same_set(void **state) {
 static void a_set_that_comes_back_is_taken_apart(void **state) {
     (void)state;
     for (int weighting = 0; weighting < 2; weighting++) {
-        struct work w;
+        struct equilibrium_work w;
         struct newton_end end = {0};
         struct error err = {0};
         double force[64];
@@ -131,7 +131,7 @@ static void a_set_that_comes_back_is_taken_apart(void **state) {
 
 static void a_load_that_is_too_great_fails_clearly(void **state) {
     (void)state;
-    struct work w;
+    struct equilibrium_work w;
     struct newton_end end;
     struct error err = {0};
     open_work(&w, (struct grid){16, 1, 1, 1}, GAP_DUAL, 0.05);

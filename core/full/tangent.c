@@ -1,4 +1,4 @@
-#include "core/full/stencil.h"
+#include "core/full/tangent.h"
 #include "core/sum.h"
 #include "core/vectors.h"
 #include <stdint.h>
@@ -12,39 +12,41 @@ static size_t slot_count(const struct mesh *mesh) {
 }
 
 static size_t value_count(const struct mesh *mesh) {
-    return mesh_freedoms(mesh) * slot_count(mesh) * (size_t)mesh->dimension;
+    return mesh_degrees_of_freedom(mesh) * slot_count(mesh) * (size_t)mesh->dimension;
 }
 
-int stencil_create(struct stencil **out, const struct mesh *mesh, bool bulk, struct error *err) {
+int tangent_create(struct tangent **out, const struct mesh *mesh, bool pressures,
+                   struct error *err) {
     *out = NULL;
-    struct stencil *stencil = array_create(1, sizeof *stencil);
-    if (stencil == NULL)
-        return error_memory(err, sizeof *stencil, "a stiffness matrix");
-    stencil->mesh = mesh;
-    stencil->slots = slot_count(mesh);
-    stencil->values = array_create(value_count(mesh), sizeof *stencil->values);
-    if (stencil->values == NULL) {
-        stencil_destroy(&stencil);
+    struct tangent *tangent = array_create(1, sizeof *tangent);
+    if (tangent == NULL)
+        return error_memory(err, sizeof *tangent, "a stiffness matrix");
+    tangent->mesh = mesh;
+    tangent->slots = slot_count(mesh);
+    tangent->values = array_create(value_count(mesh), sizeof *tangent->values);
+    if (tangent->values == NULL) {
+        tangent_destroy(&tangent);
         return error_memory(err, value_count(mesh) * sizeof(double), "a stiffness matrix");
     }
-    int status = bulk ? bulk_create(&stencil->bulk, mesh, false, err) : 0;
+    int status = pressures ? volumetric_create(&tangent->volumetric, mesh, false, err) : 0;
     if (status != 0)
-        stencil_destroy(&stencil);
-    *out = stencil;
+        tangent_destroy(&tangent);
+    *out = tangent;
     return status;
 }
 
-void stencil_destroy(struct stencil **stencil) {
-    if (*stencil == NULL)
+void tangent_destroy(struct tangent **tangent) {
+    if (*tangent == NULL)
         return;
-    bulk_destroy(&(*stencil)->bulk);
-    free((*stencil)->values);
-    free(*stencil);
-    *stencil = NULL;
+    volumetric_destroy(&(*tangent)->volumetric);
+    free((*tangent)->values);
+    free(*tangent);
+    *tangent = NULL;
 }
 
-double stencil_bytes(const struct mesh *mesh, bool bulk) {
-    return (double)value_count(mesh) * sizeof(double) + (bulk ? bulk_bytes(mesh, false) : 0);
+double tangent_bytes(const struct mesh *mesh, bool pressures) {
+    return (double)value_count(mesh) * sizeof(double) +
+           (pressures ? volumetric_bytes(mesh, false) : 0);
 }
 
 /* One step back, none and one on, x fastest, from row j, column i of a level. */
@@ -71,8 +73,8 @@ INLINE void neighbours(int d, const struct mesh *mesh, size_t level, size_t j, s
             out[slot] = SIZE_MAX;
 }
 
-void stencil_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t i,
-                        size_t neighbour[STENCIL_MOST]) {
+void tangent_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t i,
+                        size_t neighbour[NEIGHBOURS_MOST]) {
     neighbours(mesh->dimension, mesh, level, j, i, neighbour);
 }
 
@@ -95,31 +97,32 @@ INLINE void apply_node(size_t d, size_t slots, const double *value, const size_t
         y[node * d + i] += sum[i];
 }
 
-INLINE void apply(int d, const struct stencil *stencil, const double *x, double *y) {
-    const struct mesh *mesh = stencil->mesh;
+INLINE void apply(int d, const struct tangent *tangent, const double *x, double *y) {
+    const struct mesh *mesh = tangent->mesh;
     const size_t slots = d == 2 ? 6 : 18, n = (size_t)d;
-    size_t neighbour[STENCIL_MOST], node = 0;
-    memset(y, 0, mesh_freedoms(mesh) * sizeof *y);
+    size_t neighbour[NEIGHBOURS_MOST], node = 0;
+    memset(y, 0, mesh_degrees_of_freedom(mesh) * sizeof *y);
     for (size_t level = 0; level <= mesh->layers; level++)
         for (size_t j = 0; j < mesh->level[level].ny; j++)
             for (size_t i = 0; i < mesh->level[level].nx; i++, node++) {
                 neighbours(d, mesh, level, j, i, neighbour);
-                apply_node(n, slots, stencil->values + node * slots * n * n, neighbour, node, x, y);
+                apply_node(n, slots, tangent->values + node * slots * n * n, neighbour, node, x, y);
             }
 }
 
-WIDE_VECTORS void stencil_apply(const struct stencil *stencil, const double *x, double *y) {
-    if (stencil->mesh->dimension == 2)
-        apply(2, stencil, x, y);
+WIDE_VECTORS void tangent_apply(const struct tangent *tangent, const double *x, double *y) {
+    if (tangent->mesh->dimension == 2)
+        apply(2, tangent, x, y);
     else
-        apply(3, stencil, x, y);
+        apply(3, tangent, x, y);
 }
 
 /* --- assembly --- */
 
 /* What an element gives, by its corners. */
 struct contribution {
-    double energy, force[ELEMENT_FREEDOMS], stiffness[ELEMENT_FREEDOMS][ELEMENT_FREEDOMS];
+    double energy, force[ELEMENT_DEGREES_OF_FREEDOM],
+        stiffness[ELEMENT_DEGREES_OF_FREEDOM][ELEMENT_DEGREES_OF_FREEDOM];
 };
 
 /* From its deeper corners to the nodes that they hang on, rows or columns alike: out_b = sum over a
@@ -141,12 +144,12 @@ static void pass_on(size_t d, size_t sideways, const struct mesh_element *elemen
 
 static void untie(size_t d, const struct mesh_element *element, struct contribution *c,
                   bool stiffness) {
-    size_t sideways = (size_t)1 << (d - 1), freedoms = 2 * sideways * d;
+    size_t sideways = (size_t)1 << (d - 1), degrees_of_freedom = 2 * sideways * d;
     pass_on(d, sideways, element, c->force, 1);
-    for (size_t f = 0; stiffness && f < freedoms; f++)
+    for (size_t f = 0; stiffness && f < degrees_of_freedom; f++)
         pass_on(d, sideways, element, c->stiffness[f], 1);
-    for (size_t f = 0; stiffness && f < freedoms; f++)
-        pass_on(d, sideways, element, &c->stiffness[0][f], ELEMENT_FREEDOMS);
+    for (size_t f = 0; stiffness && f < degrees_of_freedom; f++)
+        pass_on(d, sideways, element, &c->stiffness[0][f], ELEMENT_DEGREES_OF_FREEDOM);
 }
 
 /* Slot of element node b as seen from its node a, b not above it: steps sideways count in the
@@ -166,7 +169,7 @@ INLINE size_t slot_between(int d, int a, int b, int parity) {
 /* parity: bit k tells whether the element is the second one of a wide column along axis k; all set
  * where it has its own. */
 INLINE void scatter(int d, const size_t node[8], int parity, struct contribution *c, double *force,
-                    struct stencil *tangent) {
+                    struct tangent *tangent) {
     const size_t n = (size_t)d, slots = d == 2 ? 6 : 18;
     for (int a = 0; a < 1 << d; a++)
         for (size_t i = 0; i < n; i++)
@@ -184,16 +187,16 @@ INLINE void scatter(int d, const size_t node[8], int parity, struct contribution
 }
 
 /* Of the layer's elements, from its first one on; NULL where pressures are bound. */
-struct pressures {
+struct layer_pressures {
     const double *pressure;
     bool bound;
-    struct element_bulk *bulk;
+    struct element_volumetric *volumetric;
     double *force;
 };
 
-INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct solid *solid, size_t layer,
-                           const double *u, struct sum *energy, double *force,
-                           struct stencil *tangent, const struct pressures *own) {
+INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct material *material,
+                           size_t layer, const double *u, struct sum *energy, double *force,
+                           struct tangent *tangent, const struct layer_pressures *own) {
     struct mesh_element element;
     struct element_shape shape;
     struct contribution c;
@@ -206,15 +209,15 @@ INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct solid *s
             mesh_position(mesh, &element, position);
             mesh_corners(mesh, &element, u, (size_t)d, moved);
             if (!element_shape_make(d, position, &shape) ||
-                !element_evaluate(d, solid, &shape, moved,
+                !element_evaluate(d, material, &shape, moved,
                                   own && !own->bound ? &own->pressure[e] : NULL,
                                   energy ? &c.energy : NULL, c.force, tangent ? c.stiffness : NULL,
-                                  own ? &own->bulk[e] : NULL))
+                                  own ? &own->volumetric[e] : NULL))
                 return false;
             if (energy != NULL)
                 sum_add(energy, c.energy);
             if (own != NULL)
-                own->force[e] = own->pressure[e] - own->bulk[e].bound;
+                own->force[e] = own->pressure[e] - own->volumetric[e].bound;
             if (widens)
                 untie((size_t)d, &element, &c, tangent != NULL);
             int parity = widens ? (int)(i % 2 + j % 2 * 2) : 3;
@@ -223,30 +226,30 @@ INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct solid *s
     return true;
 }
 
-size_t stencil_unknowns(const struct stencil *stencil) {
-    return mesh_unknowns(stencil->mesh, stencil->bulk != NULL);
+size_t tangent_unknowns(const struct tangent *tangent) {
+    return mesh_unknowns(tangent->mesh, tangent->volumetric != NULL);
 }
 
-bool stencil_evaluate(const struct mesh *mesh, const struct solid *solid, const double *u,
-                      double *energy, double *force, struct stencil *tangent) {
+bool tangent_evaluate(const struct mesh *mesh, const struct material *material, const double *u,
+                      double *energy, double *force, struct tangent *tangent) {
     struct sum total = {0};
-    bool made = true, apart = tangent != NULL && tangent->bulk != NULL;
-    size_t freedoms = mesh_freedoms(mesh), first = 0;
-    memset(force, 0, freedoms * sizeof *force);
+    bool made = true, apart = tangent != NULL && tangent->volumetric != NULL;
+    size_t degrees_of_freedom = mesh_degrees_of_freedom(mesh), first = 0;
+    memset(force, 0, degrees_of_freedom * sizeof *force);
     if (tangent != NULL)
         memset(tangent->values, 0, value_count(mesh) * sizeof *tangent->values);
     for (size_t layer = 0; made && layer < mesh->layers; layer++) {
         struct sum *sum = energy != NULL ? &total : NULL;
-        struct pressures own = {.pressure = u + freedoms + first,
-                                .force = force + freedoms + first};
+        struct layer_pressures own = {.pressure = u + degrees_of_freedom + first,
+                                      .force = force + degrees_of_freedom + first};
         if (apart) {
-            own.bulk = tangent->bulk->element + first;
+            own.volumetric = tangent->volumetric->element + first;
             own.bound = tangent->bound;
         }
-        made = mesh->dimension == 2 ? evaluate_layer(2, mesh, solid, layer, u, sum, force, tangent,
-                                                     apart ? &own : NULL)
-                                    : evaluate_layer(3, mesh, solid, layer, u, sum, force, tangent,
-                                                     apart ? &own : NULL);
+        made = mesh->dimension == 2 ? evaluate_layer(2, mesh, material, layer, u, sum, force,
+                                                     tangent, apart ? &own : NULL)
+                                    : evaluate_layer(3, mesh, material, layer, u, sum, force,
+                                                     tangent, apart ? &own : NULL);
         first += level_nodes(&mesh->level[layer]);
     }
     if (energy != NULL)

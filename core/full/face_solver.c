@@ -1,5 +1,5 @@
-#include "core/full/support.h"
-#include "core/full/alias.h"
+#include "core/full/face_solver.h"
+#include "core/full/aliasing.h"
 #include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,8 +13,9 @@ static double weight_symbol(size_t mode, size_t n) {
     return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
 }
 
-static void fill_symbols(struct support *s, const struct mesh *mesh, const struct flat *flat) {
-    const double *compliance = flat_compliance(flat);
+static void fill_symbols(struct face_solver *s, const struct mesh *mesh,
+                         const struct preconditioner *preconditioner) {
+    const double *compliance = preconditioner_compliance(preconditioner);
     size_t nx = mesh->level[0].nx, ny = mesh->level[0].ny;
     for (size_t k = 0; k < level_waves(&mesh->level[0]); k++) {
         double weight = 1;
@@ -29,9 +30,10 @@ static void fill_symbols(struct support *s, const struct mesh *mesh, const struc
     }
 }
 
-int support_create(struct support *out, const struct mesh *mesh, const struct flat *flat,
-                   enum gap_weighting weighting, struct error *err) {
-    *out = (struct support){.face = mesh->face};
+int face_solver_create(struct face_solver *out, const struct mesh *mesh,
+                       const struct preconditioner *preconditioner, enum gap_weighting weighting,
+                       struct error *err) {
+    *out = (struct face_solver){.face = mesh->face};
     size_t nx = mesh->level[0].nx, ny = mesh->level[0].ny, waves = level_waves(&mesh->level[0]);
     struct grid grid = {nx, ny, (double)nx, (double)ny * mesh->across};
     double **const arrays[] = {&out->r,    &out->old,   &out->t,     &out->w,
@@ -41,24 +43,24 @@ int support_create(struct support *out, const struct mesh *mesh, const struct fl
     for (size_t a = 0; status == 0 && a < count; a++) {
         *arrays[a] = fftw_alloc_real(a < 4 ? mesh->face : waves);
         if (*arrays[a] == NULL)
-            status = error_memory(err, waves * sizeof(double), "the contact's support");
+            status = error_memory(err, waves * sizeof(double), "the contact forces of the face");
     }
     if (status == 0)
-        fill_symbols(out, mesh, flat);
+        fill_symbols(out, mesh, preconditioner);
     else
-        support_clear(out);
+        face_solver_clear(out);
     return status;
 }
 
-void support_clear(struct support *s) {
+void face_solver_clear(struct face_solver *s) {
     double *const arrays[] = {s->r, s->old, s->t, s->w, s->soft, s->stiff, s->weight};
     for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
         fftw_free(arrays[a]);
     transform_destroy(&s->transform);
-    *s = (struct support){0};
+    *s = (struct face_solver){0};
 }
 
-void support_weigh(const struct support *s, const double *in, double *out) {
+void face_solver_weigh(const struct face_solver *s, const double *in, double *out) {
     if (s->weight != NULL)
         transform_filter(s->transform, s->weight, 1, in, out);
     else if (in != out)
@@ -89,14 +91,14 @@ static double dot(size_t n, const double *a, const double *b) {
 }
 
 /* Out of what is left to move: r, mean 0 in the set. Returns that mean, the shift. */
-static double settle_shift(struct support *s, const bool *active) {
+static double settle_shift(struct face_solver *s, const bool *active) {
     double shift = mean_active(s->face, active, s->r);
     restrict_to(s->face, active, shift, s->r);
     return shift;
 }
 
-double support_solve(struct support *s, const bool *active, const double *face,
-                     const double *target, double sum, double tolerance, double *forces) {
+double face_solver_solve(struct face_solver *s, const bool *active, const double *face,
+                         const double *target, double sum, double tolerance, double *forces) {
     size_t n = s->face, count = 0;
     for (size_t i = 0; i < n; i++)
         count += active[i];

@@ -1,7 +1,7 @@
-#include "core/full/alias.h"
+#include "core/full/aliasing.h"
 #include <string.h>
 
-size_t alias_below(const struct level *above, size_t wave, bool *mirrored) {
+size_t aliasing_below(const struct level *above, size_t wave, bool *mirrored) {
     const struct level *below = above + 1;
     size_t mx = wave / above->ny, row = wave % above->ny;
     *mirrored = mx > below->nx / 2;
@@ -12,14 +12,15 @@ size_t alias_below(const struct level *above, size_t wave, bool *mirrored) {
     return mx * below->ny + row % below->ny;
 }
 
-void alias_unfold(const struct level *above, size_t components, const double *below, double *out) {
+void aliasing_unfold(const struct level *above, size_t components, const double *below,
+                     double *out) {
     size_t n = level_waves(above), wide = level_waves(above + 1);
     bool mirrored;
     for (size_t i = 0; i < components; i++) {
         const double *from = below + 2 * i * wide;
         double *to = out + 2 * i * n, sign = i + 1 == components ? 1 : -1;
         for (size_t wave = 0; wave < n; wave++) {
-            size_t alias = alias_below(above, wave, &mirrored);
+            size_t alias = aliasing_below(above, wave, &mirrored);
             to[wave] = from[alias] * (mirrored ? sign : 1);
             to[n + wave] = from[wide + alias] * (mirrored ? -sign : 1);
         }
@@ -27,7 +28,8 @@ void alias_unfold(const struct level *above, size_t components, const double *be
 }
 
 /* A wave in the middle is an alias of one of either half plane. */
-void alias_fold(const struct level *above, size_t components, const double *field, double *below) {
+void aliasing_fold(const struct level *above, size_t components, const double *field,
+                   double *below) {
     const struct level *level = above + 1;
     size_t n = level_waves(above), wide = level_waves(level);
     memset(below, 0, 2 * components * wide * sizeof *below);

@@ -7,7 +7,7 @@
  * comes to 0, and projected gradients where one did or where penetrations outweigh the gaps inside.
  * The energy falls in each of them, in projected steps by no less than a part of the square of the
  * change: they end at the solution, from wherever they start. */
-#include "core/contact/descent.h"
+#include "core/contact/conjugate_gradient.h"
 #include "core/vectors.h"
 #include <fftw3.h>
 #include <float.h>
@@ -35,12 +35,12 @@ static size_t padded(size_t n) {
 
 enum { ARRAYS = 8 };
 
-double descent_bytes(const struct grid *grid) {
+double conjugate_gradient_bytes(const struct grid *grid) {
     double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
     return sizeof(double) * (ARRAYS * (double)padded(grid_points(grid)) + 4 * waves);
 }
 
-static int arrays_create(struct descent *d, struct error *err) {
+static int arrays_create(struct conjugate_gradient *d, struct error *err) {
     double **const arrays[ARRAYS] = {&d->z, &d->p, &d->u, &d->q, &d->r, &d->old, &d->t, &d->w};
     for (size_t a = 0; a < ARRAYS; a++) {
         *arrays[a] = fftw_alloc_real(d->padded);
@@ -53,7 +53,7 @@ static int arrays_create(struct descent *d, struct error *err) {
     return 0;
 }
 
-static int symbols_create(struct descent *d, const struct compliance *compliance,
+static int symbols_create(struct conjugate_gradient *d, const struct compliance *compliance,
                           struct error *err) {
     d->soft = array_create(compliance->waves, sizeof *d->soft);
     d->stiff = array_create(compliance->waves, sizeof *d->stiff);
@@ -69,30 +69,32 @@ static int symbols_create(struct descent *d, const struct compliance *compliance
     return 0;
 }
 
-int descent_create(struct descent *out, const struct compliance *compliance, struct error *err) {
+int conjugate_gradient_create(struct conjugate_gradient *out, const struct compliance *compliance,
+                              struct error *err) {
     const struct grid *grid = &compliance->grid;
-    *out = (struct descent){.n = grid_points(grid), .padded = padded(grid_points(grid))};
+    *out = (struct conjugate_gradient){.n = grid_points(grid), .padded = padded(grid_points(grid))};
     int status = transform_create(&out->transform, grid, grid->nx / 2, grid->ny / 2, err);
     if (status == 0)
         status = arrays_create(out, err);
     if (status == 0)
         status = symbols_create(out, compliance, err);
     if (status != 0)
-        descent_clear(out);
+        conjugate_gradient_clear(out);
     return status;
 }
 
-void descent_clear(struct descent *d) {
+void conjugate_gradient_clear(struct conjugate_gradient *d) {
     double *const arrays[ARRAYS] = {d->z, d->p, d->u, d->q, d->r, d->old, d->t, d->w};
     for (size_t a = 0; a < ARRAYS; a++)
         fftw_free(arrays[a]);
     free(d->soft);
     free(d->stiff);
     transform_destroy(&d->transform);
-    *d = (struct descent){0};
+    *d = (struct conjugate_gradient){0};
 }
 
-static void filter(struct descent *d, const double *symbol, const double *in, double *out) {
+static void filter(struct conjugate_gradient *d, const double *symbol, const double *in,
+                   double *out) {
     transform_filter(d->transform, symbol, 1, in, out);
     d->transforms += 2;
 }
@@ -128,7 +130,8 @@ WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double
 /* r = gap in the set {p > 0, or gap < 0 where released}, never 0 there and exactly 0 outside, so
  * that r != 0 is the set. Returns its size; fills end but for its approach, which it takes. */
 WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, const double *z,
-                                    double released, double *r, struct descent_end *end) {
+                                    double released, double *r,
+                                    struct conjugate_gradient_end *end) {
     double inside[LANES] = {0}, outside[LANES] = {0}, deep[LANES] = {0}, members[LANES] = {0};
     double approach = end->approach;
     for (size_t i = 0; i < n; i += LANES)
@@ -246,13 +249,13 @@ static void scale(size_t n, double factor, double *x) {
 }
 
 /* What one step leaves to the next. */
-struct memory {
+struct step_memory {
     double energy; /* w.r of the last direction; 0: start anew */
     bool blocked;  /* a careful step ended where a pressure came to 0 */
 };
 
 /* The next direction into t, and S of it into w. */
-static void direct(struct descent *d, struct memory *memory) {
+static void direct(struct conjugate_gradient *d, struct step_memory *memory) {
     filter(d, d->stiff, d->r, d->w);
     struct products s = multiply(d->padded, d->r, d->w, d->old, d->t);
     double mean = s.w / s.members;
@@ -269,7 +272,7 @@ static void direct(struct descent *d, struct memory *memory) {
 /* The pressures nearest to p - STRIDE gap among those >= 0 of this mean (Michelot 1986: the level
  * to take off is raised until no more of them turn negative). Where p is not the solution, its
  * energy falls by at least the square of the change, times 1/STRIDE - 1/2. */
-static void project(struct descent *d, double mean) {
+static void project(struct conjugate_gradient *d, double mean) {
     double top = -INFINITY, level = -INFINITY, sum = 0;
     size_t count = d->n + 1, last;
     for (size_t i = 0; i < d->n; i++) {
@@ -294,7 +297,7 @@ static void project(struct descent *d, double mean) {
 }
 
 /* The longest step along t that leaves no pressure negative. */
-static double feasible_step(const struct descent *d, double step) {
+static double feasible_step(const struct conjugate_gradient *d, double step) {
     for (size_t i = 0; i < d->n; i++)
         if (d->t[i] > 0 && d->p[i] > 0 && d->p[i] < step * d->t[i])
             step = d->p[i] / d->t[i];
@@ -302,21 +305,21 @@ static double feasible_step(const struct descent *d, double step) {
 }
 
 /* Whether the violation has not halved for so many iterations. */
-struct progress {
+struct stall_watch {
     double best;
     size_t since;
 };
-static bool stalled(struct progress *progress, double violation, size_t iterations) {
+static bool stalled(struct stall_watch *progress, double violation, size_t iterations) {
     if (violation < 0.5 * progress->best)
-        *progress = (struct progress){violation, 0};
+        *progress = (struct stall_watch){violation, 0};
     else
         progress->since++;
     return progress->since >= iterations;
 }
 
 /* One iteration from r; *stale: whether u has to be computed anew. */
-static void iterate(struct descent *d, double mean, bool careful, struct memory *memory,
-                    bool *stale) {
+static void iterate(struct conjugate_gradient *d, double mean, bool careful,
+                    struct step_memory *memory, bool *stale) {
     direct(d, memory);
     double step = step_length(d->padded, d->old, d->t, d->w);
     if (careful) {
@@ -329,12 +332,13 @@ static void iterate(struct descent *d, double mean, bool careful, struct memory 
         scale(d->n, mean * (double)d->n / sum, d->p);
 }
 
-void descent_run(struct descent *d, double mean, double tolerance, size_t stall_iterations,
-                 size_t max_iterations, struct descent_end *end) {
-    struct memory memory = {0};
-    struct progress progress = {.best = INFINITY};
+void conjugate_gradient_run(struct conjugate_gradient *d, double mean, double tolerance,
+                            size_t stall_iterations, size_t max_iterations,
+                            struct conjugate_gradient_end *end) {
+    struct step_memory memory = {0};
+    struct stall_watch progress = {.best = INFINITY};
     bool careful = false, stale = true;
-    *end = (struct descent_end){0};
+    *end = (struct conjugate_gradient_end){0};
     for (size_t i = 0; i < d->padded; i++)
         d->t[i] = d->old[i] = 0;
     double highest = 0;
@@ -356,7 +360,7 @@ void descent_run(struct descent *d, double mean, double tolerance, size_t stall_
         }
         if (careful && (memory.blocked || end->penetration >= end->inside)) {
             project(d, mean);
-            memory = (struct memory){0};
+            memory = (struct step_memory){0};
             stale = true;
         } else {
             iterate(d, mean, careful, &memory, &stale);
@@ -364,8 +368,8 @@ void descent_run(struct descent *d, double mean, double tolerance, size_t stall_
     }
 }
 
-double descent_tangent(struct descent *d) {
-    struct memory memory = {0};
+double conjugate_gradient_tangent(struct conjugate_gradient *d) {
+    struct step_memory memory = {0};
     double sum = 0, slope = 0;
     for (size_t i = 0; i < d->padded; i++) {
         d->q[i] = d->p[i] > 0 ? d->q[i] : 0;

@@ -9,14 +9,16 @@
  * and the part of lambda that sees the element's mean dilatation alone (element.h), which is that
  * of ln J, sum E_p or tr e where the strain is uniform. To first order in the gradient all are the
  * linear material of core/contact/layered.c. Moduli in E* = E/(1 - nu^2). */
-#ifndef RUGO_CORE_FULL_HENCKY_H
-#define RUGO_CORE_FULL_HENCKY_H
+#ifndef RUGO_CORE_FULL_MATERIAL_H
+#define RUGO_CORE_FULL_MATERIAL_H
 
 #include <stdbool.h>
 
 enum kinematics { KINEMATICS_HENCKY, KINEMATICS_ST_VENANT, KINEMATICS_SMALL };
 
-struct solid {
+struct material_law;
+struct material {
+    const struct material_law *law; /* belongs to kinematics */
     enum kinematics kinematics;
     double shear;       /* Lame's mu, in E* as the next */
     double local, mean; /* parts of Lame's lambda: of the dilatation here, of its element's mean */
@@ -24,7 +26,7 @@ struct solid {
                            along them leads downhill */
 };
 /* Split as the layered model's. */
-struct solid solid_of(double poisson, enum kinematics kinematics);
+struct material material_of(double poisson, enum kinematics kinematics);
 
 /* A value at each Gauss point of an element, 2^dimension of them: all are worked on at once. */
 enum { POINTS_MOST = 8 };
@@ -44,8 +46,8 @@ struct strained {
 };
 
 /* h[i][k] = du_i/dX_k. False, with nothing else promised, when a point is turned inside out. */
-bool solid_strain(int dimension, const struct solid *solid, pointwise h[3][3],
-                  struct strained *out);
+bool material_strain(int dimension, const struct material *material, pointwise h[3][3],
+                     struct strained *out);
 
 /* Components of a symmetric tensor: xx, yy, (zz,) xy, (xz, yz). */
 enum { SYMMETRIC_MOST = 6 };
@@ -64,7 +66,7 @@ struct moduli {
     pointwise material[SYMMETRIC_MOST][9];
     pointwise stress[3][3];
 };
-void solid_moduli(int dimension, const struct solid *solid, const struct strained *point,
-                  double pull, const pointwise weight, struct moduli *out);
+void material_moduli(int dimension, const struct material *material, const struct strained *point,
+                     double pull, const pointwise weight, struct moduli *out);
 
 #endif

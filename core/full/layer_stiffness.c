@@ -1,15 +1,16 @@
-#include "core/full/layer.h"
+#include "core/full/layer_stiffness.h"
 #include <math.h>
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
 
-void layer_make(const struct mesh *mesh, const struct solid *solid, size_t layer, struct layer *out,
-                struct element_bulk *bulk) {
+void layer_stiffness_make(const struct mesh *mesh, const struct material *material, size_t layer,
+                          struct layer_stiffness *out, struct element_volumetric *volumetric) {
     int d = mesh->dimension;
     const struct level *level = &mesh->level[layer];
     double width = (double)level->width;
-    double position[8][3], u[8][3] = {{0}}, stiffness[ELEMENT_FREEDOMS][ELEMENT_FREEDOMS];
+    double position[8][3], u[8][3] = {{0}},
+                           stiffness[ELEMENT_DEGREES_OF_FREEDOM][ELEMENT_DEGREES_OF_FREEDOM];
     struct element_shape shape;
     memset(out, 0, sizeof *out);
     for (int a = 0; a < 1 << d; a++) {
@@ -19,7 +20,7 @@ void layer_make(const struct mesh *mesh, const struct solid *solid, size_t layer
     }
     /* A brick at rest: nothing to fail. */
     (void)element_shape_make(d, position, &shape);
-    (void)element_evaluate(d, solid, &shape, u, NULL, NULL, NULL, stiffness, bulk);
+    (void)element_evaluate(d, material, &shape, u, NULL, NULL, NULL, stiffness, volumetric);
     for (int a = 0; a < 1 << d; a++)
         for (int b = 0; b < 1 << d; b++) {
             int along = (b & 1) - (a & 1) + 1;
@@ -31,8 +32,8 @@ void layer_make(const struct mesh *mesh, const struct solid *solid, size_t layer
         }
 }
 
-struct phases phases_of(const struct level *level, size_t mx, size_t row) {
-    struct phases phases;
+struct wave_phases wave_phases_of(const struct level *level, size_t mx, size_t row) {
+    struct wave_phases phases;
     double x = 2 * PI * (double)mx / (double)level->nx;
     double y = 2 * PI * (double)row / (double)level->ny;
     for (int slot = 0; slot < 9; slot++) {
@@ -44,13 +45,13 @@ struct phases phases_of(const struct level *level, size_t mx, size_t row) {
     return phases;
 }
 
-double phases_hanging(int dimension, const struct phases *phases) {
+double wave_phases_hanging(int dimension, const struct wave_phases *phases) {
     double along = (1 + phases->cosine[5]) / 2, across = (1 + phases->cosine[7]) / 2;
     return dimension == 2 ? along : along * across;
 }
 
-void layer_symbol_add(int dimension, double block[9][3][3], const struct phases *phases,
-                      double factor, double out[3][3]) {
+void layer_stiffness_add_symbol(int dimension, double block[9][3][3],
+                                const struct wave_phases *phases, double factor, double out[3][3]) {
     for (int i = 0; i < dimension; i++)
         for (int j = 0; j < dimension; j++) {
             bool up = i == dimension - 1, right = j == dimension - 1;

@@ -2,7 +2,7 @@
  * nearly equal stretches, strains of all sizes, objectivity. */
 #include "tests/support/check.h"
 
-#include "core/full/hencky.h"
+#include "core/full/material.h"
 #include "core/random.h"
 #include <string.h>
 
@@ -25,7 +25,8 @@ struct point {
 };
 enum { HERE = 2 };
 
-static bool strain_all(int d, const struct solid *solid, double h[3][3], struct strained *out) {
+static bool strain_all(int d, const struct material *material, double h[3][3],
+                       struct strained *out) {
     pointwise all[3][3];
     for (uint64_t q = 0; q < POINTS_MOST; q++) {
         double other[3][3];
@@ -34,12 +35,12 @@ static bool strain_all(int d, const struct solid *solid, double h[3][3], struct 
             for (int k = 0; k < 3; k++)
                 all[i][k][q] = q == HERE ? h[i][k] : other[i][k];
     }
-    return solid_strain(d, solid, all, out);
+    return material_strain(d, material, all, out);
 }
 
-static struct point strain(int d, const struct solid *solid, double h[3][3]) {
+static struct point strain(int d, const struct material *material, double h[3][3]) {
     struct strained all;
-    assert_true(strain_all(d, solid, h, &all));
+    assert_true(strain_all(d, material, h, &all));
     struct point point = {.energy = all.energy[HERE], .dilatation = all.dilatation[HERE]};
     for (int i = 0; i < d; i++)
         for (int k = 0; k < d; k++)
@@ -48,13 +49,13 @@ static struct point strain(int d, const struct solid *solid, double h[3][3]) {
 }
 
 /* Second variation of the energy and the pull times the dilatation, by G_ik G_jl. */
-static void moduli_of(int d, const struct solid *solid, double h[3][3], double pull,
+static void moduli_of(int d, const struct material *material, double h[3][3], double pull,
                       double out[9][9]) {
     static const pointwise WEIGHT = {3, 2, 0.5, 4, 5, 6, 7, 8};
     struct strained all;
     struct moduli moduli;
-    assert_true(strain_all(d, solid, h, &all));
-    solid_moduli(d, solid, &all, pull, WEIGHT, &moduli);
+    assert_true(strain_all(d, material, h, &all));
+    material_moduli(d, material, &all, pull, WEIGHT, &moduli);
     for (int ik = 0; ik < d * d; ik++)
         for (int jl = 0; jl < d * d; jl++) {
             out[ik][jl] = moduli.material[symmetric_index(d, ik / d, ik % d)][jl][HERE];
@@ -69,12 +70,12 @@ static void moduli_of(int d, const struct solid *solid, double h[3][3], double p
 static void hencky_has_its_closed_forms(void **state) {
     (void)state;
     for (size_t n = 0; n < 4; n++) {
-        struct solid solid = solid_of(POISSON[n], KINEMATICS_HENCKY);
+        struct material material = material_of(POISSON[n], KINEMATICS_HENCKY);
         for (double stretch = 0.5; stretch < 2.1; stretch += 0.25) {
-            double logarithm = log(stretch), mu = solid.shear, a = solid.local;
+            double logarithm = log(stretch), mu = material.shear, a = material.local;
             double uniaxial[3][3] = {{stretch - 1}};
             for (int d = 2; d <= 3; d++) {
-                struct point p = strain(d, &solid, uniaxial);
+                struct point p = strain(d, &material, uniaxial);
                 check_close(p.stress[0][0], (2 * mu + a) * logarithm, 1e-13);
                 check_close(p.stress[1][1], a * logarithm, 1e-13);
                 check_close(p.energy, (mu + a / 2) * logarithm * logarithm, 1e-13);
@@ -84,7 +85,7 @@ static void hencky_has_its_closed_forms(void **state) {
             double gamma = stretch, e = asinh(gamma / 2), angle = atan2(1, gamma / 2);
             double shear[3][3] = {{0, gamma}};
             for (int d = 2; d <= 3; d++) {
-                struct point p = strain(d, &solid, shear);
+                struct point p = strain(d, &material, shear);
                 check_close(p.stress[0][0], 2 * mu * e * cos(angle), 1e-13);
                 check_close(p.stress[0][1], 2 * mu * e * sin(angle), 1e-13);
                 check_close(p.energy, 2 * mu * e * e, 1e-13);
@@ -99,19 +100,19 @@ static void hencky_has_its_closed_forms(void **state) {
 static void st_venant_has_its_closed_forms(void **state) {
     (void)state;
     for (size_t n = 0; n < 4; n++) {
-        struct solid solid = solid_of(POISSON[n], KINEMATICS_ST_VENANT);
-        double mu = solid.shear, a = solid.local;
+        struct material material = material_of(POISSON[n], KINEMATICS_ST_VENANT);
+        double mu = material.shear, a = material.local;
         for (double stretch = 0.5; stretch < 2.1; stretch += 0.25)
             for (int d = 2; d <= 3; d++) {
                 double square = stretch * stretch, e = (square - 1) / 2;
                 double uniaxial[3][3] = {{stretch - 1}};
-                struct point p = strain(d, &solid, uniaxial);
+                struct point p = strain(d, &material, uniaxial);
                 check_close(p.stress[0][0], square * (2 * mu + a) * e, 1e-13);
                 check_close(p.stress[1][1], a * e, 1e-13);
                 check_close(p.energy, (mu + a / 2) * e * e, 1e-13);
                 check_close(p.dilatation, e, 1e-14);
                 double gamma = stretch, trace = square / 2, shear[3][3] = {{0, gamma}};
-                p = strain(d, &solid, shear);
+                p = strain(d, &material, shear);
                 check_close(p.stress[0][0], (a + square * (2 * mu + a)) * trace + 2 * mu * square,
                             1e-12);
                 check_close(p.stress[0][1], mu * gamma + gamma * (2 * mu + a) * trace, 1e-12);
@@ -127,11 +128,11 @@ static void small_strains_are_linear(void **state) {
     double h[3][3];
     random_gradient(1, 1e-9, h);
     for (int d = 2; d <= 3; d++) {
-        struct solid small = solid_of(0.3, KINEMATICS_SMALL);
+        struct material small = material_of(0.3, KINEMATICS_SMALL);
         struct point linear = strain(d, &small, h);
         for (size_t k = 0; k < 2; k++) {
-            struct solid solid = solid_of(0.3, KINEMATICS[k]);
-            struct point p = strain(d, &solid, h);
+            struct material material = material_of(0.3, KINEMATICS[k]);
+            struct point p = strain(d, &material, h);
             for (int i = 0; i < d; i++)
                 for (int j = 0; j < d; j++)
                     check_close(p.stress[i][j], linear.stress[i][j], 1e-16);
@@ -146,8 +147,8 @@ static void sizes_do_not_mix(void **state) {
     static const double SIZES[] = {1e-9, 0.3, 0, 1e-12, 1e-300, 1e-30, 3e-151, 1e-160};
     for (int d = 2; d <= 3; d++)
         for (size_t k = 0; k < 2; k++) {
-            struct solid solid = solid_of(0.3, KINEMATICS[k]);
-            struct solid small = solid_of(0.3, KINEMATICS_SMALL);
+            struct material material = material_of(0.3, KINEMATICS[k]);
+            struct material small = material_of(0.3, KINEMATICS_SMALL);
             struct strained p, linear;
             pointwise h[3][3];
             for (uint64_t q = 0; q < POINTS_MOST; q++) {
@@ -157,7 +158,8 @@ static void sizes_do_not_mix(void **state) {
                     for (int l = 0; l < 3; l++)
                         h[i][l][q] = one[i][l];
             }
-            assert_true(solid_strain(d, &solid, h, &p) && solid_strain(d, &small, h, &linear));
+            assert_true(material_strain(d, &material, h, &p) &&
+                        material_strain(d, &small, h, &linear));
             for (int q = 0; q < 1 << d; q++)
                 for (int i = 0; i < d; i++)
                     for (int l = 0; l < d; l++) {
@@ -171,34 +173,35 @@ static void sizes_do_not_mix(void **state) {
 }
 
 /* Energy under a pull at F + step G F, whose gradient in space is G. */
-static double varied_energy(int d, const struct solid *solid, double h[3][3], double g[3][3],
+static double varied_energy(int d, const struct material *material, double h[3][3], double g[3][3],
                             double step, double pull) {
     double varied[3][3];
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
             varied[i][k] = h[i][k];
             for (int l = 0; l < d; l++) {
-                double f = solid->kinematics == KINEMATICS_SMALL ? l == k : h[l][k] + (l == k);
+                double f = material->kinematics == KINEMATICS_SMALL ? l == k : h[l][k] + (l == k);
                 varied[i][k] += step * g[i][l] * f;
             }
         }
-    struct point p = strain(d, solid, varied);
+    struct point p = strain(d, material, varied);
     return p.energy + pull * p.dilatation;
 }
 
 /* First and second differences along a direction: steps of 1e-4 leave 1e-8 of the fourth
  * derivative and 1e-16/1e-8 of rounding. */
-static void check_differences(int d, const struct solid *solid, double h[3][3], double g[3][3]) {
+static void check_differences(int d, const struct material *material, double h[3][3],
+                              double g[3][3]) {
     static const double STEP = 3e-4, PULL = 0.07;
-    struct point p = strain(d, solid, h);
+    struct point p = strain(d, material, h);
     double slope =
-        (varied_energy(d, solid, h, g, STEP, 0) - varied_energy(d, solid, h, g, -STEP, 0)) /
+        (varied_energy(d, material, h, g, STEP, 0) - varied_energy(d, material, h, g, -STEP, 0)) /
         (2 * STEP);
-    double before = varied_energy(d, solid, h, g, -STEP, PULL);
-    double after = varied_energy(d, solid, h, g, STEP, PULL);
-    double here = varied_energy(d, solid, h, g, 0, PULL);
+    double before = varied_energy(d, material, h, g, -STEP, PULL);
+    double after = varied_energy(d, material, h, g, STEP, PULL);
+    double here = varied_energy(d, material, h, g, 0, PULL);
     double first = 0, second = 0, moduli[9][9];
-    moduli_of(d, solid, h, PULL, moduli);
+    moduli_of(d, material, h, PULL, moduli);
     for (int i = 0; i < d; i++)
         for (int k = 0; k < d; k++) {
             first += p.stress[i][k] * g[i][k];
@@ -217,28 +220,28 @@ static void moduli_are_the_second_derivative(void **state) {
     static const double SIZES[] = {0, 1e-12, 1e-8, 1e-3, 0.05, 0.3};
     for (uint64_t draw = 0; draw < 72; draw++) {
         int d = 2 + (int)(draw % 2);
-        struct solid solid = solid_of(0.3, KINEMATICS[draw / 2 % 3]);
+        struct material material = material_of(0.3, KINEMATICS[draw / 2 % 3]);
         double h[3][3], g[3][3];
         random_gradient(draw, SIZES[draw / 12 % 6], h);
         random_gradient(1000 + draw, 0.2, g);
-        check_differences(d, &solid, h, g);
+        check_differences(d, &material, h, g);
     }
 }
 
 /* Equal and nearly equal stretches: the moduli join up, with no jump where a formula changes. */
 static void equal_stretches_are_no_exception(void **state) {
     (void)state;
-    struct solid solid = solid_of(0.3, KINEMATICS_HENCKY);
+    struct material material = material_of(0.3, KINEMATICS_HENCKY);
     for (int d = 2; d <= 3; d++) {
         double h[3][3] = {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}, equal[9][9], moduli[9][9];
-        moduli_of(d, &solid, h, 0.02, equal);
+        moduli_of(d, &material, h, 0.02, equal);
         double g[3][3];
         random_gradient(7, 0.2, g);
-        check_differences(d, &solid, h, g);
+        check_differences(d, &material, h, g);
         for (double apart = 1e-16; apart < 0.03; apart *= 3) {
             h[0][0] = 0.1 + apart;
             h[0][1] = apart / 3;
-            moduli_of(d, &solid, h, 0.02, moduli);
+            moduli_of(d, &material, h, 0.02, moduli);
             for (int m = 0; m < d * d; m++)
                 for (int n = 0; n < d * d; n++)
                     check_close(moduli[m][n], equal[m][n], 1e-13 + 10 * apart);
@@ -246,7 +249,7 @@ static void equal_stretches_are_no_exception(void **state) {
         h[0][1] = 0;
         for (double edge = 0.2499; edge < 0.2502; edge += 2e-5) { /* where the series ends */
             h[0][0] = 1.1 * exp(edge) - 1;
-            check_differences(d, &solid, h, g);
+            check_differences(d, &material, h, g);
         }
     }
 }
@@ -256,18 +259,18 @@ static void a_rotation_turns_the_stress(void **state) {
     (void)state;
     for (uint64_t draw = 0; draw < 20; draw++)
         for (int d = 2; d <= 3; d++) {
-            struct solid solid = solid_of(0.3, KINEMATICS[draw % 2]);
+            struct material material = material_of(0.3, KINEMATICS[draw % 2]);
             double c = cos((double)draw), s = sin((double)draw), h[3][3], turned[3][3];
             double r[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
             random_gradient(draw, 0.25, h);
-            struct point before = strain(d, &solid, h);
+            struct point before = strain(d, &material, h);
             for (int i = 0; i < 3; i++)
                 for (int k = 0; k < 3; k++) {
                     turned[i][k] = -(i == k);
                     for (int l = 0; l < 3; l++)
                         turned[i][k] += r[i][l] * (h[l][k] + (l == k));
                 }
-            struct point after = strain(d, &solid, turned);
+            struct point after = strain(d, &material, turned);
             check_close(after.energy, before.energy, 1e-13);
             for (int i = 0; i < d; i++)
                 for (int k = 0; k < d; k++) {
@@ -286,7 +289,7 @@ static void convex_moduli_lead_downhill(void **state) {
     (void)state;
     for (uint64_t draw = 0; draw < 200; draw++) {
         int d = 2 + (int)(draw % 2);
-        struct solid solid = solid_of(0.3, KINEMATICS[draw / 2 % 2]), convex = solid;
+        struct material material = material_of(0.3, KINEMATICS[draw / 2 % 2]), convex = material;
         double h[3][3], g[3][3], moduli[9][9], energy = 0;
         convex.convex = true;
         random_gradient(draw, draw < 4 ? 0 : 0.3, h);
@@ -298,7 +301,7 @@ static void convex_moduli_lead_downhill(void **state) {
         assert_true(energy > -1e-12);
         if (draw < 4) {
             double tangent[9][9];
-            moduli_of(d, &solid, h, 0, tangent);
+            moduli_of(d, &material, h, 0, tangent);
             for (int m = 0; m < d * d; m++)
                 for (int n = 0; n < d * d; n++)
                     check_close(moduli[m][n], tangent[m][n], 1e-14);
@@ -308,14 +311,14 @@ static void convex_moduli_lead_downhill(void **state) {
 
 static void what_is_inside_out_is_refused(void **state) {
     (void)state;
-    struct solid solid = solid_of(0.3, KINEMATICS_HENCKY);
+    struct material material = material_of(0.3, KINEMATICS_HENCKY);
     struct strained point;
     double flat[3][3] = {{-1}}, beyond[3][3] = {{-1.5}}, twice[3][3] = {{-2, 0, 0}, {0, -2, 0}};
-    assert_false(strain_all(2, &solid, flat, &point));
-    assert_false(strain_all(3, &solid, beyond, &point));
-    check_close(strain(2, &solid, twice).energy, 0, 1e-30); /* half a turn, no strain */
+    assert_false(strain_all(2, &material, flat, &point));
+    assert_false(strain_all(3, &material, beyond, &point));
+    check_close(strain(2, &material, twice).energy, 0, 1e-30); /* half a turn, no strain */
     double lost[3][3] = {{NAN}};
-    assert_false(strain_all(2, &solid, lost, &point));
+    assert_false(strain_all(2, &material, lost, &point));
 }
 
 int main(void) {

@@ -1,5 +1,5 @@
-#include "core/full/krylov.h"
-#include "core/full/alias.h"
+#include "core/full/gmres.h"
+#include "core/full/aliasing.h"
 #include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>
@@ -9,39 +9,39 @@ enum { BASIS = 24, RESTARTS = 10, LANES = 8 };
 /* A restart that leaves more than this of the residual is the last one. */
 static const double STALLED = 0.5;
 /* Bulk over shear modulus from which pressures are unknowns of their own. */
-static const double BULK_LEAST = 10;
+static const double BULK_RATIO_LEAST = 10;
 /* Of the contact forces within the preconditioner. */
-static const double SUPPORT_TOLERANCE = 1e-3;
+static const double FACE_TOLERANCE = 1e-3;
 
-struct krylov {
+struct gmres {
     const struct mesh *mesh; /* borrowed */
-    struct flat *flat;
-    struct support support;
-    struct bulk *bulk;         /* of the flat block; NULL where pressures are no unknowns */
-    size_t freedoms, unknowns; /* the pressures of elements follow the displacements */
-    double *basis[BASIS + 1];  /* orthonormal residuals */
-    double *direction[BASIS];  /* preconditioned */
+    struct preconditioner *preconditioner;
+    struct face_solver face_solver;
+    struct volumetric *volumetric; /* of the flat block; NULL where pressures are no unknowns */
+    size_t degrees_of_freedom, unknowns; /* the pressures of elements follow the displacements */
+    double *basis[BASIS + 1];            /* orthonormal residuals */
+    double *direction[BASIS];            /* preconditioned */
     double *load, *moved, *pressures;
     double *face, *target, *forces;      /* of the face */
     double hessenberg[BASIS + 1][BASIS]; /* turned to upper triangular */
     double cosine[BASIS], sine[BASIS], right[BASIS + 1];
 };
 
-int krylov_create(struct krylov **out, const struct mesh *mesh, const struct solid *solid,
-                  enum gap_weighting weighting, struct error *err) {
-    bool bulk = krylov_needs_bulk(solid);
+int gmres_create(struct gmres **out, const struct mesh *mesh, const struct material *material,
+                 enum gap_weighting weighting, struct error *err) {
+    bool pressures = gmres_needs_pressures(material);
     *out = NULL;
-    struct krylov *k = array_create(1, sizeof *k);
+    struct gmres *k = array_create(1, sizeof *k);
     if (k == NULL)
         return error_memory(err, sizeof *k, "residuals");
     k->mesh = mesh;
-    k->freedoms = mesh_freedoms(mesh);
-    k->unknowns = mesh_unknowns(mesh, bulk);
-    int status = bulk ? bulk_create(&k->bulk, mesh, true, err) : 0;
+    k->degrees_of_freedom = mesh_degrees_of_freedom(mesh);
+    k->unknowns = mesh_unknowns(mesh, pressures);
+    int status = pressures ? volumetric_create(&k->volumetric, mesh, true, err) : 0;
     if (status == 0)
-        status = flat_create(&k->flat, mesh, solid, k->bulk, err);
+        status = preconditioner_create(&k->preconditioner, mesh, material, k->volumetric, err);
     if (status == 0)
-        status = support_create(&k->support, mesh, k->flat, weighting, err);
+        status = face_solver_create(&k->face_solver, mesh, k->preconditioner, weighting, err);
     for (size_t b = 0; status == 0 && b < 2 * BASIS + 1; b++) {
         double **array = b <= BASIS ? &k->basis[b] : &k->direction[b - BASIS - 1];
         *array = array_create(k->unknowns, sizeof(double));
@@ -56,13 +56,13 @@ int krylov_create(struct krylov **out, const struct mesh *mesh, const struct sol
             status = error_memory(err, k->unknowns * sizeof(double), "residuals");
     }
     if (status != 0)
-        krylov_destroy(&k);
+        gmres_destroy(&k);
     *out = k;
     return status;
 }
 
-void krylov_destroy(struct krylov **krylov) {
-    struct krylov *k = *krylov;
+void gmres_destroy(struct gmres **gmres) {
+    struct gmres *k = *gmres;
     if (k == NULL)
         return;
     for (size_t b = 0; b <= BASIS; b++)
@@ -75,29 +75,29 @@ void krylov_destroy(struct krylov **krylov) {
     free(k->load);
     free(k->moved);
     free(k->pressures);
-    bulk_destroy(&k->bulk);
-    support_clear(&k->support);
-    flat_destroy(&k->flat);
+    volumetric_destroy(&k->volumetric);
+    face_solver_clear(&k->face_solver);
+    preconditioner_destroy(&k->preconditioner);
     free(k);
-    *krylov = NULL;
+    *gmres = NULL;
 }
 
-double krylov_bytes(const struct mesh *mesh, const struct solid *solid, double iterations) {
+double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations) {
     enum { VECTORS = 3, FACES = 7, WAVES = 5 };
-    bool bulk = krylov_needs_bulk(solid);
+    bool pressures = gmres_needs_pressures(material);
     double waves = (double)level_waves(&mesh->level[0]);
-    double unknowns = (double)mesh_unknowns(mesh, bulk);
+    double unknowns = (double)mesh_unknowns(mesh, pressures);
     double vectors = 2 * fmin(iterations, BASIS) + 1 + VECTORS;
-    return flat_bytes(mesh) + (bulk ? bulk_bytes(mesh, true) : 0) +
+    return preconditioner_bytes(mesh) + (pressures ? volumetric_bytes(mesh, true) : 0) +
            sizeof(double) * (vectors * unknowns + FACES * (double)mesh->face + WAVES * waves);
 }
 
-bool krylov_needs_bulk(const struct solid *solid) {
-    return solid->mean > BULK_LEAST * solid->shear;
+bool gmres_needs_pressures(const struct material *material) {
+    return material->mean > BULK_RATIO_LEAST * material->shear;
 }
 
-void krylov_weigh(const struct krylov *k, const double *in, double *out) {
-    support_weigh(&k->support, in, out);
+void gmres_weigh(const struct gmres *k, const double *in, double *out) {
+    face_solver_weigh(&k->face_solver, in, out);
 }
 
 /* --- vectors --- */
@@ -128,21 +128,22 @@ static void scale(size_t n, double factor, double *x) {
 /* --- operator and preconditioner --- */
 
 /* A factorisation is of the displacements' equations alone. */
-static size_t unknowns_of(const struct krylov *k, const struct equations *equations) {
-    return equations->factor != NULL ? k->freedoms : k->unknowns;
+static size_t unknowns_of(const struct gmres *k, const struct linear_system *system) {
+    return system->factorisation != NULL ? k->degrees_of_freedom : k->unknowns;
 }
 
 /* Rows: forces; the sum of the far side's vertical ones at its first node; in contact the weighted
  * face. */
-static void operate(struct krylov *k, const struct equations *equations, const double *x,
+static void operate(struct gmres *k, const struct linear_system *system, const double *x,
                     double *y) {
     const struct mesh *mesh = k->mesh;
     size_t far_side = mesh_far_side(mesh);
     double sum = 0;
-    stencil_apply(equations->tangent, x, y);
-    if (unknowns_of(k, equations) > k->freedoms) {
-        bulk_bind(equations->tangent->bulk, x, -1, x + k->freedoms, y + k->freedoms);
-        bulk_push(equations->tangent->bulk, y + k->freedoms, 1, y);
+    tangent_apply(system->tangent, x, y);
+    if (unknowns_of(k, system) > k->degrees_of_freedom) {
+        volumetric_pressures(system->tangent->volumetric, x, -1, x + k->degrees_of_freedom,
+                             y + k->degrees_of_freedom);
+        volumetric_forces(system->tangent->volumetric, y + k->degrees_of_freedom, 1, y);
     }
     for (size_t node = far_side; node < mesh->nodes; node++) {
         sum += y[mesh_vertical(mesh, node)];
@@ -151,25 +152,25 @@ static void operate(struct krylov *k, const struct equations *equations, const d
     y[mesh_vertical(mesh, far_side)] = sum;
     for (size_t node = 0; node < mesh->face; node++)
         k->face[node] = x[mesh_vertical(mesh, node)];
-    support_weigh(&k->support, k->face, k->face);
+    face_solver_weigh(&k->face_solver, k->face, k->face);
     for (size_t node = 0; node < mesh->face; node++)
-        if (equations->active[node])
+        if (system->active[node])
             y[mesh_vertical(mesh, node)] = k->face[node];
 }
 
 /* x: displacements by the tangent's factorisation, nodes in contact going where they are told. */
-static int precondition_factored(struct krylov *k, const struct equations *equations,
+static int precondition_factored(struct gmres *k, const struct linear_system *system,
                                  const double *r, double *x, struct error *err) {
     const struct mesh *mesh = k->mesh;
-    const bool *active = equations->active;
-    memset(k->moved, 0, k->freedoms * sizeof *k->moved);
+    const bool *active = system->active;
+    memset(k->moved, 0, k->degrees_of_freedom * sizeof *k->moved);
     for (size_t node = 0; node < mesh->face; node++)
         if (active[node])
             k->moved[mesh_vertical(mesh, node)] = r[mesh_vertical(mesh, node)];
-    stencil_apply(equations->tangent, k->moved, x);
-    for (size_t f = 0; f < k->freedoms; f++)
+    tangent_apply(system->tangent, k->moved, x);
+    for (size_t f = 0; f < k->degrees_of_freedom; f++)
         x[f] = r[f] - x[f];
-    int status = factor_solve(equations->factor, x, err);
+    int status = factorisation_solve(system->factorisation, x, err);
     for (size_t node = 0; node < mesh->face; node++)
         if (active[node])
             x[mesh_vertical(mesh, node)] = r[mesh_vertical(mesh, node)];
@@ -177,36 +178,37 @@ static int precondition_factored(struct krylov *k, const struct equations *equat
 }
 
 /* x: the flat block's displacements and pressures under r. */
-static void precondition_flat(struct krylov *k, const bool *active, const double *r, double *x) {
+static void precondition_flat(struct gmres *k, const bool *active, const double *r, double *x) {
     const struct mesh *mesh = k->mesh;
     double sum = 0;
-    memcpy(k->moved, r, k->freedoms * sizeof *r);
+    memcpy(k->moved, r, k->degrees_of_freedom * sizeof *r);
     for (size_t node = 0; node < mesh->face; node++) {
         size_t vertical = mesh_vertical(mesh, node);
         k->target[node] = r[vertical];
         if (active[node])
             k->moved[vertical] = 0;
     }
-    if (k->bulk != NULL)
-        bulk_push(k->bulk, r + k->freedoms, -1, k->moved);
+    if (k->volumetric != NULL)
+        volumetric_forces(k->volumetric, r + k->degrees_of_freedom, -1, k->moved);
     for (size_t node = 0; node < mesh->nodes; node++)
         sum += k->moved[mesh_vertical(mesh, node)];
-    flat_load(k->flat, k->moved);
-    flat_face(k->flat, k->face);
-    support_weigh(&k->support, k->face, k->face);
-    double shift =
-        support_solve(&k->support, active, k->face, k->target, -sum, SUPPORT_TOLERANCE, k->forces);
-    flat_displace(k->flat, k->forces, x);
+    preconditioner_load(k->preconditioner, k->moved);
+    preconditioner_face(k->preconditioner, k->face);
+    face_solver_weigh(&k->face_solver, k->face, k->face);
+    double shift = face_solver_solve(&k->face_solver, active, k->face, k->target, -sum,
+                                     FACE_TOLERANCE, k->forces);
+    preconditioner_displace(k->preconditioner, k->forces, x);
     for (size_t node = 0; node < mesh->nodes; node++)
         x[mesh_vertical(mesh, node)] += shift;
-    if (k->bulk != NULL)
-        bulk_bind(k->bulk, x, 1, r + k->freedoms, x + k->freedoms);
+    if (k->volumetric != NULL)
+        volumetric_pressures(k->volumetric, x, 1, r + k->degrees_of_freedom,
+                             x + k->degrees_of_freedom);
 }
 
 /* --- minimal residuals --- */
 
 /* Givens' rotations bring column c to triangular form. Returns the residual's size. */
-static double rotate(struct krylov *k, size_t c) {
+static double rotate(struct gmres *k, size_t c) {
     double(*h)[BASIS] = k->hessenberg;
     for (size_t a = 0; a < c; a++) {
         double upper = h[a][c], lower = h[a + 1][c];
@@ -222,7 +224,7 @@ static double rotate(struct krylov *k, size_t c) {
     return fabs(k->right[c + 1]);
 }
 
-static void combine(struct krylov *k, size_t n, size_t count, double *x) {
+static void combine(struct gmres *k, size_t n, size_t count, double *x) {
     double factor[BASIS];
     for (size_t a = count; a-- > 0;) {
         factor[a] = k->right[a];
@@ -235,21 +237,21 @@ static void combine(struct krylov *k, size_t n, size_t count, double *x) {
 }
 
 /* From the residual in basis 0, of size *left: adds to x, and tells the size left. */
-static int cycle(struct krylov *k, const struct equations *equations, double goal, double *x,
+static int cycle(struct gmres *k, const struct linear_system *system, double goal, double *x,
                  double *left, size_t *iterations, struct error *err) {
-    size_t n = unknowns_of(k, equations), c = 0;
+    size_t n = unknowns_of(k, system), c = 0;
     scale(n, 1 / *left, k->basis[0]);
     k->right[0] = *left;
     for (double size = 1; c<BASIS && * left> goal && size > 0; c++) {
         double *next = k->basis[c + 1];
         int status = 0;
-        if (equations->factor != NULL)
-            status = precondition_factored(k, equations, k->basis[c], k->direction[c], err);
+        if (system->factorisation != NULL)
+            status = precondition_factored(k, system, k->basis[c], k->direction[c], err);
         else
-            precondition_flat(k, equations->active, k->basis[c], k->direction[c]);
+            precondition_flat(k, system->active, k->basis[c], k->direction[c]);
         if (status != 0)
             return status;
-        operate(k, equations, k->direction[c], next);
+        operate(k, system, k->direction[c], next);
         for (size_t a = 0; a <= c; a++) {
             k->hessenberg[a][c] = dot(n, next, k->basis[a]);
             add(n, -k->hessenberg[a][c], k->basis[a], next);
@@ -266,7 +268,7 @@ static int cycle(struct krylov *k, const struct equations *equations, double goa
 }
 
 /* The block floats sideways: its far side's first node goes back to its place. */
-static void hold(const struct krylov *k, double *x) {
+static void hold(const struct gmres *k, double *x) {
     size_t d = (size_t)k->mesh->dimension, held = mesh_far_side(k->mesh) * d;
     for (size_t axis = 0; axis + 1 < d; axis++) {
         double drift = x[held + axis];
@@ -276,24 +278,25 @@ static void hold(const struct krylov *k, double *x) {
 }
 
 /* Takes the pressures out of the forces x, where the displacements are solved for alone. */
-static void eliminate_pressures(struct krylov *k, const struct equations *equations, double *x) {
-    memcpy(k->pressures, x + k->freedoms, (k->unknowns - k->freedoms) * sizeof *x);
-    bulk_push(equations->tangent->bulk, k->pressures, -1, x);
+static void eliminate_pressures(struct gmres *k, const struct linear_system *system, double *x) {
+    memcpy(k->pressures, x + k->degrees_of_freedom,
+           (k->unknowns - k->degrees_of_freedom) * sizeof *x);
+    volumetric_forces(system->tangent->volumetric, k->pressures, -1, x);
 }
 
-int krylov_solve(struct krylov *k, const struct equations *equations, double tolerance, double *x,
-                 size_t *iterations, struct error *err) {
-    size_t n = unknowns_of(k, equations);
+int gmres_solve(struct gmres *k, const struct linear_system *system, double tolerance, double *x,
+                size_t *iterations, struct error *err) {
+    size_t n = unknowns_of(k, system);
     bool eliminated = n < k->unknowns;
     if (eliminated)
-        eliminate_pressures(k, equations, x);
+        eliminate_pressures(k, system, x);
     double first = sqrt(dot(n, x, x)), left = first, before = INFINITY;
     memcpy(k->load, x, n * sizeof *x);
     memcpy(k->basis[0], x, n * sizeof *x);
     memset(x, 0, n * sizeof *x);
     for (int restart = 0; restart < RESTARTS && left > tolerance * first; restart++) {
         if (restart > 0) {
-            operate(k, equations, x, k->basis[0]);
+            operate(k, system, x, k->basis[0]);
             for (size_t i = 0; i < n; i++)
                 k->basis[0][i] = k->load[i] - k->basis[0][i];
             left = sqrt(dot(n, k->basis[0], k->basis[0]));
@@ -301,13 +304,14 @@ int krylov_solve(struct krylov *k, const struct equations *equations, double tol
         if (!(left <= STALLED * before))
             break;
         before = left;
-        int status = cycle(k, equations, tolerance * first, x, &left, iterations, err);
+        int status = cycle(k, system, tolerance * first, x, &left, iterations, err);
         if (status != 0)
             return status;
     }
     hold(k, x);
     if (eliminated)
-        bulk_bind(equations->tangent->bulk, x, 1, k->pressures, x + k->freedoms);
+        volumetric_pressures(system->tangent->volumetric, x, 1, k->pressures,
+                             x + k->degrees_of_freedom);
     if (!(left <= tolerance * first))
         return error_set(err, ERROR_NUMERIC,
                          "the linear equations of a step of Newton's were solved to %.2g only",

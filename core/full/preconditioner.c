@@ -1,6 +1,6 @@
-#include "core/full/flat.h"
-#include "core/full/alias.h"
-#include "core/full/layer.h"
+#include "core/full/preconditioner.h"
+#include "core/full/aliasing.h"
+#include "core/full/layer_stiffness.h"
 #include "core/surface/transform.h"
 #include "core/vectors.h"
 #include <math.h>
@@ -13,7 +13,7 @@ enum { ZONES_MOST = 32 };
 
 /* Arrays by wave hold a level's waves in the layout of transform.h, innermost; levels follow one
  * another. */
-struct flat {
+struct preconditioner {
     const struct mesh *mesh; /* borrowed */
     size_t d;
     struct transform *transform[ZONES_MOST]; /* by how often columns have doubled */
@@ -25,16 +25,16 @@ struct flat {
     double *plane;           /* face: one component of one level */
 };
 
-static size_t waves_at(const struct flat *f, size_t level) {
+static size_t waves_at(const struct preconditioner *f, size_t level) {
     return level_waves(&f->mesh->level[level]);
 }
-static double *inverse_at(const struct flat *f, size_t level) {
+static double *inverse_at(const struct preconditioner *f, size_t level) {
     return f->inverse + f->before[level] * f->d * f->d;
 }
-static double *coupling_at(const struct flat *f, size_t level) {
+static double *coupling_at(const struct preconditioner *f, size_t level) {
     return f->coupling + f->before[level] * f->d * f->d;
 }
-static double *field_at(const struct flat *f, size_t level, size_t i) {
+static double *field_at(const struct preconditioner *f, size_t level, size_t i) {
     return f->field + 2 * (f->before[level] * f->d + i * waves_at(f, level));
 }
 static size_t zone_of(const struct level *level) {
@@ -43,7 +43,7 @@ static size_t zone_of(const struct level *level) {
         zone++;
     return zone;
 }
-static struct transform *transform_at(const struct flat *f, size_t level) {
+static struct transform *transform_at(const struct preconditioner *f, size_t level) {
     return f->transform[zone_of(&f->mesh->level[level])];
 }
 
@@ -82,34 +82,35 @@ static void hold_far_side(int d, bool mean, double pivot[3][3]) {
 
 /* Adds the lower side of the layer above a level: that of all aliases, which are `share` times as
  * many nodes. */
-static void add_above(const struct flat *f, struct layer *layer, size_t level, size_t mx,
-                      size_t row, double share, double pivot[3][3]) {
+static void add_above(const struct preconditioner *f, struct layer_stiffness *layer, size_t level,
+                      size_t mx, size_t row, double share, double pivot[3][3]) {
     int d = f->mesh->dimension;
     const struct level *above = &f->mesh->level[level - 1], *here = above + 1;
     for (size_t y = row; y < above->ny; y += here->ny)
         for (size_t x = mx; x < above->nx; x += here->nx) {
-            struct phases phases = phases_of(above, x, y);
-            double corners = here->nx == above->nx ? 1 : phases_hanging(d, &phases);
-            layer_symbol_add(d, layer->block[1][1], &phases, share * corners * corners, pivot);
+            struct wave_phases phases = wave_phases_of(above, x, y);
+            double corners = here->nx == above->nx ? 1 : wave_phases_hanging(d, &phases);
+            layer_stiffness_add_symbol(d, layer->block[1][1], &phases, share * corners * corners,
+                                       pivot);
         }
 }
 
 /* Couples a level to the next, of which it takes up the inverse: exact on like columns. On unlike
  * ones aliases are taken apart, though the level below ties them together; short waves do not reach
  * that deep (that is why columns may be wide there). */
-static void couple(const struct flat *f, struct layer *layer, size_t level, size_t wave,
-                   double share, double pivot[3][3]) {
+static void couple(const struct preconditioner *f, struct layer_stiffness *layer, size_t level,
+                   size_t wave, double share, double pivot[3][3]) {
     int d = f->mesh->dimension;
     const struct level *here = &f->mesh->level[level];
     size_t n = waves_at(f, level), next = waves_at(f, level + 1), below = wave;
     bool mirrored = false, wide = mesh_widens(f->mesh, level);
-    struct phases phases = phases_of(here, wave / here->ny, wave % here->ny);
+    struct wave_phases phases = wave_phases_of(here, wave / here->ny, wave % here->ny);
     double between[3][3] = {{0}};
     if (wide)
-        below = alias_below(here, wave, &mirrored);
-    layer_symbol_add(d, layer->block[0][0], &phases, 1, pivot);
-    layer_symbol_add(d, layer->block[0][1], &phases, wide ? phases_hanging(d, &phases) : 1,
-                     between);
+        below = aliasing_below(here, wave, &mirrored);
+    layer_stiffness_add_symbol(d, layer->block[0][0], &phases, 1, pivot);
+    layer_stiffness_add_symbol(d, layer->block[0][1], &phases,
+                               wide ? wave_phases_hanging(d, &phases) : 1, between);
     for (int i = 0; level + 1 == f->mesh->layers && below != 0 && i < d; i++)
         between[i][d - 1] = 0; /* the far side moves as one */
     for (int i = 0; i < d; i++)
@@ -129,7 +130,8 @@ static double share_of(const struct mesh *mesh, size_t level) {
     return mesh_widens(mesh, level) ? 1 << (mesh->dimension - 1) : 1;
 }
 
-static void eliminate(struct flat *f, struct layer *layers, size_t level, size_t wave) {
+static void eliminate(struct preconditioner *f, struct layer_stiffness *layers, size_t level,
+                      size_t wave) {
     const struct mesh *mesh = f->mesh;
     int d = mesh->dimension;
     size_t last = mesh->layers, n = waves_at(f, level), rows = mesh->level[level].ny;
@@ -152,14 +154,15 @@ static void eliminate(struct flat *f, struct layer *layers, size_t level, size_t
             inverse_at(f, level)[(size_t)(i * d + j) * n + wave] = inverse[i][j];
 }
 
-static int eliminate_all(struct flat *f, const struct solid *solid, struct bulk *bulk,
-                         struct error *err) {
+static int eliminate_all(struct preconditioner *f, const struct material *material,
+                         struct volumetric *volumetric, struct error *err) {
     const struct mesh *mesh = f->mesh;
-    struct layer *layers = array_create(mesh->layers, sizeof *layers);
+    struct layer_stiffness *layers = array_create(mesh->layers, sizeof *layers);
     if (layers == NULL)
         return error_memory(err, mesh->layers * sizeof *layers, "the flat block");
     for (size_t k = 0; k < mesh->layers; k++)
-        layer_make(mesh, solid, k, &layers[k], bulk != NULL ? &bulk->element[k] : NULL);
+        layer_stiffness_make(mesh, material, k, &layers[k],
+                             volumetric != NULL ? &volumetric->element[k] : NULL);
     for (size_t level = mesh->layers + 1; level-- > 0;)
         for (size_t wave = 0; wave < waves_at(f, level); wave++)
             eliminate(f, layers, level, wave);
@@ -175,13 +178,13 @@ static size_t all_waves(const struct mesh *mesh) {
     return waves;
 }
 
-double flat_bytes(const struct mesh *mesh) {
+double preconditioner_bytes(const struct mesh *mesh) {
     double d = mesh->dimension, one = (double)level_waves(&mesh->level[0]);
     return sizeof(double) * ((2 * d * d + 2 * d) * (double)all_waves(mesh) + 4 * d * one +
                              (double)mesh->face + 2 * one);
 }
 
-static int arrays_create(struct flat *f, struct error *err) {
+static int arrays_create(struct preconditioner *f, struct error *err) {
     const struct mesh *mesh = f->mesh;
     size_t d = f->d, waves = all_waves(mesh), one = level_waves(&mesh->level[0]);
     f->before = array_create(mesh->layers + 2, sizeof *f->before);
@@ -193,13 +196,13 @@ static int arrays_create(struct flat *f, struct error *err) {
     f->plane = array_create(mesh->face, sizeof *f->plane);
     if (!f->before || !f->inverse || !f->coupling || !f->field || !f->passed || !f->folded ||
         !f->plane)
-        return error_memory(err, (size_t)flat_bytes(mesh), "the flat block");
+        return error_memory(err, (size_t)preconditioner_bytes(mesh), "the flat block");
     for (size_t level = 0; level <= mesh->layers; level++)
         f->before[level + 1] = f->before[level] + waves_at(f, level);
     return 0;
 }
 
-static int transforms_create(struct flat *f, struct error *err) {
+static int transforms_create(struct preconditioner *f, struct error *err) {
     const struct mesh *mesh = f->mesh;
     int status = 0;
     for (size_t k = 0; status == 0 && k <= mesh->layers; k++) {
@@ -213,10 +216,11 @@ static int transforms_create(struct flat *f, struct error *err) {
     return status;
 }
 
-int flat_create(struct flat **out, const struct mesh *mesh, const struct solid *solid,
-                struct bulk *bulk, struct error *err) {
+int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
+                          const struct material *material, struct volumetric *volumetric,
+                          struct error *err) {
     *out = NULL;
-    struct flat *f = array_create(1, sizeof *f);
+    struct preconditioner *f = array_create(1, sizeof *f);
     if (f == NULL)
         return error_memory(err, sizeof *f, "the flat block");
     f->mesh = mesh;
@@ -225,15 +229,15 @@ int flat_create(struct flat **out, const struct mesh *mesh, const struct solid *
     if (status == 0)
         status = transforms_create(f, err);
     if (status == 0)
-        status = eliminate_all(f, solid, bulk, err);
+        status = eliminate_all(f, material, volumetric, err);
     if (status != 0)
-        flat_destroy(&f);
+        preconditioner_destroy(&f);
     *out = f;
     return status;
 }
 
-void flat_destroy(struct flat **flat) {
-    struct flat *f = *flat;
+void preconditioner_destroy(struct preconditioner **preconditioner) {
+    struct preconditioner *f = *preconditioner;
     if (f == NULL)
         return;
     for (size_t zone = 0; zone < ZONES_MOST; zone++)
@@ -246,17 +250,17 @@ void flat_destroy(struct flat **flat) {
     free(f->folded);
     free(f->plane);
     free(f);
-    *flat = NULL;
+    *preconditioner = NULL;
 }
 
-const double *flat_compliance(const struct flat *f) {
+const double *preconditioner_compliance(const struct preconditioner *f) {
     return inverse_at(f, 0) + (f->d * f->d - 1) * waves_at(f, 0);
 }
 
 /* --- waves in and out --- */
 
 /* A component's plane into the field. Its spectrum s stands for X and Y as -i s. */
-static void plane_in(struct flat *f, size_t level, size_t i) {
+static void plane_in(struct preconditioner *f, size_t level, size_t i) {
     size_t n = waves_at(f, level);
     double *re = field_at(f, level, i), *im = re + n;
     transform_forward(transform_at(f, level), f->plane);
@@ -268,7 +272,7 @@ static void plane_in(struct flat *f, size_t level, size_t i) {
     }
 }
 
-static void plane_out(struct flat *f, size_t level, size_t i) {
+static void plane_out(struct preconditioner *f, size_t level, size_t i) {
     size_t n = waves_at(f, level);
     const double *re = field_at(f, level, i), *im = re + n;
     double complex *s = transform_spectrum(transform_at(f, level));
@@ -306,7 +310,7 @@ WIDE_VECTORS static void pivot_three(size_t n, const double *a, double *x, doubl
         }
 }
 
-static void pivot_apply(struct flat *f, size_t level, double *field) {
+static void pivot_apply(struct preconditioner *f, size_t level, double *field) {
     size_t n = waves_at(f, level);
     if (f->d == 2)
         pivot_two(n, inverse_at(f, level), field, field + 2 * n);
@@ -314,7 +318,7 @@ static void pivot_apply(struct flat *f, size_t level, double *field) {
         pivot_three(n, inverse_at(f, level), field, field + 2 * n, field + 4 * n);
 }
 
-void flat_load(struct flat *f, const double *forces) {
+void preconditioner_load(struct preconditioner *f, const double *forces) {
     const struct mesh *mesh = f->mesh;
     size_t d = f->d, last = mesh->layers;
     for (size_t level = 0; level <= last; level++)
@@ -334,7 +338,7 @@ void flat_load(struct flat *f, const double *forces) {
         const double *field = field_at(f, level, 0);
         pivot_apply(f, level, field_at(f, level, 0));
         if (mesh_widens(mesh, level - 1)) {
-            alias_unfold(&mesh->level[level - 1], d, field, f->passed);
+            aliasing_unfold(&mesh->level[level - 1], d, field, f->passed);
             field = f->passed;
         }
         for (size_t i = 0; i < d; i++)
@@ -344,8 +348,8 @@ void flat_load(struct flat *f, const double *forces) {
     }
 }
 
-/* Z of pivot times forces of the face; flat_displace still needs these. */
-void flat_face(struct flat *f, double *vertical) {
+/* Z of pivot times forces of the face; preconditioner_displace still needs these. */
+void preconditioner_face(struct preconditioner *f, double *vertical) {
     size_t n = waves_at(f, 0), d = f->d;
     double complex *s = transform_spectrum(f->transform[0]);
     for (size_t k = 0; k < n; k++)
@@ -396,17 +400,18 @@ WIDE_VECTORS static void pull(size_t d, size_t n, const double *coupling, const 
 }
 
 /* The next level's displacements, on wider columns. */
-static void descend_wider(struct flat *f, size_t level) {
+static void descend_wider(struct preconditioner *f, size_t level) {
     size_t n = 2 * f->d * waves_at(f, level + 1);
     double share = share_of(f->mesh, level), *below = field_at(f, level + 1, 0);
     pull(f->d, waves_at(f, level), coupling_at(f, level), field_at(f, level, 0), f->passed);
-    alias_fold(&f->mesh->level[level], f->d, f->passed, f->folded);
+    aliasing_fold(&f->mesh->level[level], f->d, f->passed, f->folded);
     pivot_apply(f, level + 1, f->folded);
     for (size_t k = 0; k < n; k++)
         below[k] -= share * f->folded[k];
 }
 
-void flat_displace(struct flat *f, const double *vertical, double *displacements) {
+void preconditioner_displace(struct preconditioner *f, const double *vertical,
+                             double *displacements) {
     const struct mesh *mesh = f->mesh;
     size_t d = f->d, n = waves_at(f, 0);
     double *re = field_at(f, 0, d - 1);

@@ -1,13 +1,13 @@
-#include "core/full/factor.h"
+#include "core/full/factorisation.h"
 #include <stdint.h>
 #include <stdlib.h>
 #include <suitesparse/cholmod.h>
 
 enum { HELD = -1 };
 
-struct factor {
+struct factorisation {
     const struct mesh *mesh; /* borrowed */
-    int *unknown;            /* mesh_freedoms: number, or HELD */
+    int *unknown;            /* mesh_degrees_of_freedom: number, or HELD */
     bool *held;              /* unknowns held by contact */
     size_t unknowns;
     cholmod_common common;
@@ -16,35 +16,35 @@ struct factor {
     cholmod_dense *load;
 };
 
-static void number_unknowns(struct factor *f) {
+static void number_unknowns(struct factorisation *f) {
     const struct mesh *mesh = f->mesh;
     size_t d = (size_t)mesh->dimension, far_side = mesh_far_side(mesh) * d;
     int count = 0, common = HELD;
-    for (size_t freedom = 0; freedom < mesh_freedoms(mesh); freedom++) {
-        bool vertical = freedom % d == d - 1;
-        if (freedom >= far_side && vertical) {
+    for (size_t n = 0; n < mesh_degrees_of_freedom(mesh); n++) {
+        bool vertical = n % d == d - 1;
+        if (n >= far_side && vertical) {
             if (common == HELD)
                 common = count++;
-            f->unknown[freedom] = common;
+            f->unknown[n] = common;
         } else
-            f->unknown[freedom] = freedom >= far_side && freedom < far_side + d ? HELD : count++;
+            f->unknown[n] = n >= far_side && n < far_side + d ? HELD : count++;
     }
     f->unknowns = (size_t)count;
 }
 
-int factor_create(struct factor **out, const struct mesh *mesh, struct error *err) {
+int factorisation_create(struct factorisation **out, const struct mesh *mesh, struct error *err) {
     *out = NULL;
-    size_t freedoms = mesh_freedoms(mesh), d = (size_t)mesh->dimension;
-    size_t entries = freedoms * (mesh->dimension == 2 ? 6 : 18) * d + mesh->face;
-    struct factor *f = array_create(1, sizeof *f);
+    size_t degrees_of_freedom = mesh_degrees_of_freedom(mesh), d = (size_t)mesh->dimension;
+    size_t entries = degrees_of_freedom * (mesh->dimension == 2 ? 6 : 18) * d + mesh->face;
+    struct factorisation *f = array_create(1, sizeof *f);
     if (f == NULL)
         return error_memory(err, sizeof *f, "a factorisation");
     cholmod_start(&f->common);
     f->common.print = 0;
     f->common.supernodal = CHOLMOD_SUPERNODAL;
     f->mesh = mesh;
-    f->unknown = array_create(freedoms, sizeof *f->unknown);
-    f->held = array_create(freedoms, sizeof *f->held);
+    f->unknown = array_create(degrees_of_freedom, sizeof *f->unknown);
+    f->held = array_create(degrees_of_freedom, sizeof *f->held);
     int status = 0;
     if (f->unknown != NULL && f->held != NULL) {
         number_unknowns(f);
@@ -54,14 +54,14 @@ int factor_create(struct factor **out, const struct mesh *mesh, struct error *er
     }
     if (f->triplet == NULL || f->load == NULL) {
         status = error_memory(err, entries * 16, "a factorisation");
-        factor_destroy(&f);
+        factorisation_destroy(&f);
     }
     *out = f;
     return status;
 }
 
-void factor_destroy(struct factor **factor) {
-    struct factor *f = *factor;
+void factorisation_destroy(struct factorisation **factorisation) {
+    struct factorisation *f = *factorisation;
     if (f == NULL)
         return;
     cholmod_free_triplet(&f->triplet, &f->common);
@@ -71,13 +71,13 @@ void factor_destroy(struct factor **factor) {
     free(f->unknown);
     free(f->held);
     free(f);
-    *factor = NULL;
+    *factorisation = NULL;
 }
 
-/* Entries of one block: of freedoms r0.. by c0... The matrix takes the lower half; blocks of a
- * level with itself come both ways, those between levels once. */
-static size_t fill_block(struct factor *f, size_t r0, size_t c0, bool twice, const double *value,
-                         size_t count) {
+/* Entries of one block: of degrees_of_freedom r0.. by c0... The matrix takes the lower half; blocks
+ * of a level with itself come both ways, those between levels once. */
+static size_t fill_block(struct factorisation *f, size_t r0, size_t c0, bool twice,
+                         const double *value, size_t count) {
     size_t d = (size_t)f->mesh->dimension;
     int *row = f->triplet->i, *column = f->triplet->j;
     double *entry = f->triplet->x;
@@ -94,13 +94,13 @@ static size_t fill_block(struct factor *f, size_t r0, size_t c0, bool twice, con
 }
 
 /* Entries of one place are summed. Zeros stay, so that the pattern does. */
-static void fill(struct factor *f, const struct stencil *tangent) {
+static void fill(struct factorisation *f, const struct tangent *tangent) {
     const struct mesh *mesh = f->mesh;
-    size_t d = (size_t)mesh->dimension, count = 0, node = 0, neighbour[STENCIL_MOST];
+    size_t d = (size_t)mesh->dimension, count = 0, node = 0, neighbour[NEIGHBOURS_MOST];
     for (size_t level = 0; level <= mesh->layers; level++)
         for (size_t j = 0; j < mesh->level[level].ny; j++)
             for (size_t i = 0; i < mesh->level[level].nx; i++, node++) {
-                stencil_neighbours(mesh, level, j, i, neighbour);
+                tangent_neighbours(mesh, level, j, i, neighbour);
                 for (size_t slot = 0; slot < tangent->slots && neighbour[slot] != SIZE_MAX; slot++)
                     count =
                         fill_block(f, node * d, neighbour[slot] * d, slot < tangent->slots / 2,
@@ -114,7 +114,7 @@ static void fill(struct factor *f, const struct stencil *tangent) {
     f->triplet->nnz = count;
 }
 
-static int failure(struct factor *f, struct error *err) {
+static int failure(struct factorisation *f, struct error *err) {
     if (f->common.status == CHOLMOD_OUT_OF_MEMORY || f->common.status == CHOLMOD_TOO_LARGE)
         return error_set(err, ERROR_MEMORY,
                          "the factorisation of %zu equations needs too much "
@@ -123,8 +123,8 @@ static int failure(struct factor *f, struct error *err) {
     return error_set(err, ERROR_NUMERIC, "the stiffness of the block is not positive definite");
 }
 
-int factor_run(struct factor *f, const struct stencil *tangent, const bool *active,
-               struct error *err) {
+int factorisation_run(struct factorisation *f, const struct tangent *tangent, const bool *active,
+                      struct error *err) {
     for (size_t u = 0; u < f->unknowns; u++)
         f->held[u] = false;
     for (size_t node = 0; node < f->mesh->face; node++)
@@ -140,19 +140,19 @@ int factor_run(struct factor *f, const struct stencil *tangent, const bool *acti
     return status;
 }
 
-int factor_solve(struct factor *f, double *x, struct error *err) {
+int factorisation_solve(struct factorisation *f, double *x, struct error *err) {
     double *load = f->load->x;
-    size_t freedoms = mesh_freedoms(f->mesh);
+    size_t degrees_of_freedom = mesh_degrees_of_freedom(f->mesh);
     for (size_t u = 0; u < f->unknowns; u++)
         load[u] = 0;
-    for (size_t n = 0; n < freedoms; n++)
+    for (size_t n = 0; n < degrees_of_freedom; n++)
         if (f->unknown[n] != HELD && !f->held[f->unknown[n]])
             load[f->unknown[n]] += x[n];
     cholmod_dense *solution = cholmod_solve(CHOLMOD_A, f->factor, f->load, &f->common);
     if (solution == NULL)
         return failure(f, err);
     const double *displacement = solution->x;
-    for (size_t n = 0; n < freedoms; n++)
+    for (size_t n = 0; n < degrees_of_freedom; n++)
         x[n] = f->unknown[n] == HELD ? 0 : displacement[f->unknown[n]];
     cholmod_free_dense(&solution, &f->common);
     return 0;

@@ -3,7 +3,7 @@
  * the assembled stiffness itself. And the mesh that they stand on. */
 #include "tests/support/check.h"
 
-#include "core/full/krylov.h"
+#include "core/full/gmres.h"
 #include "core/random.h"
 #include <stdlib.h>
 #include <string.h>
@@ -20,9 +20,9 @@ static const double TRANSITION = 1, EQUAL = INFINITY;
 
 struct work {
     struct mesh *mesh;
-    struct stencil *tangent;
-    struct solid solid;
-    size_t freedoms;
+    struct tangent *tangent;
+    struct material material;
+    size_t degrees_of_freedom;
     double *z, *force, *x, *y;
 };
 
@@ -46,13 +46,13 @@ static void open_work(struct work *w, struct grid grid, double poisson, double g
                           .poisson = poisson,
                           .height = 4 * grid_dx(&grid),
                           .layer_growth = growth};
-    *w = (struct work){.solid = solid_of(poisson, KINEMATICS_HENCKY)};
+    *w = (struct work){.material = material_of(poisson, KINEMATICS_HENCKY)};
     if (mesh_create(&w->mesh, &grid, &block, transition, &err) != 0 ||
-        stencil_create(&w->tangent, w->mesh, krylov_needs_bulk(&w->solid), &err) != 0)
+        tangent_create(&w->tangent, w->mesh, gmres_needs_pressures(&w->material), &err) != 0)
         fail_msg("%s", err.text);
-    w->freedoms = mesh_freedoms(w->mesh);
+    w->degrees_of_freedom = mesh_degrees_of_freedom(w->mesh);
     w->z = numbers(w->mesh->face);
-    size_t unknowns = stencil_unknowns(w->tangent);
+    size_t unknowns = tangent_unknowns(w->tangent);
     w->force = numbers(unknowns);
     w->x = numbers(unknowns);
     w->y = numbers(unknowns);
@@ -61,11 +61,11 @@ static void open_work(struct work *w, struct grid grid, double poisson, double g
         w->z[i] *= rough;
     if (mesh_shape(w->mesh, w->z, &err) != 0)
         fail_msg("%s", err.text);
-    assert_true(stencil_evaluate(w->mesh, &w->solid, w->x, NULL, w->y, w->tangent));
+    assert_true(tangent_evaluate(w->mesh, &w->material, w->x, NULL, w->y, w->tangent));
 }
 
 static void close_work(struct work *w) {
-    stencil_destroy(&w->tangent);
+    tangent_destroy(&w->tangent);
     mesh_destroy(&w->mesh);
     free(w->z);
     free(w->force);
@@ -86,7 +86,7 @@ static void sum_far_side(const struct mesh *mesh, double *forces) {
 /* Forces that no side has to carry: each component's sum is 0. */
 static void fill_balanced(uint64_t draw, const struct mesh *mesh, double *forces) {
     size_t d = (size_t)mesh->dimension;
-    fill_random(draw, mesh_freedoms(mesh), forces);
+    fill_random(draw, mesh_degrees_of_freedom(mesh), forces);
     sum_far_side(mesh, forces);
     for (size_t axis = 0; axis < d; axis++) {
         double sum = 0;
@@ -103,18 +103,18 @@ static void waves_invert_the_flat_block(void **state) {
     for (size_t c = 0; c < 3 * GRIDS_COUNT; c++) {
         struct work w;
         struct error err = {0};
-        struct flat *flat = NULL;
+        struct preconditioner *flat = NULL;
         open_work(&w, GRIDS[c % GRIDS_COUNT], POISSON[c / GRIDS_COUNT], 1.3, 0, EQUAL);
-        assert_int_equal(flat_create(&flat, w.mesh, &w.solid, NULL, &err), 0);
+        assert_int_equal(preconditioner_create(&flat, w.mesh, &w.material, NULL, &err), 0);
         size_t face = w.mesh->face, far_side = mesh_far_side(w.mesh);
         double *vertical = numbers(face), *nothing = numbers(face);
         fill_balanced(c, w.mesh, w.force);
-        flat_load(flat, w.force);
-        flat_face(flat, vertical);
-        flat_displace(flat, nothing, w.x);
-        stencil_apply(w.tangent, w.x, w.y);
+        preconditioner_load(flat, w.force);
+        preconditioner_face(flat, vertical);
+        preconditioner_displace(flat, nothing, w.x);
+        tangent_apply(w.tangent, w.x, w.y);
         sum_far_side(w.mesh, w.y);
-        for (size_t f = 0; f < w.freedoms; f++)
+        for (size_t f = 0; f < w.degrees_of_freedom; f++)
             check_close(w.y[f], w.force[f], 1e-8);
         for (size_t node = 0; node < face; node++) {
             check_close(vertical[node], w.x[mesh_vertical(w.mesh, node)], 1e-8);
@@ -123,25 +123,25 @@ static void waves_invert_the_flat_block(void **state) {
         }
         free(vertical);
         free(nothing);
-        flat_destroy(&flat);
+        preconditioner_destroy(&flat);
         close_work(&w);
     }
 }
 
 /* Rows of forces where free, of the weighted face where held, on a rough block. */
-static void check_solution(struct work *w, const struct krylov *krylov, const bool *active,
+static void check_solution(struct work *w, const struct gmres *gmres, const bool *active,
                            double tolerance) {
     size_t face = w->mesh->face;
     double *vertical = numbers(face), square = 0, first = 0;
-    stencil_apply(w->tangent, w->x, w->y);
+    tangent_apply(w->tangent, w->x, w->y);
     sum_far_side(w->mesh, w->y);
     for (size_t node = 0; node < face; node++)
         vertical[node] = w->x[mesh_vertical(w->mesh, node)];
-    krylov_weigh(krylov, vertical, vertical);
+    gmres_weigh(gmres, vertical, vertical);
     for (size_t node = 0; node < face; node++)
         if (active[node])
             w->y[mesh_vertical(w->mesh, node)] = vertical[node];
-    for (size_t f = 0; f < w->freedoms; f++) {
+    for (size_t f = 0; f < w->degrees_of_freedom; f++) {
         square += (w->y[f] - w->force[f]) * (w->y[f] - w->force[f]);
         first += w->force[f] * w->force[f];
     }
@@ -156,31 +156,32 @@ static void rough_blocks_are_solved(void **state) {
     for (size_t c = 0; c < 8 * GRIDS_COUNT; c++) {
         struct work w;
         struct error err = {0};
-        struct krylov *krylov = NULL;
-        struct factor *factor = NULL;
+        struct gmres *gmres = NULL;
+        struct factorisation *factorisation = NULL;
         const struct grid *grid = &GRIDS[c % GRIDS_COUNT];
         enum gap_weighting weighting = c / GRIDS_COUNT % 2 == 0 ? GAP_DUAL : GAP_STANDARD;
         bool factored = c / GRIDS_COUNT / 2 % 2 == 1, *active;
         size_t spacing = c / GRIDS_COUNT / 4 == 0 ? 3 : 1, iterations = 0;
         open_work(&w, *grid, 0.3, 1.3, 0.1, EQUAL);
-        assert_int_equal(krylov_create(&krylov, w.mesh, &w.solid, weighting, &err), 0);
-        assert_int_equal(factor_create(&factor, w.mesh, &err), 0);
+        assert_int_equal(gmres_create(&gmres, w.mesh, &w.material, weighting, &err), 0);
+        assert_int_equal(factorisation_create(&factorisation, w.mesh, &err), 0);
         active = array_create(w.mesh->face, sizeof *active);
         assert_non_null(active);
         for (size_t node = 0; node < w.mesh->face; node += spacing)
             active[node] = true;
-        assert_int_equal(factor_run(factor, w.tangent, active, &err), 0);
+        assert_int_equal(factorisation_run(factorisation, w.tangent, active, &err), 0);
         fill_balanced(c, w.mesh, w.force);
-        memcpy(w.x, w.force, w.freedoms * sizeof *w.x);
-        struct equations equations = {
-            .tangent = w.tangent, .active = active, .factor = factored ? factor : NULL};
-        if (krylov_solve(krylov, &equations, TOLERANCE, w.x, &iterations, &err) != 0)
+        memcpy(w.x, w.force, w.degrees_of_freedom * sizeof *w.x);
+        struct linear_system system = {.tangent = w.tangent,
+                                       .active = active,
+                                       .factorisation = factored ? factorisation : NULL};
+        if (gmres_solve(gmres, &system, TOLERANCE, w.x, &iterations, &err) != 0)
             fail_msg("%s", err.text);
-        check_solution(&w, krylov, active, TOLERANCE);
+        check_solution(&w, gmres, active, TOLERANCE);
         assert_in_range(iterations, 1, factored && weighting == GAP_DUAL ? 2 : 40);
         free(active);
-        factor_destroy(&factor);
-        krylov_destroy(&krylov);
+        factorisation_destroy(&factorisation);
+        gmres_destroy(&gmres);
         close_work(&w);
     }
 }
@@ -193,26 +194,26 @@ static void blocks_of_widening_columns_are_solved(void **state) {
     for (size_t c = 0; c < 4 * WIDENING_COUNT; c++) {
         struct work w;
         struct error err = {0};
-        struct krylov *krylov = NULL;
+        struct gmres *gmres = NULL;
         size_t iterations = 0;
         bool stiff = c >= 2 * WIDENING_COUNT;
         double tolerance = stiff ? 1e-5 : 1e-9;
         open_work(&w, WIDENING[c % WIDENING_COUNT], stiff ? 0.4999 : 0.3, 1.3,
                   c / WIDENING_COUNT % 2 == 0 ? 0 : 0.1, TRANSITION);
         assert_int_equal(w.mesh->level[w.mesh->layers].width, WIDEST[c % WIDENING_COUNT]);
-        assert_int_equal(krylov_create(&krylov, w.mesh, &w.solid, GAP_STANDARD, &err), 0);
+        assert_int_equal(gmres_create(&gmres, w.mesh, &w.material, GAP_STANDARD, &err), 0);
         bool *active = array_create(w.mesh->face, sizeof *active);
         assert_non_null(active);
         active[1] = active[2] = active[5] = true;
         fill_balanced(c, w.mesh, w.force);
-        memcpy(w.x, w.force, w.freedoms * sizeof *w.x);
-        struct equations equations = {.tangent = w.tangent, .active = active};
-        if (krylov_solve(krylov, &equations, tolerance, w.x, &iterations, &err) != 0)
+        memcpy(w.x, w.force, w.degrees_of_freedom * sizeof *w.x);
+        struct linear_system system = {.tangent = w.tangent, .active = active};
+        if (gmres_solve(gmres, &system, tolerance, w.x, &iterations, &err) != 0)
             fail_msg("%s", err.text);
-        check_solution(&w, krylov, active, stiff ? 5 * tolerance : tolerance);
+        check_solution(&w, gmres, active, stiff ? 5 * tolerance : tolerance);
         assert_in_range(iterations, 1, stiff ? 200 : 12);
         free(active);
-        krylov_destroy(&krylov);
+        gmres_destroy(&gmres);
         close_work(&w);
     }
 }
@@ -252,7 +253,7 @@ static void check_patch(struct work *w, bool periodic) {
     double vertical[3][3] = {{0}};
     vertical[d - 1][d - 1] = -0.1;
     fill_linear(mesh, periodic ? vertical : any, w->x);
-    assert_true(stencil_evaluate(mesh, &w->solid, w->x, NULL, w->y, NULL));
+    assert_true(tangent_evaluate(mesh, &w->material, w->x, NULL, w->y, NULL));
     for (size_t k = 1; k < mesh->layers; k++)
         for (size_t j = 0; j < mesh->level[k].ny; j++)
             for (size_t i = 0; i < mesh->level[k].nx; i++) {
@@ -292,20 +293,22 @@ static void tangents_are_those_of_the_energy(void **state) {
     for (size_t c = 0; c < WIDENING_COUNT; c++) {
         struct work w;
         open_work(&w, WIDENING[c], 0.3, 1.3, 0.2, TRANSITION);
-        double energy[2], work = 0, *along = numbers(w.freedoms), *u = numbers(w.freedoms);
-        double *forces[2] = {numbers(w.freedoms), numbers(w.freedoms)};
-        fill_random(2, w.freedoms, u);
-        fill_random(3, w.freedoms, along);
-        for (size_t f = 0; f < w.freedoms; f++)
+        double energy[2], work = 0, *along = numbers(w.degrees_of_freedom),
+                          *u = numbers(w.degrees_of_freedom);
+        double *forces[2] = {numbers(w.degrees_of_freedom), numbers(w.degrees_of_freedom)};
+        fill_random(2, w.degrees_of_freedom, u);
+        fill_random(3, w.degrees_of_freedom, along);
+        for (size_t f = 0; f < w.degrees_of_freedom; f++)
             u[f] *= 0.05;
-        assert_true(stencil_evaluate(w.mesh, &w.solid, u, NULL, w.force, w.tangent));
+        assert_true(tangent_evaluate(w.mesh, &w.material, u, NULL, w.force, w.tangent));
         for (int side = 0; side < 2; side++) {
-            for (size_t f = 0; f < w.freedoms; f++)
+            for (size_t f = 0; f < w.degrees_of_freedom; f++)
                 w.x[f] = u[f] + (side == 0 ? -STEP : STEP) * along[f];
-            assert_true(stencil_evaluate(w.mesh, &w.solid, w.x, &energy[side], forces[side], NULL));
+            assert_true(
+                tangent_evaluate(w.mesh, &w.material, w.x, &energy[side], forces[side], NULL));
         }
-        stencil_apply(w.tangent, along, w.y);
-        for (size_t f = 0; f < w.freedoms; f++) {
+        tangent_apply(w.tangent, along, w.y);
+        for (size_t f = 0; f < w.degrees_of_freedom; f++) {
             work += w.force[f] * along[f];
             check_close(w.y[f], (forces[1][f] - forces[0][f]) / (2 * STEP), 1e-6);
         }
@@ -326,21 +329,21 @@ static void pressures_are_bound_by_the_tangent(void **state) {
     for (size_t c = 0; c < WIDENING_COUNT; c++) {
         struct work w;
         open_work(&w, WIDENING[c], 0.4999, 1.3, 0.2, TRANSITION);
-        size_t n = stencil_unknowns(w.tangent), first = w.freedoms;
+        size_t n = tangent_unknowns(w.tangent), first = w.degrees_of_freedom;
         assert_int_equal(n, first + w.mesh->elements);
         double *along = numbers(n), *u = numbers(n), *forces[2] = {numbers(n), numbers(n)};
         fill_random(2, n, u);
         fill_random(3, n, along);
         for (size_t f = 0; f < n; f++)
             u[f] *= 0.05;
-        assert_true(stencil_evaluate(w.mesh, &w.solid, u, NULL, w.force, w.tangent));
-        stencil_apply(w.tangent, along, w.y);
-        bulk_bind(w.tangent->bulk, along, -1, along + first, w.y + first);
-        bulk_push(w.tangent->bulk, w.y + first, 1, w.y);
+        assert_true(tangent_evaluate(w.mesh, &w.material, u, NULL, w.force, w.tangent));
+        tangent_apply(w.tangent, along, w.y);
+        volumetric_pressures(w.tangent->volumetric, along, -1, along + first, w.y + first);
+        volumetric_forces(w.tangent->volumetric, w.y + first, 1, w.y);
         for (int side = 0; side < 2; side++) {
             for (size_t f = 0; f < n; f++)
                 w.x[f] = u[f] + (side == 0 ? -STEP : STEP) * along[f];
-            assert_true(stencil_evaluate(w.mesh, &w.solid, w.x, NULL, forces[side], w.tangent));
+            assert_true(tangent_evaluate(w.mesh, &w.material, w.x, NULL, forces[side], w.tangent));
         }
         for (size_t f = 0; f < n; f++)
             check_close(w.y[f], (forces[1][f] - forces[0][f]) / (2 * STEP), 1e-4);
