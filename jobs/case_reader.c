@@ -1,6 +1,6 @@
 #include "jobs/case_reader.h"
-#include "jobs/bytes.h"
 #include "jobs/value.h"
+#include "schema/result/bytes.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

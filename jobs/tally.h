@@ -8,8 +8,8 @@
 #ifndef RUGO_JOBS_TALLY_H
 #define RUGO_JOBS_TALLY_H
 
-#include "jobs/bytes.h"
 #include "jobs/estimate.h"
+#include "schema/result/bytes.h"
 
 /* What all cells of a tally share. */
 struct tally_total {

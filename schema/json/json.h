@@ -5,6 +5,8 @@
 
 #include "core/error.h"
 #include <cjson/cJSON.h>
+#include <stdbool.h>
+#include <stdio.h>
 
 struct json_limits {
     size_t bytes;  /* largest text */
@@ -21,6 +23,10 @@ int json_parse(const char *text, size_t size, const struct json_limits *limits, 
 /* Compact text, numbers so that they read back to the same double, NaN and infinities as null;
  * caller frees. NULL when out of memory. */
 char *json_print(const cJSON *value);
+/* The fewest digits that read back to the same double; null for NaN and infinities. */
+void json_print_number(FILE *file, double number);
+/* The string in quotes, escaped; false when out of memory. */
+bool json_print_text(FILE *file, const char *text);
 /* Value at an RFC 6901 pointer, or NULL. */
 const cJSON *json_at(const cJSON *root, const char *pointer);
 /* A number, or null where it is NaN or infinite. NULL when out of memory. */

@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-/* The fewest digits that read back to the same double. */
-static void put_number(FILE *file, double number) {
+
+void json_print_number(FILE *file, double number) {
     char text[32];
     if (!isfinite(number)) {
         fputs("null", file);
@@ -32,17 +32,22 @@ static bool put_plain(FILE *file, const cJSON *value) {
     return text != NULL;
 }
 
+bool json_print_text(FILE *file, const char *text) {
+    cJSON *value = cJSON_CreateStringReference(text);
+    bool done = value != NULL && put_plain(file, value);
+    cJSON_Delete(value);
+    return done;
+}
+
 static bool put_key(FILE *file, const char *key) {
-    cJSON *name = cJSON_CreateStringReference(key);
-    bool done = name && put_plain(file, name);
-    cJSON_Delete(name);
+    bool done = json_print_text(file, key);
     fputc(':', file);
     return done;
 }
 
 static bool put_value(FILE *file, const cJSON *value) {
     if (cJSON_IsNumber(value)) {
-        put_number(file, value->valuedouble);
+        json_print_number(file, value->valuedouble);
         return true;
     }
     bool object = cJSON_IsObject(value), done = true;

@@ -5,17 +5,23 @@
 #include <string.h>
 
 const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES] = {
-    [ERROR_DISCRETISATION] = {"discretisation", "discretisation_error",
-                              "discretisation_standard_error", "discretisation_order"},
-    [ERROR_MODEL] = {"model", "model_error", "model_error_standard_error", NULL},
+    [ERROR_DISCRETISATION] = {.name = "discretisation",
+                              .key = "discretisation_error",
+                              .standard_error_key = "discretisation_standard_error",
+                              .order_key = "discretisation_order",
+                              .order_from_key = "discretisation_order_from",
+                              .null_if_unknown = true},
+    [ERROR_MODEL] = {.name = "model",
+                     .key = "model_error",
+                     .standard_error_key = "model_error_standard_error"},
 };
 
 const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT] = {
     {"series", offsetof(struct curve, series), ATTRIBUTE_TEXT, true, true},
     {"model", offsetof(struct curve, model), ATTRIBUTE_TEXT, false, true},
-    {"kinematics", offsetof(struct curve, kinematics), ATTRIBUTE_TEXT, false, true},
     {"level", offsetof(struct curve, level), ATTRIBUTE_NUMBER, false, true},
     {"points", offsetof(struct curve, points), ATTRIBUTE_NUMBER, false, false},
+    {"kinematics", offsetof(struct curve, kinematics), ATTRIBUTE_TEXT, false, true},
     {"pressure", offsetof(struct curve, pressure), ATTRIBUTE_NUMBER, true, true},
 };
 
@@ -29,6 +35,14 @@ double curve_attribute_number(const struct curve *curve, const struct curve_attr
     if (row->type != ATTRIBUTE_NUMBER)
         return NAN;
     return *(const double *)((const char *)curve + row->offset);
+}
+
+void curve_set_attribute(struct curve *curve, const struct curve_attribute *row, const char *text,
+                         double number) {
+    if (row->type == ATTRIBUTE_TEXT)
+        memcpy((char *)curve + row->offset, &text, sizeof text);
+    else
+        memcpy((char *)curve + row->offset, &number, sizeof number);
 }
 
 /* --- memory --- */

@@ -24,9 +24,11 @@ enum error_source {
 };
 struct error_source_row {
     const char *name;               /* "discretisation": in reports */
-    const char *key;                /* in JSON, CSV and views: "discretisation_error" */
+    const char *key;                /* in JSON, CSV and reports: "discretisation_error" */
     const char *standard_error_key; /* in JSON */
     const char *order_key;          /* in JSON; NULL: a source without an order */
+    const char *order_from_key;     /* in JSON: "levels" or "assumed" */
+    bool null_if_unknown;           /* in JSON, rather than left out */
 };
 extern const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES];
 
@@ -46,8 +48,8 @@ struct theory {
 };
 enum { THEORIES_MOST = 8 };
 
-/* Points over x, or, where columns > 0, a matrix over x and x2 of which only the occupied cells are
- * kept. NaN stands for a number that cannot be had. */
+/* How a curve is kept: points over x, or, where columns > 0, a matrix over x and x2 of which only
+ * the occupied cells are kept. NaN stands for a number that cannot be had. */
 struct curve {
     const char *quantity, *x_label, *y_label;
     /* What tells curves of one quantity apart (CURVE_ATTRIBUTES); NULL or NaN: without it. */
@@ -90,13 +92,16 @@ extern const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT];
 const char *curve_attribute_text(const struct curve *curve, const struct curve_attribute *row);
 double curve_attribute_number(const struct curve *curve, const struct curve_attribute *row);
 
+/* Sets the text or the number, whichever the row is of. */
+void curve_set_attribute(struct curve *curve, const struct curve_attribute *row, const char *text,
+                         double number);
+
 /* --- scalars, notes, the case --- */
 
 struct scalar {
     const char *name;
     double value, standard_error; /* NaN: none */
     double theory;                /* NaN: none */
-    bool has_theory;
 };
 
 struct result_note {
@@ -109,7 +114,6 @@ struct result_parameter {
     const char *pointer;
     const char *text; /* NULL: a number */
     double number;
-    bool is_boolean; /* number is 0 or 1 */
 };
 
 struct arena; /* private */

@@ -1,9 +1,9 @@
 /* The kind "contact" from parameters to curves: any split into blocks and any order of merging
  * gives the same document, foreign and damaged results are refused whole, and means, errors and
  * paired differences are those that the realisations themselves give. */
-#include "jobs/bytes.h"
 #include "jobs/kind.h"
 #include "jobs/value.h"
+#include "schema/result/bytes.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,9 +2,9 @@
  * gives the same document, foreign and damaged results are refused whole, and the curves and errors
  * are those that the realisations themselves give. */
 #include "core/statistics/summits.h"
-#include "jobs/bytes.h"
 #include "jobs/kind.h"
 #include "jobs/value.h"
+#include "schema/result/bytes.h"
 #include "schema/study/fault.h"
 #include <math.h>
 #include <setjmp.h>

@@ -1,4 +1,4 @@
-#include "jobs/bytes.h"
+#include "schema/result/bytes.h"
 #include <stdlib.h>
 #include <string.h>
 

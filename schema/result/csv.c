@@ -1,0 +1,114 @@
+#include "schema/result/csv.h"
+#include "schema/json/json.h"
+#include <math.h>
+#include <string.h>
+
+/* Theories of any of the curves printed: a column each. Names are borrowed. */
+enum { COLUMNS_MOST = 16 };
+struct theory_columns {
+    size_t count;
+    const char *names[COLUMNS_MOST];
+};
+
+static void collect_theories(struct theory_columns *columns, const struct curve *curve) {
+    for (size_t t = 0; t < curve->theory_count; t++) {
+        size_t n = 0;
+        while (n < columns->count && strcmp(columns->names[n], curve->theories[t].name) != 0)
+            n++;
+        if (n == columns->count && n < COLUMNS_MOST)
+            columns->names[columns->count++] = curve->theories[t].name;
+    }
+}
+
+/* Quoted where RFC 4180 asks for it. */
+static void print_text(FILE *file, const char *text) {
+    if (strpbrk(text, ",\"\r\n") == NULL) {
+        fputs(text, file);
+        return;
+    }
+    fputc('"', file);
+    for (; *text != '\0'; text++) {
+        if (*text == '"')
+            fputc('"', file);
+        fputc(*text, file);
+    }
+    fputc('"', file);
+}
+
+static void print_field(FILE *file, double number) {
+    fputc(',', file);
+    if (isfinite(number))
+        json_print_number(file, number);
+}
+
+static void print_labels(FILE *file, uint64_t case_number, const struct curve *curve) {
+    fprintf(file, "%llu,", (unsigned long long)case_number);
+    print_text(file, curve->quantity);
+    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++) {
+        const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
+        const char *text = curve_attribute_text(curve, row);
+        if (!row->in_tables)
+            continue;
+        print_field(file, curve_attribute_number(curve, row));
+        if (text != NULL)
+            print_text(file, text);
+    }
+}
+
+static double theory_at(const struct curve *curve, const char *name, size_t at) {
+    for (size_t t = 0; t < curve->theory_count; t++)
+        if (strcmp(curve->theories[t].name, name) == 0)
+            return curve->theories[t].y != NULL ? curve->theories[t].y[at] : (double)NAN;
+    return NAN;
+}
+
+/* Value number `n` of the curve: a point, or an occupied cell of a matrix. */
+static void print_line(FILE *file, uint64_t case_number, const struct curve *curve, size_t n,
+                       const struct theory_columns *theories) {
+    bool matrix = curve->columns > 0;
+    size_t at = matrix ? curve->cells[n] : n;
+    print_labels(file, case_number, curve);
+    print_field(file, curve->x[matrix ? at / curve->columns : n]);
+    print_field(file, matrix ? curve->x2[at % curve->columns] : (double)NAN);
+    print_field(file, curve->y[n]);
+    print_field(file, curve->standard_error[n]);
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        const double *error = matrix ? NULL : curve->errors[s].value;
+        print_field(file, error != NULL ? error[n] : (double)NAN);
+    }
+    print_field(file, curve->valueless != NULL && !matrix ? curve->valueless[n] : (double)NAN);
+    for (size_t t = 0; t < theories->count; t++)
+        print_field(file, theory_at(curve, theories->names[t], at));
+    fputc('\n', file);
+}
+
+static void print_heading(FILE *file, const struct theory_columns *theories) {
+    fputs("case,quantity", file);
+    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++)
+        if (CURVE_ATTRIBUTES[a].in_tables)
+            fprintf(file, ",%s", CURVE_ATTRIBUTES[a].key);
+    fputs(",x,x2,y,standard_error", file);
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        fprintf(file, ",%s", ERROR_SOURCE_ROWS[s].key);
+    fputs(",valueless", file);
+    for (size_t t = 0; t < theories->count; t++)
+        fprintf(file, ",theory_%s", theories->names[t]);
+    fputc('\n', file);
+}
+
+void csv_print(FILE *file, size_t case_count, const struct case_result *cases,
+               const struct curve *only) {
+    struct theory_columns theories = {0};
+    for (size_t c = 0; c < case_count; c++)
+        for (size_t a = 0; a < cases[c].curve_count; a++)
+            if (only == NULL || only == &cases[c].curves[a])
+                collect_theories(&theories, &cases[c].curves[a]);
+    print_heading(file, &theories);
+    for (size_t c = 0; c < case_count; c++)
+        for (size_t a = 0; a < cases[c].curve_count; a++) {
+            const struct curve *curve = &cases[c].curves[a];
+            size_t count = curve->columns > 0 ? curve->cell_count : curve->n;
+            for (size_t n = 0; n < count && (only == NULL || only == curve); n++)
+                print_line(file, cases[c].case_number, curve, n, &theories);
+        }
+}

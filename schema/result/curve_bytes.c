@@ -1,0 +1,264 @@
+#include "schema/result/curve_bytes.h"
+#include "schema/result/bytes.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Marks of what follows: lists of named parts end with PART_END, so that a row more in a table of
+ * attributes or sources leaves older bytes readable. */
+enum { FORMAT_CURVE = 0x4355, FORMAT_VERSION = 1, TEXT_MOST = 4096 };
+enum part { PART_END, PART_TEXT, PART_NUMBER, PART_ERROR, PART_THEORY };
+
+static void put_text(struct bytes *bytes, const char *text) {
+    size_t length = strlen(text);
+    bytes_put_unsigned(bytes, length);
+    for (size_t a = 0; a < length; a++)
+        bytes_put_unsigned(bytes, (unsigned char)text[a] & 0x7f);
+}
+
+static void put_numbers(struct bytes *bytes, size_t n, const double *numbers) {
+    for (size_t a = 0; a < n; a++)
+        bytes_put_double(bytes, numbers[a]);
+}
+
+static size_t value_count(const struct curve *curve) {
+    return curve->columns > 0 ? curve->cell_count : curve->n;
+}
+
+static void put_attributes(struct bytes *bytes, const struct curve *curve) {
+    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++) {
+        const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
+        const char *text = curve_attribute_text(curve, row);
+        double number = curve_attribute_number(curve, row);
+        if (text == NULL && isnan(number))
+            continue;
+        bytes_put_unsigned(bytes, text != NULL ? PART_TEXT : PART_NUMBER);
+        put_text(bytes, row->key);
+        if (text != NULL)
+            put_text(bytes, text);
+        else
+            bytes_put_double(bytes, number);
+    }
+    bytes_put_unsigned(bytes, PART_END);
+}
+
+/* Cells as distances from one to the next, the first from -1. */
+static void put_values(struct bytes *bytes, const struct curve *curve) {
+    size_t count = value_count(curve);
+    bytes_put_unsigned(bytes, curve->n);
+    bytes_put_unsigned(bytes, curve->columns);
+    put_numbers(bytes, curve->n, curve->x);
+    if (curve->columns > 0) {
+        put_text(bytes, curve->x2_label);
+        put_numbers(bytes, curve->columns, curve->x2);
+        bytes_put_unsigned(bytes, curve->cell_count);
+        for (size_t a = 0; a < curve->cell_count; a++)
+            bytes_put_unsigned(bytes, a > 0 ? curve->cells[a] - curve->cells[a - 1]
+                                            : (uint64_t)curve->cells[a] + 1);
+        bytes_put_double(bytes, curve->empty_y);
+        bytes_put_double(bytes, curve->empty_standard_error);
+    }
+    put_numbers(bytes, count, curve->y);
+    put_numbers(bytes, count, curve->standard_error);
+    bytes_put_unsigned(bytes, curve->valueless != NULL);
+    put_numbers(bytes, curve->valueless != NULL ? curve->n : 0, curve->valueless);
+    bytes_put_unsigned(bytes, curve->counted);
+    bytes_put_double(bytes, curve->counted ? curve->underflow : 0);
+    bytes_put_double(bytes, curve->counted ? curve->overflow : 0);
+}
+
+static void put_parts(struct bytes *bytes, const struct curve *curve) {
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        const struct curve_error *error = &curve->errors[s];
+        if (error->value == NULL)
+            continue;
+        bytes_put_unsigned(bytes, PART_ERROR);
+        put_text(bytes, ERROR_SOURCE_ROWS[s].name);
+        bytes_put_double(bytes, error->order);
+        bytes_put_unsigned(bytes, error->order_observed);
+        put_numbers(bytes, curve->n, error->value);
+        put_numbers(bytes, curve->n, error->standard_error);
+    }
+    for (size_t t = 0; t < curve->theory_count; t++) {
+        const struct theory *theory = &curve->theories[t];
+        size_t cells = curve->n * (curve->columns > 0 ? curve->columns : 1);
+        bytes_put_unsigned(bytes, PART_THEORY);
+        put_text(bytes, theory->name);
+        bytes_put_unsigned(bytes, theory->y != NULL);
+        put_numbers(bytes, theory->y != NULL ? cells : 0, theory->y);
+    }
+    bytes_put_unsigned(bytes, PART_END);
+}
+
+int curve_encode(const struct curve *curve, unsigned char **data, size_t *size, struct error *err) {
+    struct bytes bytes = {0};
+    bytes_put_unsigned(&bytes, FORMAT_CURVE);
+    bytes_put_unsigned(&bytes, FORMAT_VERSION);
+    put_text(&bytes, curve->quantity);
+    put_text(&bytes, curve->x_label);
+    put_text(&bytes, curve->y_label);
+    put_attributes(&bytes, curve);
+    put_values(&bytes, curve);
+    put_parts(&bytes, curve);
+    bytes_seal(&bytes);
+    if (bytes.failed) {
+        bytes_clear(&bytes);
+        return error_memory(err, bytes.capacity, "a curve");
+    }
+    *data = bytes.data;
+    *size = bytes.size;
+    return 0;
+}
+
+/* --- and back --- */
+
+/* A reading that runs out of memory fails its reader, and says so. */
+struct decoding {
+    struct byte_reader reader;
+    struct case_result *result;
+    bool no_memory;
+};
+
+static void *room_for(struct decoding *decoding, size_t count, size_t size, size_t bytes_each) {
+    struct byte_reader *reader = &decoding->reader;
+    size_t left = (size_t)(reader->end - reader->at);
+    if (reader->failed || count > left / bytes_each) { /* more than is there */
+        reader->failed = 1;
+        return NULL;
+    }
+    void *room = result_room(decoding->result, count > 0 ? count : 1, size);
+    decoding->no_memory = decoding->no_memory || room == NULL;
+    reader->failed = reader->failed || room == NULL;
+    return room;
+}
+
+static const char *get_text(struct decoding *decoding) {
+    uint64_t length = bytes_get_unsigned(&decoding->reader);
+    if (length > TEXT_MOST)
+        decoding->reader.failed = 1;
+    char *text = room_for(decoding, (size_t)length + 1, 1, 1);
+    for (uint64_t a = 0; text != NULL && a < length; a++)
+        text[a] = (char)(bytes_get_unsigned(&decoding->reader) & 0x7f);
+    return text;
+}
+
+static double *get_numbers(struct decoding *decoding, uint64_t n) {
+    double *numbers = room_for(decoding, (size_t)n, sizeof *numbers, sizeof *numbers);
+    for (uint64_t a = 0; numbers != NULL && a < n; a++)
+        numbers[a] = bytes_get_double(&decoding->reader);
+    return numbers;
+}
+
+static void get_attributes(struct decoding *decoding, struct curve *curve) {
+    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++)
+        curve_set_attribute(curve, &CURVE_ATTRIBUTES[a], NULL, NAN);
+    for (;;) {
+        uint64_t part = bytes_get_unsigned(&decoding->reader);
+        if (decoding->reader.failed || part == PART_END)
+            return;
+        const char *key = get_text(decoding);
+        const char *text = part == PART_TEXT ? get_text(decoding) : NULL;
+        double number = part == PART_NUMBER ? bytes_get_double(&decoding->reader) : (double)NAN;
+        for (size_t a = 0; key != NULL && a < CURVE_ATTRIBUTE_COUNT; a++)
+            if (strcmp(CURVE_ATTRIBUTES[a].key, key) == 0)
+                curve_set_attribute(curve, &CURVE_ATTRIBUTES[a], text, number);
+    }
+}
+
+static void get_cells(struct decoding *decoding, struct curve *curve) {
+    struct byte_reader *reader = &decoding->reader;
+    uint64_t all = (uint64_t)curve->n * curve->columns, next = 0;
+    curve->x2_label = get_text(decoding);
+    curve->x2 = get_numbers(decoding, curve->columns);
+    curve->cell_count = (size_t)bytes_get_unsigned(reader);
+    uint32_t *cells = room_for(decoding, curve->cell_count, sizeof *cells, 1);
+    for (size_t a = 0; cells != NULL && a < curve->cell_count; a++) {
+        uint64_t step = bytes_get_unsigned(reader);
+        uint64_t cell = next + step - 1;
+        if (step == 0 || step > all || cell >= all) {
+            reader->failed = 1;
+            return;
+        }
+        cells[a] = (uint32_t)cell;
+        next = cell + 1;
+    }
+    curve->cells = cells;
+    curve->empty_y = bytes_get_double(reader);
+    curve->empty_standard_error = bytes_get_double(reader);
+}
+
+static void get_values(struct decoding *decoding, struct curve *curve) {
+    struct byte_reader *reader = &decoding->reader;
+    curve->n = (size_t)bytes_get_unsigned(reader);
+    curve->columns = (size_t)bytes_get_unsigned(reader);
+    if (curve->n > UINT32_MAX || curve->columns > UINT32_MAX / (curve->n > 0 ? curve->n : 1))
+        reader->failed = 1;
+    curve->x = get_numbers(decoding, curve->n);
+    if (curve->columns > 0)
+        get_cells(decoding, curve);
+    curve->y = get_numbers(decoding, value_count(curve));
+    curve->standard_error = get_numbers(decoding, value_count(curve));
+    if (bytes_get_unsigned(reader) != 0)
+        curve->valueless = get_numbers(decoding, curve->n);
+    curve->counted = bytes_get_unsigned(reader) != 0;
+    curve->underflow = bytes_get_double(reader);
+    curve->overflow = bytes_get_double(reader);
+}
+
+/* A source that this program does not know is read and left out. */
+static void get_error(struct decoding *decoding, struct curve *curve) {
+    const char *name = get_text(decoding);
+    struct curve_error error = {.order = bytes_get_double(&decoding->reader)};
+    error.order_observed = bytes_get_unsigned(&decoding->reader) != 0;
+    error.value = get_numbers(decoding, curve->n);
+    error.standard_error = get_numbers(decoding, curve->n);
+    for (size_t s = 0; name != NULL && s < ERROR_SOURCES; s++)
+        if (strcmp(ERROR_SOURCE_ROWS[s].name, name) == 0)
+            curve->errors[s] = error;
+}
+
+static void get_theory(struct decoding *decoding, struct curve *curve) {
+    if (curve->theory_count == THEORIES_MOST) {
+        decoding->reader.failed = 1;
+        return;
+    }
+    struct theory *theory = &curve->theories[curve->theory_count++];
+    theory->name = get_text(decoding);
+    if (bytes_get_unsigned(&decoding->reader) != 0)
+        theory->y =
+            get_numbers(decoding, (uint64_t)curve->n * (curve->columns > 0 ? curve->columns : 1));
+}
+
+static void get_parts(struct decoding *decoding, struct curve *curve) {
+    for (;;) {
+        uint64_t part = bytes_get_unsigned(&decoding->reader);
+        if (decoding->reader.failed || part == PART_END)
+            return;
+        if (part == PART_ERROR)
+            get_error(decoding, curve);
+        else if (part == PART_THEORY)
+            get_theory(decoding, curve);
+        else
+            decoding->reader.failed = 1;
+    }
+}
+
+int curve_decode(struct case_result *result, const unsigned char *data, size_t size,
+                 struct error *err) {
+    struct decoding decoding = {bytes_open(data, size), result, false};
+    struct curve curve = {0};
+    if (bytes_get_unsigned(&decoding.reader) != FORMAT_CURVE ||
+        bytes_get_unsigned(&decoding.reader) != FORMAT_VERSION)
+        decoding.reader.failed = 1;
+    curve.quantity = get_text(&decoding);
+    curve.x_label = get_text(&decoding);
+    curve.y_label = get_text(&decoding);
+    get_attributes(&decoding, &curve);
+    get_values(&decoding, &curve);
+    get_parts(&decoding, &curve);
+    if (decoding.no_memory)
+        return error_memory(err, size, "a curve");
+    if (decoding.reader.failed || decoding.reader.at != decoding.reader.end || curve.series == NULL)
+        return error_set(err, ERROR_INPUT, "a stored curve is damaged");
+    return result_add_curve(result, &curve, err);
+}

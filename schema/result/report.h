@@ -1,0 +1,68 @@
+/* Speed against error: what each case cost, and the errors that this bought.
+ *
+ * The errors of a curve are sizes over all its points: the statistical one is |standard error|/|y|,
+ * the deviation from a theory |y - theory|/|theory|, |.| being the root of the sum of squares over
+ * the points where both are known. The discretisation error is that of every mesh level from the
+ * limit, which is the finest level less its own error; the model error that of the model's limit
+ * from the limit of the most complete model, or, where there are no limits, of the curve from the
+ * most complete model's on the same level. A case's errors are those of its main curve: the first
+ * one that has a statistical error and a theory beside it, or else the first one with an error. */
+#ifndef RUGO_SCHEMA_RESULT_REPORT_H
+#define RUGO_SCHEMA_RESULT_REPORT_H
+
+#include "schema/json/json.h"
+#include "schema/result/result.h"
+
+/* All errors are relative; NaN: not known. */
+struct curve_report {
+    struct curve place; /* quantity and attributes alone, without points */
+    double seconds;     /* of the solves behind the curve: the case's time, shared by their work */
+    double statistical, errors[ERROR_SOURCES];
+    double total;     /* root of the sum of squares of those known; NaN without a statistical one */
+    double valueless; /* realisations without a value, at the point with most; NaN: not told */
+    size_t theory_count;
+    struct {
+        const char *name;
+        double deviation;
+    } theories[THEORIES_MOST];
+};
+struct scalar_report {
+    const char *name;
+    double value, statistical, deviation;
+    bool has_theory;
+};
+struct case_report {
+    struct case_result about; /* number, realisations, parameters, notes, and the arena of all
+                                 texts: no curves and no scalars */
+    uint64_t realisations_total, jobs, attempts;
+    double seconds; /* of completed jobs, over all workers */
+    size_t curve_count, scalar_count;
+    struct curve_report *curves; /* in the arena, as the scalars */
+    struct scalar_report *scalars;
+    const struct curve_report *main; /* one of the curves, or NULL */
+};
+struct study_report {
+    char *id, *name, *kind, *state; /* owned */
+    double seconds;
+    size_t case_count;
+    struct case_report *cases; /* owned */
+};
+void case_report_clear(struct case_report *report);
+void study_report_clear(struct study_report *report);
+
+/* Measures the curves and scalars of a result whose case took `seconds`; copies parameters and
+ * notes too. Realisations in all, jobs and attempts are the caller's to fill in. */
+int case_report_make(struct case_report *out, const struct case_result *result, double seconds,
+                     struct error *err);
+/* Statistical errors fall with the square root of the realisations: half the error costs three
+ * times what was spent. NaN without a main curve. */
+double case_report_seconds_to_halve(const struct case_report *report);
+
+/* The document of `rugo report`: as study_print_head and result_print. */
+bool case_report_print(FILE *file, const struct case_report *report);
+bool study_report_print(FILE *file, const struct study_report *report);
+/* *out is untouched on failure. */
+int case_report_read(const cJSON *document, struct case_report *out, struct error *err);
+int study_report_read(const cJSON *document, struct study_report *out, struct error *err);
+
+#endif

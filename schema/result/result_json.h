@@ -1,0 +1,37 @@
+/* Results as JSON, the documents of `rugo curves` and GET /v1/studies/{id}/curves: one writer,
+ * which prints a case after another without making a tree of it, and one reader, for results that
+ * come from a server. What is printed reads back to the same numbers, and prints again the same.
+ *
+ *     {"study", "name", "kind", "state", "cases": [
+ *       {"case", "parameters": {pointer: value}, "realisations",
+ *        "scalars": {name: {"value", "standard_error", "theory"?}},
+ *        "curves": [{"quantity", attributes, "x", "y", "standard_error", errors, "theory", ...}],
+ *        "notes": {"count", "kept": [{"realisation", "text"}]}?}]}
+ *
+ * A matrix is printed whole, as an array of rows; empty cells are those without counts. */
+#ifndef RUGO_SCHEMA_RESULT_RESULT_JSON_H
+#define RUGO_SCHEMA_RESULT_RESULT_JSON_H
+
+#include "schema/json/json.h"
+#include "schema/result/result.h"
+
+/* {"study": ..., "cases":[ ; what follows is case after case, with commas between, and "]}".
+ * seconds: NaN where the document has none. False when out of memory; write errors are left to the
+ * file's own flag, here and below. */
+bool study_print_head(FILE *file, const struct study_result *study, double seconds);
+bool result_print(FILE *file, const struct case_result *result);
+/* All of the study. */
+bool study_print(FILE *file, const struct study_result *study);
+
+/* {pointer: value} and the notes, as parts of other documents. */
+bool result_print_parameters(FILE *file, size_t count, const struct result_parameter *parameters);
+bool result_print_notes(FILE *file, uint64_t all, size_t count, const struct result_note *notes);
+
+/* *out is untouched on failure: ERROR_INPUT names what is missing or of another type. */
+int result_read(const cJSON *document, struct case_result *out, struct error *err);
+int study_result_read(const cJSON *document, struct study_result *out, struct error *err);
+/* Fills the parameters of a result from the object of a case's effective values, by the RFC 6901
+ * pointer of each number and string within it, in the order of the object; lists are left out. */
+int result_set_parameters(struct case_result *result, const cJSON *parameters, struct error *err);
+
+#endif

@@ -1,0 +1,240 @@
+#include "schema/result/result_json.h"
+#include <math.h>
+
+/* "key": with a comma in front of all but an object's first member. */
+static bool put_key(FILE *file, bool *first, const char *key) {
+    if (!*first)
+        fputc(',', file);
+    *first = false;
+    bool done = json_print_text(file, key);
+    fputc(':', file);
+    return done;
+}
+
+static bool put_text(FILE *file, bool *first, const char *key, const char *text) {
+    return put_key(file, first, key) && json_print_text(file, text);
+}
+
+static bool put_number(FILE *file, bool *first, const char *key, double number) {
+    bool done = put_key(file, first, key);
+    json_print_number(file, number);
+    return done;
+}
+
+static void print_numbers(FILE *file, size_t n, const double *numbers) {
+    fputc('[', file);
+    for (size_t a = 0; a < n; a++) {
+        if (a > 0)
+            fputc(',', file);
+        json_print_number(file, numbers[a]);
+    }
+    fputc(']', file);
+}
+
+static bool put_numbers(FILE *file, bool *first, const char *key, size_t n, const double *numbers) {
+    bool done = put_key(file, first, key);
+    print_numbers(file, n, numbers);
+    return done;
+}
+
+/* A matrix by its occupied cells; every other cell is `empty`. */
+static void print_cells(FILE *file, const struct curve *curve, const double *values, double empty) {
+    size_t at = 0;
+    fputc('[', file);
+    for (size_t row = 0; row < curve->n; row++) {
+        fputs(row > 0 ? ",[" : "[", file);
+        for (size_t column = 0; column < curve->columns; column++) {
+            bool here = at < curve->cell_count && curve->cells[at] == row * curve->columns + column;
+            if (column > 0)
+                fputc(',', file);
+            json_print_number(file, here ? values[at] : empty);
+            at += here;
+        }
+        fputc(']', file);
+    }
+    fputc(']', file);
+}
+
+static bool put_values(FILE *file, bool *first, const char *key, const struct curve *curve,
+                       const double *values, double empty) {
+    if (curve->columns == 0)
+        return put_numbers(file, first, key, curve->n, values);
+    bool done = put_key(file, first, key);
+    print_cells(file, curve, values, empty);
+    return done;
+}
+
+/* --- a curve --- */
+
+static bool put_attributes(FILE *file, bool *first, const struct curve *curve) {
+    bool done = true;
+    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT && done; a++) {
+        const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
+        const char *text = curve_attribute_text(curve, row);
+        double number = curve_attribute_number(curve, row);
+        if (text != NULL)
+            done = put_text(file, first, row->key, text);
+        else if (!isnan(number))
+            done = put_number(file, first, row->key, number);
+    }
+    return done;
+}
+
+static bool put_error(FILE *file, bool *first, const struct curve *curve,
+                      enum error_source source) {
+    const struct error_source_row *row = &ERROR_SOURCE_ROWS[source];
+    const struct curve_error *error = &curve->errors[source];
+    if (error->value == NULL) {
+        bool done = !row->null_if_unknown || put_key(file, first, row->key);
+        if (row->null_if_unknown)
+            fputs("null", file);
+        return done;
+    }
+    bool done = put_numbers(file, first, row->key, curve->n, error->value) &&
+                put_numbers(file, first, row->standard_error_key, curve->n, error->standard_error);
+    if (done && row->order_key != NULL)
+        done = put_number(file, first, row->order_key, error->order) &&
+               put_text(file, first, row->order_from_key,
+                        error->order_observed ? "levels" : "assumed");
+    return done;
+}
+
+static bool put_theories(FILE *file, bool *first, const struct curve *curve) {
+    bool done = put_key(file, first, "theory"), none = true;
+    fputc('{', file);
+    for (size_t t = 0; t < curve->theory_count && done; t++) {
+        const struct theory *theory = &curve->theories[t];
+        if (theory->y == NULL)
+            continue;
+        if (curve->columns == 0) {
+            done = put_numbers(file, &none, theory->name, curve->n, theory->y);
+            continue;
+        }
+        done = put_key(file, &none, theory->name);
+        fputc('[', file);
+        for (size_t row = 0; row < curve->n; row++) {
+            if (row > 0)
+                fputc(',', file);
+            print_numbers(file, curve->columns, theory->y + row * curve->columns);
+        }
+        fputc(']', file);
+    }
+    fputc('}', file);
+    return done;
+}
+
+static bool print_curve(FILE *file, const struct curve *curve) {
+    bool first = true;
+    fputc('{', file);
+    bool done =
+        put_text(file, &first, "quantity", curve->quantity) &&
+        put_attributes(file, &first, curve) && put_numbers(file, &first, "x", curve->n, curve->x) &&
+        (curve->columns == 0 || put_numbers(file, &first, "x2", curve->columns, curve->x2)) &&
+        put_values(file, &first, "y", curve, curve->y, curve->empty_y) &&
+        put_values(file, &first, "standard_error", curve, curve->standard_error,
+                   curve->empty_standard_error);
+    for (size_t s = 0; s < ERROR_SOURCES && done; s++)
+        done = put_error(file, &first, curve, (enum error_source)s);
+    done = done && put_theories(file, &first, curve) &&
+           put_text(file, &first, "x_label", curve->x_label) &&
+           (curve->columns == 0 || put_text(file, &first, "x2_label", curve->x2_label));
+    if (done && curve->counted)
+        done = put_number(file, &first, "underflow", curve->underflow) &&
+               put_number(file, &first, "overflow", curve->overflow);
+    if (done && curve->valueless != NULL)
+        done = put_numbers(file, &first, "valueless", curve->n, curve->valueless);
+    done = done && put_text(file, &first, "y_label", curve->y_label);
+    fputc('}', file);
+    return done;
+}
+
+/* --- a case --- */
+
+bool result_print_parameters(FILE *file, size_t count, const struct result_parameter *parameters) {
+    bool done = true, first = true;
+    fputc('{', file);
+    for (size_t p = 0; p < count && done; p++)
+        done = parameters[p].text != NULL
+                   ? put_text(file, &first, parameters[p].pointer, parameters[p].text)
+                   : put_number(file, &first, parameters[p].pointer, parameters[p].number);
+    fputc('}', file);
+    return done;
+}
+
+bool result_print_notes(FILE *file, uint64_t all, size_t count, const struct result_note *notes) {
+    bool done = true;
+    fprintf(file, "{\"count\":%llu,\"kept\":[", (unsigned long long)all);
+    for (size_t n = 0; n < count && done; n++) {
+        fprintf(file, "%s{\"realisation\":%llu,\"text\":", n > 0 ? "," : "",
+                (unsigned long long)notes[n].realisation);
+        done = json_print_text(file, notes[n].text);
+        fputc('}', file);
+    }
+    fputs("]}", file);
+    return done;
+}
+
+static bool print_scalar(FILE *file, const struct scalar *scalar) {
+    bool first = true;
+    fputc('{', file);
+    bool done = put_number(file, &first, "value", scalar->value) &&
+                put_number(file, &first, "standard_error", scalar->standard_error) &&
+                (isnan(scalar->theory) || put_number(file, &first, "theory", scalar->theory));
+    fputc('}', file);
+    return done;
+}
+
+static bool print_scalars(FILE *file, const struct case_result *result) {
+    bool done = true, first = true;
+    fputc('{', file);
+    for (size_t s = 0; s < result->scalar_count && done; s++)
+        done = put_key(file, &first, result->scalars[s].name) &&
+               print_scalar(file, &result->scalars[s]);
+    fputc('}', file);
+    return done;
+}
+
+bool result_print(FILE *file, const struct case_result *result) {
+    fprintf(file, "{\"case\":%llu,\"parameters\":", (unsigned long long)result->case_number);
+    bool done = result_print_parameters(file, result->parameter_count, result->parameters);
+    fprintf(file, ",\"realisations\":%llu,\"scalars\":", (unsigned long long)result->realisations);
+    done = done && print_scalars(file, result);
+    fputs(",\"curves\":[", file);
+    for (size_t a = 0; a < result->curve_count && done; a++) {
+        if (a > 0)
+            fputc(',', file);
+        done = print_curve(file, &result->curves[a]);
+    }
+    fputc(']', file);
+    if (done && result->notes_all > 0) {
+        fputs(",\"notes\":", file);
+        done = result_print_notes(file, result->notes_all, result->note_count, result->notes);
+    }
+    fputc('}', file);
+    return done;
+}
+
+/* --- a study --- */
+
+bool study_print_head(FILE *file, const struct study_result *study, double seconds) {
+    bool first = true;
+    fputc('{', file);
+    bool done = put_text(file, &first, "study", study->id) &&
+                put_text(file, &first, "name", study->name) &&
+                put_text(file, &first, "kind", study->kind) &&
+                put_text(file, &first, "state", study->state) &&
+                (isnan(seconds) || put_number(file, &first, "seconds", seconds));
+    fputs(",\"cases\":[", file);
+    return done;
+}
+
+bool study_print(FILE *file, const struct study_result *study) {
+    bool done = study_print_head(file, study, NAN);
+    for (size_t c = 0; c < study->case_count && done; c++) {
+        if (c > 0)
+            fputc(',', file);
+        done = result_print(file, &study->cases[c]);
+    }
+    fputs("]}", file);
+    return done;
+}

@@ -1,0 +1,348 @@
+#include "schema/result/result_json.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What is being read, for messages, and where it goes. */
+struct reading {
+    struct case_result *result;
+    struct error *err;
+};
+
+static const cJSON *member(const cJSON *object, const char *key) {
+    return cJSON_GetObjectItemCaseSensitive(object, key);
+}
+
+static int fault(const struct reading *reading, const char *key, const char *what) {
+    return error_set(reading->err, ERROR_INPUT, "\"%s\" of a result must be %s", key, what);
+}
+
+static int no_memory(const struct reading *reading) {
+    return error_set(reading->err, ERROR_MEMORY, "no memory left to read a result");
+}
+
+/* NaN for what is null or absent. */
+static double number_at(const cJSON *object, const char *key) {
+    const cJSON *value = member(object, key);
+    return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
+}
+
+static int read_text(const struct reading *reading, const cJSON *object, const char *key,
+                     const char **out) {
+    const char *text = cJSON_GetStringValue(member(object, key));
+    if (text == NULL)
+        return fault(reading, key, "a string");
+    *out = result_text(reading->result, text);
+    return *out != NULL ? 0 : no_memory(reading);
+}
+
+/* The array of `n` numbers or nulls under a key. */
+static int read_numbers(const struct reading *reading, const cJSON *object, const char *key,
+                        size_t n, const double **out) {
+    const cJSON *array = member(object, key);
+    if (!cJSON_IsArray(array) || (size_t)cJSON_GetArraySize(array) != n)
+        return fault(reading, key, "an array as long as x");
+    double *numbers = result_numbers(reading->result, n);
+    if (numbers == NULL)
+        return no_memory(reading);
+    size_t a = 0;
+    for (const cJSON *item = array->child; item != NULL; item = item->next)
+        numbers[a++] = cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
+    *out = numbers;
+    return 0;
+}
+
+/* --- matrices --- */
+
+/* All cells of an array of rows, dense. */
+static int read_dense(const struct reading *reading, const cJSON *object, const char *key,
+                      const struct curve *curve, double **out) {
+    const cJSON *rows = member(object, key);
+    if (!cJSON_IsArray(rows) || (size_t)cJSON_GetArraySize(rows) != curve->n)
+        return fault(reading, key, "an array of as many rows as x");
+    double *cells = result_numbers(reading->result, curve->n * curve->columns);
+    if (cells == NULL)
+        return no_memory(reading);
+    size_t at = 0;
+    for (const cJSON *row = rows->child; row != NULL; row = row->next) {
+        if (!cJSON_IsArray(row) || (size_t)cJSON_GetArraySize(row) != curve->columns)
+            return fault(reading, key, "rows as long as x2");
+        for (const cJSON *item = row->child; item != NULL; item = item->next)
+            cells[at++] = cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
+    }
+    *out = cells;
+    return 0;
+}
+
+/* Keeps the cells that hold something: all are empty where nothing is known (the first is NaN). */
+static int read_matrix(const struct reading *reading, const cJSON *object, struct curve *curve) {
+    double *y = NULL, *standard_error = NULL;
+    int status = read_dense(reading, object, "y", curve, &y);
+    if (status == 0)
+        status = read_dense(reading, object, "standard_error", curve, &standard_error);
+    if (status != 0)
+        return status;
+    size_t all = curve->n * curve->columns, count = 0;
+    uint32_t *cells = result_room(reading->result, all > 0 ? all : 1, sizeof *cells);
+    if (cells == NULL)
+        return no_memory(reading);
+    curve->empty_y = all > 0 && isnan(y[0]) ? (double)NAN : 0;
+    curve->empty_standard_error = curve->empty_y;
+    for (size_t cell = 0; cell < all; cell++) {
+        if (!(y[cell] > 0) && !(y[cell] < 0)) {
+            curve->empty_standard_error = standard_error[cell];
+            continue;
+        }
+        y[count] = y[cell];
+        standard_error[count] = standard_error[cell];
+        cells[count++] = (uint32_t)cell;
+    }
+    curve->y = y;
+    curve->standard_error = standard_error;
+    curve->cells = cells;
+    curve->cell_count = count;
+    return 0;
+}
+
+/* --- a curve --- */
+
+static int read_attributes(const struct reading *reading, const cJSON *object,
+                           struct curve *curve) {
+    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++) {
+        const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
+        const cJSON *value = member(object, row->key);
+        const char *text = cJSON_GetStringValue(value);
+        if (value != NULL && row->type == ATTRIBUTE_TEXT && text == NULL)
+            return fault(reading, row->key, "a string");
+        const char *copy = result_text(reading->result, text);
+        if (text != NULL && copy == NULL)
+            return no_memory(reading);
+        curve_set_attribute(curve, row, copy, number_at(object, row->key));
+    }
+    return curve->series != NULL ? 0 : fault(reading, "series", "a string");
+}
+
+static int read_error(const struct reading *reading, const cJSON *object, enum error_source source,
+                      struct curve *curve) {
+    const struct error_source_row *row = &ERROR_SOURCE_ROWS[source];
+    struct curve_error *error = &curve->errors[source];
+    *error = (struct curve_error){.order = NAN};
+    if (!cJSON_IsArray(member(object, row->key)))
+        return 0;
+    int status = read_numbers(reading, object, row->key, curve->n, &error->value);
+    if (status == 0)
+        status = read_numbers(reading, object, row->standard_error_key, curve->n,
+                              &error->standard_error);
+    if (row->order_key != NULL) {
+        const char *from = cJSON_GetStringValue(member(object, row->order_from_key));
+        error->order = number_at(object, row->order_key);
+        error->order_observed = from != NULL && strcmp(from, "levels") == 0;
+    }
+    return status;
+}
+
+static int read_theories(const struct reading *reading, const cJSON *object, struct curve *curve) {
+    const cJSON *theories = member(object, "theory");
+    for (const cJSON *item = theories != NULL ? theories->child : NULL; item != NULL;
+         item = item->next) {
+        if (curve->theory_count == THEORIES_MOST || item->string == NULL)
+            return fault(reading, "theory", "an object of few arrays");
+        struct theory *theory = &curve->theories[curve->theory_count++];
+        double *dense = NULL;
+        int status = curve->columns > 0
+                         ? read_dense(reading, theories, item->string, curve, &dense)
+                         : read_numbers(reading, theories, item->string, curve->n, &theory->y);
+        if (status != 0)
+            return status;
+        if (dense != NULL)
+            theory->y = dense;
+        theory->name = result_text(reading->result, item->string);
+        if (theory->name == NULL)
+            return no_memory(reading);
+    }
+    return 0;
+}
+
+static int read_points(const struct reading *reading, const cJSON *object, struct curve *curve) {
+    const cJSON *x = member(object, "x"), *x2 = member(object, "x2");
+    if (!cJSON_IsArray(x) || (x2 != NULL && !cJSON_IsArray(x2)))
+        return fault(reading, "x", "an array");
+    curve->n = (size_t)cJSON_GetArraySize(x);
+    curve->columns = (size_t)cJSON_GetArraySize(x2);
+    if (curve->columns > 0 && curve->n > UINT32_MAX / curve->columns)
+        return fault(reading, "x2", "an array of a sensible length");
+    int status = read_numbers(reading, object, "x", curve->n, &curve->x);
+    if (status != 0)
+        return status;
+    if (curve->columns == 0) {
+        status = read_numbers(reading, object, "y", curve->n, &curve->y);
+        return status != 0 ? status
+                           : read_numbers(reading, object, "standard_error", curve->n,
+                                          &curve->standard_error);
+    }
+    status = read_numbers(reading, object, "x2", curve->columns, &curve->x2);
+    if (status == 0)
+        status = read_text(reading, object, "x2_label", &curve->x2_label);
+    return status != 0 ? status : read_matrix(reading, object, curve);
+}
+
+static int read_curve(const struct reading *reading, const cJSON *object) {
+    struct curve curve = {0};
+    int status = read_text(reading, object, "quantity", &curve.quantity);
+    if (status == 0)
+        status = read_text(reading, object, "x_label", &curve.x_label);
+    if (status == 0)
+        status = read_text(reading, object, "y_label", &curve.y_label);
+    if (status == 0)
+        status = read_attributes(reading, object, &curve);
+    if (status == 0)
+        status = read_points(reading, object, &curve);
+    for (size_t s = 0; s < ERROR_SOURCES && status == 0; s++)
+        status = read_error(reading, object, (enum error_source)s, &curve);
+    if (status == 0)
+        status = read_theories(reading, object, &curve);
+    if (status == 0 && member(object, "valueless") != NULL)
+        status = read_numbers(reading, object, "valueless", curve.n, &curve.valueless);
+    curve.counted = member(object, "underflow") != NULL;
+    curve.underflow = number_at(object, "underflow");
+    curve.overflow = number_at(object, "overflow");
+    return status != 0 ? status : result_add_curve(reading->result, &curve, reading->err);
+}
+
+/* --- a case --- */
+
+static int read_scalars(const struct reading *reading, const cJSON *scalars) {
+    int status = 0;
+    for (const cJSON *item = scalars != NULL ? scalars->child : NULL; item != NULL && status == 0;
+         item = item->next) {
+        struct scalar scalar = {.name = result_text(reading->result, item->string),
+                                .value = number_at(item, "value"),
+                                .standard_error = number_at(item, "standard_error"),
+                                .theory = number_at(item, "theory")};
+        status = scalar.name != NULL ? result_add_scalar(reading->result, &scalar, reading->err)
+                                     : no_memory(reading);
+    }
+    return status;
+}
+
+static int read_notes(const struct reading *reading, const cJSON *notes) {
+    const cJSON *kept = member(notes, "kept");
+    size_t count = (size_t)cJSON_GetArraySize(kept), n = 0;
+    double all = number_at(notes, "count");
+    struct result_note *list = result_room(reading->result, count + 1, sizeof *list);
+    if (list == NULL)
+        return no_memory(reading);
+    for (const cJSON *item = kept != NULL ? kept->child : NULL; item != NULL; item = item->next) {
+        double realisation = number_at(item, "realisation");
+        int status = read_text(reading, item, "text", &list[n].text);
+        if (status != 0)
+            return status;
+        list[n++].realisation =
+            realisation >= 0 && realisation < 0x1p53 ? (uint64_t)realisation : 0;
+    }
+    reading->result->notes = list;
+    reading->result->note_count = n;
+    reading->result->notes_all = all >= (double)n && all < 0x1p53 ? (uint64_t)all : n;
+    return 0;
+}
+
+/* A flat object of parameters, as it was printed. */
+static int read_parameters(const struct reading *reading, const cJSON *parameters) {
+    size_t count = (size_t)cJSON_GetArraySize(parameters), n = 0;
+    struct result_parameter *list = result_room(reading->result, count + 1, sizeof *list);
+    if (list == NULL)
+        return no_memory(reading);
+    for (const cJSON *item = parameters != NULL ? parameters->child : NULL; item != NULL;
+         item = item->next) {
+        const char *text = cJSON_GetStringValue(item);
+        if (text == NULL && !cJSON_IsNumber(item))
+            continue;
+        list[n] =
+            (struct result_parameter){.pointer = result_text(reading->result, item->string),
+                                      .text = result_text(reading->result, text),
+                                      .number = text != NULL ? (double)NAN : item->valuedouble};
+        if (list[n].pointer == NULL || (text != NULL && list[n].text == NULL))
+            return no_memory(reading);
+        n++;
+    }
+    reading->result->parameters = list;
+    reading->result->parameter_count = n;
+    return 0;
+}
+
+static int read_count(const struct reading *reading, const cJSON *document, const char *key,
+                      uint64_t *out) {
+    double number = number_at(document, key);
+    if (!(number >= 0 && number <= 0x1p53 && number == floor(number)))
+        return fault(reading, key, "an integer of 0 to 2^53");
+    *out = (uint64_t)number;
+    return 0;
+}
+
+int result_read(const cJSON *document, struct case_result *out, struct error *err) {
+    struct case_result result = {0};
+    struct reading reading = {&result, err};
+    int status = read_count(&reading, document, "case", &result.case_number);
+    if (status == 0)
+        status = read_count(&reading, document, "realisations", &result.realisations);
+    if (status == 0)
+        status = read_parameters(&reading, member(document, "parameters"));
+    if (status == 0)
+        status = read_scalars(&reading, member(document, "scalars"));
+    const cJSON *curves = member(document, "curves");
+    for (const cJSON *item = curves != NULL ? curves->child : NULL; item != NULL && status == 0;
+         item = item->next)
+        status = read_curve(&reading, item);
+    if (status == 0 && member(document, "notes") != NULL)
+        status = read_notes(&reading, member(document, "notes"));
+    if (status != 0) {
+        result_clear(&result);
+        return status;
+    }
+    *out = result;
+    return 0;
+}
+
+/* --- a study --- */
+
+static int read_cases(const cJSON *cases, struct study_result *study, struct error *err) {
+    size_t count = (size_t)cJSON_GetArraySize(cases);
+    study->cases = array_create(count, sizeof *study->cases);
+    if (study->cases == NULL)
+        return error_memory(err, count * sizeof *study->cases, "the results of a study");
+    int status = 0;
+    for (const cJSON *item = cases != NULL ? cases->child : NULL; item != NULL && status == 0;
+         item = item->next) {
+        status = result_read(item, &study->cases[study->case_count], err);
+        study->case_count += status == 0;
+    }
+    return status;
+}
+
+int study_result_read(const cJSON *document, struct study_result *out, struct error *err) {
+    struct study_result study = {0};
+    const struct {
+        const char *key;
+        char **text;
+    } texts[] = {{"study", &study.id},
+                 {"name", &study.name},
+                 {"kind", &study.kind},
+                 {"state", &study.state}};
+    int status = 0;
+    for (size_t t = 0; t < sizeof texts / sizeof *texts && status == 0; t++) {
+        const char *text = cJSON_GetStringValue(member(document, texts[t].key));
+        if (text == NULL)
+            status =
+                error_set(err, ERROR_INPUT, "\"%s\" of a result must be a string", texts[t].key);
+        else if ((*texts[t].text = strdup(text)) == NULL)
+            status = error_memory(err, strlen(text) + 1, "a text of a study");
+    }
+    if (status == 0)
+        status = read_cases(member(document, "cases"), &study, err);
+    if (status != 0) {
+        study_result_clear(&study);
+        return status;
+    }
+    *out = study;
+    return 0;
+}
