@@ -247,8 +247,9 @@ int curve_decode(struct case_result *result, const unsigned char *data, size_t s
                  struct error *err) {
     struct decoding decoding = {bytes_open(data, size), result, false};
     struct curve curve = {0};
-    if (bytes_get_unsigned(&decoding.reader) != FORMAT_CURVE ||
-        bytes_get_unsigned(&decoding.reader) != FORMAT_VERSION)
+    uint64_t format = bytes_get_unsigned(&decoding.reader);
+    uint64_t version = bytes_get_unsigned(&decoding.reader);
+    if (format != FORMAT_CURVE || version != FORMAT_VERSION)
         decoding.reader.failed = 1;
     curve.quantity = get_text(&decoding);
     curve.x_label = get_text(&decoding);

@@ -23,12 +23,22 @@ bool result_print(FILE *file, const struct case_result *result);
 /* All of the study. */
 bool study_print(FILE *file, const struct study_result *study);
 
-/* {pointer: value} and the notes, as parts of other documents. */
+/* Parts of other documents: `, "series": ...`, all attributes or those that stand in tables;
+ * {pointer: value}; the notes. */
+bool curve_print_attributes(FILE *file, const struct curve *curve, bool all);
 bool result_print_parameters(FILE *file, size_t count, const struct result_parameter *parameters);
 bool result_print_notes(FILE *file, uint64_t all, size_t count, const struct result_note *notes);
 
+/* Fills what tells the curve apart; texts are copied into the result's arena. */
+int curve_read_attributes(struct case_result *result, const cJSON *object, struct curve *curve,
+                          struct error *err);
+/* Likewise the parameters and notes of a case, which may be missing. */
+int result_read_parameters(struct case_result *result, const cJSON *parameters, struct error *err);
+int result_read_notes(struct case_result *result, const cJSON *notes, struct error *err);
 /* *out is untouched on failure: ERROR_INPUT names what is missing or of another type. */
 int result_read(const cJSON *document, struct case_result *out, struct error *err);
+/* Fills id, name, kind and state alone, which the caller clears also on failure. */
+int study_head_read(const cJSON *document, struct study_result *out, struct error *err);
 int study_result_read(const cJSON *document, struct study_result *out, struct error *err);
 /* Fills the parameters of a result from the object of a case's effective values, by the RFC 6901
  * pointer of each number and string within it, in the order of the object; lists are left out. */

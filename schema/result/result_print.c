@@ -66,16 +66,18 @@ static bool put_values(FILE *file, bool *first, const char *key, const struct cu
 
 /* --- a curve --- */
 
-static bool put_attributes(FILE *file, bool *first, const struct curve *curve) {
-    bool done = true;
+bool curve_print_attributes(FILE *file, const struct curve *curve, bool all) {
+    bool done = true, first = false;
     for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT && done; a++) {
         const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
         const char *text = curve_attribute_text(curve, row);
         double number = curve_attribute_number(curve, row);
+        if (!all && !row->in_tables)
+            continue;
         if (text != NULL)
-            done = put_text(file, first, row->key, text);
+            done = put_text(file, &first, row->key, text);
         else if (!isnan(number))
-            done = put_number(file, first, row->key, number);
+            done = put_number(file, &first, row->key, number);
     }
     return done;
 }
@@ -128,7 +130,8 @@ static bool print_curve(FILE *file, const struct curve *curve) {
     fputc('{', file);
     bool done =
         put_text(file, &first, "quantity", curve->quantity) &&
-        put_attributes(file, &first, curve) && put_numbers(file, &first, "x", curve->n, curve->x) &&
+        curve_print_attributes(file, curve, true) &&
+        put_numbers(file, &first, "x", curve->n, curve->x) &&
         (curve->columns == 0 || put_numbers(file, &first, "x2", curve->columns, curve->x2)) &&
         put_values(file, &first, "y", curve, curve->y, curve->empty_y) &&
         put_values(file, &first, "standard_error", curve, curve->standard_error,

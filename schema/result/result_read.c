@@ -106,20 +106,21 @@ static int read_matrix(const struct reading *reading, const cJSON *object, struc
 
 /* --- a curve --- */
 
-static int read_attributes(const struct reading *reading, const cJSON *object,
-                           struct curve *curve) {
+int curve_read_attributes(struct case_result *result, const cJSON *object, struct curve *curve,
+                          struct error *err) {
+    const struct reading reading = {result, err};
     for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++) {
         const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
         const cJSON *value = member(object, row->key);
         const char *text = cJSON_GetStringValue(value);
         if (value != NULL && row->type == ATTRIBUTE_TEXT && text == NULL)
-            return fault(reading, row->key, "a string");
-        const char *copy = result_text(reading->result, text);
+            return fault(&reading, row->key, "a string");
+        const char *copy = result_text(result, text);
         if (text != NULL && copy == NULL)
-            return no_memory(reading);
+            return no_memory(&reading);
         curve_set_attribute(curve, row, copy, number_at(object, row->key));
     }
-    return curve->series != NULL ? 0 : fault(reading, "series", "a string");
+    return curve->series != NULL ? 0 : fault(&reading, "series", "a string");
 }
 
 static int read_error(const struct reading *reading, const cJSON *object, enum error_source source,
@@ -194,7 +195,7 @@ static int read_curve(const struct reading *reading, const cJSON *object) {
     if (status == 0)
         status = read_text(reading, object, "y_label", &curve.y_label);
     if (status == 0)
-        status = read_attributes(reading, object, &curve);
+        status = curve_read_attributes(reading->result, object, &curve, reading->err);
     if (status == 0)
         status = read_points(reading, object, &curve);
     for (size_t s = 0; s < ERROR_SOURCES && status == 0; s++)
@@ -225,48 +226,52 @@ static int read_scalars(const struct reading *reading, const cJSON *scalars) {
     return status;
 }
 
-static int read_notes(const struct reading *reading, const cJSON *notes) {
+int result_read_notes(struct case_result *result, const cJSON *notes, struct error *err) {
+    const struct reading reading = {result, err};
+    if (notes == NULL)
+        return 0;
     const cJSON *kept = member(notes, "kept");
     size_t count = (size_t)cJSON_GetArraySize(kept), n = 0;
     double all = number_at(notes, "count");
-    struct result_note *list = result_room(reading->result, count + 1, sizeof *list);
+    struct result_note *list = result_room(result, count + 1, sizeof *list);
     if (list == NULL)
-        return no_memory(reading);
+        return no_memory(&reading);
     for (const cJSON *item = kept != NULL ? kept->child : NULL; item != NULL; item = item->next) {
         double realisation = number_at(item, "realisation");
-        int status = read_text(reading, item, "text", &list[n].text);
+        int status = read_text(&reading, item, "text", &list[n].text);
         if (status != 0)
             return status;
         list[n++].realisation =
             realisation >= 0 && realisation < 0x1p53 ? (uint64_t)realisation : 0;
     }
-    reading->result->notes = list;
-    reading->result->note_count = n;
-    reading->result->notes_all = all >= (double)n && all < 0x1p53 ? (uint64_t)all : n;
+    result->notes = list;
+    result->note_count = n;
+    result->notes_all = all >= (double)n && all < 0x1p53 ? (uint64_t)all : n;
     return 0;
 }
 
 /* A flat object of parameters, as it was printed. */
-static int read_parameters(const struct reading *reading, const cJSON *parameters) {
+int result_read_parameters(struct case_result *result, const cJSON *parameters, struct error *err) {
+    const struct reading reading = {result, err};
     size_t count = (size_t)cJSON_GetArraySize(parameters), n = 0;
-    struct result_parameter *list = result_room(reading->result, count + 1, sizeof *list);
+    struct result_parameter *list = result_room(result, count + 1, sizeof *list);
     if (list == NULL)
-        return no_memory(reading);
+        return no_memory(&reading);
     for (const cJSON *item = parameters != NULL ? parameters->child : NULL; item != NULL;
          item = item->next) {
         const char *text = cJSON_GetStringValue(item);
         if (text == NULL && !cJSON_IsNumber(item))
             continue;
         list[n] =
-            (struct result_parameter){.pointer = result_text(reading->result, item->string),
-                                      .text = result_text(reading->result, text),
+            (struct result_parameter){.pointer = result_text(result, item->string),
+                                      .text = result_text(result, text),
                                       .number = text != NULL ? (double)NAN : item->valuedouble};
         if (list[n].pointer == NULL || (text != NULL && list[n].text == NULL))
-            return no_memory(reading);
+            return no_memory(&reading);
         n++;
     }
-    reading->result->parameters = list;
-    reading->result->parameter_count = n;
+    result->parameters = list;
+    result->parameter_count = n;
     return 0;
 }
 
@@ -286,15 +291,15 @@ int result_read(const cJSON *document, struct case_result *out, struct error *er
     if (status == 0)
         status = read_count(&reading, document, "realisations", &result.realisations);
     if (status == 0)
-        status = read_parameters(&reading, member(document, "parameters"));
+        status = result_read_parameters(&result, member(document, "parameters"), err);
     if (status == 0)
         status = read_scalars(&reading, member(document, "scalars"));
     const cJSON *curves = member(document, "curves");
     for (const cJSON *item = curves != NULL ? curves->child : NULL; item != NULL && status == 0;
          item = item->next)
         status = read_curve(&reading, item);
-    if (status == 0 && member(document, "notes") != NULL)
-        status = read_notes(&reading, member(document, "notes"));
+    if (status == 0)
+        status = result_read_notes(&result, member(document, "notes"), err);
     if (status != 0) {
         result_clear(&result);
         return status;
@@ -319,24 +324,26 @@ static int read_cases(const cJSON *cases, struct study_result *study, struct err
     return status;
 }
 
-int study_result_read(const cJSON *document, struct study_result *out, struct error *err) {
-    struct study_result study = {0};
+int study_head_read(const cJSON *document, struct study_result *out, struct error *err) {
     const struct {
         const char *key;
         char **text;
-    } texts[] = {{"study", &study.id},
-                 {"name", &study.name},
-                 {"kind", &study.kind},
-                 {"state", &study.state}};
-    int status = 0;
-    for (size_t t = 0; t < sizeof texts / sizeof *texts && status == 0; t++) {
+    } texts[] = {
+        {"study", &out->id}, {"name", &out->name}, {"kind", &out->kind}, {"state", &out->state}};
+    for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
         const char *text = cJSON_GetStringValue(member(document, texts[t].key));
         if (text == NULL)
-            status =
-                error_set(err, ERROR_INPUT, "\"%s\" of a result must be a string", texts[t].key);
-        else if ((*texts[t].text = strdup(text)) == NULL)
-            status = error_memory(err, strlen(text) + 1, "a text of a study");
+            return error_set(err, ERROR_INPUT, "\"%s\" of a result must be a string", texts[t].key);
+        *texts[t].text = strdup(text);
+        if (*texts[t].text == NULL)
+            return error_memory(err, strlen(text) + 1, "a text of a study");
     }
+    return 0;
+}
+
+int study_result_read(const cJSON *document, struct study_result *out, struct error *err) {
+    struct study_result study = {0};
+    int status = study_head_read(document, &study, err);
     if (status == 0)
         status = read_cases(member(document, "cases"), &study, err);
     if (status != 0) {

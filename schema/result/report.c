@@ -1,0 +1,308 @@
+#include "schema/result/report.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void case_report_clear(struct case_report *report) {
+    result_clear(&report->about);
+    *report = (struct case_report){0};
+}
+
+void study_report_clear(struct study_report *report) {
+    for (size_t c = 0; c < report->case_count; c++)
+        case_report_clear(&report->cases[c]);
+    free(report->cases);
+    free(report->id);
+    free(report->name);
+    free(report->kind);
+    free(report->state);
+    *report = (struct study_report){0};
+}
+
+/* --- sizes --- */
+
+/* |above - minus|/|below| over the points where all are known; minus NULL: 0. NaN where nothing is
+ * known. */
+static double relative_size(size_t n, const double *above, const double *minus,
+                            const double *below) {
+    double squares = 0, reference = 0;
+    for (size_t a = 0; a < n; a++) {
+        double difference = above[a] - (minus != NULL ? minus[a] : 0);
+        if (isnan(difference) || isnan(below[a]))
+            continue;
+        squares += difference * difference;
+        reference += below[a] * below[a];
+    }
+    return reference > 0 ? sqrt(squares / reference) : (double)NAN;
+}
+
+static size_t value_count(const struct curve *curve) {
+    return curve->columns > 0 ? curve->cell_count : curve->n;
+}
+
+static double statistical_error(const struct curve *curve) {
+    return relative_size(value_count(curve), curve->standard_error, NULL, curve->y);
+}
+
+/* --- which curve belongs to which --- */
+
+static bool same_model(const struct curve *a, const struct curve *b) {
+    return a->model == NULL || b->model == NULL ? a->model == b->model
+                                                : strcmp(a->model, b->model) == 0;
+}
+
+static bool same_level(const struct curve *a, const struct curve *b) {
+    return a->level == b->level || (isnan(a->level) && isnan(b->level));
+}
+
+/* The curve of the same series and model that has errors of a source at its points, as only that of
+ * the finest level has; NULL without one. */
+static const struct curve *finest_with(const struct case_result *result, const struct curve *curve,
+                                       enum error_source source) {
+    for (size_t a = 0; a < result->curve_count; a++) {
+        const struct curve *other = &result->curves[a];
+        if (other->errors[source].value != NULL && curve_same_series(other, curve) &&
+            same_model(other, curve))
+            return other;
+    }
+    return NULL;
+}
+
+/* A curve of the most complete model: the one without a model error beside one that has it. NULL
+ * with one model. */
+static const struct curve *complete_model(const struct case_result *result) {
+    const struct curve *partial = NULL;
+    for (size_t a = 0; a < result->curve_count && partial == NULL; a++)
+        if (result->curves[a].errors[ERROR_MODEL].value != NULL)
+            partial = &result->curves[a];
+    for (size_t a = 0; a < result->curve_count && partial != NULL; a++) {
+        const struct curve *other = &result->curves[a];
+        if (other->errors[ERROR_MODEL].value == NULL && curve_same_series(other, partial) &&
+            same_level(other, partial))
+            return other;
+    }
+    return NULL;
+}
+
+/* The curve of the most complete model on the same level; NULL where it is this one itself. */
+static const struct curve *complete_of(const struct case_result *result,
+                                       const struct curve *curve) {
+    const struct curve *complete = complete_model(result);
+    if (complete == NULL || same_model(complete, curve))
+        return NULL;
+    for (size_t a = 0; a < result->curve_count; a++) {
+        const struct curve *other = &result->curves[a];
+        if (same_model(complete, other) && curve_same_series(other, curve) &&
+            same_level(other, curve))
+            return other;
+    }
+    return NULL;
+}
+
+/* --- errors by source --- */
+
+/* The limit at a point: the finest level less its own discretisation error. */
+static double limit_at(const struct curve *finest, size_t point) {
+    const double *error = finest->errors[ERROR_DISCRETISATION].value;
+    return finest->y[point] - (error != NULL ? error[point] : 0);
+}
+
+static double discretisation_error(const struct case_result *result, const struct curve *curve,
+                                   double *scratch) {
+    const struct curve *finest = finest_with(result, curve, ERROR_DISCRETISATION);
+    if (finest == NULL || finest->n != curve->n || curve->columns > 0)
+        return NAN;
+    for (size_t a = 0; a < curve->n; a++)
+        scratch[a] = limit_at(finest, a);
+    return relative_size(curve->n, curve->y, scratch, scratch);
+}
+
+/* Of the finest level, which counts it between limits; where it does not, between curves of one
+ * level. */
+static double model_error(const struct case_result *result, const struct curve *curve,
+                          double *scratch) {
+    const struct curve *finest = finest_with(result, curve, ERROR_MODEL);
+    if (finest != NULL) {
+        const double *error = finest->errors[ERROR_MODEL].value;
+        for (size_t a = 0; a < finest->n; a++)
+            scratch[a] = limit_at(finest, a) - error[a];
+        return relative_size(finest->n, error, NULL, scratch);
+    }
+    const struct curve *complete = complete_of(result, curve);
+    if (complete == NULL || complete->n != curve->n || curve->columns > 0)
+        return NAN;
+    return relative_size(curve->n, curve->y, complete->y, complete->y);
+}
+
+typedef double measure_error(const struct case_result *result, const struct curve *curve,
+                             double *scratch);
+/* A row a source; scratch has room for the longest curve. */
+static measure_error *const MEASURES[ERROR_SOURCES] = {
+    [ERROR_DISCRETISATION] = discretisation_error,
+    [ERROR_MODEL] = model_error,
+};
+
+/* --- cost --- */
+
+/* Points x transforms of all loads, times log2 of the points: what fast transforms cost. */
+static double cost_of(const struct curve *work) {
+    double sum = 0;
+    for (size_t a = 0; a < work->n; a++)
+        sum += isnan(work->y[a]) ? 0 : work->y[a];
+    return isnan(work->points) ? sum : sum * log2(fmax(work->points, 2));
+}
+
+/* Share of the case's time that went into the solves behind a curve, by the curves "work" of all
+ * models and levels. All estimators read the same solves. 1 where the case has no such parts. */
+static double share_of(const struct case_result *result, const struct curve *curve) {
+    double own = 0, all = 0;
+    for (size_t a = 0; a < result->curve_count; a++) {
+        const struct curve *work = &result->curves[a];
+        if (strcmp(work->quantity, "work") != 0)
+            continue;
+        double cost = cost_of(work);
+        own += same_model(work, curve) && same_level(work, curve) ? cost : 0;
+        all += cost;
+    }
+    return all > 0 ? own / all : 1;
+}
+
+/* --- together --- */
+
+static double total_of(const struct curve_report *report) {
+    double squares = report->statistical * report->statistical;
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        squares += isnan(report->errors[s]) ? 0 : report->errors[s] * report->errors[s];
+    return sqrt(squares);
+}
+
+static double most_valueless(const struct curve *curve) {
+    double most = 0;
+    for (size_t a = 0; curve->valueless != NULL && a < curve->n; a++)
+        most = fmax(most, curve->valueless[a]);
+    return curve->valueless != NULL ? most : (double)NAN;
+}
+
+/* Copies what tells the curve apart. */
+static int place_of(struct case_result *about, const struct curve *curve, struct curve *out) {
+    *out = (struct curve){.quantity = result_text(about, curve->quantity)};
+    bool done = out->quantity != NULL;
+    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT && done; a++) {
+        const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
+        const char *text = curve_attribute_text(curve, row), *copy = result_text(about, text);
+        curve_set_attribute(out, row, copy, curve_attribute_number(curve, row));
+        done = text == NULL || copy != NULL;
+    }
+    return done ? 0 : ERROR_MEMORY;
+}
+
+static int curve_report_make(struct case_report *report, const struct case_result *result,
+                             const struct curve *curve, double *scratch, struct curve_report *out) {
+    int status = place_of(&report->about, curve, &out->place);
+    out->seconds = report->seconds * share_of(result, curve);
+    out->statistical = statistical_error(curve);
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        out->errors[s] = MEASURES[s](result, curve, scratch);
+    out->total = total_of(out);
+    out->valueless = most_valueless(curve);
+    for (size_t t = 0; t < curve->theory_count && status == 0; t++) {
+        const struct theory *theory = &curve->theories[t];
+        if (theory->y == NULL || curve->columns > 0)
+            continue;
+        size_t n = out->theory_count++;
+        out->theories[n].name = result_text(&report->about, theory->name);
+        out->theories[n].deviation = relative_size(curve->n, curve->y, theory->y, theory->y);
+        status = out->theories[n].name != NULL ? 0 : ERROR_MEMORY;
+    }
+    return status;
+}
+
+static const struct curve_report *main_curve(const struct case_report *report) {
+    const struct curve_report *found = NULL;
+    for (size_t a = 0; a < report->curve_count; a++) {
+        const struct curve_report *one = &report->curves[a];
+        bool random = one->statistical > 0; /* false for NaN, and for what is known exactly */
+        if (random && one->theory_count > 0)
+            return one;
+        if (random && found == NULL)
+            found = one;
+    }
+    return found;
+}
+
+static int copy_about(struct case_result *out, const struct case_result *result) {
+    out->case_number = result->case_number;
+    out->realisations = result->realisations;
+    out->parameters = result_room(out, result->parameter_count + 1, sizeof *out->parameters);
+    out->notes = result_room(out, result->note_count + 1, sizeof *out->notes);
+    bool done = out->parameters != NULL && out->notes != NULL;
+    for (size_t p = 0; p < result->parameter_count && done; p++) {
+        const struct result_parameter *from = &result->parameters[p];
+        struct result_parameter *to = &out->parameters[out->parameter_count++];
+        *to = (struct result_parameter){result_text(out, from->pointer),
+                                        result_text(out, from->text), from->number};
+        done = to->pointer != NULL && (from->text == NULL || to->text != NULL);
+    }
+    for (size_t n = 0; n < result->note_count && done; n++) {
+        struct result_note *to = &out->notes[out->note_count++];
+        *to = (struct result_note){result->notes[n].realisation,
+                                   result_text(out, result->notes[n].text)};
+        done = to->text != NULL;
+    }
+    out->notes_all = result->notes_all;
+    return done ? 0 : ERROR_MEMORY;
+}
+
+static int make_scalars(struct case_report *report, const struct case_result *result) {
+    report->scalars =
+        result_room(&report->about, result->scalar_count + 1, sizeof *report->scalars);
+    if (report->scalars == NULL)
+        return ERROR_MEMORY;
+    for (size_t s = 0; s < result->scalar_count; s++) {
+        const struct scalar *from = &result->scalars[s];
+        struct scalar_report *to = &report->scalars[report->scalar_count++];
+        to->name = result_text(&report->about, from->name);
+        to->value = from->value;
+        to->statistical = from->standard_error / fabs(from->value);
+        to->has_theory = !isnan(from->theory);
+        to->deviation = fabs(from->value - from->theory) / fabs(from->theory);
+        if (to->name == NULL)
+            return ERROR_MEMORY;
+    }
+    return 0;
+}
+
+static int make_curves(struct case_report *report, const struct case_result *result) {
+    size_t longest = 1;
+    for (size_t a = 0; a < result->curve_count; a++)
+        longest = result->curves[a].n > longest ? result->curves[a].n : longest;
+    double *scratch = array_create(longest, sizeof *scratch);
+    report->curves = result_room(&report->about, result->curve_count + 1, sizeof *report->curves);
+    int status = scratch != NULL && report->curves != NULL ? 0 : ERROR_MEMORY;
+    for (size_t a = 0; a < result->curve_count && status == 0; a++)
+        status = curve_report_make(report, result, &result->curves[a], scratch,
+                                   &report->curves[report->curve_count++]);
+    free(scratch);
+    return status;
+}
+
+int case_report_make(struct case_report *out, const struct case_result *result, double seconds,
+                     struct error *err) {
+    struct case_report report = {.seconds = seconds};
+    int status = copy_about(&report.about, result);
+    if (status == 0)
+        status = make_curves(&report, result);
+    if (status == 0)
+        status = make_scalars(&report, result);
+    if (status != 0) {
+        case_report_clear(&report);
+        return error_set(err, ERROR_MEMORY, "no memory left for a report");
+    }
+    report.main = main_curve(&report);
+    *out = report;
+    return 0;
+}
+
+double case_report_seconds_to_halve(const struct case_report *report) {
+    return report->main != NULL ? 3 * report->seconds : (double)NAN;
+}
