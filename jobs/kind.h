@@ -30,6 +30,7 @@ struct job_control {
     void *context;
 };
 
+struct result_view;
 struct job_shared;
 struct job_runner;
 struct job_merger;
@@ -39,7 +40,8 @@ struct job_kind {
     const struct parameter *parameters;
     size_t parameter_count;
     uint64_t default_realisations;
-    const char *const *scalars; /* names of the scalars of one realisation, NULL-terminated */
+    const char *const *scalars;     /* names of the scalars of one realisation, NULL-terminated */
+    const struct result_view *view; /* schema/result/view.h; NULL: nothing special is shown */
 
     /* Parameters of one case: the study's object of effective values, lists already replaced. Adds
      * faults that no single range shows (grid too large, alpha out of reach) and estimates the

@@ -4,6 +4,7 @@
 #include "jobs/contact/contact_curves.h"
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
+#include "jobs/contact/contact_view.h"
 #include <stdlib.h>
 
 static int check(const cJSON *parameters, struct fault_list *faults, struct job_estimate *estimate,
@@ -286,6 +287,7 @@ const struct job_kind CONTACT_KIND = {
     .parameter_count = CONTACT_PARAMETER_COUNT,
     .default_realisations = 20,
     .scalars = CONTACT_SCALARS,
+    .view = &CONTACT_VIEW,
     .check = check,
     .shared_create = shared_create,
     .shared_destroy = shared_destroy,

@@ -4,6 +4,7 @@
 #include "jobs/statistics/statistics_curves.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
+#include "jobs/statistics/statistics_view.h"
 #include <stdlib.h>
 
 static int check(const cJSON *parameters, struct fault_list *faults, struct job_estimate *estimate,
@@ -249,6 +250,7 @@ const struct job_kind STATISTICS_KIND = {
     .parameter_count = STATISTICS_PARAMETER_COUNT,
     .default_realisations = 1000,
     .scalars = STATISTICS_SCALARS,
+    .view = &STATISTICS_VIEW,
     .check = check,
     .runner_create = runner_create,
     .runner_destroy = runner_destroy,
