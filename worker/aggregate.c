@@ -52,11 +52,6 @@ static int case_merge(struct store *store, const char *study, uint64_t case_numb
     return status ? error_context(err, "case %llu", (unsigned long long)case_number) : 0;
 }
 
-static bool is_complete(const cJSON *curves, const struct case_info *info) {
-    double realisations = cJSON_GetNumberValue(field_at(curves, "realisations"));
-    return realisations >= (double)info->realisations;
-}
-
 /* A case that has not begun: without a merger, since a study may have ten thousand of them. */
 static int empty_curves(cJSON **out, struct error *err) {
     cJSON *curves = cJSON_CreateObject();
@@ -93,34 +88,25 @@ void aggregate_end(struct aggregate *aggregate) {
 /* Merges what is not published at this revision. */
 static int fresh_curves(struct store *store, const struct aggregate *aggregate,
                         uint64_t case_number, const struct case_info *info, cJSON **out,
-                        struct error *unpublished, struct error *err) {
+                        struct error *err) {
     const char *study = aggregate->about.id;
-    if (info->realisations_done == 0) {
+    if (info->realisations_done == 0)
         return empty_curves(out, err);
-    }
     int status = store_published(store, study, case_number, info->revision, out, err);
-    if (status || *out) {
+    if (status != 0 || *out != NULL)
         return status;
-    }
-    status = case_merge(store, study, case_number, aggregate->kind, info->parameters, out, err);
-    if (!status && is_complete(*out, info)) {
-        (void)store_publish(store, study, case_number, info->revision, *out, unpublished);
-    }
-    return status;
+    return case_merge(store, study, case_number, aggregate->kind, info->parameters, out, err);
 }
 
-/* unpublished: filled where only the publishing failed. */
-static int case_open(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
-                     struct case_info *info, cJSON **out, struct error *unpublished,
-                     struct error *err) {
+int aggregate_open(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                   struct case_info *info, cJSON **out, struct error *err) {
     struct case_info found = {0};
     cJSON *curves = NULL;
     int status = store_case(store, aggregate->about.id, case_number, &found, err);
-    if (status) {
+    if (status != 0)
         return status;
-    }
-    status = fresh_curves(store, aggregate, case_number, &found, &curves, unpublished, err);
-    if (status) {
+    status = fresh_curves(store, aggregate, case_number, &found, &curves, err);
+    if (status != 0) {
         case_info_clear(&found);
         return status;
     }
@@ -129,43 +115,36 @@ static int case_open(struct store *store, const struct aggregate *aggregate, uin
     return 0;
 }
 
-int aggregate_open(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
-                   struct case_info *info, cJSON **out, struct error *err) {
-    struct error unpublished = {0};
-    return case_open(store, aggregate, case_number, info, out, &unpublished, err);
-}
-
-/* For those who know the study's name only. */
-static int case_of_study(struct store *store, const char *study, uint64_t case_number, cJSON **out,
-                         struct error *unpublished, struct error *err) {
+int aggregate_case(struct store *store, const char *study, uint64_t case_number, cJSON **out,
+                   struct error *err) {
     struct aggregate aggregate;
     struct case_info info = {0};
     int status = aggregate_begin(store, study, &aggregate, err);
-    if (status) {
+    if (status != 0)
         return status;
-    }
-    status = case_open(store, &aggregate, case_number, &info, out, unpublished, err);
+    status = aggregate_open(store, &aggregate, case_number, &info, out, err);
     case_info_clear(&info);
     aggregate_end(&aggregate);
     return status;
 }
 
-int aggregate_case(struct store *store, const char *study, uint64_t case_number, cJSON **out,
-                   struct error *err) {
-    struct error unpublished = {0};
-    return case_of_study(store, study, case_number, out, &unpublished, err);
-}
-
 int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
                       struct error *err) {
-    struct error unpublished = {0};
+    struct aggregate aggregate;
+    struct case_info info = {0};
     cJSON *curves = NULL;
-    int status = case_of_study(store, study, case_number, &curves, &unpublished, err);
+    int status = aggregate_begin(store, study, &aggregate, err);
+    if (status != 0) /* an unknown kind is no fault of the case: another program knows it */
+        return status == ERROR_INPUT ? (err->code = ERROR_STATE) : status;
+    status = store_case(store, study, case_number, &info, err);
+    if (status == 0)
+        status =
+            case_merge(store, study, case_number, aggregate.kind, info.parameters, &curves, err);
+    if (status == 0)
+        status = store_publish(store, study, case_number, info.revision, curves, err);
     cJSON_Delete(curves);
-    if (!status && unpublished.code) {
-        *err = unpublished;
-        status = err->code;
-    }
+    case_info_clear(&info);
+    aggregate_end(&aggregate);
     return status;
 }
 

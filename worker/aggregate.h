@@ -34,12 +34,12 @@ struct curve_filter {
     int64_t case_number;  /* -1: all */
     const char *quantity; /* NULL: all */
 };
-/* Curves of a case at its present state, merged anew unless published at this revision; publishes
- * when the store is writable and every block of the case is there (a failure to publish is no
- * failure). Caller deletes *out. */
+/* Curves of a case at its present state, merged anew unless published at this revision. Caller
+ * deletes *out. */
 int aggregate_case(struct store *store, const char *study, uint64_t case_number, cJSON **out,
                    struct error *err);
-/* The same, for its effect alone: an error also where only the publishing fails. */
+/* Merges what a case has and publishes it. ERROR_INPUT, ERROR_NUMERIC: its results cannot be
+ * merged; ERROR_STATE: its kind is unknown to this program. */
 int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
                       struct error *err);
 /* The document of `curves`; ERROR_ABSENT for an unknown study or case, ERROR_INPUT for a quantity

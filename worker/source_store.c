@@ -1,6 +1,6 @@
 /* Jobs out of a local store, which other processes may have open as well. */
-#include "worker/aggregate.h"
 #include "worker/log.h"
+#include "worker/publish.h"
 #include "worker/source_backend.h"
 
 #include <stdio.h>
@@ -43,6 +43,10 @@ static int local_claim(void *self, const struct claim *claim, struct claimed_job
     int status = store_claim(local->store, claim, job, &count, err);
     if (status == 0)
         *found = count > 0;
+    if (status == 0 && store_claim_failed_jobs(local->store)) {
+        struct error unpublished = {0}; /* which leaves the cases due */
+        (void)publish_due(local->store, NULL, NULL, NULL, &unpublished);
+    }
     return status;
 }
 
@@ -52,11 +56,10 @@ static int local_heartbeat(void *self, const struct claimed_job *job, uint64_t d
     return store_heartbeat(local->store, job->id, job->token, done, err);
 }
 
-/* The result is safe by now: a case that cannot be published is merged anew by whoever asks for it.
- */
+/* What the worker did is safe by now: a case that is not published stays due. */
 static void local_publish(struct local *local, const struct claimed_job *job) {
     struct error err = {0};
-    if (aggregate_publish(local->store, job->study, job->case_number, &err) != 0) {
+    if (publish_case(local->store, job->study, job->case_number, &err) != 0) {
         struct log_about about = {.study = job->study};
         log_line(LEVEL_WARNING, &about, "case %llu is not published: %s",
                  (unsigned long long)job->case_number, err.text);
@@ -77,7 +80,10 @@ static int local_complete(void *self, const struct claimed_job *job,
 static int local_fail(void *self, const struct claimed_job *job, const char *reason, int permanent,
                       struct error *err) {
     struct local *local = self;
-    return store_fail(local->store, job->id, job->token, reason, permanent != 0, err);
+    int status = store_fail(local->store, job->id, job->token, reason, permanent != 0, err);
+    if (status == 0)
+        local_publish(local, job);
+    return status;
 }
 
 static int local_release(void *self, const struct claimed_job *job, struct error *err) {

@@ -1,5 +1,6 @@
 #include "worker/worker.h"
 #include "worker/clock.h"
+#include "worker/publish.h"
 #include "worker/worker_thread.h"
 
 #include <stdio.h>
@@ -91,6 +92,23 @@ static void name_default(char *name, size_t size, const char *host) {
     snprintf(name, size, "%s-%ld", host, (long)getpid());
 }
 
+static bool is_told_to_stop(void *context) {
+    const struct worker_options *options = context;
+    return options->stop != NULL && *options->stop;
+}
+
+/* Publishes what others, or these workers themselves, left due. */
+static int publish_left(struct worker_options *options, struct error *err) {
+    struct store *store = NULL;
+    if (options->source.database == NULL)
+        return 0;
+    int status = store_open(&store, options->source.database, NULL, err);
+    if (status == 0)
+        status = publish_due(store, is_told_to_stop, options, NULL, err);
+    store_close(&store);
+    return status;
+}
+
 int workers_run(const struct worker_options *options, struct error *err) {
     if (options->threads < 1 || options->threads > THREADS_MOST) {
         return error_set(err, ERROR_INPUT, "%u worker threads; 1 to %d are allowed",
@@ -116,9 +134,14 @@ int workers_run(const struct worker_options *options, struct error *err) {
     }
     int status = shared_parts_init(&pool.parts, err);
     if (status == 0) {
-        status = lease_keeper_create(&pool.keeper, &own.source, own.threads, err);
-        status = status != 0 ? status : worker_pool_work(&pool, threads, err);
+        status = publish_left(&own, err);
+        if (status == 0)
+            status = lease_keeper_create(&pool.keeper, &own.source, own.threads, err);
+        if (status == 0)
+            status = worker_pool_work(&pool, threads, err);
         lease_keeper_destroy(&pool.keeper);
+        if (status == 0)
+            status = publish_left(&own, err);
         shared_parts_destroy(&pool.parts);
     }
     free(threads);

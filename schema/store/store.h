@@ -46,6 +46,7 @@ struct study_status {
     const char *state;                  /* static: queued running done failed cancelled */
     uint64_t seed, cases, realisations; /* realisations of each case */
     uint64_t jobs, jobs_done, jobs_failed, jobs_running, jobs_waiting, jobs_cancelled;
+    uint64_t cases_failed; /* whose results cannot be published */
     uint64_t realisations_total, realisations_done,
         realisations_failed; /* done includes running jobs' reports */
     double seconds;          /* spent by completed jobs, summed over workers */
@@ -61,11 +62,13 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
 int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
                size_t *count, struct error *err);
 int store_cancel(struct store *store, const char *id, struct error *err); /* ERROR_STATE if ended */
-/* Failed jobs wait again with fresh attempts; *count of them. */
+/* Failed and cancelled jobs wait again with fresh attempts, *count of them; cases that could not be
+ * published are due again. */
 int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err);
 
+/* A job that failed, or a case that cannot be published. */
 struct failure {
-    int64_t job;
+    int64_t job; /* 0: the case, with all realisations that it has */
     uint64_t case_number, first, count, attempts;
     char *worker, *reason; /* owned */
 };
@@ -94,6 +97,8 @@ struct claim {
  * attempt fails the job with "lease ran out ..."). Oldest study first. *count may be 0. */
 int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs,
                 size_t *count, struct error *err);
+/* Whether the last claim failed a job for good, which may have left its case due. */
+bool store_claim_failed_jobs(const struct store *store);
 /* Renews the lease; done: realisations so far. ERROR_STATE when the lease is lost or the study
  * cancelled (the text says which). */
 int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_t done,
@@ -144,10 +149,40 @@ int store_publish(struct store *store, const char *study, uint64_t case_number, 
 /* The published document of a case, or NULL in *out when there is none of this revision. */
 int store_published(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
                     cJSON **out, struct error *err);
-/* A complete case whose curves are not published at its revision: the one behind `skip` others.
- * ERROR_ABSENT when there is none. */
-int store_unpublished(struct store *store, uint64_t skip, char study[STUDY_ID_SIZE],
-                      uint64_t *case_number, struct error *err);
+
+/* --- what is due --- */
+/* A case is due when nothing of it is left to run (its jobs are done, failed or cancelled), it has
+ * results, and these are neither published nor marked as impossible to publish. Whoever opens a
+ * store for writing publishes what is due, as another process may have ended before it did. */
+struct due_case {
+    char study[STUDY_ID_SIZE];
+    uint64_t case_number, revision;
+};
+/* Whether any case is. */
+int store_is_due(struct store *store, bool *due, struct error *err);
+/* Marks a case that cannot be published, with the reason: it is due no more, and its study fails
+ * once it ends. Does nothing where the case is not due at this revision. */
+int store_publish_failed(struct store *store, const struct due_case *due, const char *reason,
+                         struct error *err);
+struct publication {
+    /* Publishes one case by store_publish. ERROR_INPUT and ERROR_NUMERIC mark the case; any other
+     * error may pass, and leaves it due. */
+    int (*publish)(void *context, struct store *store, const struct due_case *due,
+                   struct error *err);
+    bool (*stop)(void *context); /* asked before each case; may be NULL */
+    void *context;
+    const char *study; /* only this study's case; NULL: all that is due */
+    uint64_t case_number;
+};
+struct publish_counts {
+    uint64_t published, failed;
+    uint64_t postponed;  /* cases that stay due */
+    struct error reason; /* of the last one postponed */
+};
+/* Offers each case that is due to publish, once, in the order of studies. ERROR_STOPPED when told
+ * to stop. */
+int store_publish_due(struct store *store, const struct publication *publication,
+                      struct publish_counts *counts, struct error *err);
 /* Cost and time of a case for the report. */
 struct case_cost {
     uint64_t case_number, realisations_done, realisations, jobs, attempts;

@@ -22,8 +22,9 @@ static int expire_one(struct store *store, struct error *err) {
     sqlite3_reset(row);
     struct job_row job;
     status = job_read(store, id, NULL, &job, err);
-    if (!status)
+    if (status == 0)
         status = job_give_up(store, &job, reason, false, err);
+    store->claim_failed_jobs |= status == 0 && job.attempts >= ATTEMPTS_MOST;
     return status ? status : 1;
 }
 
@@ -145,6 +146,7 @@ int store_claim(struct store *store, const struct claim *claim, struct claimed_j
     int64_t only = 0;
     size_t n = 0;
     *count = 0;
+    store->claim_failed_jobs = false;
     int status = change_begin(store, err);
     if (status)
         return status;
@@ -165,4 +167,8 @@ int store_claim(struct store *store, const struct claim *claim, struct claimed_j
         claimed_job_clear(&jobs[i]);
     *count = status ? 0 : n;
     return status;
+}
+
+bool store_claim_failed_jobs(const struct store *store) {
+    return store->claim_failed_jobs;
 }

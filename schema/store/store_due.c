@@ -1,26 +1,144 @@
-/* What is due: cases whose curves are to be published. */
+/* What is due: cases of which nothing is left to run and whose results are neither published nor
+ * marked as impossible to publish. The condition of the index case_due, word for word. */
 #include "schema/store/store_internal.h"
 #include <stdio.h>
 
-int store_unpublished(struct store *store, uint64_t skip, char study[STUDY_ID_SIZE],
-                      uint64_t *case_number, struct error *err) {
+#define DUE "jobs_left = 0 AND revision > settled"
+
+/* What find_due walks through: its position, and what is there. */
+struct cursor {
+    int64_t study;
+    struct due_case due;
+};
+
+/* The next case due behind the cursor, or the one that is asked for. 1, or 0 for none. */
+static int find_due(struct store *store, const struct publication *publication,
+                    struct cursor *cursor, struct error *err) {
     sqlite3_stmt *row = NULL;
     int status =
         store_query(store, &row, err,
-                    "SELECT s.public, c.number FROM study_case c JOIN study s ON s.id = "
-                    "c.study_id LEFT JOIN published p ON p.study_id = c.study_id AND "
-                    "p.case_number = c.number WHERE c.jobs_left = 0 AND c.realisations_done > 0 "
-                    "AND coalesce(p.revision, 0) < c.revision ORDER BY c.study_id, c.number "
-                    "LIMIT 1 OFFSET ?",
-                    "i", (int64_t)skip);
-    if (!status)
-        status = store_step(store, row, err);
+                    "SELECT study_id, number, revision, (SELECT public FROM study WHERE id = "
+                    "study_id) AS public FROM study_case INDEXED BY case_due WHERE " DUE
+                    " AND (study_id, number) > (?1, ?2) AND (?3 IS NULL OR (public = ?3 AND number "
+                    "= ?4)) ORDER BY study_id, number LIMIT 1",
+                    "iiti", cursor->study, (int64_t)cursor->due.case_number, publication->study,
+                    (int64_t)publication->case_number);
     if (status == 0)
-        return error_set(err, ERROR_ABSENT, "every complete case is published");
-    if (status < 0)
+        status = store_step(store, row, err);
+    if (status <= 0)
         return status;
-    snprintf(study, STUDY_ID_SIZE, "%s", (const char *)sqlite3_column_text(row, 0));
-    *case_number = (uint64_t)sqlite3_column_int64(row, 1);
+    struct due_case *due = &cursor->due;
+    cursor->study = sqlite3_column_int64(row, 0);
+    due->case_number = (uint64_t)sqlite3_column_int64(row, 1);
+    due->revision = (uint64_t)sqlite3_column_int64(row, 2);
+    snprintf(due->study, sizeof due->study, "%s", (const char *)sqlite3_column_text(row, 3));
     sqlite3_reset(row);
+    return 1;
+}
+
+int store_is_due(struct store *store, bool *due, struct error *err) {
+    int64_t found = 0;
+    int status = store_integer(
+        store, &found, err,
+        "SELECT EXISTS (SELECT 1 FROM study_case INDEXED BY case_due WHERE " DUE ")", "");
+    if (status == 0)
+        *due = found != 0;
+    return status;
+}
+
+/* Neither is cured by trying again. */
+static bool is_final(int status) {
+    return status == ERROR_INPUT || status == ERROR_NUMERIC;
+}
+
+static int offer(struct store *store, const struct publication *publication,
+                 const struct due_case *due, struct publish_counts *counts, struct error *err) {
+    struct error reason = {0};
+    int status = publication->publish(publication->context, store, due, &reason);
+    if (is_final(status)) {
+        counts->failed++;
+        return store_publish_failed(store, due, reason.text, err);
+    }
+    if (status != 0) {
+        counts->postponed++;
+        counts->reason = reason;
+    } else {
+        counts->published++;
+    }
     return 0;
+}
+
+int store_publish_due(struct store *store, const struct publication *publication,
+                      struct publish_counts *counts, struct error *err) {
+    struct cursor cursor = {0};
+    int status = 0;
+    *counts = (struct publish_counts){0};
+    while (status == 0 && (status = find_due(store, publication, &cursor, err)) == 1) {
+        if (publication->stop != NULL && publication->stop(publication->context))
+            status = error_set(err, ERROR_STOPPED, "stopped");
+        else
+            status = offer(store, publication, &cursor.due, counts, err);
+    }
+    return status;
+}
+
+/* --- marks --- */
+
+static int mark(struct store *store, int64_t study, const struct due_case *due, const char *reason,
+                struct error *err) {
+    int status =
+        store_run(store, err,
+                  "UPDATE study_case SET settled = revision, publish_error = ? WHERE "
+                  "study_id = ? AND number = ? AND revision = ? AND " DUE,
+                  "tiii", reason, study, (int64_t)due->case_number, (int64_t)due->revision);
+    if (status != 0 || sqlite3_changes(store->db) == 0)
+        return status;
+    status = store_run(store, err, "UPDATE study SET cases_failed = cases_failed + 1 WHERE id = ?",
+                       "i", study);
+    return status != 0 ? status : study_settle(store, study, err);
+}
+
+int store_publish_failed(struct store *store, const struct due_case *due, const char *reason,
+                         struct error *err) {
+    int64_t study = 0;
+    int status = change_begin(store, err);
+    if (status != 0)
+        return status;
+    status = study_row(store, due->study, &study, err);
+    if (status == 0)
+        status = mark(store, study, due, reason, err);
+    return change_end(store, status, err);
+}
+
+int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t revision,
+                struct error *err) {
+    int64_t marked = 0;
+    int status = store_integer(store, &marked, err,
+                               "SELECT publish_error IS NOT NULL FROM study_case WHERE study_id = "
+                               "? AND number = ? AND settled <= ?",
+                               "iii", study, case_number, revision);
+    if (status != 0)
+        return status == ERROR_ABSENT ? 0 : status;
+    status = store_run(store, err,
+                       "UPDATE study_case SET settled = ?, publish_error = NULL WHERE study_id = ? "
+                       "AND number = ?",
+                       "iii", revision, study, case_number);
+    if (status == 0 && marked)
+        status = store_run(
+            store, err,
+            "UPDATE study SET cases_failed = cases_failed - 1, state = CASE WHEN state = 'failed' "
+            "THEN 'running' ELSE state END WHERE id = ?",
+            "i", study);
+    return status == 0 && marked ? study_settle(store, study, err) : status;
+}
+
+int marks_clear(struct store *store, int64_t study, struct error *err) {
+    int status = store_run(store, err,
+                           "UPDATE study_case SET settled = 0, publish_error = NULL WHERE "
+                           "study_id = ? AND publish_error IS NOT NULL",
+                           "i", study);
+    if (status == 0)
+        status =
+            store_run(store, err, "UPDATE study SET cases_failed = 0 WHERE id = ?", "i", study);
+    return status;
 }

@@ -15,7 +15,8 @@ struct store {
     char boot[BOOT_SIZE]; /* of this boot of the machine; leases of another are void */
     time_t time;          /* of time_text */
     char time_text[24];   /* "" at first */
-    int batch;            /* inside store_begin .. store_commit */
+    bool claim_failed_jobs;
+    int batch; /* inside store_begin .. store_commit */
     /* Prepared once, found by the address of their text. */
     struct {
         const char *sql;
@@ -59,6 +60,12 @@ int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 int study_row(struct store *store, const char *id, int64_t *row, struct error *err);
 /* Ends the study when nothing of it waits or runs; raises its revision. */
 int study_settle(struct store *store, int64_t study, struct error *err);
+
+/* The results of this revision are published: takes the mark off that they cannot be. */
+int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t revision,
+                struct error *err);
+/* Takes the marks off all cases of a study that cannot be published: they are due again. */
+int marks_clear(struct store *store, int64_t study, struct error *err);
 
 /* What a change of a job needs to know of it. */
 struct job_row {

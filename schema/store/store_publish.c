@@ -172,6 +172,8 @@ int store_publish(struct store *store, const char *study, uint64_t case_number, 
         status = 0;
     if (!status && known < (int64_t)revision)
         status = write_case(&target, revision, curves, text, err);
+    if (status == 0)
+        status = case_settle(store, target.study, target.case_number, (int64_t)revision, err);
     free(text);
     return change_end(store, status, err);
 }

@@ -17,7 +17,8 @@ int study_settle(struct store *store, int64_t study, struct error *err) {
         store, err,
         "UPDATE study SET revision = revision + 1,"
         " state = CASE WHEN state IN ('cancelled', 'queued') OR jobs_waiting + "
-        "jobs_running > 0 THEN state WHEN jobs_failed > 0 THEN 'failed' ELSE 'done' END,"
+        "jobs_running > 0 THEN state WHEN jobs_failed + cases_failed > 0 THEN 'failed' ELSE 'done' "
+        "END,"
         " finished = CASE WHEN jobs_waiting + jobs_running > 0 THEN NULL"
         " ELSE coalesce(finished, ?) END WHERE id = ?",
         "ti", store_time(store), study);
@@ -131,7 +132,8 @@ static const char *state_name(const unsigned char *text) {
     "revision, created, finished, id, "                                                            \
     "(SELECT coalesce(sum(reported), 0) FROM job WHERE state = 'running' AND study_id = "          \
     "study.id), "                                                                                  \
-    "(SELECT count(DISTINCT worker) FROM job WHERE state = 'running' AND study_id = study.id)"
+    "(SELECT count(DISTINCT worker) FROM job WHERE state = 'running' AND study_id = study.id), "   \
+    "cases_failed"
 
 static uint64_t column_count(sqlite3_stmt *row, int column) {
     return (uint64_t)sqlite3_column_int64(row, column);
@@ -164,6 +166,7 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     column_time(row, 17, out->created);
     column_time(row, 18, out->finished);
     out->workers = column_count(row, 21);
+    out->cases_failed = column_count(row, 22);
     if (!out->name || !out->kind)
         return error_memory(err, 0, "a study's name");
     return 0;
@@ -301,12 +304,14 @@ int store_cancel(struct store *store, const char *id, struct error *err) {
 }
 
 static int retry_jobs(struct store *store, int64_t row, struct error *err) {
-    int status =
-        store_run(store, err,
-                  "UPDATE study_case SET jobs_left = jobs_left + (SELECT count(*) FROM job j "
-                  "WHERE j.study_id = study_case.study_id AND j.case_number = number AND "
-                  "j.state IN ('failed', 'cancelled')) WHERE study_id = ?",
-                  "i", row);
+    int status = marks_clear(store, row, err);
+    if (status == 0)
+        status =
+            store_run(store, err,
+                      "UPDATE study_case SET jobs_left = jobs_left + (SELECT count(*) FROM job j "
+                      "WHERE j.study_id = study_case.study_id AND j.case_number = number AND "
+                      "j.state IN ('failed', 'cancelled')) WHERE study_id = ?",
+                      "i", row);
     if (!status)
         status =
             store_run(store, err,
@@ -324,7 +329,7 @@ static int retry_jobs(struct store *store, int64_t row, struct error *err) {
 }
 
 int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err) {
-    int64_t row, jobs = 0;
+    int64_t row = 0, jobs = 0, marks = 0;
     int status = change_begin(store, err);
     if (status)
         return status;
@@ -333,59 +338,13 @@ int store_retry(struct store *store, const char *id, uint64_t *count, struct err
         status =
             store_integer(store, &jobs, err,
                           "SELECT jobs_failed + jobs_cancelled FROM study WHERE id = ?", "i", row);
-    if (!status && jobs)
+    if (!status)
+        status = store_integer(store, &marks, err, "SELECT cases_failed FROM study WHERE id = ?",
+                               "i", row);
+    if (!status && jobs + marks > 0)
         status = retry_jobs(store, row, err);
     status = change_end(store, status, err);
     if (!status)
         *count = (uint64_t)jobs;
     return status;
-}
-
-/* --- failures --- */
-
-void failures_free(struct failure *failures, size_t count) {
-    for (size_t i = 0; failures && i < count; i++) {
-        free(failures[i].worker);
-        free(failures[i].reason);
-    }
-    free(failures);
-}
-
-static int append_failure(sqlite3_stmt *row, struct failure **list, size_t count,
-                          struct error *err) {
-    struct failure *larger = realloc(*list, (count + 1) * sizeof *larger);
-    if (!larger)
-        return error_memory(err, (count + 1) * sizeof *larger, "failures");
-    *list = larger;
-    larger[count] =
-        (struct failure){sqlite3_column_int64(row, 0), column_count(row, 1), column_count(row, 2),
-                         column_count(row, 3),         column_count(row, 4), column_copy(row, 5),
-                         column_copy(row, 6)};
-    if (!larger[count].worker || !larger[count].reason)
-        return error_memory(err, 0, "a failure's reason");
-    return 0;
-}
-
-int store_failures(struct store *store, const char *id, struct failure **out, size_t *count,
-                   struct error *err) {
-    int64_t row = 0;
-    sqlite3_stmt *statement = NULL;
-    struct failure *list = NULL;
-    size_t n = 0;
-    int status = study_row(store, id, &row, err);
-    if (!status)
-        status =
-            store_query(store, &statement, err,
-                        "SELECT id, case_number, first, count, attempts, worker, error FROM job "
-                        "WHERE study_id = ? AND state = 'failed' ORDER BY id LIMIT 1000",
-                        "i", row);
-    while (!status && (status = store_step(store, statement, err)) == 1)
-        status = append_failure(statement, &list, n++, err);
-    if (status < 0) {
-        failures_free(list, n);
-        return status;
-    }
-    *out = list;
-    *count = n;
-    return 0;
 }

@@ -87,8 +87,9 @@ static cJSON *progress(const struct study_status *status, bool *complete) {
                 put(document, "kind", cJSON_CreateString(status->kind)) &&
                 put(document, "state", cJSON_CreateString(status->state)) &&
                 put(document, "seed", cJSON_CreateString(seed)) &&
-                put_count(document, "cases", status->cases) && put_jobs(document, status) &&
-                put_realisations(document, status) &&
+                put_count(document, "cases", status->cases) &&
+                put_count(document, "cases_failed", status->cases_failed) &&
+                put_jobs(document, status) && put_realisations(document, status) &&
                 put_count(document, "workers", status->workers) &&
                 put(document, "seconds", json_number(status->seconds)) &&
                 put(document, "seconds_left", json_number(time_left(status))) &&
@@ -104,14 +105,16 @@ static bool put_failures(cJSON *document, const struct failure *failures, size_t
     for (size_t i = 0; complete && i < count; i++) {
         const struct failure *failure = &failures[i];
         cJSON *entry = cJSON_CreateObject();
-        complete = entry && cJSON_AddItemToArray(list, entry) &&
-                   put_count(entry, "job", (uint64_t)failure->job) &&
-                   put_count(entry, "case", failure->case_number) &&
-                   put_count(entry, "first", failure->first) &&
-                   put_count(entry, "count", failure->count) &&
-                   put_count(entry, "attempts", failure->attempts) &&
-                   put(entry, "worker", cJSON_CreateString(failure->worker)) &&
-                   put(entry, "reason", cJSON_CreateString(failure->reason));
+        complete =
+            entry && cJSON_AddItemToArray(list, entry) &&
+            put(entry, "job",
+                failure->job ? cJSON_CreateNumber((double)failure->job) : cJSON_CreateNull()) &&
+            put_count(entry, "case", failure->case_number) &&
+            put_count(entry, "first", failure->first) &&
+            put_count(entry, "count", failure->count) &&
+            put_count(entry, "attempts", failure->attempts) &&
+            put(entry, "worker", cJSON_CreateString(failure->worker)) &&
+            put(entry, "reason", cJSON_CreateString(failure->reason));
     }
     return complete;
 }
@@ -121,7 +124,7 @@ int api_status(struct store *store, const char *id, cJSON **out, struct error *e
     struct failure *failures = NULL;
     size_t count = 0;
     int code = store_status(store, id, &status, err);
-    if (!code && status.jobs_failed)
+    if (!code && status.jobs_failed + status.cases_failed > 0)
         code = store_failures(store, id, &failures, &count, err);
     if (!code) {
         bool complete;

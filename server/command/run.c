@@ -6,6 +6,7 @@
 #include "server/show/progress.h"
 #include "server/show/summary.h"
 #include "worker/kinds.h"
+#include "worker/publish.h"
 #include "worker/worker.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,15 +82,20 @@ static int check_end(struct run *run, const struct study_status *now, struct err
     if (strcmp(now->state, "cancelled") == 0)
         return error_set(err, ERROR_STATE, "study %s was cancelled; rugo retry --db %s %s goes on",
                          run->id, run->database, run->id);
-    if (!now->jobs_failed)
+    if (now->jobs_failed + now->cases_failed == 0)
         return 0;
     int status = store_failures(run->store, run->id, &failures, &count, err);
-    if (!status)
+    const char *reason = count > 0 ? failures[count - 1].reason : "?"; /* jobs follow cases */
+    if (status == 0 && now->jobs_failed > 0)
         status = error_set(err, ERROR_STATE,
                            "study %s: jobs failed: %llu (%.200s); rugo retry --db %s %s queues "
                            "them again",
-                           run->id, (unsigned long long)now->jobs_failed,
-                           count ? failures[0].reason : "?", run->database, run->id);
+                           run->id, (unsigned long long)now->jobs_failed, reason, run->database,
+                           run->id);
+    else if (status == 0)
+        status =
+            error_set(err, ERROR_STATE, "study %s: cases that cannot be published: %llu (%.300s)",
+                      run->id, (unsigned long long)now->cases_failed, reason);
     failures_free(failures, count);
     return status;
 }
@@ -116,15 +122,17 @@ static int perform(struct run *run, struct error *err) {
     int status = submit(run, err);
     if (!status)
         status = store_status(run->store, run->id, &now, err);
-    if (!status && now.jobs_waiting + now.jobs_running > 0) {
-        study_status_clear(&now);
+    if (status == 0 && now.jobs_waiting + now.jobs_running > 0)
         status = work(run, err);
-        if (!status)
-            status = store_status(run->store, run->id, &now, err);
-    }
-    if (!status)
-        status = present(run, err);
-    if (!status)
+    if (status == 0)
+        status = publish_due(run->store, NULL, NULL, NULL, err);
+    study_status_clear(&now);
+    if (status == 0)
+        status = store_status(run->store, run->id, &now, err);
+    if (status != 0)
+        return status;
+    status = present(run, err);
+    if (status == 0 || now.cases_failed > 0) /* these are why it cannot be presented */
         status = check_end(run, &now, err);
     study_status_clear(&now);
     return status;

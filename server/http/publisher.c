@@ -1,7 +1,11 @@
 #include "server/http/service.h"
-#include "worker/aggregate.h"
+#include "worker/clock.h"
 #include "worker/log.h"
+#include "worker/publish.h"
 #include <stdlib.h>
+
+/* Between attempts at cases whose publishing failed for a reason that may pass. */
+enum { RETRY_FIRST_MS = 60000, RETRY_MOST_MS = 3600000 };
 
 struct publisher {
     struct store *store; /* its own handle */
@@ -11,43 +15,46 @@ struct publisher {
     bool work, stopping;
 };
 
-/* Publishes until nothing is due; a case that fails is left for the next time. */
-static void publish_due(struct publisher *publisher) {
-    char study[STUDY_ID_SIZE];
-    uint64_t case_number, skip = 0;
+static bool is_stopping(void *context) {
+    struct publisher *publisher = context;
+    pthread_mutex_lock(&publisher->mutex);
+    bool stopping = publisher->stopping;
+    pthread_mutex_unlock(&publisher->mutex);
+    return stopping;
+}
+
+/* True when cases stay due that are to be tried again. */
+static bool publish_all(struct publisher *publisher) {
     struct error err = {0};
-    int status;
-    while ((status = store_unpublished(publisher->store, skip, study, &case_number, &err)) == 0) {
-        pthread_mutex_lock(&publisher->mutex);
-        bool stopping = publisher->stopping;
-        pthread_mutex_unlock(&publisher->mutex);
-        if (stopping)
-            return;
-        if (aggregate_publish(publisher->store, study, case_number, &err)) {
-            struct log_about about = {.study = study};
-            log_line(LEVEL_ERROR, &about, "case %llu cannot be published: %s",
-                     (unsigned long long)case_number, err.text);
-            skip++;
-        }
-    }
-    if (status != ERROR_ABSENT)
+    uint64_t left = 0;
+    int status = publish_due(publisher->store, is_stopping, publisher, &left, &err);
+    if (status != 0 && status != ERROR_STOPPED)
         log_line(LEVEL_ERROR, NULL, "publishing: %s", err.text);
+    return status != 0 || left > 0;
+}
+
+/* Sleeps until there is work; with cases left, at most until the time to try them again. */
+static void wait_for_work(struct publisher *publisher, int64_t retry_ms) {
+    pthread_mutex_lock(&publisher->mutex);
+    while (!publisher->work && !publisher->stopping && clock_ms() < retry_ms)
+        if (retry_ms == INT64_MAX)
+            pthread_cond_wait(&publisher->woken, &publisher->mutex);
+        else
+            clock_cond_wait(&publisher->woken, &publisher->mutex, retry_ms);
+    publisher->work = false;
+    pthread_mutex_unlock(&publisher->mutex);
 }
 
 static void *publisher_thread(void *context) {
     struct publisher *publisher = context;
-    pthread_mutex_lock(&publisher->mutex);
-    while (!publisher->stopping) {
-        if (!publisher->work) {
-            pthread_cond_wait(&publisher->woken, &publisher->mutex);
-            continue;
-        }
-        publisher->work = false;
-        pthread_mutex_unlock(&publisher->mutex);
-        publish_due(publisher);
-        pthread_mutex_lock(&publisher->mutex);
+    int64_t pause_ms = RETRY_FIRST_MS;
+    while (!is_stopping(publisher)) {
+        bool left = publish_all(publisher);
+        wait_for_work(publisher, left ? clock_ms() + pause_ms : INT64_MAX);
+        pause_ms = !left                          ? RETRY_FIRST_MS
+                   : pause_ms < RETRY_MOST_MS / 2 ? 2 * pause_ms
+                                                  : RETRY_MOST_MS;
     }
-    pthread_mutex_unlock(&publisher->mutex);
     return NULL;
 }
 
@@ -55,9 +62,11 @@ int publisher_create(struct publisher **out, const char *database, struct error 
     struct publisher *publisher = array_create(1, sizeof *publisher);
     if (!publisher)
         return error_memory(err, sizeof *publisher, "the publisher");
-    publisher->work = true; /* an earlier server may have died before it published */
     pthread_mutex_init(&publisher->mutex, NULL);
-    pthread_cond_init(&publisher->woken, NULL);
+    if (clock_cond_init(&publisher->woken) != 0) {
+        free(publisher);
+        return error_set(err, ERROR_SYSTEM, "cannot make a condition");
+    }
     int status = store_open(&publisher->store, database, NULL, err);
     if (!status && pthread_create(&publisher->thread, NULL, publisher_thread, publisher))
         status = error_set(err, ERROR_SYSTEM, "cannot start the publisher's thread");

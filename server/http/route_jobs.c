@@ -156,8 +156,6 @@ static void complete(struct exchange *exchange, struct completing *completing) {
         answer_error(exchange, &err);
         return;
     }
-    if (completing->case_done && completing->first_time)
-        publisher_wake(exchange->service->publisher);
     cJSON *document = cJSON_CreateObject();
     if (document && !cJSON_AddBoolToObject(document, "case_done", completing->case_done)) {
         cJSON_Delete(document);

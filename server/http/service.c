@@ -5,6 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+static void wake_publisher(void *publisher) {
+    publisher_wake(publisher);
+}
+
 int service_open(struct service *service, const char *database, int64_t lease_ms,
                  struct error *err) {
     struct store_options options = {.lease_ms = lease_ms};
@@ -17,13 +21,15 @@ int service_open(struct service *service, const char *database, int64_t lease_ms
     if (!status)
         status = publisher_create(&service->publisher, database, err);
     if (!status)
+        writer_on_due(service->writer, wake_publisher, service->publisher);
+    if (!status)
         status = checker_create(&service->checker, err);
     return status;
 }
 
 void service_close(struct service *service) {
+    writer_destroy(&service->writer); /* wakes the publisher */
     publisher_destroy(&service->publisher);
-    writer_destroy(&service->writer);
     for (size_t r = 0; r < service->reader_count; r++)
         store_close(&service->readers[r]);
     store_close(&service->store); /* last: a reader cannot clear the write-ahead log away */

@@ -23,6 +23,8 @@ struct writer {
     pthread_cond_t posted;
     struct post *first, **last;
     bool stopping;
+    void (*due)(void *context); /* may be NULL */
+    void *due_context;
     struct writer_figures figures;
 };
 
@@ -39,6 +41,13 @@ static void run_batch(struct store *store, struct post *const *batch, size_t cou
         batch[i]->status = status;
         batch[i]->error = error;
     }
+}
+
+/* A question of one row, beside a commit. */
+static void tell_due(struct writer *writer) {
+    bool due = false;
+    if (writer->due != NULL && store_is_due(writer->store, &due, NULL) == 0 && due)
+        writer->due(writer->due_context);
 }
 
 static size_t take_batch(struct writer *writer, struct post **batch) {
@@ -69,6 +78,7 @@ static void *writer_thread(void *context) {
             break;
         pthread_mutex_unlock(&writer->mutex);
         run_batch(writer->store, batch, count);
+        tell_due(writer);
         for (size_t i = 0; i < count; i++)
             sem_post(&batch[i]->ended);
         pthread_mutex_lock(&writer->mutex);
@@ -108,6 +118,13 @@ void writer_destroy(struct writer **writer) {
     pthread_cond_destroy(&w->posted);
     free(w);
     *writer = NULL;
+}
+
+void writer_on_due(struct writer *writer, void (*due)(void *context), void *context) {
+    pthread_mutex_lock(&writer->mutex);
+    writer->due_context = context;
+    writer->due = due;
+    pthread_mutex_unlock(&writer->mutex);
 }
 
 int writer_do(struct writer *writer, store_change *change, void *context, struct error *err) {

@@ -14,6 +14,9 @@ struct writer;
 /* Borrows the store until writer_destroy, which finishes what was posted. */
 int writer_create(struct writer **out, struct store *store, struct error *err);
 void writer_destroy(struct writer **writer);
+/* After each commit that leaves a case due for publication, due(context) is called on the writer's
+ * thread. Set it before the first change is posted. */
+void writer_on_due(struct writer *writer, void (*due)(void *context), void *context);
 /* Runs change on the writer's thread; returns its status once committed, or the commit's error. */
 int writer_do(struct writer *writer, store_change *change, void *context, struct error *err);
 

@@ -185,7 +185,12 @@ void summary_of_status(const cJSON *status, FILE *file) {
     fprintf(file, "  workers %.0f, spent %s, left %s\n", number_of(status, "workers"), spent, left);
     const cJSON *failures = member(status, "failures");
     for (const cJSON *f = failures ? failures->child : NULL; f; f = f->next)
-        fprintf(file,
+        if (!cJSON_IsNumber(member(f, "job")))
+            fprintf(file, "  not published: case %.0f: %s\n", number_of(f, "case"),
+                    text_of(f, "reason", "-"));
+        else
+            fprintf(
+                file,
                 "  failed: case %.0f, realisations %.0f to %.0f, %.0f attempts, worker %s: %s\n",
                 number_of(f, "case"), number_of(f, "first"),
                 number_of(f, "first") + number_of(f, "count") - 1, number_of(f, "attempts"),

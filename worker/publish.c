@@ -1,0 +1,43 @@
+#include "worker/publish.h"
+#include "worker/aggregate.h"
+#include "worker/log.h"
+
+struct caller {
+    bool (*stop)(void *context);
+    void *context;
+};
+
+static int publish_one(void *context, struct store *store, const struct due_case *due,
+                       struct error *err) {
+    (void)context;
+    int status = aggregate_publish(store, due->study, due->case_number, err);
+    if (status != 0) {
+        struct log_about about = {.study = due->study};
+        log_line(LEVEL_WARNING, &about, "case %llu is not published: %s",
+                 (unsigned long long)due->case_number, err->text);
+    }
+    return status;
+}
+
+static bool is_stopped(void *context) {
+    struct caller *caller = context;
+    return caller->stop != NULL && caller->stop(caller->context);
+}
+
+int publish_due(struct store *store, bool (*stop)(void *context), void *context, uint64_t *left,
+                struct error *err) {
+    struct caller caller = {stop, context};
+    struct publication publication = {.publish = publish_one, .stop = is_stopped, &caller};
+    struct publish_counts counts;
+    int status = store_publish_due(store, &publication, &counts, err);
+    if (left != NULL)
+        *left = counts.postponed;
+    return status;
+}
+
+int publish_case(struct store *store, const char *study, uint64_t case_number, struct error *err) {
+    struct publication publication = {
+        .publish = publish_one, .study = study, .case_number = case_number};
+    struct publish_counts counts;
+    return store_publish_due(store, &publication, &counts, err);
+}
