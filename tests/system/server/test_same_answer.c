@@ -3,16 +3,16 @@
  * under way. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
+#include "tests/support/seed.h"
 #include "tests/support/small_studies.h"
 #include <signal.h>
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
-static unsigned seed;
+static uint64_t seed;
 
 /* One row out of a database, for what only its views tell. Whoever opens a database after a crash,
  * or closes it as the last one, keeps others out for a moment: the reader waits for them. */
@@ -61,8 +61,7 @@ static char *expected; /* by one worker, undisturbed */
 
 static int undisturbed(void **state) {
     (void)state;
-    seed = (unsigned)time(NULL);
-    print_message("seed %u\n", seed);
+    seed = seed_of_now();
     spit("study.json", SEVERAL_BLOCKS);
     assert_int_equal(run_rugo("one", (const char *[]){"run", "--db", "one.db", "--workers", "1",
                                                       "study.json", NULL}),
@@ -130,7 +129,7 @@ static void wait_until_at_work(const char *database, const struct process *worke
         assert_true(tries < 4000);
         sleep_ms(5);
     }
-    sleep_ms(rand_r(&seed) % 100);
+    sleep_ms((long)(next_word(&seed) % 100));
 }
 
 /* Kills a worker in the middle of a block; how many blocks (1, or 0 when it was just done) remain

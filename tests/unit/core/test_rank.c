@@ -2,6 +2,7 @@
  * of the keys, and no input makes ranking slow out of proportion. */
 #include "core/surface/rank.h"
 #include "tests/support/check.h"
+#include "tests/support/seed.h"
 #include <float.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -12,12 +13,8 @@
 static uint64_t seed;
 static uint64_t random_state;
 
-/* splitmix64 (Steele, Lea and Flood 2014). */
 static uint64_t random_word(void) {
-    uint64_t z = random_state += 0x9e3779b97f4a7c15U;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-    return z ^ (z >> 31);
+    return next_word(&random_state);
 }
 
 static double uniform(void) {
@@ -240,9 +237,8 @@ static void no_kind_is_quadratic(void **state) {
 }
 
 int main(void) {
-    seed = (uint64_t)time(NULL);
+    seed = seed_of_now();
     random_state = seed;
-    printf("seed %llu\n", (unsigned long long)seed);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ranks_equal_a_stable_sort),
         cmocka_unit_test(random_sizes_and_mixtures),

@@ -3,6 +3,7 @@
 #include "core/statistics/roughness.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"
+#include "tests/support/seed.h"
 #include <stdlib.h>
 
 static double *surface(const struct grid *grid, double ratio, struct generator **generator) {
@@ -118,7 +119,7 @@ static void correlation_of_a_surface_is_the_ring_mean(void **state) {
     const struct grid grid = {NX, NY, 3, 0.2 * ratio * NY}; /* dx = 0.2 */
     double z[NX * NY], lag[LAGS], correlation[LAGS], mean = 0;
     double sums[LAGS] = {0}, counts[LAGS] = {0};
-    uint64_t seed = 5;
+    uint64_t seed = seed_or(5);
     for (size_t p = 0; p < (size_t)NX * NY; p++) {
         seed = seed * 6364136223846793005u + 1442695040888963407u;
         z[p] = (double)(seed >> 40);

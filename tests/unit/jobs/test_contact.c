@@ -4,13 +4,13 @@
 #include "jobs/kind.h"
 #include "jobs/value.h"
 #include "schema/result/bytes.h"
+#include "tests/support/seed.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <cmocka.h>
 
@@ -40,13 +40,6 @@ static const char STEEP[] =
     " \"pressures\": {\"to\": 0.5, \"steps\": 3}}}";
 static const char *const STUDIES[] = {LEVELS, SURFACE, FULL, STEEP};
 enum { STUDY_COUNT = 4 };
-
-static uint64_t next_word(uint64_t *state) {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    return *state;
-}
 
 static const struct job_kind *kind(void) {
     return kind_find("contact");
@@ -159,8 +152,7 @@ static double at(const cJSON *curve, const char *key, int point) {
  */
 static void any_split_and_order(void **state) {
     (void)state;
-    uint64_t seed = (uint64_t)time(NULL) | 1;
-    printf("seed %llu\n", (unsigned long long)seed);
+    uint64_t seed = seed_of_now();
     for (int s = 0; s < STUDY_COUNT; s++) {
         struct job_shared *shared = shared_of(STUDIES[s]);
         struct job_runner *runners[] = {runner_of(STUDIES[s], shared),
@@ -254,8 +246,7 @@ static void foreign_and_damaged(void **state) {
  * an overflow (run under sanitizers). */
 static void malicious(void **state) {
     (void)state;
-    uint64_t seed = (uint64_t)time(NULL) | 1;
-    printf("seed %llu\n", (unsigned long long)seed);
+    uint64_t seed = seed_of_now();
     struct job_runner *runner = runner_of(FULL, NULL);
     struct job_merger *merger = merger_of(FULL);
     struct block_result good = run(runner, 0, 2);

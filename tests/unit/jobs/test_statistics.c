@@ -6,13 +6,13 @@
 #include "jobs/value.h"
 #include "schema/result/bytes.h"
 #include "schema/study/fault.h"
+#include "tests/support/seed.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <cmocka.h>
 
@@ -31,13 +31,6 @@ static const char PROFILE[] =
     " \"statistics\": {\"summits\": \"refined\"}}";
 static const char *const STUDIES[] = {GAUSSIAN, WEIBULL, PROFILE};
 enum { STUDY_COUNT = 3 };
-
-static uint64_t next_word(uint64_t *state) {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    return *state;
-}
 
 static const struct job_kind *kind(void) {
     return kind_find("statistics");
@@ -125,8 +118,7 @@ static double scalar(const cJSON *document, const char *name, const char *what) 
 /* Random blocks, run by several runners, merged in random order: the same text. */
 static void any_split_and_order(void **state) {
     (void)state;
-    uint64_t seed = (uint64_t)time(NULL) | 1;
-    printf("seed %llu\n", (unsigned long long)seed);
+    uint64_t seed = seed_of_now();
     for (int s = 0; s < STUDY_COUNT; s++) {
         struct job_runner *runners[] = {runner_of(STUDIES[s]), runner_of(STUDIES[s])};
         struct job_merger *whole = merger_of(STUDIES[s]);
@@ -220,8 +212,7 @@ static void foreign_and_damaged(void **state) {
  * never a crash, a read past the end or an overflow (run under sanitizers). */
 static void malicious(void **state) {
     (void)state;
-    uint64_t seed = (uint64_t)time(NULL) | 1;
-    printf("seed %llu\n", (unsigned long long)seed);
+    uint64_t seed = seed_of_now();
     struct job_runner *runner = runner_of(GAUSSIAN);
     struct job_merger *merger = merger_of(GAUSSIAN);
     struct block_result good = run(runner, 0, 2);

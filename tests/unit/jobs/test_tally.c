@@ -1,12 +1,12 @@
 /* Tallies and estimates: the errors are those of their definition over realisations, and any split
  * and order of merging gives the same bits. */
 #include "jobs/tally.h"
+#include "tests/support/seed.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <cmocka.h>
 
@@ -18,17 +18,9 @@ struct sample {
 };
 static struct sample sample;
 
-static uint64_t next_word(uint64_t *state) {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    return *state;
-}
-
 static int draw_sample(void **state) {
     (void)state;
-    uint64_t seed = (uint64_t)time(NULL) | 1;
-    printf("seed %llu\n", (unsigned long long)seed);
+    uint64_t seed = seed_of_now();
     for (size_t r = 0; r < REALISATIONS; r++) {
         sample.things[r] = 0;
         for (size_t cell = 0; cell < CELLS; cell++) {
@@ -140,7 +132,7 @@ static void errors_are_those_of_the_ratio(void **state) {
 /* Random splits, merged in random order, against all realisations in one block. */
 static void merging_is_exact(void **state) {
     (void)state;
-    uint64_t seed = 99;
+    uint64_t seed = seed_or(99);
     struct block whole, parts[REALISATIONS];
     block_fill(&whole, 0, REALISATIONS);
     struct bytes expected = block_bytes(&whole);

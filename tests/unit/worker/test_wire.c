@@ -1,4 +1,5 @@
 /* Jobs and results cross the network unchanged, bit for bit, and nothing malformed gets in. */
+#include "tests/support/seed.h"
 #include "worker/wire.h"
 
 #include <float.h>
@@ -185,16 +186,14 @@ static void fill(double *values, size_t n) {
                                               -DBL_MAX, DBL_TRUE_MIN, DBL_EPSILON,
                                               0.1,      1.0 / 3.0,    9007199254740993.0,
                                               1e23,     4.9e-322,     123456789012345680.0};
-    uint64_t word = 88172645463325252u; /* xorshift64, fixed seed */
+    uint64_t seed = seed_or(8);
     for (size_t i = 0; i < n; i++) {
         if (i < EXTREMES) {
             values[i] = extremes[i];
             continue;
         }
         do {
-            word ^= word << 13;
-            word ^= word >> 7;
-            word ^= word << 17;
+            uint64_t word = next_word(&seed);
             memcpy(&values[i], &word, sizeof word);
         } while (!isfinite(values[i]));
     }
