@@ -2,6 +2,8 @@
 #include "schema/json/wire_field.h"
 #include "worker/aggregate.h"
 
+#include "core/memory_file.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -164,12 +166,10 @@ static void put_curve(FILE *file, const cJSON *number, const cJSON *curve,
 int aggregate_csv(const cJSON *curves, char **out, struct error *err) {
     struct theories theories = {0};
     const cJSON *one, *curve;
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    if (!file) {
+    struct memory_file memory;
+    if (!memory_file_open(&memory))
         return error_set(err, ERROR_MEMORY, "no memory left for a table");
-    }
+    FILE *file = memory.file;
     theories_collect(&theories, curves);
     fputs("case,quantity,series,model,kinematics,level,pressure,x,x2", file);
     for (size_t n = 0; n < VALUES; n++) {
@@ -184,12 +184,9 @@ int aggregate_csv(const cJSON *curves, char **out, struct error *err) {
             put_curve(file, field_at(one, "case"), curve, &theories);
         }
     }
-    bool failed = ferror(file) != 0;
-    failed = fclose(file) != 0 || failed;
-    if (failed) {
-        free(text);
+    char *text = memory_file_close(&memory, NULL);
+    if (text == NULL)
         return error_set(err, ERROR_MEMORY, "no memory left for a table");
-    }
     *out = text;
     return 0;
 }

@@ -1,6 +1,8 @@
 /* Printing numbers that read back: cJSON settles for 15 digits where those come within a relative
  * 2^-52, which is another double. */
 #include "schema/json/json.h"
+
+#include "core/memory_file.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -67,17 +69,13 @@ static bool put_value(FILE *file, const cJSON *value) {
 }
 
 char *json_print(const cJSON *value) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    if (!file) {
+    struct memory_file memory;
+    if (!memory_file_open(&memory))
         return NULL;
-    }
-    bool done = put_value(file, value) && !ferror(file);
-    done = fclose(file) == 0 && done;
-    if (!done) {
-        free(text);
-        return NULL;
-    }
-    return text;
+    bool done = put_value(memory.file, value);
+    char *text = memory_file_close(&memory, NULL);
+    if (done)
+        return text;
+    free(text);
+    return NULL;
 }

@@ -1,4 +1,6 @@
 #include "server/http/service.h"
+
+#include "core/memory_file.h"
 #include "server/http/checker.h"
 #include "worker/clock.h"
 #include <inttypes.h>
@@ -84,14 +86,16 @@ int service_metrics(struct service *service, char **out, struct error *err) {
     struct store *reader;
     struct store_metrics metrics;
     struct writer_figures writer;
-    size_t size = 0;
+    struct memory_file memory;
     int status = service_reader(service, &reader, err);
     if (!status)
         status = store_metrics(reader, &metrics, err);
     service_give_back(service, reader);
-    FILE *file = status ? NULL : open_memstream(out, &size);
-    if (!file)
-        return status ? status : error_memory(err, 4096, "metrics");
+    if (status != 0)
+        return status;
+    if (!memory_file_open(&memory))
+        return error_memory(err, 4096, "metrics");
+    FILE *file = memory.file;
     writer_figures(service->writer, &writer);
     fprintf(file, "# HELP rugo_http_answers_total Answers by class of status.\n"
                   "# TYPE rugo_http_answers_total counter\n");
@@ -115,10 +119,9 @@ int service_metrics(struct service *service, char **out, struct error *err) {
                  (double)metrics.database_bytes);
     print_metric(file, "uptime_seconds", "gauge", "Seconds since the start.",
                  1e-3 * (double)(clock_ms() - service->started_ms));
-    bool failed = ferror(file);
-    if (fclose(file) || failed) {
-        free(*out);
-        return error_memory(err, size, "metrics");
-    }
+    char *text = memory_file_close(&memory, NULL);
+    if (text == NULL)
+        return error_memory(err, 4096, "metrics");
+    *out = text;
     return 0;
 }
