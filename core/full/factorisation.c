@@ -13,7 +13,9 @@ struct factorisation {
     cholmod_common common;
     cholmod_triplet *triplet;
     cholmod_factor *factor;
-    cholmod_dense *load;
+    /* Vectors of a solve, all made beforehand: cholmod_solve2 goes on with none where it cannot
+     * allocate its own. */
+    cholmod_dense *load, *solution, *permuted, *beyond;
 };
 
 static void number_unknowns(struct factorisation *f) {
@@ -30,6 +32,10 @@ static void number_unknowns(struct factorisation *f) {
             f->unknown[n] = n >= far_side && n < far_side + d ? HELD : count++;
     }
     f->unknowns = (size_t)count;
+}
+
+static cholmod_dense *vector(struct factorisation *f, size_t n) {
+    return cholmod_allocate_dense(n, 1, n, CHOLMOD_REAL, &f->common);
 }
 
 int factorisation_create(struct factorisation **out, const struct mesh *mesh, struct error *err) {
@@ -50,9 +56,11 @@ int factorisation_create(struct factorisation **out, const struct mesh *mesh, st
         number_unknowns(f);
         f->triplet = cholmod_allocate_triplet(f->unknowns, f->unknowns, entries, -1, CHOLMOD_REAL,
                                               &f->common);
-        f->load = cholmod_allocate_dense(f->unknowns, 1, f->unknowns, CHOLMOD_REAL, &f->common);
+        f->load = vector(f, f->unknowns);
+        f->solution = vector(f, f->unknowns);
+        f->permuted = vector(f, f->unknowns);
     }
-    if (f->triplet == NULL || f->load == NULL) {
+    if (f->triplet == NULL || f->load == NULL || f->solution == NULL || f->permuted == NULL) {
         status = error_memory(err, entries * 16, "a factorisation");
         factorisation_destroy(&f);
     }
@@ -67,6 +75,9 @@ void factorisation_destroy(struct factorisation **factorisation) {
     cholmod_free_triplet(&f->triplet, &f->common);
     cholmod_free_factor(&f->factor, &f->common);
     cholmod_free_dense(&f->load, &f->common);
+    cholmod_free_dense(&f->solution, &f->common);
+    cholmod_free_dense(&f->permuted, &f->common);
+    cholmod_free_dense(&f->beyond, &f->common);
     cholmod_finish(&f->common);
     free(f->unknown);
     free(f->held);
@@ -133,7 +144,10 @@ int factorisation_run(struct factorisation *f, const struct tangent *tangent, co
     cholmod_sparse *matrix = cholmod_triplet_to_sparse(f->triplet, 0, &f->common);
     if (matrix != NULL && f->factor == NULL)
         f->factor = cholmod_analyze(matrix, &f->common);
-    bool done = matrix != NULL && f->factor != NULL &&
+    /* The longest part of a supernode's columns below its diagonal block. */
+    if (f->factor != NULL && f->beyond == NULL)
+        f->beyond = vector(f, f->factor->maxesize > 0 ? f->factor->maxesize : 1);
+    bool done = matrix != NULL && f->factor != NULL && f->beyond != NULL &&
                 cholmod_factorize(matrix, f->factor, &f->common) && f->common.status == CHOLMOD_OK;
     int status = done ? 0 : failure(f, err);
     cholmod_free_sparse(&matrix, &f->common);
@@ -148,12 +162,11 @@ int factorisation_solve(struct factorisation *f, double *x, struct error *err) {
     for (size_t n = 0; n < degrees_of_freedom; n++)
         if (f->unknown[n] != HELD && !f->held[f->unknown[n]])
             load[f->unknown[n]] += x[n];
-    cholmod_dense *solution = cholmod_solve(CHOLMOD_A, f->factor, f->load, &f->common);
-    if (solution == NULL)
+    if (!cholmod_solve2(CHOLMOD_A, f->factor, f->load, NULL, &f->solution, NULL, &f->permuted,
+                        &f->beyond, &f->common))
         return failure(f, err);
-    const double *displacement = solution->x;
+    const double *displacement = f->solution->x;
     for (size_t n = 0; n < degrees_of_freedom; n++)
         x[n] = f->unknown[n] == HELD ? 0 : displacement[f->unknown[n]];
-    cholmod_free_dense(&solution, &f->common);
     return 0;
 }
