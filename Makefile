@@ -54,7 +54,7 @@ sources  = $(filter-out $(MAIN),$(wildcard $(1)/*.c $(1)/*/*.c))
 objects  = $(patsubst %,$(BUILD)/%.o,$(1))
 archive  = $(patsubst %,$(BUILD)/lib%.a,$(1))
 
-.PHONY: all deps run test unit validation system bench lint format check-format install clean
+.PHONY: all deps run test unit faults validation system bench lint format check-format install clean
 all: $(BUILD)/rugo
 
 # Rewritten when the flags change; all that they make depends on it.
@@ -100,18 +100,26 @@ $(1)-$(2): $$(TESTS_$(1)_$(2))
 	tests/run-tests $$^
 .PHONY: $(1)-$(2)
 endef
-LADDERS = unit validation system bench
+LADDERS = unit faults validation system bench
 $(foreach ladder,$(LADDERS),$(foreach layer,$(LAYERS),$(eval $(call TESTS,$(ladder),$(layer)))))
 all_tests = $(foreach layer,$(LAYERS),$(TESTS_$(1)_$(layer)))
 
 test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) run-tests-built
 .PHONY: run-tests-built
-run-tests-built: all $(foreach ladder,unit validation system,$(call all_tests,$(ladder)))
-	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(foreach ladder,unit validation system,$(call all_tests,$(ladder)))
-unit validation system: all
+run-tests-built: all $(foreach ladder,unit faults validation system,$(call all_tests,$(ladder)))
+	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(foreach ladder,unit faults validation system,$(call all_tests,$(ladder)))
+unit faults validation system: all
 	@$(MAKE) --no-print-directory $(call all_tests,$@)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,$@)
+
+# Faults: every allocation of a test program fails in turn (tests/support/failing).
+FAILING = $(patsubst %,$(BUILD)/tests/support/failing/%.c.o,failing_allocator each_allocation)
+$(call all_tests,faults): $(FAILING)
+run-faults:
+	@$(MAKE) --no-print-directory -j$$(nproc) $(call all_tests,faults)
+	@tests/run-tests $(call all_tests,faults)
+.PHONY: run-faults
 
 # Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads.
 run-unit:

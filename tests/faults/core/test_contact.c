@@ -1,0 +1,159 @@
+/* Protects: a block is pressed, and areas, patches and fits found, or refused for want of memory,
+ * whichever allocation fails; nothing leaks, and the same press succeeds afterwards. */
+#include "tests/support/check.h"
+
+#include "core/contact/area.h"
+#include "core/contact/contact.h"
+#include "core/contact/patches.h"
+#include "core/full/full.h"
+#include "core/full/mesh_file.h"
+#include "core/statistics/fit.h"
+#include "tests/support/failing/each_allocation.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { SIDE = 8, POINTS = SIDE * SIDE };
+static const struct grid GRID = {SIDE, SIDE, 1, 1}, LINE = {16, 1, 1, 1};
+static const struct block DEEP = {.model = MODEL_HALFSPACE, .poisson = 0.3, .height = INFINITY};
+static const struct block MESHED = {
+    .model = MODEL_LAYERED, .poisson = 0.3, .height = 1, .layer_growth = 1.5};
+
+static void heights(const struct grid *grid, double amplitude, double *z) {
+    for (size_t j = 0; j < grid->ny; j++)
+        for (size_t i = 0; i < grid->nx; i++)
+            z[j * grid->nx + i] = amplitude * (cos(2 * M_PI * (double)i / (double)grid->nx) +
+                                               cos(2 * M_PI * (double)j / (double)grid->ny));
+}
+
+struct pressed {
+    struct compliance *compliance;
+    struct contact *contact;
+    struct area_workspace *areas;
+    struct patch_finder *finder;
+};
+
+static int press_once(struct pressed *p, const struct block *block, struct error *err) {
+    double z[POINTS];
+    struct contact_state state;
+    struct contact_area area;
+    struct patches patches;
+    heights(&GRID, 0.1, z);
+    int status = compliance_create(&p->compliance, &GRID, block, err);
+    if (status == 0)
+        status = contact_create(&p->contact, p->compliance, &CONTACT_DEFAULTS, err);
+    if (status == 0)
+        status = area_workspace_create(&p->areas, p->compliance, err);
+    if (status == 0)
+        status = patch_finder_create(&p->finder, &GRID, err);
+    if (status == 0)
+        status = contact_begin(p->contact, z, err);
+    if (status == 0)
+        status = contact_press(p->contact, 0.05, &state, err);
+    if (status != 0)
+        return status;
+    contact_area(p->areas, state.p, state.opening, &area);
+    patches_find(p->finder, state.p, &patches, NULL);
+    assert_int_equal(patches.count, 1);
+    assert_true(area.edges > 0);
+    return 0;
+}
+
+static int press(void *context, struct error *err) {
+    struct pressed p = {0};
+    int status = press_once(&p, context, err);
+    patch_finder_destroy(&p.finder);
+    area_workspace_destroy(&p.areas);
+    contact_destroy(&p.contact);
+    compliance_destroy(&p.compliance);
+    return status;
+}
+
+static void linear_models(void **state) {
+    (void)state;
+    struct block deep = DEEP, meshed = MESHED;
+    each_allocation(&(struct failing_call){.name = "half-space", press, &deep});
+    each_allocation(&(struct failing_call){.name = "layered", press, &meshed});
+}
+
+struct solid_case {
+    struct grid grid;
+    enum equation_solver solver;
+};
+
+static int write_mesh(struct full *full, struct error *err) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    if (file == NULL)
+        return error_set(err, ERROR_MEMORY, "no stream");
+    int status = mesh_file_write(file, "a block", full_mesh(full), NULL, err);
+    /* Where the C library cannot close it for want of memory, it says so by no text alone. */
+    if ((fclose(file) != 0 || text == NULL) && status == 0)
+        status = error_set(err, ERROR_MEMORY, "a short stream");
+    free(text);
+    return status;
+}
+
+static int press_solid(void *context, struct error *err) {
+    const struct solid_case *solid = context;
+    struct full_options options = FULL_DEFAULTS;
+    struct full *full = NULL;
+    struct contact_state state;
+    double z[POINTS];
+    options.solver = solid->solver;
+    heights(&solid->grid, 0.02, z);
+    int status = full_create(&full, &solid->grid, &MESHED, &options, err);
+    if (status == 0)
+        status = full_begin(full, z, err);
+    if (status == 0)
+        status = full_press(full, 0.02, &state, NULL, err);
+    if (status == 0) {
+        assert_true(state.nodes > 0);
+        /* A press again, from a state that stands. */
+        status = full_press(full, 0.03, &state, NULL, err);
+    }
+    if (status == 0)
+        status = write_mesh(full, err);
+    full_destroy(&full);
+    return status;
+}
+
+static void full_model(void **state) {
+    (void)state;
+    struct solid_case cases[] = {
+        {LINE, SOLVER_ITERATED}, {LINE, SOLVER_FACTORED}, {{4, 4, 1, 1}, SOLVER_ITERATED}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
+        /* The factorisation has more than one way to order the unknowns. */
+        each_allocation(&(struct failing_call){.name = "full",
+                                               press_solid,
+                                               &cases[c],
+                                               .also = ERROR_SYSTEM,
+                                               .may_succeed = cases[c].solver == SOLVER_FACTORED});
+}
+
+static int fit_all(void *context, struct error *err) {
+    static const double LOAD[] = {0.01, 0.02, 0.03, 0.1}, FRACTION[] = {0.02, 0.04, 0.06, 0.2};
+    struct fit fit;
+    (void)context;
+    int status = fit_light_load(4, LOAD, FRACTION, &fit, err);
+    if (status == 0)
+        status = fit_power_law(4, LOAD, FRACTION, &fit, err);
+    if (status == 0)
+        status = fit_erf(4, LOAD, FRACTION, &fit, err);
+    return status;
+}
+
+static void fits(void **state) {
+    (void)state;
+    each_allocation(&(struct failing_call){.name = "fits", fit_all, NULL});
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(linear_models),
+        cmocka_unit_test(full_model),
+        cmocka_unit_test(fits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
