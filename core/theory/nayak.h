@@ -26,4 +26,13 @@ double profile_peak_joint_pdf(double z, double t1, double alpha); /* t1 = z''/sq
 double profile_mean_curvature(double z, double alpha);
 double profile_peak_density(double m2, double m4);
 
+/* What theory expects of the summits of a surface (dimension 2: F6.4, F6.5, F6.7) or the peaks of a
+ * profile (dimension 1: F7.2, F7.3). */
+struct summit_expectation {
+    double density;                      /* per area (length) */
+    double height_mean, height_variance; /* of z* */
+    double curvature;                    /* mean curvature over sqrt(m4), over all summits */
+};
+struct summit_expectation summit_expectation(int dimension, double m2, double m4, double alpha);
+
 #endif

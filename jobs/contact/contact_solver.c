@@ -2,14 +2,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Beyond these the equations are factorised, where the mesh allows it (core/full/newton.h). */
-static const double LINEAR_MOST = 20, SURFACE_FACTORED = 20000;
-/* An iteration of Newton's on a freedom takes as long as so many transforms on a point. */
-static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
-
-/* Of a factorisation, a freedom. */
-static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
-
 /* One of linear and full. */
 struct contact_solver {
     struct contact *linear;
@@ -41,8 +33,7 @@ int contact_solver_create(struct contact_solver **out, const struct contact_case
         status = error_memory(err, sizeof *solver, "a contact solver");
     else if (contact_case_is_full(study, model)) {
         struct full_options options = contact_full_options(study);
-        solver->transforms =
-            grid_is_profile(&compliance->grid) ? PROFILE_TRANSFORMS : SURFACE_TRANSFORMS;
+        solver->transforms = cost_full_transforms(&compliance->grid);
         status =
             full_create(&solver->full, &compliance->grid, &study->blocks[model], &options, err);
     } else {
@@ -66,37 +57,19 @@ void contact_solver_destroy(struct contact_solver **solver) {
     *solver = NULL;
 }
 
-struct contact_full_size contact_full_size(const struct contact_case *study, size_t model,
-                                           const struct grid *grid) {
-    const struct block *block = &study->blocks[model];
+struct full_size contact_full_size(const struct contact_case *study, size_t model,
+                                   const struct grid *grid) {
     struct full_options options = contact_full_options(study);
-    double slope = study->rms_slope;
-    bool profile = grid_is_profile(grid);
-    double over = 1 / (1 - 2 * block->poisson); /* bulk over shear modulus, about */
-    double steep = 16 * slope * (1 + slope) * pow(0.4 * fmin(over, 10), 0.4);
-    struct material solid = material_of(block->poisson, options.kinematics);
-    struct contact_full_size size = {.freedoms =
-                                         (double)full_degrees_of_freedom(grid, block, &options),
-                                     .newton = 2 + (profile ? 0.22 : 0.5) * log2((double)grid->nx),
-                                     .linear = 2 + steep,
-                                     .bulk = gmres_needs_pressures(&solid)};
-    size.factored = size.linear > LINEAR_MOST && (profile || size.freedoms <= SURFACE_FACTORED);
-    if (size.bulk)
-        size.linear += 0.12 * pow(over, 0.55);
-    return size;
+    return cost_full_size(grid, &study->blocks[model], &options, study->rms_slope);
 }
 
 double contact_solver_bytes(const struct contact_case *study, size_t model,
                             const struct grid *grid) {
     if (!contact_case_is_full(study, model))
         return contact_bytes(grid);
-    struct contact_full_size size = contact_full_size(study, model, grid);
+    struct full_size size = contact_full_size(study, model, grid);
     struct full_options options = contact_full_options(study);
-    double bytes = full_bytes(grid, &study->blocks[model], &options, 2 * size.linear);
-    if (size.factored)
-        bytes +=
-            (grid_is_profile(grid) ? PROFILE_FACTOR_BYTES : SURFACE_FACTOR_BYTES) * size.freedoms;
-    return isnan(bytes) ? 0 : bytes;
+    return cost_full_bytes(grid, &study->blocks[model], &options, &size);
 }
 
 int contact_solver_begin(struct contact_solver *s, const double *z, int (*stop)(void *context),

@@ -2,23 +2,15 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_SOLVER_H
 #define RUGO_JOBS_CONTACT_CONTACT_SOLVER_H
 
+#include "core/cost.h"
 #include "jobs/contact/contact_case.h"
 
 /* What the study asks of the model full. */
 struct full_options contact_full_options(const struct contact_case *study);
 
-/* How large and how hard the equations of the model full are on a grid: its cost is made of these.
- * Fitted to profiles of 64 to 8192 points and surfaces of 8 x 8 to 64 x 64, RMS slopes 0.01 to 0.7,
- * Poisson's ratios 0.3 to 0.4999. */
-struct contact_full_size {
-    double freedoms; /* 0 where the block takes too many layers */
-    double newton;   /* iterations a load, evenly spaced */
-    double linear;   /* iterations of the linear equations in each of these */
-    bool factored;   /* too many: they are factorised instead */
-    bool bulk;       /* with the pressures of nearly incompressible elements */
-};
-struct contact_full_size contact_full_size(const struct contact_case *study, size_t model,
-                                           const struct grid *grid);
+/* The equations of the model full on a grid. */
+struct full_size contact_full_size(const struct contact_case *study, size_t model,
+                                   const struct grid *grid);
 
 /* What a linear model has for a block of finite elements on the true geometry: the same mesh below
  * a flat face. Other blocks are their own. */

@@ -1,6 +1,6 @@
 #include "jobs/contact/contact_theory.h"
+#include "core/theory/bin_averages.h"
 #include "core/theory/contact.h"
-#include "core/theory/quadrature.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -97,19 +97,10 @@ void contact_theories_clear(struct contact_theories *theories) {
     *theories = (struct contact_theories){0};
 }
 
-static double density(double x, const void *load) {
-    return persson_pressure_pdf(x, *(const double *)load);
-}
-
 bool contact_theory_pressures(const struct contact_case *study, const struct modes *modes,
                               double load, double *pdf) {
-    const struct bins *bins = &study->pressure;
-    double width = bins_width(bins);
     if (is_one_wave(study, modes))
         return false;
-    for (size_t b = 0; b < bins->count; b++) {
-        double low = bins->low + (double)b * width;
-        pdf[b] = quadrature(density, &load, low, low + width, 4) / width;
-    }
+    bin_averages_persson(load, &study->pressure, pdf);
     return true;
 }

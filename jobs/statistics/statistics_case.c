@@ -1,4 +1,6 @@
 #include "jobs/statistics/statistics_case.h"
+#include "core/cost.h"
+#include "core/surface/spectrum_estimate.h"
 #include "jobs/case_reader.h"
 #include "jobs/statistics/statistics_tally.h"
 #include <math.h>
@@ -84,59 +86,14 @@ void statistics_case_clear(struct statistics_case *study) {
     *study = (struct statistics_case){0};
 }
 
-/* Radial density of the spectrum, any scale; what a table holds is not looked up for an estimate.
- */
-static double density_at(const struct surface_case *surface, double k) {
-    const struct spectrum *spectrum = &surface->spectrum;
-    double exponent = surface->dimension;
-    if (spectrum->type == SPECTRUM_SELF_AFFINE)
-        return pow(fmax(1, k * spectrum->wavelength_rolloff / 6.283185307179586),
-                   -(2 * spectrum->hurst + exponent));
-    if (spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
-        return pow(1 + k * k * spectrum->correlation_x * spectrum->correlation_y,
-                   -(1 + exponent) / 2);
-    return 1;
-}
-
-/* Summits (peaks) expected in a cell: Nayak's density with the moments of the radial spectrum
- * between the longest and the shortest wave, m2 and m4 of a plane section. */
-static double expected_summits(const struct surface_case *surface, double *alpha) {
-    enum { STEPS = 200 };
-    const double two_pi = 6.283185307179586;
-    double low = two_pi * surface->length_ratio / surface->grid.lx;
-    double high = two_pi * (double)surface_case_band(surface) / surface->grid.lx;
-    double step = log(fmax(high / low, 1 + 1e-6)) / STEPS, m0 = 0, m2 = 0, m4 = 0;
-    for (int a = 0; a < STEPS; a++) {
-        double k = low * exp((a + 0.5) * step);
-        double power = density_at(surface, k) * pow(k, surface->dimension);
-        m0 += power;
-        m2 += power * k * k * (surface->dimension == 2 ? 1.0 / 2 : 1);
-        m4 += power * k * k * k * k * (surface->dimension == 2 ? 3.0 / 8 : 1);
-    }
-    *alpha = m0 * m4 / (m2 * m2);
-    if (surface->dimension == 1)
-        return surface->grid.lx * sqrt(m4 / m2) / two_pi;
-    return surface->grid.lx * surface->grid.ly * m4 / m2 / (3 * sqrt(3) * two_pi);
-}
-
-/* CPU seconds a realisation on a 3 GHz core, fitted to runs of 256 x 256 to 8192 x 8192: an
- * iteration takes about 15 ns a point, and plain alternation stalls near 120 of them; all is dearer
- * beyond the caches. */
+/* CPU seconds of one realisation. */
 static double expected_seconds(const struct statistics_case *study) {
-    const struct surface_options *options = &study->surface.options;
-    double points = (double)grid_points(&study->surface.grid), nanoseconds = 6;
-    if (options->heights.type != HEIGHTS_GAUSSIAN) {
-        bool plain = options->iteration == ITERATION_PLAIN;
-        double iterations = plain ? 120 : (double)options->relaxed_iterations + 3;
-        nanoseconds += fmin(iterations, (double)options->max_iterations) * 15;
-    }
-    if (study->stencil == SUMMITS_REFINED)
-        nanoseconds += 15;
-    else if (study->curvature == CURVATURE_SPECTRAL)
-        nanoseconds += 4;
+    double points = (double)grid_points(&study->surface.grid);
+    double nanoseconds = cost_generation(&study->surface.options);
+    nanoseconds += cost_summits(study->stencil, study->curvature);
     if (!surface_case_exact(&study->surface))
-        nanoseconds += 17; /* spectra are measured */
-    return 1e-4 + 1e-9 * nanoseconds * points * (1 + 0.4 * fmax(0, log2(points) - 20));
+        nanoseconds += cost_spectra();
+    return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points);
 }
 
 void statistics_case_estimate(const struct statistics_case *study, struct job_estimate *out) {
@@ -145,7 +102,9 @@ void statistics_case_estimate(const struct statistics_case *study, struct job_es
     size_t mode_x = surface_case_band(surface);
     size_t mode_y = surface->dimension == 1 ? 0 : mode_x;
     double points = (double)grid_points(grid), alpha;
-    double summits = fmax(1, expected_summits(surface, &alpha));
+    double summits =
+        fmax(1, spectrum_expected_summits(&surface->spectrum, grid, surface->length_ratio,
+                                          (double)mode_x, &alpha));
     double spread = sqrt(fmax(0.05, 1 - 0.8968 / fmax(alpha, 1))); /* of summit heights */
     bool exact = surface_case_exact(surface);
     out->nx = grid->nx;

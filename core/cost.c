@@ -1,0 +1,151 @@
+#include "core/cost.h"
+#include "core/full/gmres.h"
+#include <math.h>
+
+/* --- surfaces --- */
+
+/* bench_surface: nanoseconds a point of a Gaussian surface. */
+static const double GAUSSIAN_NS = 6;
+/* bench_nongaussian: nanoseconds a point and iteration; iterations after which plain alternation
+ * stalls; plain iterations behind the relaxed ones. */
+static const double ITERATION_NS = 15, PLAIN_ITERATIONS = 120, LAST_ITERATIONS = 3;
+/* bench_summits: nanoseconds a point of refined summits and of spectral curvatures. */
+static const double REFINED_NS = 15, SPECTRAL_CURVATURE_NS = 4;
+/* Nanoseconds a point of psd_measure and acf_measure together, fitted to surfaces of 256 x 256 to
+ * 8192 x 8192 points. */
+static const double SPECTRA_NS = 17;
+/* bench_surface: slower by this much a doubling of the points, from 2^20 points on. */
+static const double CACHE_SLOPE = 0.4, CACHE_DOUBLINGS = 20;
+
+double cost_generation(const struct surface_options *options) {
+    double nanoseconds = GAUSSIAN_NS;
+    if (options->heights.type != HEIGHTS_GAUSSIAN) {
+        bool plain = options->iteration == ITERATION_PLAIN;
+        double iterations =
+            plain ? PLAIN_ITERATIONS : (double)options->relaxed_iterations + LAST_ITERATIONS;
+        nanoseconds += fmin(iterations, (double)options->max_iterations) * ITERATION_NS;
+    }
+    return nanoseconds;
+}
+
+double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature) {
+    if (stencil == SUMMITS_REFINED)
+        return REFINED_NS;
+    return curvature == CURVATURE_SPECTRAL ? SPECTRAL_CURVATURE_NS : 0;
+}
+
+double cost_spectra(void) {
+    return SPECTRA_NS;
+}
+
+double cost_caches(double points) {
+    return 1 + CACHE_SLOPE * fmax(0, log2(points) - CACHE_DOUBLINGS);
+}
+
+/* --- linear contact --- */
+
+/* bench_contact: transforms a load at a tolerance of 1e-8 are FRONT * nx^POWER, for profiles of 64
+ * to 4096 points and surfaces of 128 x 128 to 1024 x 1024, loads up to 0.3; few loads lie far apart
+ * and take more each. */
+static const double PROFILE_FRONT = 12.5, PROFILE_POWER = 0.37;
+static const double SURFACE_FRONT = 9.3, SURFACE_POWER = 0.45;
+static const double FEW_LOADS = 1.5;
+/* The tolerance enters as (digits + 2)/10. */
+static const double DIGITS_MORE = 2, DIGITS_WHOLE = 10;
+/* bench_contact: nanoseconds a point and transform, with what belongs to it; slower by a tenth a
+ * doubling of the points, from 2^14 points on. */
+static const double PROFILE_TRANSFORM_NS = 4, SURFACE_TRANSFORM_NS = 5;
+static const double TRANSFORM_CACHE_SLOPE = 0.1, TRANSFORM_CACHE_DOUBLINGS = 14;
+
+static double load_transforms(const struct grid *grid, double tolerance, size_t loads) {
+    double side = (double)grid->nx, digits = -log10(tolerance);
+    double transforms = grid_is_profile(grid) ? PROFILE_FRONT * pow(side, PROFILE_POWER)
+                                              : SURFACE_FRONT * pow(side, SURFACE_POWER);
+    return transforms * (1 + FEW_LOADS / (double)loads) * (DIGITS_MORE + digits) / DIGITS_WHOLE;
+}
+
+double cost_linear_contact(const struct grid *grid, double tolerance, size_t loads) {
+    double points = (double)grid_points(grid);
+    double nanoseconds = grid_is_profile(grid) ? PROFILE_TRANSFORM_NS : SURFACE_TRANSFORM_NS;
+    nanoseconds *= 1 + TRANSFORM_CACHE_SLOPE * fmax(0, log2(points) - TRANSFORM_CACHE_DOUBLINGS);
+    return 1e-9 * nanoseconds * points * load_transforms(grid, tolerance, loads) * (double)loads;
+}
+
+/* --- finite elements (bench_full) --- */
+
+/* Iterations of Newton's method a load: NEWTON_LEAST and so many a doubling of nx. */
+static const double NEWTON_LEAST = 2, PROFILE_NEWTON = 0.22, SURFACE_NEWTON = 0.5;
+/* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.4, h' the
+ * RMS slope and B = 1/(1 - 2 nu), about the bulk over the shear modulus; with pressures as unknowns
+ * 0.12 B^0.55 more. */
+static const double LINEAR_LEAST = 2, STEEP = 16, BULK_FRONT = 0.4, BULK_MOST = 10;
+static const double BULK_POWER = 0.4, PRESSURE_FRONT = 0.12, PRESSURE_POWER = 0.55;
+/* Beyond these iterations, and up to these degrees of freedom of a surface, the equations are
+ * factorised (core/full/newton.h). */
+static const double FACTORED_ITERATIONS = 20, SURFACE_FACTORED = 20000;
+/* Nanoseconds a degree of freedom: of an iteration of Newton's method without its linear equations,
+ * of an iteration of these, what pressures add to that, and of an iteration of Newton's method with
+ * a factorisation. */
+static const double PROFILE_NEWTON_NS = 250, SURFACE_NEWTON_NS = 1100;
+static const double PROFILE_LINEAR_NS = 36, SURFACE_LINEAR_NS = 80, PRESSURE_NS = 50;
+static const double PROFILE_FACTORED_NS = 5000, SURFACE_FACTORED_NS = 7e4;
+/* Bytes of a factorisation a degree of freedom. */
+static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
+/* Transforms of a point in the time of an iteration of Newton's method on a degree of freedom. */
+static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
+
+struct full_size cost_full_size(const struct grid *grid, const struct block *block,
+                                const struct full_options *options, double rms_slope) {
+    bool profile = grid_is_profile(grid);
+    double bulk = 1 / (1 - 2 * block->poisson);
+    double steep =
+        STEEP * rms_slope * (1 + rms_slope) * pow(BULK_FRONT * fmin(bulk, BULK_MOST), BULK_POWER);
+    struct material material = material_of(block->poisson, options->kinematics);
+    struct full_size size = {.degrees_of_freedom =
+                                 (double)full_degrees_of_freedom(grid, block, options),
+                             .newton = NEWTON_LEAST + (profile ? PROFILE_NEWTON : SURFACE_NEWTON) *
+                                                          log2((double)grid->nx),
+                             .linear = LINEAR_LEAST + steep,
+                             .pressures = gmres_needs_pressures(&material)};
+    size.factored = size.linear > FACTORED_ITERATIONS &&
+                    (profile || size.degrees_of_freedom <= SURFACE_FACTORED);
+    if (size.pressures)
+        size.linear += PRESSURE_FRONT * pow(bulk, PRESSURE_POWER);
+    return size;
+}
+
+double cost_full_contact(const struct grid *grid, const struct full_size *size, size_t loads) {
+    bool profile = grid_is_profile(grid);
+    double linear =
+        (profile ? PROFILE_LINEAR_NS : SURFACE_LINEAR_NS) + (size->pressures ? PRESSURE_NS : 0);
+    double nanoseconds = (profile ? PROFILE_NEWTON_NS : SURFACE_NEWTON_NS) + linear * size->linear;
+    if (size->factored)
+        nanoseconds = profile ? PROFILE_FACTORED_NS : SURFACE_FACTORED_NS;
+    return 1e-9 * nanoseconds * size->degrees_of_freedom * size->newton * (double)loads;
+}
+
+double cost_full_bytes(const struct grid *grid, const struct block *block,
+                       const struct full_options *options, const struct full_size *size) {
+    double bytes = full_bytes(grid, block, options, 2 * size->linear);
+    if (size->factored)
+        bytes += (grid_is_profile(grid) ? PROFILE_FACTOR_BYTES : SURFACE_FACTOR_BYTES) *
+                 size->degrees_of_freedom;
+    return isnan(bytes) ? 0 : bytes;
+}
+
+double cost_full_transforms(const struct grid *grid) {
+    return grid_is_profile(grid) ? PROFILE_TRANSFORMS : SURFACE_TRANSFORMS;
+}
+
+/* --- scatter --- */
+
+/* A cell of n longest waves holds about n^dimension independent pieces of surface. Fitted to
+ * profiles of 2 to 32 and surfaces of 4 and 8 waves; small Hurst exponents put more into the short
+ * waves, of which there are many, and scatter less. */
+static const double PROFILE_SCATTER = 0.2, SURFACE_SCATTER = 0.05, HURST_LEAST = 0.25;
+
+double cost_area_scatter(int dimension, double long_waves, double hurst) {
+    double scatter =
+        dimension == 1 ? PROFILE_SCATTER / sqrt(long_waves) : SURFACE_SCATTER / long_waves;
+    return isnan(hurst) ? scatter : scatter * (HURST_LEAST + hurst);
+}

@@ -1,0 +1,49 @@
+/* What computations cost before they run: CPU seconds on one core at 3 GHz, bytes, and the scatter
+ * of results from one realisation to the next. Every constant in cost.c names its unit and the
+ * bench in tests/bench/core that it was fitted to; estimates are within a factor of about 2. */
+#ifndef RUGO_CORE_COST_H
+#define RUGO_CORE_COST_H
+
+#include "core/full/full.h"
+#include "core/statistics/summits.h"
+#include "core/surface/surface.h"
+
+/* Nanoseconds a point and realisation: to generate a surface, to find its summits, and to measure
+ * its spectral density and autocorrelation. */
+double cost_generation(const struct surface_options *options);
+double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature);
+double cost_spectra(void);
+/* By how much work on so many points slows down beyond the processor's caches. */
+double cost_caches(double points);
+
+/* CPU seconds of a linear model (core/contact) for a series of loads of one surface. tolerance is
+ * that of contact_options. */
+double cost_linear_contact(const struct grid *grid, double tolerance, size_t loads);
+
+/* How many equations the finite elements (core/full) have on a grid, and how hard they are to
+ * solve. Fitted to profiles of 64 to 8192 points and surfaces of 8 x 8 to 64 x 64, RMS slopes of
+ * 0.01 to 0.7 and Poisson's ratios of 0.3 to 0.4999. */
+struct full_size {
+    double degrees_of_freedom; /* 0 where the block takes too many layers */
+    double newton;             /* iterations of Newton's method a load, evenly spaced loads */
+    double linear;             /* iterations of the linear equations in each of these */
+    bool factored;             /* linear is so large that the equations are factorised instead */
+    bool pressures; /* elements are nearly incompressible: their pressures are unknowns */
+};
+struct full_size cost_full_size(const struct grid *grid, const struct block *block,
+                                const struct full_options *options, double rms_slope);
+/* CPU seconds for a series of loads of one surface, and bytes of the solver; 0 bytes where the
+ * block takes too many layers. */
+double cost_full_contact(const struct grid *grid, const struct full_size *size, size_t loads);
+double cost_full_bytes(const struct grid *grid, const struct block *block,
+                       const struct full_options *options, const struct full_size *size);
+/* What an iteration of Newton's method on a degree of freedom is worth in Fourier transforms of a
+ * point, the unit of contact_state.work. */
+double cost_full_transforms(const struct grid *grid);
+
+/* Standard deviation of the contact fraction from one realisation to the next, over its mean.
+ * long_waves: side of the cell in longest waves; hurst: NaN for spectra that are not self-affine.
+ */
+double cost_area_scatter(int dimension, double long_waves, double hurst);
+
+#endif
