@@ -44,11 +44,9 @@ static void print_field(FILE *file, double number) {
 static void print_labels(FILE *file, uint64_t case_number, const struct curve *curve) {
     fprintf(file, "%llu,", (unsigned long long)case_number);
     print_text(file, curve->quantity);
-    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++) {
-        const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
+    const struct curve_attribute *row;
+    for (size_t n = 0; (row = curve_column(n)) != NULL; n++) {
         const char *text = curve_attribute_text(curve, row);
-        if (!row->in_tables)
-            continue;
         print_field(file, curve_attribute_number(curve, row));
         if (text != NULL)
             print_text(file, text);
@@ -84,9 +82,9 @@ static void print_line(FILE *file, uint64_t case_number, const struct curve *cur
 
 static void print_heading(FILE *file, const struct theory_columns *theories) {
     fputs("case,quantity", file);
-    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++)
-        if (CURVE_ATTRIBUTES[a].in_tables)
-            fprintf(file, ",%s", CURVE_ATTRIBUTES[a].key);
+    const struct curve_attribute *row;
+    for (size_t n = 0; (row = curve_column(n)) != NULL; n++)
+        fprintf(file, ",%s", row->key);
     fputs(",x,x2,y,standard_error", file);
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         fprintf(file, ",%s", ERROR_SOURCE_ROWS[s].key);

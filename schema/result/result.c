@@ -17,13 +17,20 @@ const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES] = {
 };
 
 const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT] = {
-    {"series", offsetof(struct curve, series), ATTRIBUTE_TEXT, true, true},
-    {"model", offsetof(struct curve, model), ATTRIBUTE_TEXT, false, true},
-    {"level", offsetof(struct curve, level), ATTRIBUTE_NUMBER, false, true},
-    {"points", offsetof(struct curve, points), ATTRIBUTE_NUMBER, false, false},
-    {"kinematics", offsetof(struct curve, kinematics), ATTRIBUTE_TEXT, false, true},
-    {"pressure", offsetof(struct curve, pressure), ATTRIBUTE_NUMBER, true, true},
+    {"series", offsetof(struct curve, series), ATTRIBUTE_TEXT, true, 1},
+    {"model", offsetof(struct curve, model), ATTRIBUTE_TEXT, false, 2},
+    {"level", offsetof(struct curve, level), ATTRIBUTE_NUMBER, false, 4},
+    {"points", offsetof(struct curve, points), ATTRIBUTE_NUMBER, false, 0},
+    {"kinematics", offsetof(struct curve, kinematics), ATTRIBUTE_TEXT, false, 3},
+    {"pressure", offsetof(struct curve, pressure), ATTRIBUTE_NUMBER, true, 5},
 };
+
+const struct curve_attribute *curve_column(size_t n) {
+    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++)
+        if (CURVE_ATTRIBUTES[a].column == n + 1)
+            return &CURVE_ATTRIBUTES[a];
+    return NULL;
+}
 
 const char *curve_attribute_text(const struct curve *curve, const struct curve_attribute *row) {
     if (row->type != ATTRIBUTE_TEXT)

@@ -84,10 +84,12 @@ struct curve_attribute {
     size_t offset;   /* in struct curve */
     enum attribute_type type;
     bool tells_series; /* of one estimator at one pressure: other than by model and mesh */
-    bool in_tables;    /* a column of CSV and views */
+    size_t column;     /* of CSV, reports and views, counted from 1; 0: in none of them */
 };
 enum { CURVE_ATTRIBUTE_COUNT = 6 };
 extern const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT];
+/* Those that have a column, in the order of the columns, n from 0; NULL behind the last one. */
+const struct curve_attribute *curve_column(size_t n);
 /* NULL for a number's; NaN for a text's. */
 const char *curve_attribute_text(const struct curve *curve, const struct curve_attribute *row);
 double curve_attribute_number(const struct curve *curve, const struct curve_attribute *row);

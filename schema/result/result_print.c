@@ -66,14 +66,19 @@ static bool put_values(FILE *file, bool *first, const char *key, const struct cu
 
 /* --- a curve --- */
 
+/* All attributes, or those that have a column; NULL behind the last one. */
+static const struct curve_attribute *attribute_at(size_t n, bool all) {
+    if (!all)
+        return curve_column(n);
+    return n < CURVE_ATTRIBUTE_COUNT ? &CURVE_ATTRIBUTES[n] : NULL;
+}
+
 bool curve_print_attributes(FILE *file, const struct curve *curve, bool all) {
+    const struct curve_attribute *row;
     bool done = true, first = false;
-    for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT && done; a++) {
-        const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
+    for (size_t n = 0; done && (row = attribute_at(n, all)) != NULL; n++) {
         const char *text = curve_attribute_text(curve, row);
         double number = curve_attribute_number(curve, row);
-        if (!all && !row->in_tables)
-            continue;
         if (text != NULL)
             done = put_text(file, &first, row->key, text);
         else if (!isnan(number))
