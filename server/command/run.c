@@ -1,5 +1,6 @@
 /* `rugo run`: a study from submission to table in one process; goes on where an earlier run of the
  * same study stopped. */
+#include "schema/result/result_json.h"
 #include "server/command/access.h"
 #include "server/command/command.h"
 #include "server/show/output.h"
@@ -16,24 +17,8 @@
  * Heartbeats come every 5 s. */
 enum { LEASE_MS = 20000 };
 
-struct options {
-    const char *database, *folder;
-    const char **sets;
-    unsigned threads;
-};
-#define AT(member) offsetof(struct options, member)
-static const struct option_row OPTIONS[] = {
-    {"db", 0, OPTION_TEXT, 0, 0, AT(database), "FILE", DATABASE, "the local store"},
-    {"workers", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(threads), "N", "0",
-     "threads; 0: as many as processors"},
-    {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
-     "write curves.json, a CSV a curve and an SVG a quantity"},
-    {0}};
-
 struct run {
-    const char *file, *database, *folder;
-    const char *const *sets;
+    const char *file, *database, *folder, **sets;
     unsigned threads;
     struct store *store;
     char id[STUDY_ID_SIZE];
@@ -61,7 +46,7 @@ static int submit(struct run *run, struct error *err) {
 
 /* Works until the study has ended; with others at work on it, waits for them too. */
 static int work(struct run *run, struct error *err) {
-    struct progress progress = {.store = run->store, .study = run->id};
+    struct study_progress progress = {.store = run->store, .study = run->id};
     struct worker_options options = {
         .source = {.database = run->database, .study = run->id, .lease_ms = LEASE_MS},
         .threads = run->threads,
@@ -100,20 +85,35 @@ static int check_end(struct run *run, const struct study_status *now, struct err
     return status;
 }
 
-static int present(struct run *run, struct error *err) {
-    cJSON *curves = NULL, *report = NULL;
+/* Of all cases, as they stand. Both are cleared by the caller, also after a failure. */
+static int read_results(struct run *run, struct study_result *results, struct study_report *report,
+                        struct error *err) {
+    cJSON *curves = NULL, *costs = NULL;
     struct curve_filter all = {.case_number = -1};
     int status = aggregate_curves(run->store, run->id, &all, &curves, err);
-    if (!status)
-        status = aggregate_report(run->store, run->id, &report, err);
-    if (!status && run->folder)
-        status = output_write(curves, run->folder, err);
-    if (!status) {
-        summary_of_curves(curves, report, stdout);
+    if (status == 0)
+        status = aggregate_report(run->store, run->id, &costs, err);
+    if (status == 0)
+        status = study_result_read(curves, results, err);
+    if (status == 0)
+        status = study_report_read(costs, report, err);
+    cJSON_Delete(curves);
+    cJSON_Delete(costs);
+    return status;
+}
+
+static int present(struct run *run, struct error *err) {
+    struct study_result results = {0};
+    struct study_report report = {0};
+    int status = read_results(run, &results, &report, err);
+    if (status == 0 && run->folder != NULL)
+        status = output_write(&results, run->folder, err);
+    if (status == 0) {
+        summary_of_curves(&results, &report, stdout);
         status = output_flush(err);
     }
-    cJSON_Delete(curves);
-    cJSON_Delete(report);
+    study_result_clear(&results);
+    study_report_clear(&report);
     return status;
 }
 
@@ -138,31 +138,26 @@ static int perform(struct run *run, struct error *err) {
     return status;
 }
 
-static int run_study(const void *values, const char *const *arguments) {
-    const struct options *options = values;
-    struct run run = {.file = arguments[0],
-                      .database = options->database,
-                      .folder = options->folder,
-                      .sets = options->sets,
-                      .threads = options->threads > 0 ? options->threads : processors()};
+int command_run(int argc, char **argv) {
+    struct run run = {.database = "rugo.db", .threads = processors()};
+    run.sets = array_create((size_t)argc + 1, sizeof *run.sets);
+    struct option_row rows[] = {{"db", OPTION_TEXT, &run.database},
+                                {"workers", OPTION_COUNT, &run.threads},
+                                {"set", OPTION_LIST, run.sets},
+                                {"out", OPTION_TEXT, &run.folder},
+                                {0}};
+    if (!run.sets || !options_parse(argc, argv, rows, 1, 1, &run.file)) {
+        free(run.sets);
+        return EXIT_USAGE;
+    }
     struct error err = {0};
     signals_catch();
     int status = perform(&run, &err);
-    int result = status == 0            ? EXIT_DONE
-                 : run.faults.count > 0 ? command_fail_faults(run.file, &run.faults)
-                                        : command_fail("run", &err);
+    int result = !status            ? EXIT_DONE
+                 : run.faults.count ? command_fail_faults(run.file, &run.faults)
+                                    : command_fail(argv[0], &err);
     store_close(&run.store);
     fault_list_clear(&run.faults);
+    free(run.sets);
     return result;
 }
-
-const struct command COMMAND_RUN = {
-    .name = "run",
-    .arguments = "STUDY.json",
-    .summary = "run a study here, from submission to table",
-    .least = 1,
-    .most = 1,
-    .options = OPTIONS,
-    .options_size = sizeof(struct options),
-    .run = run_study,
-};

@@ -12,12 +12,12 @@ static bool put(cJSON *object, const char *key, cJSON *item) {
     return false;
 }
 
-struct entry {
+struct named_number {
     const char *name;
     double value;
 };
 
-static cJSON *object_of(size_t n, const struct entry *entries) {
+static cJSON *object_of(size_t n, const struct named_number *entries) {
     cJSON *object = cJSON_CreateObject();
     for (size_t a = 0; a < n; a++) {
         if (!put(object, entries[a].name, json_number(entries[a].value))) {
@@ -29,15 +29,15 @@ static cJSON *object_of(size_t n, const struct entry *entries) {
 }
 
 static cJSON *grid_object(const struct grid *grid) {
-    const struct entry entries[] = {{"nx", (double)grid->nx},
-                                    {"ny", (double)grid->ny},
-                                    {"dx", grid_dx(grid)},
-                                    {"dy", grid_is_profile(grid) ? NAN : grid_dy(grid)}};
+    const struct named_number entries[] = {{"nx", (double)grid->nx},
+                                           {"ny", (double)grid->ny},
+                                           {"dx", grid_dx(grid)},
+                                           {"dy", grid_is_profile(grid) ? NAN : grid_dy(grid)}};
     return object_of(sizeof entries / sizeof *entries, entries);
 }
 
 static cJSON *heights_object(const struct roughness *roughness) {
-    const struct entry entries[] = {
+    const struct named_number entries[] = {
         {"mean", roughness->mean},         {"rms", roughness->rms_height},
         {"skewness", roughness->skewness}, {"kurtosis", roughness->kurtosis},
         {"lowest", roughness->lowest},     {"highest", roughness->highest}};
@@ -45,21 +45,21 @@ static cJSON *heights_object(const struct roughness *roughness) {
 }
 
 static cJSON *differences_object(const struct roughness *roughness) {
-    const struct entry entries[] = {{"rms_slope", roughness->rms_slope},
-                                    {"rms_curvature", roughness->rms_curvature},
-                                    {"m2", roughness->m2},
-                                    {"m4", roughness->m4},
-                                    {"nayak_alpha", roughness->nayak_alpha}};
+    const struct named_number entries[] = {{"rms_slope", roughness->rms_slope},
+                                           {"rms_curvature", roughness->rms_curvature},
+                                           {"m2", roughness->m2},
+                                           {"m4", roughness->m4},
+                                           {"nayak_alpha", roughness->nayak_alpha}};
     return object_of(sizeof entries / sizeof *entries, entries);
 }
 
 static cJSON *spectral_object(const struct moments *moments) {
-    const struct entry entries[] = {{"rms_slope", moments->rms_slope},
-                                    {"rms_curvature", moments->rms_curvature},
-                                    {"m0", moments->m0},
-                                    {"m2", moments->m2},
-                                    {"m4", moments->m4},
-                                    {"nayak_alpha", moments->nayak_alpha}};
+    const struct named_number entries[] = {{"rms_slope", moments->rms_slope},
+                                           {"rms_curvature", moments->rms_curvature},
+                                           {"m0", moments->m0},
+                                           {"m2", moments->m2},
+                                           {"m4", moments->m4},
+                                           {"nayak_alpha", moments->nayak_alpha}};
     return object_of(sizeof entries / sizeof *entries, entries);
 }
 
@@ -73,11 +73,11 @@ static cJSON *summits_object(const struct grid *grid, const struct summit_list *
         variance += pow(list->summits[a].height - height, 2) / n;
     double area = grid_is_profile(grid) ? grid->lx : grid->lx * grid->ly;
     double none = list->count > 0 ? 0 : NAN;
-    const struct entry entries[] = {{"count", n},
-                                    {"density", n / area},
-                                    {"height_mean", height + none},
-                                    {"height_deviation", sqrt(variance) + none},
-                                    {"curvature_mean", curvature + none}};
+    const struct named_number entries[] = {{"count", n},
+                                           {"density", n / area},
+                                           {"height_mean", height + none},
+                                           {"height_deviation", sqrt(variance) + none},
+                                           {"curvature_mean", curvature + none}};
     return object_of(sizeof entries / sizeof *entries, entries);
 }
 

@@ -2,10 +2,9 @@
 #ifndef RUGO_SERVER_SHOW_OUTPUT_H
 #define RUGO_SERVER_SHOW_OUTPUT_H
 
-#include "core/error.h"
-#include <cjson/cJSON.h>
+#include "schema/result/result.h"
 
 /* Makes the folder if it is missing; replaces files of an earlier run. */
-int output_write(const cJSON *curves, const char *folder, struct error *err);
+int output_write(const struct study_result *study, const char *folder, struct error *err);
 
 #endif

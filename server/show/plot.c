@@ -1,7 +1,8 @@
 #include "server/show/plot.h"
-#include "server/show/document.h"
 #include "server/show/plot_choice.h"
 #include "server/show/plot_frame.h"
+#include "server/show/view.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,57 +35,51 @@ struct plot {
 /* --- curves --- */
 
 /* A bar of one standard error to either side, where the error can be seen. */
-static void draw_bars(FILE *file, const struct frame *frame, const cJSON *curve,
+static void draw_bars(FILE *file, const struct frame *frame, const struct curve *curve,
                       const char *colour) {
-    const cJSON *x = first_of(curve, "x"), *y = first_of(curve, "y");
-    const cJSON *deviation = first_of(curve, "standard_error");
-    for (; x && y && deviation; x = x->next, y = y->next, deviation = deviation->next) {
-        if (!frame_has_place(frame, x, y) || !cJSON_IsNumber(deviation))
+    for (size_t n = 0; n < curve->n; n++) {
+        double x = curve->x[n], y = curve->y[n], error = curve->standard_error[n];
+        if (!frame_has_place(frame, x, y) || !isfinite(error))
             continue;
-        double low = y->valuedouble - deviation->valuedouble;
-        double high = y->valuedouble + deviation->valuedouble;
-        if (frame->y.logarithmic && low <= 0)
+        if (frame->y.logarithmic && y - error <= 0)
             continue;
-        double top = frame_y(frame, fmin(high, frame->y.high));
-        double bottom = frame_y(frame, fmax(low, frame->y.low));
+        double top = frame_y(frame, fmin(y + error, frame->y.high));
+        double bottom = frame_y(frame, fmax(y - error, frame->y.low));
         if (bottom - top > 1)
             fprintf(file, "<path d=\"M%.2f %.2fV%.2f\" class=\"bar\" stroke=\"%s\"/>",
-                    frame_x(frame, x->valuedouble), top, bottom, colour);
+                    frame_x(frame, x), top, bottom, colour);
     }
     fputc('\n', file);
 }
 
-static bool is_inside(const struct frame *frame, const cJSON *x, const cJSON *y) {
-    return frame_has_place(frame, x, y) && x->valuedouble >= frame->x.low &&
-           x->valuedouble <= frame->x.high && y->valuedouble <= frame->y.high &&
-           y->valuedouble >= frame->y.low;
+static bool is_inside(const struct frame *frame, double x, double y) {
+    return frame_has_place(frame, x, y) && x >= frame->x.low && x <= frame->x.high &&
+           y <= frame->y.high && y >= frame->y.low;
 }
 
 /* An open circle where some realisations have no value. */
-static void draw_partial(struct plot *plot, const cJSON *curve, const char *colour) {
-    const cJSON *x = first_of(curve, "x"), *y = first_of(curve, "y");
-    const cJSON *valueless = first_of(curve, "valueless");
-    for (; x && y && valueless; x = x->next, y = y->next, valueless = valueless->next) {
-        if (!(valueless->valuedouble > 0) || !is_inside(&plot->frame, x, y))
+static void draw_partial(struct plot *plot, const struct curve *curve, const char *colour) {
+    for (size_t n = 0; n < curve->n && curve->valueless != NULL; n++) {
+        double x = curve->x[n], y = curve->y[n];
+        if (!(curve->valueless[n] > 0) || !is_inside(&plot->frame, x, y))
             continue;
         fprintf(plot->file,
                 "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" class=\"partial\" stroke=\"%s\"/>\n",
-                frame_x(&plot->frame, x->valuedouble), frame_y(&plot->frame, y->valuedouble),
-                colour);
+                frame_x(&plot->frame, x), frame_y(&plot->frame, y), colour);
         plot->partial = true;
     }
 }
 
-/* style: attributes of the path. */
-static void draw_line(FILE *file, const struct frame *frame, const cJSON *x, const cJSON *y,
-                      const char *style) {
+/* Through n points; style: attributes of the path. */
+static void draw_line(FILE *file, const struct frame *frame, size_t n, const double *x,
+                      const double *y, const char *style) {
     bool pen_down = false;
     fprintf(file, "<path %s d=\"", style);
-    for (; x && y; x = x->next, y = y->next) {
-        bool inside = is_inside(frame, x, y);
+    for (size_t a = 0; a < n; a++) {
+        bool inside = is_inside(frame, x[a], y[a]);
         if (inside)
-            fprintf(file, "%c%.2f %.2f", pen_down ? 'L' : 'M', frame_x(frame, x->valuedouble),
-                    frame_y(frame, y->valuedouble));
+            fprintf(file, "%c%.2f %.2f", pen_down ? 'L' : 'M', frame_x(frame, x[a]),
+                    frame_y(frame, y[a]));
         pen_down = inside;
     }
     fputs("\"/>\n", file);
@@ -128,8 +123,7 @@ static void draw_curves(struct plot *plot) {
         curve_style(line, style);
         if (line->coarseness == 0)
             draw_bars(plot->file, &plot->frame, line->curve, COLOURS[line->colour]);
-        draw_line(plot->file, &plot->frame, first_of(line->curve, "x"), first_of(line->curve, "y"),
-                  style);
+        draw_line(plot->file, &plot->frame, line->curve->n, line->curve->x, line->curve->y, style);
         draw_partial(plot, line->curve, COLOURS[line->colour]);
     }
     for (size_t n = 0; n < choice->count; n++) {
@@ -141,16 +135,28 @@ static void draw_curves(struct plot *plot) {
 
 /* --- theories --- */
 
-static const cJSON *theory_of(const struct plot_line *line, const char *name) {
-    return member(member(line->curve, "theory"), name);
+/* NULL: the line has no such theory. */
+static const double *theory_of(const struct plot_line *line, const char *name) {
+    for (size_t t = 0; t < line->curve->theory_count; t++)
+        if (strcmp(line->curve->theories[t].name, name) == 0)
+            return line->curve->theories[t].y;
+    return NULL;
+}
+
+static bool same_numbers(size_t n, const double *a, const double *b) {
+    for (size_t p = 0; p < n; p++)
+        if (!(a[p] == b[p] || (isnan(a[p]) && isnan(b[p]))))
+            return false;
+    return true;
 }
 
 /* Whether two lines have the same theory of this name, or one of them has none. */
 static bool same_theory(const struct plot_line *a, const struct plot_line *b, const char *name) {
-    const cJSON *one = theory_of(a, name), *other = theory_of(b, name);
-    return !one || !other ||
-           (cJSON_Compare(member(a->curve, "x"), member(b->curve, "x"), true) &&
-            cJSON_Compare(one, other, true));
+    const double *one = theory_of(a, name), *other = theory_of(b, name);
+    size_t n = a->curve->n;
+    return one == NULL || other == NULL ||
+           (n == b->curve->n && same_numbers(n, a->curve->x, b->curve->x) &&
+            same_numbers(n, one, other));
 }
 
 /* Whether the theory of this name was met at a line before this one; alike: with the same values.
@@ -158,7 +164,7 @@ static bool same_theory(const struct plot_line *a, const struct plot_line *b, co
 static bool met_before(const struct plot_choice *choice, size_t line, const char *name,
                        bool alike) {
     for (size_t n = 0; n < line; n++)
-        if (theory_of(&choice->lines[n], name) &&
+        if (theory_of(&choice->lines[n], name) != NULL &&
             (!alike || same_theory(&choice->lines[n], &choice->lines[line], name)))
             return true;
     return false;
@@ -166,7 +172,7 @@ static bool met_before(const struct plot_choice *choice, size_t line, const char
 
 static bool is_shared(const struct plot_choice *choice, const char *name) {
     size_t first = 0;
-    while (!theory_of(&choice->lines[first], name))
+    while (theory_of(&choice->lines[first], name) == NULL)
         first++;
     for (size_t n = first + 1; n < choice->count; n++)
         if (!same_theory(&choice->lines[first], &choice->lines[n], name))
@@ -181,11 +187,11 @@ static void draw_theory(struct plot *plot, const char *name, size_t dash) {
     bool shared = is_shared(choice, name);
     for (size_t n = 0; n < choice->count; n++) {
         const struct plot_line *line = &choice->lines[n];
-        const cJSON *theory = theory_of(line, name);
-        if (!theory || met_before(choice, n, name, true))
+        const double *theory = theory_of(line, name);
+        if (theory == NULL || met_before(choice, n, name, true))
             continue;
         theory_style(dash, shared ? "#222" : COLOURS[line->colour], style);
-        draw_line(plot->file, &plot->frame, first_of(line->curve, "x"), theory->child, style);
+        draw_line(plot->file, &plot->frame, line->curve->n, line->curve->x, theory, style);
     }
     snprintf(label, sizeof label, "theory: %.80s%s", name, shared ? "" : " of each");
     theory_style(dash, shared ? "#222" : "#777", style);
@@ -196,10 +202,11 @@ static void draw_theory(struct plot *plot, const char *name, size_t dash) {
 static void draw_theories(struct plot *plot) {
     size_t dash = 0;
     for (size_t n = 0; n < plot->choice.count; n++) {
-        const cJSON *theory = first_of(plot->choice.lines[n].curve, "theory");
-        for (; theory; theory = theory->next)
-            if (!met_before(&plot->choice, n, theory->string, false))
-                draw_theory(plot, theory->string, dash++);
+        const struct curve *curve = plot->choice.lines[n].curve;
+        for (size_t t = 0; t < curve->theory_count; t++)
+            if (curve->theories[t].y != NULL &&
+                !met_before(&plot->choice, n, curve->theories[t].name, false))
+                draw_theory(plot, curve->theories[t].name, dash++);
     }
 }
 
@@ -209,37 +216,33 @@ static void draw_notes(struct plot *plot) {
     draw_note(plot, "bars: one standard error");
     if (plot->partial)
         draw_note(plot, "circles: not over all realisations");
-    if (*plot->choice.left_out) {
+    if (*plot->choice.left_out != '\0') {
         char text[PLOT_LABEL_SIZE + 16];
         snprintf(text, sizeof text, "shown: %s", plot->choice.left_out);
         draw_note(plot, text);
     }
 }
 
-/* Loads in geometric steps: their middle one lies near the geometric mean of the ends. */
-static bool is_geometric(const cJSON *x) {
-    int n = cJSON_GetArraySize(x);
-    const cJSON *first = n > 4 ? x->child : NULL;
-    if (!first || !(first->valuedouble > 0))
-        return false;
-    double last = cJSON_GetArrayItem(x, n - 1)->valuedouble;
-    return last > 10 * first->valuedouble && cJSON_GetArrayItem(x, n / 2)->valuedouble < last / 4;
+/* Places in geometric steps: their middle one lies near the geometric mean of the ends. */
+static bool is_geometric(size_t n, const double *x) {
+    return n > 4 && x[0] > 0 && x[n - 1] > 10 * x[0] && x[n / 2] < x[n - 1] / 4;
 }
 
 /* Theories are seen as far as the curves go; on logarithmic axes, where they are near, as a whole.
  */
-static void include(struct frame *frame, const cJSON *curve, bool theories) {
-    const cJSON *x = first_of(curve, "x"), *theory = theories ? first_of(curve, "theory") : NULL;
-    frame_include(frame, x, first_of(curve, "y"));
-    for (; theory; theory = theory->next)
-        frame_include(frame, x, theory->child);
+static void include(struct frame *frame, const struct curve *curve, bool theories) {
+    frame_include(frame, curve->n, curve->x, curve->y);
+    for (size_t t = 0; theories && t < curve->theory_count; t++)
+        if (curve->theories[t].y != NULL)
+            frame_include(frame, curve->n, curve->x, curve->theories[t].y);
 }
 
-static bool fit(struct plot *plot, const struct plot_request *request) {
+/* logarithmic: as the view has the quantity. */
+static bool fit(struct plot *plot, const struct plot_request *request, bool logarithmic) {
     const struct plot_choice *choice = &plot->choice;
-    bool spectrum = strcmp(request->quantity, "psd") == 0; /* spans decades */
-    bool both = request->logarithmic || spectrum;
-    frame_start(&plot->frame, both || is_geometric(member(choice->lines[0].curve, "x")), both);
+    const struct curve *first = choice->lines[0].curve;
+    bool both = request->logarithmic || logarithmic;
+    frame_start(&plot->frame, both || is_geometric(first->n, first->x), both);
     for (size_t n = 0; n < choice->count; n++)
         include(&plot->frame, choice->lines[n].curve, request->logarithmic);
     return frame_finish(&plot->frame);
@@ -270,15 +273,7 @@ static void draw_title(const struct plot *plot, const char *name, const char *qu
     fputs("</text>\n", plot->file);
 }
 
-int plot_quantity(const cJSON *curves, const struct plot_request *request, FILE *file,
-                  struct error *err) {
-    struct plot plot = {.file = file};
-    plot_choose(&plot.choice, curves, request->quantity, request->y_label);
-    if (!plot.choice.count)
-        return error_set(err, ERROR_ABSENT, "no case has the quantity \"%.60s\"",
-                         request->quantity);
-    const cJSON *first = plot.choice.lines[0].curve;
-    int width = width_of(&plot.choice);
+static void draw_head(FILE *file, int width) {
     fprintf(file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" "
             "height=\"%d\">\n<style>text{font:13px system-ui,sans-serif;fill:#222}"
@@ -288,9 +283,22 @@ int plot_quantity(const cJSON *curves, const struct plot_request *request, FILE 
             ".bar{stroke-width:1.4;stroke-opacity:.45}.partial{fill:#fff}</style>\n"
             "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
             width, HEIGHT, width, HEIGHT, width, HEIGHT);
-    draw_title(&plot, text_of(curves, "name", ""), request->quantity);
-    if (fit(&plot, request)) {
-        frame_draw(file, &plot.frame, text_of(first, "x_label", ""), text_of(first, "y_label", ""));
+}
+
+int plot_quantity(const struct study_result *study, const struct plot_request *request, FILE *file,
+                  struct error *err) {
+    const struct logarithmic_picture *picture =
+        view_logarithmic(view_of(study->kind), request->quantity);
+    struct plot plot = {.file = file};
+    plot_choose(&plot.choice, study, request->quantity, request->y_label);
+    if (plot.choice.count == 0)
+        return error_set(err, ERROR_ABSENT, "no case has the quantity \"%.60s\"",
+                         request->quantity);
+    draw_head(file, width_of(&plot.choice));
+    draw_title(&plot, study->name, request->quantity);
+    if (fit(&plot, request, picture != NULL && picture->suffix == NULL)) {
+        const struct curve *first = plot.choice.lines[0].curve;
+        frame_draw(file, &plot.frame, first->x_label, first->y_label);
         draw_curves(&plot);
         draw_theories(&plot);
         draw_notes(&plot);

@@ -2,19 +2,18 @@
 #ifndef RUGO_SERVER_SHOW_PLOT_CHOICE_H
 #define RUGO_SERVER_SHOW_PLOT_CHOICE_H
 
-#include <cjson/cJSON.h>
-#include <stddef.h>
+#include "schema/result/result.h"
 
 enum { PLOT_LINES = 12, PLOT_LABEL_SIZE = 200 };
 
-/* All borrowed from the document. */
-struct plot_line {
-    const cJSON *one, *curve; /* its case */
-    size_t colour;            /* shared by the levels of one series */
-    size_t coarseness;        /* levels of the series above this one: 0 for the finest */
+struct plot_line { /* borrows */
+    const struct case_result *one;
+    const struct curve *curve;
+    size_t colour;     /* shared by the levels of one series */
+    size_t coarseness; /* levels of the series above this one: 0 for the finest */
 };
 struct plot_choice {
-    const cJSON *cases;
+    const struct study_result *study; /* borrowed */
     size_t count;
     struct plot_line lines[PLOT_LINES];
     char left_out[PLOT_LABEL_SIZE]; /* what is shown of more: "finest level"; "" for everything */
@@ -23,7 +22,7 @@ struct plot_choice {
  * more than PLOT_LINES the choice narrows, as far as needed, to estimates without their brackets,
  * to the finest level, to the first series, to the first model, to the first curves. count is 0
  * where no case has the quantity. */
-void plot_choose(struct plot_choice *choice, const cJSON *curves, const char *quantity,
+void plot_choose(struct plot_choice *choice, const struct study_result *study, const char *quantity,
                  const char *y_label);
 /* "hurst 0.8, halfspace, edges, level 8": what tells a line from the others. */
 void plot_label(const struct plot_choice *choice, size_t line, char label[PLOT_LABEL_SIZE]);

@@ -1,14 +1,14 @@
 #include "server/show/plot_frame.h"
-#include "server/show/document.h"
+#include <math.h>
 
-static void axis_include(struct axis *axis, double value) {
+static void axis_include(struct plot_axis *axis, double value) {
     if (!isfinite(value) || (axis->logarithmic && value <= 0))
         return;
     axis->low = fmin(axis->low, value);
     axis->high = fmax(axis->high, value);
 }
 
-static double axis_place(const struct axis *axis, double value) {
+static double axis_place(const struct plot_axis *axis, double value) {
     if (axis->logarithmic)
         return log(value / axis->low) / log(axis->high / axis->low);
     return (value - axis->low) / (axis->high - axis->low);
@@ -22,29 +22,28 @@ double frame_y(const struct frame *frame, double y) {
     return FRAME_BOTTOM - (FRAME_BOTTOM - FRAME_TOP) * axis_place(&frame->y, y);
 }
 
-bool frame_has_place(const struct frame *frame, const cJSON *x, const cJSON *y) {
-    return cJSON_IsNumber(x) && cJSON_IsNumber(y) &&
-           (!frame->x.logarithmic || x->valuedouble > 0) &&
-           (!frame->y.logarithmic || y->valuedouble > 0);
+bool frame_has_place(const struct frame *frame, double x, double y) {
+    return isfinite(x) && isfinite(y) && (!frame->x.logarithmic || x > 0) &&
+           (!frame->y.logarithmic || y > 0);
 }
 
-void frame_include(struct frame *frame, const cJSON *x, const cJSON *y) {
-    for (; x && y; x = x->next, y = y->next) {
+void frame_include(struct frame *frame, size_t n, const double *x, const double *y) {
+    for (size_t a = 0; a < n; a++) {
         /* Points at zero at the ends of a histogram say nothing: they do not widen the frame. */
-        if (!frame_has_place(frame, x, y) || y->valuedouble == 0)
+        if (!frame_has_place(frame, x[a], y[a]) || y[a] == 0)
             continue;
-        axis_include(&frame->x, x->valuedouble);
-        axis_include(&frame->y, y->valuedouble);
+        axis_include(&frame->x, x[a]);
+        axis_include(&frame->y, y[a]);
     }
 }
 
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
-    frame->x = (struct axis){INFINITY, -INFINITY, x_logarithmic};
-    frame->y = (struct axis){INFINITY, -INFINITY, y_logarithmic};
+    frame->x = (struct plot_axis){INFINITY, -INFINITY, x_logarithmic};
+    frame->y = (struct plot_axis){INFINITY, -INFINITY, y_logarithmic};
 }
 
 /* Zero belongs to an axis that begins near it. */
-static void axis_begin_at_zero(struct axis *axis) {
+static void axis_begin_at_zero(struct plot_axis *axis) {
     if (!axis->logarithmic && axis->low > 0 && axis->low < axis->high / 2)
         axis->low = 0;
 }
@@ -54,7 +53,7 @@ bool frame_finish(struct frame *frame) {
         return false;
     axis_begin_at_zero(&frame->x);
     axis_begin_at_zero(&frame->y);
-    struct axis *axes[] = {&frame->x, &frame->y};
+    struct plot_axis *axes[] = {&frame->x, &frame->y};
     for (int a = 0; a < 2; a++)
         if (axes[a]->low == axes[a]->high) {
             axes[a]->high = axes[a]->logarithmic ? 2 * axes[a]->low : axes[a]->low + 1;
@@ -70,14 +69,14 @@ bool frame_finish(struct frame *frame) {
 }
 
 /* A step of 1, 2 or 5 times a power of ten, with about five of them along the axis. */
-static double tick_step(const struct axis *axis) {
+static double tick_step(const struct plot_axis *axis) {
     double rough = (axis->high - axis->low) / 5, power = pow(10, floor(log10(rough)));
     double relative = rough / power;
     return power * (relative < 1.5 ? 1 : relative < 3.5 ? 2 : relative < 7.5 ? 5 : 10);
 }
 
 /* Zero, where a multiple of the step misses it by rounding. */
-static double tick_value(double value, const struct axis *axis) {
+static double tick_value(double value, const struct plot_axis *axis) {
     return fabs(value) < 1e-12 * (axis->high - axis->low) ? 0.0 : value;
 }
 
@@ -96,7 +95,7 @@ static void draw_tick(FILE *file, const struct frame *frame, bool horizontal, do
 
 /* Lines at 1, 2 and 5 of each decade; numbers at all of them where they do not crowd. */
 static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool horizontal) {
-    const struct axis *axis = horizontal ? &frame->x : &frame->y;
+    const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
     static const double STEPS[] = {1, 2, 5};
     bool crowded = log10(axis->high / axis->low) > 4;
     for (int decade = (int)floor(log10(axis->low)); pow(10, decade) <= axis->high; decade++)
@@ -108,7 +107,7 @@ static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool h
 }
 
 static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
-    const struct axis *axis = horizontal ? &frame->x : &frame->y;
+    const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
     if (axis->logarithmic) {
         draw_logarithmic_ticks(file, frame, horizontal);
         return;
@@ -120,13 +119,13 @@ static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
 }
 
 void svg_text(FILE *file, const char *text) {
-    for (; *text; text++) {
+    for (; *text != '\0'; text++) {
         const char *entity = *text == '<'   ? "&lt;"
                              : *text == '>' ? "&gt;"
                              : *text == '&' ? "&amp;"
                              : *text == '"' ? "&quot;"
                                             : NULL;
-        if (entity)
+        if (entity != NULL)
             fputs(entity, file);
         else
             fputc(*text, file);

@@ -2,31 +2,30 @@
 #ifndef RUGO_SERVER_SHOW_PLOT_FRAME_H
 #define RUGO_SERVER_SHOW_PLOT_FRAME_H
 
-#include <cjson/cJSON.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 
 /* The area of the curves, in SVG user units. */
 enum { FRAME_LEFT = 80, FRAME_RIGHT = 700, FRAME_TOP = 40, FRAME_BOTTOM = 500 };
 
-struct axis {
+struct plot_axis {
     double low, high;
     bool logarithmic;
 };
 struct frame {
-    struct axis x, y;
+    struct plot_axis x, y;
 };
-/* Start, include the points that must be seen (the first of each list), finish: false when there is
- * no point at all. */
+/* Start, include the n points that must be seen, finish: false when there is no point at all. */
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic);
-void frame_include(struct frame *frame, const cJSON *x, const cJSON *y);
+void frame_include(struct frame *frame, size_t n, const double *x, const double *y);
 bool frame_finish(struct frame *frame);
 
 /* Where a value stands on the picture. */
 double frame_x(const struct frame *frame, double x);
 double frame_y(const struct frame *frame, double y);
-/* Whether a point has a place: two numbers, above 0 on logarithmic axes. */
-bool frame_has_place(const struct frame *frame, const cJSON *x, const cJSON *y);
+/* Whether a point has a place: two finite numbers, above 0 on logarithmic axes. */
+bool frame_has_place(const struct frame *frame, double x, double y);
 
 void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label);
 /* Text with what XML reserves escaped. */

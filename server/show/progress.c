@@ -1,5 +1,5 @@
 #include "server/show/progress.h"
-#include "server/show/summary.h"
+#include "server/show/summary_cells.h"
 #include "worker/clock.h"
 #include <math.h>
 #include <stdio.h>
@@ -9,7 +9,7 @@ enum { BAR = 20, TERMINAL_MS = 500, PLAIN_MS = 10000 };
 
 /* The store's estimate, which knows what the cases cost; between two jobs' ends it runs down with
  * the clock. */
-static double estimate_left(struct progress *progress, const struct study_status *now,
+static double estimate_left(struct study_progress *progress, const struct study_status *now,
                             int64_t clock) {
     double estimate = now->seconds_left / (double)(now->workers ? now->workers : 1);
     if (!(fabs(estimate - progress->estimate) <= 0)) { /* also the first, or a NaN */
@@ -21,7 +21,7 @@ static double estimate_left(struct progress *progress, const struct study_status
 }
 
 /* What is left at the pace so far where all realisations cost the same. */
-static double seconds_left(struct progress *progress, const struct study_status *now,
+static double seconds_left(struct study_progress *progress, const struct study_status *now,
                            int64_t clock) {
     double elapsed = (double)(clock - progress->start_ms) / 1000;
     double done = (double)(now->realisations_done - progress->start_done);
@@ -41,7 +41,7 @@ static void print_bar(const struct study_status *now, double share, const char *
 }
 
 int progress_tick(void *context) {
-    struct progress *progress = context;
+    struct study_progress *progress = context;
     int64_t clock = clock_ms();
     if (clock < progress->next_ms)
         return 0;
@@ -67,7 +67,7 @@ int progress_tick(void *context) {
     return 0;
 }
 
-void progress_end(struct progress *progress) {
+void progress_end(struct study_progress *progress) {
     progress->next_ms = 0;
     if (progress->shown) {
         progress_tick(progress);

@@ -4,7 +4,7 @@
 
 #include "schema/store/store.h"
 
-struct progress {
+struct study_progress {
     struct store *store; /* borrowed */
     const char *study;   /* borrowed */
     int64_t next_ms;     /* when the next line is due; 0 at first */
@@ -14,9 +14,9 @@ struct progress {
     int64_t estimate_ms;
     bool shown;
 };
-/* For worker_options.tick; context is a struct progress. */
+/* For worker_options.tick; context is a struct study_progress. */
 int progress_tick(void *context);
 /* Finishes the bar's line. */
-void progress_end(struct progress *progress);
+void progress_end(struct study_progress *progress);
 
 #endif

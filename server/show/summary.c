@@ -1,61 +1,40 @@
 #include "server/show/summary.h"
-#include "server/show/document.h"
 #include "server/show/summary_cells.h"
+#include "server/show/view.h"
 #include <math.h>
-#include <stdbool.h>
-#include <string.h>
 
-void duration_text(double seconds, char *out, size_t size) {
-    if (isnan(seconds))
-        snprintf(out, size, "-");
-    else if (seconds > 0 && seconds < 0.1)
-        snprintf(out, size, "%.3g ms", 1000 * seconds);
-    else if (seconds < 100)
-        snprintf(out, size, "%.3g s", seconds);
-    else if (seconds < 6000)
-        snprintf(out, size, "%.0f min %02.0f s", floor(seconds / 60), floor(fmod(seconds, 60)));
-    else
-        snprintf(out, size, "%.0f h %02.0f min", floor(seconds / 3600),
-                 floor(fmod(seconds, 3600) / 60));
-}
-
-/* --- curves --- */
-
-/* What a table of results shows first, of the kinds that have it. */
-static const char *const HEADLINES[] = {"nayak_alpha", "summit_density", "summit_height_mean",
-                                        "summit_curvature_mean"};
-enum { HEADLINE_COUNT = sizeof HEADLINES / sizeof *HEADLINES };
-
-static const cJSON *scalar_of(const cJSON *one, const char *name) {
-    return member(member(one, "scalars"), name);
-}
+/* --- scalars --- */
 
 /* Whether some case has this scalar; with its theory. */
-static bool has_scalar(const cJSON *cases, const char *name, bool with_theory) {
-    for (const cJSON *one = cases->child; one; one = one->next) {
-        const cJSON *scalar = scalar_of(one, name);
-        if (scalar && (!with_theory || cJSON_IsNumber(member(scalar, "theory"))))
+static bool has_scalar(const struct shown_cases *shown, const char *name, bool with_theory) {
+    for (size_t c = 0; c < shown->count; c++) {
+        const struct scalar *scalar = result_scalar(shown->list[c], name);
+        if (scalar != NULL && (!with_theory || isfinite(scalar->theory)))
             return true;
     }
     return false;
 }
 
-/* The headlines of these cases; where they have none, all scalars with a theory. */
-static size_t shown_scalars(const cJSON *cases, const char **names) {
+/* The view's headlines; where these cases have none, all scalars with a theory. */
+static size_t shown_scalars(const struct shown_cases *shown, const char *const *headlines,
+                            const char **names) {
+    const struct case_result *first = shown->list[0];
     size_t count = 0;
-    for (size_t h = 0; h < HEADLINE_COUNT; h++)
-        if (has_scalar(cases, HEADLINES[h], false))
-            names[count++] = HEADLINES[h];
-    const cJSON *scalars = count ? NULL : member(cases->child, "scalars");
-    for (const cJSON *s = scalars ? scalars->child : NULL; s && count < COLUMNS_MOST; s = s->next)
-        if (has_scalar(cases, s->string, true))
-            names[count++] = s->string;
+    for (; headlines != NULL && *headlines != NULL && count < COLUMNS_MOST; headlines++)
+        if (has_scalar(shown, *headlines, false))
+            names[count++] = *headlines;
+    if (count > 0)
+        return count;
+    for (size_t s = 0; s < first->scalar_count && count < COLUMNS_MOST; s++)
+        if (has_scalar(shown, first->scalars[s].name, true))
+            names[count++] = first->scalars[s].name;
     return count;
 }
 
-static void scalar_cells(struct text_table *table, const cJSON *scalar, bool with_theory) {
-    double value = number_of(scalar, "value"), theory = number_of(scalar, "theory");
-    measured_cell(table, value, number_of(scalar, "standard_error"));
+static void scalar_cells(struct text_table *table, const struct scalar *scalar, bool with_theory) {
+    double value = scalar != NULL ? scalar->value : (double)NAN;
+    double theory = scalar != NULL ? scalar->theory : (double)NAN;
+    measured_cell(table, value, scalar != NULL ? scalar->standard_error : (double)NAN);
     if (!with_theory)
         return;
     table_number(table, theory);
@@ -65,154 +44,111 @@ static void scalar_cells(struct text_table *table, const cJSON *scalar, bool wit
         table_cell(table, "-");
 }
 
-/* What a table of results has beside the swept parameters. */
-struct results {
-    const cJSON *cases, *costs; /* costs: the cases of a report, or NULL */
-    const char *varied[COLUMNS_MOST], *scalars[COLUMNS_MOST];
+/* --- a row a case --- */
+
+/* What such a table has beside the swept parameters. */
+struct scalar_table {
+    const struct shown_cases *shown;
+    const struct study_report *report; /* or NULL */
+    size_t scalar_count;
+    const char *scalars[COLUMNS_MOST];
     bool compared[COLUMNS_MOST]; /* with a theory beside it */
-    size_t varied_count, scalar_count;
-    bool uneven; /* not all cases have as many realisations */
+    bool uneven;                 /* not all cases have as many realisations */
 };
 
-static bool is_even(const cJSON *cases) {
-    for (const cJSON *one = cases->child; one; one = one->next)
-        if (number_of(one, "realisations") != number_of(cases->child, "realisations"))
+static bool is_even(const struct study_result *study) {
+    for (size_t c = 1; c < study->case_count; c++)
+        if (study->cases[c].realisations != study->cases[0].realisations)
             return false;
     return true;
 }
 
-static void results_prepare(struct results *results, const cJSON *cases, const cJSON *report) {
-    *results = (struct results){.cases = cases, .costs = member(report, "cases")};
-    results->varied_count = varied_parameters(cases, results->varied);
-    results->scalar_count = shown_scalars(cases, results->scalars);
-    for (size_t s = 0; s < results->scalar_count; s++)
-        results->compared[s] = has_scalar(cases, results->scalars[s], true);
-    results->uneven = !is_even(cases);
-}
-
-static size_t results_columns(const struct results *results) {
-    size_t columns = 1 + results->varied_count + results->uneven + (results->costs != NULL);
-    for (size_t s = 0; s < results->scalar_count; s++)
-        columns += results->compared[s] ? 3 : 1;
+static size_t column_count(const struct scalar_table *plan) {
+    size_t columns = 1 + plan->shown->varied_count + plan->uneven + (plan->report != NULL);
+    for (size_t s = 0; s < plan->scalar_count; s++)
+        columns += plan->compared[s] ? 3 : 1;
     return columns;
 }
 
-static void results_heading(const struct results *results, struct text_table *table) {
+static void put_heading(const struct scalar_table *plan, struct text_table *table) {
     table_cell(table, "case");
-    for (size_t p = 0; p < results->varied_count; p++)
-        table_cell(table, "%s", last_name(results->varied[p]));
-    if (results->uneven)
+    varied_headings(table, plan->shown);
+    if (plan->uneven)
         table_cell(table, "realisations");
-    for (size_t s = 0; s < results->scalar_count; s++) {
-        if (results->compared[s])
+    for (size_t s = 0; s < plan->scalar_count; s++) {
+        if (plan->compared[s])
             table_fold(table);
-        table_cell(table, "%s", results->scalars[s]);
-        if (results->compared[s]) {
+        table_cell(table, "%s", plan->scalars[s]);
+        if (plan->compared[s]) {
             table_cell(table, "theory");
             table_cell(table, "ratio");
         }
     }
-    if (results->costs) {
+    if (plan->report != NULL) {
         table_fold(table);
         table_cell(table, "time");
     }
 }
 
-static void results_row(const struct results *results, const cJSON *one, const cJSON *cost,
-                        struct text_table *table) {
-    table_number(table, number_of(one, "case"));
-    for (size_t p = 0; p < results->varied_count; p++)
-        value_cell(table, member(member(one, "parameters"), results->varied[p]));
-    if (results->uneven)
-        table_number(table, number_of(one, "realisations"));
-    for (size_t s = 0; s < results->scalar_count; s++)
-        scalar_cells(table, scalar_of(one, results->scalars[s]), results->compared[s]);
-    if (results->costs) {
-        char time[48];
-        duration_text(number_of(cost, "seconds"), time, sizeof time);
-        table_cell(table, "%s", time);
+static void put_row(const struct scalar_table *plan, size_t c, struct text_table *table) {
+    const struct case_result *one = plan->shown->list[c];
+    table_number(table, (double)one->case_number);
+    varied_cells(table, plan->shown, c);
+    if (plan->uneven)
+        table_number(table, (double)one->realisations);
+    for (size_t s = 0; s < plan->scalar_count; s++)
+        scalar_cells(table, result_scalar(one, plan->scalars[s]), plan->compared[s]);
+    if (plan->report != NULL) {
+        const struct case_report *cost = report_of(plan->report, one);
+        duration_cell(table, cost != NULL ? cost->seconds : (double)NAN);
     }
 }
 
-static void results_table(const cJSON *cases, const cJSON *report, FILE *file) {
-    struct results results;
-    results_prepare(&results, cases, report);
-    struct text_table table = {.columns = results_columns(&results)};
-    results_heading(&results, &table);
-    const cJSON *cost = results.costs ? results.costs->child : NULL;
-    for (const cJSON *one = cases->child; one; one = one->next) {
-        results_row(&results, one, cost, &table);
-        cost = cost ? cost->next : NULL;
-    }
+static void print_scalars(const struct scalar_table *plan, FILE *file) {
+    struct text_table table = {.columns = column_count(plan)};
+    put_heading(plan, &table);
+    for (size_t c = 0; c < plan->shown->count; c++)
+        put_row(plan, c, &table);
     fputc('\n', file);
     table_print(&table, file);
     table_clear(&table);
 }
 
-void summary_of_curves(const cJSON *curves, const cJSON *report, FILE *file) {
-    const cJSON *cases = member(curves, "cases");
-    if (!cJSON_IsArray(cases) || !cases->child)
-        return;
-    fprintf(file, "%s (%s), study %s", text_of(curves, "name", "-"), text_of(curves, "state", "-"),
-            text_of(curves, "study", "-"));
-    if (is_even(cases))
-        fprintf(file, ", %.0f realisations a case", number_of(cases->child, "realisations"));
-    if (report) {
+/* --- a study --- */
+
+static void print_title(const struct study_result *study, const struct study_report *report,
+                        FILE *file) {
+    fprintf(file, "%s (%s), study %s", study->name, study->state, study->id);
+    if (is_even(study))
+        fprintf(file, ", %llu realisations a case",
+                (unsigned long long)study->cases[0].realisations);
+    if (report != NULL) {
         char time[48];
-        duration_text(number_of(report, "seconds"), time, sizeof time);
+        duration_text(report->seconds, time, sizeof time);
         fprintf(file, ", %s of work", time);
     }
     fputc('\n', file);
-    if (strcmp(text_of(curves, "kind", ""), "contact") == 0)
-        summary_of_contact(cases, member(report, "cases"), file);
-    else
-        results_table(cases, report, file);
 }
 
-/* --- status --- */
-
-void summary_of_status(const cJSON *status, FILE *file) {
-    const cJSON *jobs = member(status, "jobs"), *realisations = member(status, "realisations");
-    char left[48], spent[48];
-    duration_text(number_of(status, "seconds_left"), left, sizeof left);
-    duration_text(number_of(status, "seconds"), spent, sizeof spent);
-    fprintf(file, "%s  %s  %s  %s\n", text_of(status, "id", "-"), text_of(status, "name", "-"),
-            text_of(status, "kind", "-"), text_of(status, "state", "-"));
-    fprintf(file, "  realisations %.0f of %.0f, jobs %.0f of %.0f (%.0f running, %.0f failed)\n",
-            number_of(realisations, "done"), number_of(realisations, "total"),
-            number_of(jobs, "done"), number_of(jobs, "total"), number_of(jobs, "running"),
-            number_of(jobs, "failed"));
-    fprintf(file, "  workers %.0f, spent %s, left %s\n", number_of(status, "workers"), spent, left);
-    const cJSON *failures = member(status, "failures");
-    for (const cJSON *f = failures ? failures->child : NULL; f; f = f->next)
-        if (!cJSON_IsNumber(member(f, "job")))
-            fprintf(file, "  not published: case %.0f: %s\n", number_of(f, "case"),
-                    text_of(f, "reason", "-"));
-        else
-            fprintf(
-                file,
-                "  failed: case %.0f, realisations %.0f to %.0f, %.0f attempts, worker %s: %s\n",
-                number_of(f, "case"), number_of(f, "first"),
-                number_of(f, "first") + number_of(f, "count") - 1, number_of(f, "attempts"),
-                text_of(f, "worker", "-"), text_of(f, "reason", "-"));
-}
-
-void summary_of_list(const cJSON *studies, FILE *file) {
-    const cJSON *list = member(studies, "studies");
-    struct text_table table = {.columns = 6};
-    static const char *const HEADINGS[] = {"id", "name", "kind", "state", "done %", "created"};
-    for (size_t h = 0; h < 6; h++)
-        table_cell(&table, "%s", HEADINGS[h]);
-    for (const cJSON *s = list ? list->child : NULL; s; s = s->next) {
-        const cJSON *realisations = member(s, "realisations");
-        table_cell(&table, "%s", text_of(s, "id", "-"));
-        table_cell(&table, "%s", text_of(s, "name", "-"));
-        table_cell(&table, "%s", text_of(s, "kind", "-"));
-        table_cell(&table, "%s", text_of(s, "state", "-"));
-        table_cell(&table, "%.1f",
-                   100 * number_of(realisations, "done") / number_of(realisations, "total"));
-        table_cell(&table, "%s", text_of(s, "created", "-"));
+void summary_of_curves(const struct study_result *study, const struct study_report *report,
+                       FILE *file) {
+    const struct result_view *view = view_of(study->kind);
+    struct shown_cases shown;
+    if (study->case_count == 0)
+        return;
+    print_title(study, report, file);
+    if (!shown_of_results(study, &shown)) {
+        fputs("(no memory for a table)\n", file);
+        return;
     }
-    table_print(&table, file);
-    table_clear(&table);
+    if (view->table != NULL) {
+        summary_of_quantity(view->table, &shown, report, file);
+    } else {
+        struct scalar_table plan = {.shown = &shown, .report = report, .uneven = !is_even(study)};
+        plan.scalar_count = shown_scalars(&shown, view->headlines, plan.scalars);
+        for (size_t s = 0; s < plan.scalar_count; s++)
+            plan.compared[s] = has_scalar(&shown, plan.scalars[s], true);
+        print_scalars(&plan, file);
+    }
+    shown_clear(&shown);
 }

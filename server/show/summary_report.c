@@ -1,169 +1,195 @@
 /* Speed against error. */
-#include "server/show/document.h"
 #include "server/show/summary.h"
 #include "server/show/summary_cells.h"
+#include "server/show/view.h"
+#include <math.h>
 #include <string.h>
+
+enum { TABLES_MOST = 4, SERIES_MOST = 64, NOTES_SHOWN = 40 };
+
+/* --- errors: the statistical one, one a source, the total --- */
+
+enum { ERROR_COLUMNS = ERROR_SOURCES + 2 };
+
+static void error_headings(struct text_table *table) {
+    table_cell(table, "statistical %%");
+    for (int source = 0; source < ERROR_SOURCES; source++)
+        table_cell(table, "%s %%", ERROR_SOURCE_ROWS[source].name);
+    table_cell(table, "total %%");
+}
+
+/* NaN without a curve. */
+static void errors_of(const struct curve_report *curve, double errors[ERROR_COLUMNS]) {
+    errors[0] = curve != NULL ? curve->statistical : (double)NAN;
+    for (int source = 0; source < ERROR_SOURCES; source++)
+        errors[1 + source] = curve != NULL ? curve->errors[source] : (double)NAN;
+    errors[ERROR_COLUMNS - 1] = curve != NULL ? curve->total : (double)NAN;
+}
 
 /* --- a row a case --- */
 
-static void cases_table(const cJSON *cases, const char *const *varied, size_t varied_count,
-                        FILE *file) {
-    static const char *const NUMBERS[] = {"seconds", "seconds_per_realisation"};
-    static const char *const ERRORS[] = {"statistical_error", "discretisation_error", "model_error",
-                                         "total_error"};
-    static const char *const HEADINGS[] = {"realisations",  "seconds",          "s/realisation",
-                                           "statistical %", "discretisation %", "model %",
-                                           "total %",       "s to halve"};
-    enum { NUMBER_COUNT = 2, ERROR_COUNT = 4, HEADING_COUNT = NUMBER_COUNT + ERROR_COUNT + 2 };
+static void put_case(const struct shown_cases *shown, size_t c, const struct case_report *one,
+                     struct text_table *table) {
+    double realisations = (double)one->about.realisations, errors[ERROR_COLUMNS];
     char partial[48];
-    struct text_table table = {.columns = 1 + varied_count + HEADING_COUNT};
+    table_number(table, (double)one->about.case_number);
+    varied_cells(table, shown, c);
+    partial_text(realisations, one->main != NULL ? one->main->valueless : (double)NAN, partial,
+                 sizeof partial);
+    table_cell(table, "%.0f%s", realisations, partial);
+    table_number(table, one->seconds);
+    table_number(table, realisations > 0 ? one->seconds / realisations : (double)NAN);
+    errors_of(one->main, errors);
+    for (size_t e = 0; e < ERROR_COLUMNS; e++)
+        percent_cell(table, errors[e]);
+    table_number(table, case_report_seconds_to_halve(one));
+}
+
+static void print_cases(const struct study_report *report, const struct shown_cases *shown,
+                        FILE *file) {
+    struct text_table table = {.columns = 1 + shown->varied_count + 3 + (size_t)ERROR_COLUMNS + 1};
     table_cell(&table, "case");
-    for (size_t p = 0; p < varied_count; p++)
-        table_cell(&table, "%s", last_name(varied[p]));
-    for (size_t n = 0; n < HEADING_COUNT; n++)
-        table_cell(&table, "%s", HEADINGS[n]);
-    for (const cJSON *one = cases->child; one; one = one->next) {
-        table_number(&table, number_of(one, "case"));
-        for (size_t p = 0; p < varied_count; p++)
-            value_cell(&table, member(member(one, "parameters"), varied[p]));
-        partial_text(number_of(one, "realisations"), number_of(one, "valueless"), partial,
-                     sizeof partial);
-        table_cell(&table, "%.0f%s", number_of(one, "realisations"), partial);
-        for (size_t n = 0; n < NUMBER_COUNT; n++)
-            table_number(&table, number_of(one, NUMBERS[n]));
-        for (size_t e = 0; e < ERROR_COUNT; e++)
-            percent_cell(&table, number_of(one, ERRORS[e]));
-        table_number(&table, number_of(one, "seconds_to_halve_error"));
-    }
+    varied_headings(&table, shown);
+    table_cell(&table, "realisations");
+    table_cell(&table, "seconds");
+    table_cell(&table, "s/realisation");
+    error_headings(&table);
+    table_cell(&table, "s to halve");
+    for (size_t c = 0; c < report->case_count; c++)
+        put_case(shown, c, &report->cases[c], &table);
     table_print(&table, file);
     table_clear(&table);
 }
 
 /* --- a row a series: model, level, estimator --- */
 
-enum { TABLES_MOST = 4, SERIES_MOST = 64, ERROR_COUNT = 4, NOTES_SHOWN = 40 };
-static const char *const ERRORS[ERROR_COUNT] = {"statistical_error", "discretisation_error",
-                                                "model_error", "total_error"};
-
 /* Sums over the cases that have the series. */
-struct series {
-    const cJSON *entry; /* of the first one */
-    double seconds, realisations, valueless, squares[ERROR_COUNT];
-    size_t known[ERROR_COUNT];
+struct series_cost {
+    const struct curve *place; /* of the first case */
+    double seconds, realisations, valueless, squares[ERROR_COLUMNS];
+    size_t known[ERROR_COLUMNS];
 };
 struct series_list {
     size_t count;
-    struct series rows[SERIES_MOST];
+    struct series_cost rows[SERIES_MOST];
 };
 
-static bool same_series(const cJSON *a, const cJSON *b) {
-    return same_member(a, b, "model") && same_member(a, b, "kinematics") &&
-           same_member(a, b, "level") && same_member(a, b, "series");
+static bool same_text(const char *a, const char *b) {
+    return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-static struct series *series_find(struct series_list *list, const cJSON *entry) {
+static bool same_place(const struct curve *a, const struct curve *b) {
+    return same_text(a->model, b->model) && same_text(a->kinematics, b->kinematics) &&
+           same_text(a->series, b->series) &&
+           (a->level == b->level || (isnan(a->level) && isnan(b->level)));
+}
+
+static struct series_cost *find_series(struct series_list *list, const struct curve *place) {
     for (size_t s = 0; s < list->count; s++)
-        if (same_series(list->rows[s].entry, entry))
+        if (same_place(list->rows[s].place, place))
             return &list->rows[s];
     if (list->count == SERIES_MOST)
         return NULL;
-    list->rows[list->count] = (struct series){.entry = entry};
+    list->rows[list->count] = (struct series_cost){.place = place};
     return &list->rows[list->count++];
 }
 
-static void series_add(struct series *series, const cJSON *one, const cJSON *entry) {
-    series->seconds += number_of(entry, "seconds");
-    series->realisations += number_of(one, "realisations");
-    series->valueless += fmax(number_of(entry, "valueless"), 0);
-    for (size_t e = 0; e < ERROR_COUNT; e++) {
-        double error = number_of(entry, ERRORS[e]);
-        if (!isnan(error)) {
-            series->squares[e] += error * error;
+static void add_curve(struct series_cost *series, const struct case_report *one,
+                      const struct curve_report *curve) {
+    double errors[ERROR_COLUMNS];
+    errors_of(curve, errors);
+    series->seconds += curve->seconds;
+    series->realisations += (double)one->about.realisations;
+    series->valueless += fmax(curve->valueless, 0);
+    for (size_t e = 0; e < ERROR_COLUMNS; e++)
+        if (!isnan(errors[e])) {
+            series->squares[e] += errors[e] * errors[e];
             series->known[e]++;
         }
-    }
 }
 
 /* The series of the case's main quantity that have a model; estimates alone. */
-static void add_case(struct series_list *list, const cJSON *one) {
-    const char *quantity = text_of(one, "main_curve", "");
-    for (const cJSON *entry = first_of(one, "curves"); entry; entry = entry->next) {
-        if (strcmp(text_of(entry, "quantity", ""), quantity) != 0 || !member(entry, "model") ||
-            is_bracket(entry))
+static void add_case(struct series_list *list, const struct case_report *one) {
+    for (size_t a = 0; a < one->curve_count && one->main != NULL; a++) {
+        const struct curve *place = &one->curves[a].place;
+        if (strcmp(place->quantity, one->main->place.quantity) != 0 || place->model == NULL ||
+            is_bracket(place->series))
             continue;
-        struct series *series = series_find(list, entry);
-        if (series)
-            series_add(series, one, entry);
+        struct series_cost *series = find_series(list, place);
+        if (series != NULL)
+            add_curve(series, one, &one->curves[a]);
     }
 }
 
-static void series_table(const struct series_list *list, FILE *file) {
-    static const char *const HEADINGS[] = {"model",         "level",         "estimator",
-                                           "s/realisation", "statistical %", "discretisation %",
-                                           "model %",       "total %"};
-    enum { HEADING_COUNT = sizeof HEADINGS / sizeof *HEADINGS };
-    struct text_table table = {.columns = HEADING_COUNT};
+static void put_series(const struct series_cost *series, struct text_table *table) {
     char model[64], partial[48];
+    model_text(series->place->model, series->place->kinematics, model, sizeof model);
+    partial_text(series->realisations, series->valueless, partial, sizeof partial);
+    table_cell(table, "%s%s", model, partial);
+    table_number(table, series->place->level);
+    table_cell(table, "%s", series->place->series != NULL ? series->place->series : "-");
+    table_cell(table, "%.3g", series->seconds / series->realisations);
+    for (size_t e = 0; e < ERROR_COLUMNS; e++)
+        percent_cell(table, series->known[e] > 0
+                                ? sqrt(series->squares[e] / (double)series->known[e])
+                                : (double)NAN);
+}
+
+/* Of the cases `first` to `end` - 1 together. */
+static void print_series(const struct study_report *report, size_t first, size_t end,
+                         const char *title, const struct shown_cases *swept, FILE *file) {
+    static const char *const HEADINGS[] = {"model", "level", "estimator", "s/realisation"};
+    enum { HEADING_COUNT = sizeof HEADINGS / sizeof *HEADINGS };
+    struct text_table table = {.columns = HEADING_COUNT + ERROR_COLUMNS};
+    struct series_list list = {0};
+    const char *quantity = NULL;
+    for (size_t c = first; c < end; c++) {
+        const struct curve_report *main = report->cases[c].main;
+        add_case(&list, &report->cases[c]);
+        quantity = quantity == NULL && main != NULL ? main->place.quantity : quantity;
+    }
+    if (list.count == 0)
+        return;
+    fprintf(file, "\n%s: ", title);
+    if (swept != NULL)
+        print_swept(swept, first, file);
+    fprintf(file, "%s by model, level and estimator\n", quantity);
     for (size_t h = 0; h < HEADING_COUNT; h++)
         table_cell(&table, "%s", HEADINGS[h]);
-    for (size_t s = 0; s < list->count; s++) {
-        const struct series *series = &list->rows[s];
-        model_text(series->entry, model, sizeof model);
-        partial_text(series->realisations, series->valueless, partial, sizeof partial);
-        table_cell(&table, "%s%s", model, partial);
-        table_number(&table, number_of(series->entry, "level"));
-        table_cell(&table, "%s", text_of(series->entry, "series", "-"));
-        table_cell(&table, "%.3g", series->seconds / series->realisations);
-        for (size_t e = 0; e < ERROR_COUNT; e++)
-            percent_cell(&table, series->known[e]
-                                     ? sqrt(series->squares[e] / (double)series->known[e])
-                                     : (double)NAN);
-    }
+    error_headings(&table);
+    for (size_t s = 0; s < list.count; s++)
+        put_series(&list.rows[s], &table);
     table_print(&table, file);
     table_clear(&table);
 }
 
-/* One case, or all of them together. */
-static void print_series(const cJSON *first, const cJSON *end, const char *title,
-                         const char *const *varied, size_t varied_count, FILE *file) {
-    struct series_list list = {0};
-    const char *quantity = text_of(first, "main_curve", "");
-    for (const cJSON *one = first; one != end; one = one->next) {
-        add_case(&list, one);
-        quantity = *quantity ? quantity : text_of(one, "main_curve", "");
-    }
-    if (!list.count)
-        return;
-    fprintf(file, "\n%s: ", title);
-    print_swept(first, varied, varied_count, file);
-    fprintf(file, "%s by model, level and estimator\n", quantity);
-    series_table(&list, file);
-}
-
-static void print_all_series(const cJSON *cases, const char *const *varied, size_t varied_count,
+static void print_all_series(const struct study_report *report, const struct shown_cases *shown,
                              FILE *file) {
     char title[32];
-    if (cJSON_GetArraySize(cases) > TABLES_MOST) {
-        print_series(cases->child, NULL, "all cases, root mean square", NULL, 0, file);
-        return;
-    }
-    for (const cJSON *one = cases->child; one; one = one->next) {
-        snprintf(title, sizeof title, "case %.0f", number_of(one, "case"));
-        print_series(one, one->next, title, varied, varied_count, file);
-    }
+    if (report->case_count > TABLES_MOST)
+        print_series(report, 0, report->case_count, "all cases, root mean square", NULL, file);
+    else
+        for (size_t c = 0; c < report->case_count; c++) {
+            snprintf(title, sizeof title, "case %llu",
+                     (unsigned long long)report->cases[c].about.case_number);
+            print_series(report, c, c + 1, title, shown, file);
+        }
 }
 
-void summary_of_report(const cJSON *report, FILE *file) {
-    const cJSON *cases = member(report, "cases");
-    const char *varied[COLUMNS_MOST];
-    if (!cJSON_IsArray(cases) || !cases->child)
+void summary_of_report(const struct study_report *report, FILE *file) {
+    const struct quantity_table *words = view_of(report->kind)->table;
+    struct shown_cases shown;
+    if (report->case_count == 0)
         return;
-    size_t varied_count = varied_parameters(cases, varied);
-    fprintf(file, "%s (%s), study %s: cost, and relative errors of the main curve\n",
-            text_of(report, "name", "-"), text_of(report, "state", "-"),
-            text_of(report, "study", "-"));
-    cases_table(cases, varied, varied_count, file);
-    print_all_series(cases, varied, varied_count, file);
-    print_partial(cases, file);
-    print_notes(cases, NOTES_SHOWN, file);
+    fprintf(file, "%s (%s), study %s: cost, and relative errors of the main curve\n", report->name,
+            report->state, report->id);
+    if (!shown_of_report(report, &shown)) {
+        fputs("(no memory for a table)\n", file);
+        return;
+    }
+    print_cases(report, &shown, file);
+    print_all_series(report, &shown, file);
+    print_partial(&shown, words != NULL ? words->x : "point", file);
+    print_notes(&shown, NOTES_SHOWN, file);
+    shown_clear(&shown);
 }

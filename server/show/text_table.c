@@ -54,48 +54,48 @@ static bool is_numeric(const char *text) {
     return isdigit((unsigned char)*text) || ((*text == '-' || *text == '+') && text[1] != '-');
 }
 
-/* How a column looks: its width, and whether all cells below the heading are numbers. */
-struct look {
+/* How a column shapes: its width, and whether all cells below the heading are numbers. */
+struct column_shape {
     size_t width;
     bool numeric;
 };
 
-static struct look look_of(const struct text_table *table, size_t column) {
+static struct column_shape shape_of(const struct text_table *table, size_t column) {
     size_t rows = table->cells / table->columns;
-    struct look look = {0, rows > 1};
+    struct column_shape shape = {0, rows > 1};
     for (size_t row = 0; row < rows; row++) {
         const char *cell = table->text[row * table->columns + column];
         size_t width = width_of(cell);
-        look.width = width > look.width ? width : look.width;
-        look.numeric = look.numeric && (row == 0 || is_numeric(cell));
+        shape.width = width > shape.width ? width : shape.width;
+        shape.numeric = shape.numeric && (row == 0 || is_numeric(cell));
     }
-    return look;
+    return shape;
 }
 
-static void print_cell(const char *cell, const struct look *look, bool first, bool last,
+static void print_cell(const char *cell, const struct column_shape *shape, bool first, bool last,
                        FILE *file) {
-    int padding = (int)(look->width - width_of(cell));
-    fprintf(file, "%s%*s%s%*s", first ? "" : "  ", look->numeric ? padding : 0, "", cell,
-            look->numeric || last ? 0 : padding, "");
+    int padding = (int)(shape->width - width_of(cell));
+    fprintf(file, "%s%*s%s%*s", first ? "" : "  ", shape->numeric ? padding : 0, "", cell,
+            shape->numeric || last ? 0 : padding, "");
 }
 
 /* Columns begin to end - 1 of all rows, with the first `keys` columns in front of them. */
-static void print_part(const struct text_table *table, const struct look *looks, size_t keys,
-                       size_t begin, size_t end, FILE *file) {
+static void print_part(const struct text_table *table, const struct column_shape *shapes,
+                       size_t keys, size_t begin, size_t end, FILE *file) {
     for (size_t row = 0; row < table->cells / table->columns; row++) {
         char *const *cells = table->text + row * table->columns;
         for (size_t c = 0; c < keys && begin > 0; c++)
-            print_cell(cells[c], &looks[c], c == 0, false, file);
+            print_cell(cells[c], &shapes[c], c == 0, false, file);
         for (size_t c = begin; c < end; c++)
-            print_cell(cells[c], &looks[c], c == 0, c + 1 == end, file);
+            print_cell(cells[c], &shapes[c], c == 0, c + 1 == end, file);
         fputc('\n', file);
     }
 }
 
-static size_t width_between(const struct look *looks, size_t begin, size_t end) {
+static size_t width_between(const struct column_shape *shapes, size_t begin, size_t end) {
     size_t width = 0;
     for (size_t c = begin; c < end; c++)
-        width += looks[c].width + 2;
+        width += shapes[c].width + 2;
     return width;
 }
 
@@ -112,29 +112,30 @@ void table_fold(struct text_table *table) {
 }
 
 void table_print(const struct text_table *table, FILE *file) {
-    struct look *looks = table->failed ? NULL : array_create(table->columns, sizeof *looks);
-    if (!looks || !table->columns) {
-        free(looks);
+    struct column_shape *shapes =
+        table->failed ? NULL : array_create(table->columns, sizeof *shapes);
+    if (!shapes || !table->columns) {
+        free(shapes);
         fprintf(file, "(no memory for a table)\n");
         return;
     }
     for (size_t c = 0; c < table->columns; c++)
-        looks[c] = look_of(table, c);
+        shapes[c] = shape_of(table, c);
     size_t keys = table->fold_count ? table->folds[0] : 0, room = room_of(file);
-    size_t begin = 0, end = 0, key_width = width_between(looks, 0, keys);
+    size_t begin = 0, end = 0, key_width = width_between(shapes, 0, keys);
     for (size_t fold = 0; fold <= table->fold_count; fold++) {
         size_t next = fold < table->fold_count ? table->folds[fold] : table->columns;
         /* the last gap is no width */
-        bool fits = (begin ? key_width : 0) + width_between(looks, begin, next) <= room + 2;
+        bool fits = (begin ? key_width : 0) + width_between(shapes, begin, next) <= room + 2;
         if (!fits && end > keys) {
-            print_part(table, looks, keys, begin, end, file);
+            print_part(table, shapes, keys, begin, end, file);
             fputc('\n', file);
             begin = end;
         }
         end = next;
     }
-    print_part(table, looks, keys, begin, end, file);
-    free(looks);
+    print_part(table, shapes, keys, begin, end, file);
+    free(shapes);
 }
 
 void table_clear(struct text_table *table) {

@@ -92,6 +92,11 @@ static void the_report_tells_what_each_part_buys(void **state) {
                                  "\"seconds\":", "\"total_error\":", NULL});
 }
 
+/* Of every table of curves, in a folder or on standard output. */
+#define COLUMNS                                                                                    \
+    "case,quantity,series,model,kinematics,level,pressure,x,x2,y,standard_error,"                  \
+    "discretisation_error,model_error,valueless"
+
 /* Nothing overwrites another: every curve has its file, every unit its picture. */
 static void files_hold_every_curve(void **state) {
     (void)state;
@@ -100,12 +105,9 @@ static void files_hold_every_curve(void **state) {
                     "|| exit 1; done; ls; head -1 case-0-contact_area-edges-halfspace-8.csv; "
                     "test $(ls *.csv | wc -l) = $(grep -o '\"quantity\"' curves.json | wc -l)");
     check_shown((const char *[]){"case-0-contact_pressure_pdf-layered-8-at-0.1.csv\n",
-                                 "x,y,standard_error,discretisation_error,model_error,persson",
-                                 NULL});
+                                 COLUMNS ",theory_persson", NULL});
     shell("one.db", "$RUGO curves --db $DB --format csv $ID");
-    check_shown((const char *[]){"case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
-                                 "standard_error,"
-                                 "discretisation_error,model_error,valueless,theory_persson",
+    check_shown((const char *[]){COLUMNS ",theory_persson",
                                  "\n0,contact_pressure_pdf,,layered,,8,0.1,", NULL});
 }
 
@@ -144,7 +146,7 @@ static void missing_realisations_are_told(void **state) {
                       "$($RUGO status --db one.db | awk 'NR == 2 {print $1}') | grep 'of [0-9]' && "
                       "cat steep/case-0-contact_area-edges-full-hencky-6.csv && "
                       "grep '<circle' steep/contact_area.svg steep/contact_pressure_pdf.svg");
-    check_shown((const char *[]){"x,y,standard_error,valueless,persson", ",0.68",
+    check_shown((const char *[]){COLUMNS ",theory_persson", ",0.68",
                                  "steep/contact_area.svg:<circle ",
                                  "steep/contact_pressure_pdf.svg:<circle ", NULL});
 }

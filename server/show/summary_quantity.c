@@ -1,0 +1,286 @@
+/* One quantity over its x, with its errors by source, beside the theories. */
+#include "server/show/summary.h"
+#include "server/show/summary_cells.h"
+#include <math.h>
+#include <string.h>
+
+enum { TABLES_MOST = 4, PLACES_SHOWN = 10, MODELS_MOST = 4, NOTES_SHOWN = 3 };
+
+/* The finest curve of each model, of the first estimator of the case. */
+struct finest_curves {
+    size_t model_count, theory_count;
+    const struct curve *curves[MODELS_MOST];
+    const struct theory *theories[THEORIES_MOST]; /* of the first model, those of the table */
+};
+
+static const char *text_or(const char *text, const char *otherwise) {
+    return text != NULL ? text : otherwise;
+}
+
+static void add_curve(struct finest_curves *finest, const struct curve *curve) {
+    size_t m = 0;
+    while (m < finest->model_count &&
+           strcmp(text_or(finest->curves[m]->model, ""), text_or(curve->model, "")) != 0)
+        m++;
+    if (m == MODELS_MOST)
+        return;
+    if (m == finest->model_count)
+        finest->curves[finest->model_count++] = curve;
+    else if (curve->level > finest->curves[m]->level)
+        finest->curves[m] = curve;
+}
+
+static void find_finest(struct finest_curves *finest, const struct quantity_table *words,
+                        const struct case_result *one) {
+    *finest = (struct finest_curves){0};
+    for (size_t a = 0; a < one->curve_count; a++) {
+        const struct curve *curve = &one->curves[a];
+        if (strcmp(curve->quantity, words->quantity) != 0 || curve->columns > 0)
+            continue;
+        const char *series = finest->model_count > 0 ? finest->curves[0]->series : curve->series;
+        if (strcmp(text_or(series, ""), text_or(curve->series, "")) == 0)
+            add_curve(finest, curve);
+    }
+    if (finest->model_count == 0)
+        return;
+    const struct curve *first = finest->curves[0];
+    for (size_t t = 0; t < first->theory_count; t++)
+        if (first->theories[t].y != NULL && !view_lists(words->left_out, first->theories[t].name))
+            finest->theories[finest->theory_count++] = &first->theories[t];
+}
+
+static size_t place_count(const struct finest_curves *finest) {
+    return finest->model_count > 0 ? finest->curves[0]->n : 0;
+}
+
+/* NaN for what is not there. */
+static double number_at(const double *numbers, const struct curve *curve, size_t k) {
+    return numbers != NULL && k < curve->n ? numbers[k] : (double)NAN;
+}
+
+/* --- cells --- */
+
+static const char *error_word(const struct quantity_table *words, enum error_source source) {
+    return text_or(words->error_words[source], ERROR_SOURCE_ROWS[source].name);
+}
+
+/* With its sign: above or below what it is counted from. */
+static void error_cell(struct text_table *table, double error, double value) {
+    if (isnan(error / value))
+        table_cell(table, "-");
+    else
+        table_cell(table, "%+.2g", 100 * error / value);
+}
+
+static void value_cell(struct text_table *table, const struct case_result *one,
+                       const struct curve *curve, size_t k) {
+    char text[64], partial[48];
+    if (curve == NULL) {
+        table_cell(table, "-");
+        return;
+    }
+    measured_text(number_at(curve->y, curve, k), number_at(curve->standard_error, curve, k), text,
+                  sizeof text);
+    partial_text((double)one->realisations, number_at(curve->valueless, curve, k), partial,
+                 sizeof partial);
+    table_cell(table, "%s%s", text, partial);
+}
+
+/* "kappa 2.80 +- 0.08 (theory 1.5958)" */
+static void print_scalar(const struct case_result *one, const char *name, FILE *file) {
+    const struct scalar *scalar = result_scalar(one, name);
+    char text[64];
+    measured_text(scalar != NULL ? scalar->value : (double)NAN,
+                  scalar != NULL ? scalar->standard_error : (double)NAN, text, sizeof text);
+    fprintf(file, "%s %s", name, text);
+    if (scalar != NULL && !isnan(scalar->theory))
+        fprintf(file, " (theory %.4f)", scalar->theory);
+}
+
+/* --- a table a case --- */
+
+/* One model owes nothing to another one. */
+static bool has_column(const struct finest_curves *finest, enum error_source source) {
+    return source != ERROR_MODEL || finest->model_count > 1;
+}
+
+static size_t column_count(const struct finest_curves *finest) {
+    size_t columns = 1 + finest->model_count + finest->theory_count;
+    for (int source = 0; source < ERROR_SOURCES; source++)
+        columns += has_column(finest, (enum error_source)source) ? finest->model_count : 0;
+    return columns;
+}
+
+static void put_heading(const struct quantity_table *words, const struct finest_curves *finest,
+                        struct text_table *table) {
+    char model[64];
+    table_cell(table, "%s", words->x);
+    for (size_t m = 0; m < finest->model_count; m++) {
+        const struct curve *curve = finest->curves[m];
+        table_fold(table);
+        table_cell(table, "%s", model_text(curve->model, curve->kinematics, model, sizeof model));
+        for (int source = 0; source < ERROR_SOURCES; source++)
+            if (has_column(finest, (enum error_source)source))
+                table_cell(table, "%s %%", error_word(words, (enum error_source)source));
+    }
+    if (finest->theory_count > 0)
+        table_fold(table);
+    for (size_t t = 0; t < finest->theory_count; t++)
+        table_cell(table, "%s", finest->theories[t]->name);
+}
+
+static void put_place(const struct case_result *one, const struct finest_curves *finest, size_t k,
+                      struct text_table *table) {
+    table_number(table, finest->curves[0]->x[k]);
+    for (size_t m = 0; m < finest->model_count; m++) {
+        const struct curve *curve = finest->curves[m];
+        value_cell(table, one, curve, k);
+        for (int source = 0; source < ERROR_SOURCES; source++)
+            if (has_column(finest, (enum error_source)source))
+                error_cell(table, number_at(curve->errors[source].value, curve, k),
+                           number_at(curve->y, curve, k));
+    }
+    for (size_t t = 0; t < finest->theory_count; t++) {
+        double theory = finest->theories[t]->y[k];
+        table_cell(table, isnan(theory) ? "-" : "%.4f", theory);
+    }
+}
+
+/* At most PLACES_SHOWN of the places, with the first and the last. */
+static void print_table(const struct quantity_table *words, const struct case_result *one,
+                        const struct finest_curves *finest, FILE *file) {
+    const struct curve *first = finest->curves[0];
+    size_t places = first->n, shown = places < PLACES_SHOWN ? places : PLACES_SHOWN;
+    struct text_table table = {.columns = column_count(finest)};
+    char model[64];
+    put_heading(words, finest, &table);
+    for (size_t n = 0; n < shown; n++)
+        put_place(one, finest, shown > 1 ? n * (places - 1) / (shown - 1) : 0, &table);
+    table_print(&table, file);
+    table_clear(&table);
+    for (size_t s = 0; words->scalars != NULL && words->scalars[s] != NULL; s++) {
+        if (s == 0)
+            fprintf(file, "%s: ", model_text(first->model, first->kinematics, model, sizeof model));
+        else
+            fputs(", ", file);
+        print_scalar(one, words->scalars[s], file);
+    }
+    fputc('\n', file);
+}
+
+static void print_case(const struct quantity_table *words, const struct shown_cases *shown,
+                       size_t c, const struct study_report *report, FILE *file) {
+    const struct case_result *one = shown->list[c];
+    const struct case_report *cost = report_of(report, one);
+    struct finest_curves finest;
+    find_finest(&finest, words, one);
+    fprintf(file, "\ncase %llu: ", (unsigned long long)one->case_number);
+    print_swept(shown, c, file);
+    fprintf(file, "%llu realisations", (unsigned long long)one->realisations);
+    if (cost != NULL) {
+        char time[48];
+        duration_text(cost->seconds, time, sizeof time);
+        fprintf(file, ", %s", time);
+    }
+    if (finest.model_count > 0) {
+        fprintf(file, "; %s by %s at %.4g points a shortest wave\n", words->title,
+                text_or(finest.curves[0]->series, "-"), finest.curves[0]->level);
+        print_table(words, one, &finest, file);
+    } else {
+        fputc('\n', file);
+    }
+}
+
+/* --- a row a case --- */
+
+enum { SAMPLES = 3 }; /* first, middle and last place */
+
+static size_t sample_place(const struct finest_curves *finest, size_t n) {
+    size_t places = place_count(finest);
+    return places > 0 ? n * (places - 1) / (SAMPLES - 1) : 0;
+}
+
+/* x of each sample, NaN where cases differ in it. */
+static void find_samples(const struct quantity_table *words, const struct shown_cases *shown,
+                         double x[SAMPLES]) {
+    bool begun = false;
+    for (size_t c = 0; c < shown->count; c++) {
+        struct finest_curves finest;
+        find_finest(&finest, words, shown->list[c]);
+        for (size_t n = 0; n < SAMPLES && place_count(&finest) > 0; n++) {
+            double place = finest.curves[0]->x[sample_place(&finest, n)];
+            x[n] = !begun || place == x[n] ? place : (double)NAN;
+        }
+        begun = begun || place_count(&finest) > 0;
+    }
+}
+
+static void put_row_heading(const struct quantity_table *words, const struct shown_cases *shown,
+                            struct text_table *table) {
+    static const char *const SAMPLE_NAMES[SAMPLES] = {"lowest", "middle", "highest"};
+    double x[SAMPLES] = {NAN, NAN, NAN};
+    find_samples(words, shown, x);
+    table_cell(table, "case");
+    varied_headings(table, shown);
+    table_cell(table, "realisations");
+    table_fold(table);
+    for (size_t n = 0; n < SAMPLES; n++)
+        if (isnan(x[n]))
+            table_cell(table, "%s at %s %s", words->value, SAMPLE_NAMES[n], words->x);
+        else
+            table_cell(table, "%s at %.4g", words->value, x[n]);
+    for (int source = 0; source < ERROR_SOURCES; source++)
+        table_cell(table, "%s %%", error_word(words, (enum error_source)source));
+    table_fold(table);
+    for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++)
+        table_cell(table, "%s", *name);
+    table_cell(table, "time");
+}
+
+static void put_row(const struct quantity_table *words, const struct shown_cases *shown, size_t c,
+                    const struct case_report *cost, struct text_table *table) {
+    const struct case_result *one = shown->list[c];
+    struct finest_curves finest;
+    find_finest(&finest, words, one);
+    table_number(table, (double)one->case_number);
+    varied_cells(table, shown, c);
+    table_number(table, (double)one->realisations);
+    for (size_t n = 0; n < SAMPLES; n++)
+        value_cell(table, one, finest.curves[0], sample_place(&finest, n));
+    for (int source = 0; source < ERROR_SOURCES; source++)
+        percent_cell(table,
+                     cost != NULL && cost->main != NULL ? cost->main->errors[source] : (double)NAN);
+    for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++) {
+        const struct scalar *scalar = result_scalar(one, *name);
+        measured_cell(table, scalar != NULL ? scalar->value : (double)NAN,
+                      scalar != NULL ? scalar->standard_error : (double)NAN);
+    }
+    duration_cell(table, cost != NULL ? cost->seconds : (double)NAN);
+}
+
+static void print_rows(const struct quantity_table *words, const struct shown_cases *shown,
+                       const struct study_report *report, FILE *file) {
+    size_t scalars = 0;
+    while (words->scalars != NULL && words->scalars[scalars] != NULL)
+        scalars++;
+    struct text_table table = {.columns = 1 + shown->varied_count + 1 + SAMPLES +
+                                          (size_t)ERROR_SOURCES + scalars + 1};
+    put_row_heading(words, shown, &table);
+    for (size_t c = 0; c < shown->count; c++)
+        put_row(words, shown, c, report_of(report, shown->list[c]), &table);
+    fputc('\n', file);
+    table_print(&table, file);
+    table_clear(&table);
+}
+
+void summary_of_quantity(const struct quantity_table *words, const struct shown_cases *shown,
+                         const struct study_report *report, FILE *file) {
+    if (shown->count <= TABLES_MOST)
+        for (size_t c = 0; c < shown->count; c++)
+            print_case(words, shown, c, report, file);
+    else
+        print_rows(words, shown, report, file);
+    fprintf(file, "\n%s\n", words->legend);
+    print_partial(shown, words->x, file);
+    print_notes(shown, NOTES_SHOWN, file);
+}

@@ -1,0 +1,12 @@
+/* Tables of where studies stand, from the documents of GET /v1/studies and GET /v1/studies/{id}. */
+#ifndef RUGO_SERVER_SHOW_SUMMARY_STATUS_H
+#define RUGO_SERVER_SHOW_SUMMARY_STATUS_H
+
+#include <cjson/cJSON.h>
+#include <stdio.h>
+
+/* Progress of one study, with its failures; of a list of them. */
+void summary_of_status(const cJSON *status, FILE *file);
+void summary_of_list(const cJSON *studies, FILE *file);
+
+#endif

@@ -1,0 +1,13 @@
+/* How the results of a kind are shown, looked up by the kind's name. */
+#ifndef RUGO_SERVER_SHOW_VIEW_H
+#define RUGO_SERVER_SHOW_VIEW_H
+
+#include "schema/result/view.h"
+
+/* That of a kind; a plain one for a kind without a view, or of another program (NULL). */
+const struct result_view *view_of(const char *kind);
+/* The picture of a quantity with logarithmic axes, or NULL. */
+const struct logarithmic_picture *view_logarithmic(const struct result_view *view,
+                                                   const char *quantity);
+
+#endif

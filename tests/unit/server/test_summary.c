@@ -1,0 +1,191 @@
+/* Protects: tables show what the kind's view asks for, tell models, sources of error and missing
+ * realisations apart, and need no view to show a kind. */
+#include "schema/result/report.h"
+#include "server/show/summary.h"
+#include "server/show/summary_cells.h"
+#include "tests/support/check.h"
+#include "tests/support/result_builder.h"
+#include <stdio.h>
+
+static char *table_of(const struct study_result *study, const struct study_report *report) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    summary_of_curves(study, report, file);
+    fclose(file);
+    return text;
+}
+
+static void check_shown(const char *text, const char *const *parts) {
+    for (; *parts != NULL; parts++)
+        if (strstr(text, *parts) == NULL)
+            fail_msg("no \"%s\" in\n%s", *parts, text);
+}
+
+/* Each scalar with a theory has a column; the view's headlines come first, and alone. */
+static void scalars_are_those_of_the_view(void **state) {
+    (void)state;
+    static const char *const KINDS[] = {"statistics", "no such kind"};
+    for (size_t n = 0; n < 2; n++) {
+        struct study_result study = built_study(KINDS[n], "summits", 2);
+        for (size_t c = 0; c < 2; c++) {
+            struct case_result *one = &study.cases[c];
+            built_parameter(one, "/surface/hurst", NULL, c == 0 ? 0.2 : 0.8);
+            built_parameter(one, "/surface/dimension", NULL, 2);
+            built_scalar(one, "rms_slope", 1.5, 0.1, 1.0);
+            built_scalar(one, "summit_density", 0.25, 0.01, 0.5);
+            built_scalar(one, "shape", 3, 0.1, NAN);
+        }
+        char *text = table_of(&study, NULL);
+        check_shown(text, (const char *[]){"summits (done), study 0123456789abcdef, 4 realisations",
+                                           "\ncase  hurst  ", "summit_density  theory   ratio",
+                                           "0.250 +- 0.010     0.5  0.5000\n", NULL});
+        assert_int_equal(strstr(text, "rms_slope") == NULL, n == 0);
+        assert_null(strstr(text, "dimension")); /* not swept */
+        assert_null(strstr(text, "shape"));     /* nothing to compare with */
+        free(text);
+        study_result_clear(&study);
+    }
+}
+
+/* Two levels of a model; edges before nodes. */
+static void add_areas(struct case_result *one, const char *model, const char *kinematics,
+                      bool partial) {
+    static const char *const SERIES[] = {"edges", "nodes"};
+    static const double X[] = {0.1, 0.2, 0.3}, ERROR[] = {0.01, 0.01, 0.01};
+    for (int s = 0; s < 2; s++)
+        for (int level = 4; level <= 8; level += 4) {
+            double base = level == 8 ? 0.2 : 0.7;
+            struct curve curve = built_points(
+                one, "contact_area", 3, X, (const double[]){base, base + 0.1, base + 0.2}, ERROR);
+            curve.series = SERIES[s];
+            curve.model = model;
+            curve.kinematics = kinematics;
+            curve.level = level;
+            if (level == 8)
+                curve.errors[ERROR_DISCRETISATION].value =
+                    built_numbers(one, 3, (const double[]){0.02, -0.03, NAN});
+            if (partial)
+                curve.valueless = built_numbers(one, 3, (const double[]){0, 0, 3});
+            built_theory(one, &curve, "persson", (const double[]){0.15, 0.25, 0.35});
+            built_theory(one, &curve, "persson_light_load", (const double[]){0.16, 0.3, 0.5});
+            built_curve(one, &curve);
+        }
+    built_scalar(one, "kappa", 2.5, 0.1, 1.5958);
+}
+
+static void few_cases_have_a_table_each(void **state) {
+    (void)state;
+    struct study_result study = built_study("contact", "pressed", 1);
+    add_areas(&study.cases[0], "halfspace", NULL, false);
+    char *text = table_of(&study, NULL);
+    check_shown(text, (const char *[]){"case 0: 4 realisations; contact area by edges at 8 points",
+                                       "\nload       halfspace  mesh %  persson\n",
+                                       "\n 0.1  0.200 +- 0.010     +10   0.1500\n",
+                                       "\n 0.2  0.300 +- 0.010     -10   0.2500\n",
+                                       "\n 0.3  0.400 +- 0.010       -   0.3500\n",
+                                       "\nhalfspace: kappa 2.50 +- 0.10 (theory 1.5958)",
+                                       "\nload: p/(E* h'_rms); area: A/A0", NULL});
+    assert_null(strstr(text, "model %  ")); /* of one model nothing is known */
+    assert_null(strstr(text, "light_load"));
+    assert_null(strstr(text, "(n of N)"));
+    free(text);
+    /* beside a second model, which lacks values at the last load */
+    add_areas(&study.cases[0], "full", "hencky", true);
+    text = table_of(&study, NULL);
+    check_shown(text, (const char *[]){"halfspace  mesh %  model %", "full (hencky)  mesh %  model",
+                                       "0.400 +- 0.010 (1 of 4)", "\n(n of N): only n of N",
+                                       "a value at the load;", NULL});
+    free(text);
+    study_result_clear(&study);
+}
+
+static void many_cases_have_a_row_each(void **state) {
+    (void)state;
+    struct study_result study = built_study("contact", "pressed", 6);
+    for (size_t c = 0; c < 6; c++) {
+        built_parameter(&study.cases[c], "/surface/heights/distribution",
+                        c < 3 ? "gaussian" : "weibull_min", 0);
+        built_parameter(&study.cases[c], "/surface/hurst", NULL, 0.1 * (double)(c % 3 + 1));
+        if (c < 5)
+            add_areas(&study.cases[c], "layered", NULL, false);
+    }
+    study.cases[5].realisations = 0;
+    char *text = table_of(&study, NULL);
+    check_shown(
+        text, (const char *[]){"\ncase  distribution  hurst  realisations     area at 0.1     "
+                               "area at 0.2     area at 0.3  mesh %  model %  ",
+                               "\n   4  weibull_min     0.2             4  0.200 +- 0.010", NULL});
+    check_shown(text, (const char *[]){
+                          "\n   5  weibull_min     0.3             0               -   ", NULL});
+    free(text);
+    study_result_clear(&study);
+}
+
+/* The report of one case, made by hand: statistical, two sources, total. */
+static void a_report_tells_errors_by_source(void **state) {
+    (void)state;
+    struct curve_report curves[] = {
+        {.place = {.quantity = "contact_area", .series = "edges", .model = "layered", .level = 8},
+         .seconds = 8,
+         .statistical = 0.03,
+         .errors = {[ERROR_DISCRETISATION] = 0.04, [ERROR_MODEL] = NAN},
+         .total = 0.05,
+         .valueless = 1},
+        {.place =
+             {.quantity = "contact_area", .series = "edges_upper", .model = "layered", .level = 8},
+         .seconds = 8},
+    };
+    struct case_report one = {.about = {.realisations = 4},
+                              .seconds = 10,
+                              .curve_count = 2,
+                              .curves = curves,
+                              .main = &curves[0]};
+    char id[] = "12", name[] = "pressed", kind[] = "contact", done[] = "done", *text = NULL;
+    struct study_report report = {
+        .id = id, .name = name, .kind = kind, .state = done, .case_count = 1, .cases = &one};
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    summary_of_report(&report, file);
+    fclose(file);
+    check_shown(text,
+                (const char *[]){"pressed (done), study 12: cost, and relative errors",
+                                 "\ncase  realisations  seconds  s/realisation  statistical %  "
+                                 "discretisation %  model %  total %  s to halve\n",
+                                 "4 (3 of 4)       10            2.5              3",
+                                 "case 0: contact_area by model, level and estimator\n",
+                                 "layered (3 of 4)      8  edges", "(n of N): ", NULL});
+    assert_null(strstr(text, "upper")); /* a bracket is no estimate */
+    free(text);
+}
+
+static void numbers_have_the_digits_of_their_error(void **state) {
+    (void)state;
+    static const struct {
+        double value, error;
+        const char *text;
+    } NUMBERS[] = {{0.257716, 0.00022, "0.25772 +- 0.00022"},
+                   {123.4, 17, "123 +- 17"},
+                   {2, 0, "2"},
+                   {2, NAN, "2"},
+                   {1e-12, 1e-13, "1e-12 +- 1e-13"},
+                   {NAN, 1, "-"}};
+    for (size_t n = 0; n < sizeof NUMBERS / sizeof *NUMBERS; n++) {
+        char text[64];
+        measured_text(NUMBERS[n].value, NUMBERS[n].error, text, sizeof text);
+        assert_string_equal(text, NUMBERS[n].text);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scalars_are_those_of_the_view),
+        cmocka_unit_test(few_cases_have_a_table_each),
+        cmocka_unit_test(many_cases_have_a_row_each),
+        cmocka_unit_test(a_report_tells_errors_by_source),
+        cmocka_unit_test(numbers_have_the_digits_of_their_error),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
