@@ -1,5 +1,4 @@
 /* rugo characterise FILE: what a height map in a file is like. */
-#include "schema/json/json.h"
 #include "server/command/command.h"
 #include "server/command/map_file.h"
 #include "server/command/options.h"
@@ -29,21 +28,17 @@ static bool read_options(int argc, char **argv, struct options *out) {
 }
 
 static int print(const struct options *options, const struct height_map *map, struct error *err) {
-    cJSON *values;
-    int status = characterisation_create(&values, &map->grid, map->z, map->grid.nx / 2,
-                                         map->grid.ny / 2, err);
+    struct characterisation values;
+    int status =
+        characterise_heights(&values, &map->grid, map->z, map->grid.nx / 2, map->grid.ny / 2, err);
     if (status != 0)
         return status;
-    if (options->json) {
-        char *text = json_print(values);
-        if (text != NULL)
-            puts(text);
-        else
-            status = error_memory(err, sizeof(cJSON), "the characterisation");
-        free(text);
-    } else
-        characterisation_print(stdout, values);
-    cJSON_Delete(values);
+    if (!options->json)
+        characterisation_print(stdout, &values);
+    else if (characterisation_print_json(stdout, &values))
+        putchar('\n');
+    else
+        status = error_memory(err, sizeof values, "the characterisation");
     if (status == 0 && (fflush(stdout) != 0 || ferror(stdout)))
         status = error_set(err, ERROR_SYSTEM, "cannot write to standard output");
     return status;

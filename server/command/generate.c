@@ -109,12 +109,11 @@ static int characterise(const struct options *options, const struct surface_case
         mode_x = surface->grid.nx / 2;
         mode_y = surface->grid.ny / 2;
     }
-    cJSON *values;
-    int status = characterisation_create(&values, &surface->grid, z, mode_x, mode_y, err);
+    struct characterisation values;
+    int status = characterise_heights(&values, &surface->grid, z, mode_x, mode_y, err);
     if (status != 0)
         return status;
-    characterisation_print(file, values);
-    cJSON_Delete(values);
+    characterisation_print(file, &values);
     if (report->end != END_DIRECT)
         fprintf(file,
                 "generation\n  %-18s %zu\n  %-18s %s\n  %-18s %.4g\n  %-18s %.4g\n  %-18s %.4g\n",

@@ -4,13 +4,27 @@
 #define RUGO_SERVER_SHOW_CHARACTERISATION_H
 
 #include "core/surface/grid.h"
-#include <cjson/cJSON.h>
+#include <stdbool.h>
 #include <stdio.h>
 
-/* mode_x, mode_y bound the band of z (nx/2, ny/2 where unknown). Caller deletes *out. */
-int characterisation_create(cJSON **out, const struct grid *grid, const double *z, size_t mode_x,
-                            size_t mode_y, struct error *err);
+enum { CHARACTERISTICS_MOST = 48 };
+
+/* Numbers by name, in groups that follow each other. */
+struct characterisation {
+    size_t count;
+    struct characteristic {
+        const char *group, *name; /* static */
+        double value;             /* NaN: none */
+    } list[CHARACTERISTICS_MOST];
+};
+
+/* mode_x, mode_y bound the band of z (nx/2, ny/2 where unknown). *out is undefined after a failure.
+ */
+int characterise_heights(struct characterisation *out, const struct grid *grid, const double *z,
+                         size_t mode_x, size_t mode_y, struct error *err);
 /* One value a line, name before it. */
-void characterisation_print(FILE *file, const cJSON *characterisation);
+void characterisation_print(FILE *file, const struct characterisation *characterisation);
+/* {group: {name: value}}, null for NaN. False when out of memory. */
+bool characterisation_print_json(FILE *file, const struct characterisation *characterisation);
 
 #endif

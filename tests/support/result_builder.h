@@ -19,7 +19,7 @@ static inline struct study_result built_study(const char *kind, const char *name
                                  .cases = calloc(cases, sizeof *study.cases)};
     assert_true(study.id != NULL && study.name != NULL && study.kind != NULL &&
                 study.state != NULL && study.cases != NULL);
-    for (size_t c = 0; c < cases; c++) {
+    for (size_t c = 0; c < cases && study.cases != NULL; c++) {
         study.cases[c].case_number = c;
         study.cases[c].realisations = 4;
     }

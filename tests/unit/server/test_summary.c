@@ -123,6 +123,10 @@ static void many_cases_have_a_row_each(void **state) {
     study_result_clear(&study);
 }
 
+#define HEADING                                                                                    \
+    "\ncase  realisations  seconds  s/realisation  statistical %  discretisation %  model %  "     \
+    "total %  s to halve\n"
+
 /* The report of one case, made by hand: statistical, two sources, total. */
 static void a_report_tells_errors_by_source(void **state) {
     (void)state;
@@ -150,13 +154,10 @@ static void a_report_tells_errors_by_source(void **state) {
     assert_non_null(file);
     summary_of_report(&report, file);
     fclose(file);
-    check_shown(text,
-                (const char *[]){"pressed (done), study 12: cost, and relative errors",
-                                 "\ncase  realisations  seconds  s/realisation  statistical %  "
-                                 "discretisation %  model %  total %  s to halve\n",
-                                 "4 (3 of 4)       10            2.5              3",
-                                 "case 0: contact_area by model, level and estimator\n",
-                                 "layered (3 of 4)      8  edges", "(n of N): ", NULL});
+    check_shown(text, (const char *[]){"pressed (done), study 12: cost, and relative errors",
+                                       HEADING, "4 (3 of 4)       10            2.5              3",
+                                       "case 0: contact_area by model, level and estimator\n",
+                                       "layered (3 of 4)      8  edges", "(n of N): ", NULL});
     assert_null(strstr(text, "upper")); /* a bracket is no estimate */
     free(text);
 }
