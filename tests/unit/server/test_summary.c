@@ -123,9 +123,8 @@ static void many_cases_have_a_row_each(void **state) {
     study_result_clear(&study);
 }
 
-#define HEADING                                                                                    \
-    "\ncase  realisations  seconds  s/realisation  statistical %  discretisation %  model %  "     \
-    "total %  s to halve\n"
+static const char HEADING[] = "\ncase  realisations  seconds  s/realisation  statistical %  "
+                              "discretisation %  model %  total %  s to halve\n";
 
 /* The report of one case, made by hand: statistical, two sources, total. */
 static void a_report_tells_errors_by_source(void **state) {
