@@ -148,7 +148,7 @@ format:
 	@clang-format -i $(SOURCES)
 check-format:
 	@clang-format --dry-run --Werror $(SOURCES)
-lint: lint-deps check-format check-layers
+lint: lint-deps check-format check-layers check-citations
 	@printf '%s\n' $(filter %.c,$(SOURCES)) | \
 	    xargs -P $$(nproc) -I {} bash -o pipefail -c \
 	        "clang-tidy --quiet {} -- $(LANGUAGE) 2>&1 | sed '/^[0-9]* warnings* generated/d'"
@@ -156,6 +156,23 @@ lint: lint-deps check-format check-layers
 lint-deps: deps
 	@tests/install-deps "" "clang-format clang-tidy" clang-format clang-tidy
 .PHONY: lint-deps
+
+# What comments and documents cite is there, and the check of it notices what is not.
+check-citations:
+	@tests/check-citations --self-test
+	@tests/check-citations
+	@echo "citations: all found"
+
+# The pictures of the documents, drawn by the program; CI checks that they are what it draws today.
+FIGURES = jobs/studies/figures
+figures: all
+	@$(FIGURES)/draw $(BUILD)/rugo $(FIGURES)
+check-figures: all
+	@tests/same-figures --self-test
+	@$(FIGURES)/draw $(BUILD)/rugo $(BUILD)/figures
+	@tests/same-figures $(FIGURES) $(BUILD)/figures
+	@echo "figures: as the program draws them"
+.PHONY: check-citations figures check-figures
 
 # Each archive needs nothing but those of the layers below it: linked whole, it leaves no symbol open.
 define WHOLE

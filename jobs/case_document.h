@@ -1,4 +1,4 @@
-/* The document of one case: {"realisations", "scalars", "curves"} of interface.md, and "notes"
+/* The document of one case: {"realisations", "scalars", "curves"} of schema/result/README.md, and "notes"
  * where there are any. */
 #ifndef RUGO_JOBS_CASE_DOCUMENT_H
 #define RUGO_JOBS_CASE_DOCUMENT_H

@@ -1,4 +1,4 @@
-/* A curve of interface.md as JSON: points, or a matrix over two axes, with errors and theory. */
+/* A curve as JSON: points, or a matrix over two axes, with errors and theory. */
 #ifndef RUGO_JOBS_CURVE_H
 #define RUGO_JOBS_CURVE_H
 

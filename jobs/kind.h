@@ -70,7 +70,7 @@ struct job_kind {
                 struct error *err);
     /* Decodes and adds one block; ERROR_INPUT for data that is not this case's (nothing added). */
     int (*merge)(struct job_merger *merger, const struct block_result *result, struct error *err);
-    /* {"realisations": n, "scalars": {...}, "curves": [...]} of interface.md; caller deletes. */
+    /* {"realisations": n, "scalars": {...}, "curves": [...]} as in openapi.yaml; caller deletes. */
     int (*curves)(struct job_merger *merger, cJSON **out, struct error *err);
 };
 

@@ -1,4 +1,4 @@
-/* A scalar of interface.md as JSON: a value with its error, and theory. */
+/* A scalar as JSON: a value with its error, and theory. */
 #ifndef RUGO_JOBS_SCALAR_H
 #define RUGO_JOBS_SCALAR_H
 

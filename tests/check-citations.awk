@@ -102,7 +102,7 @@ function check_files(text,    token, base) {
         token = substr(text, RSTART, RLENGTH)
         text = substr(text, RSTART + RLENGTH)
         if (text ~ /^[A-Za-z0-9_(]/) continue # part of something longer
-        if (token ~ /[*]/ || token ~ /^\//) continue
+        if (token ~ /[*]/ || token ~ /^\// || token ~ /^(Random123|suitesparse)\//) continue
         base = token
         sub(/.*\//, "", base)
         if (base ~ /^(NAME|FILE|STUDY|NNN)\./) continue # whatever the reader puts there

@@ -5,7 +5,7 @@
 #include "jobs/contact/contact_tally.h"
 #include <cjson/cJSON.h>
 
-/* An array of curves (interface.md), those of one quantity together: the first is the contact area
+/* An array of curves, those of one quantity together: the first is the contact area
  * of the first model on the finest level. modes, moments: of the prescribed spectrum. Caller
  * deletes. */
 int contact_curves(const struct contact_case *study, const struct modes *modes,

@@ -141,9 +141,9 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
 typedef int result_visit(void *context, const struct block_result *result, struct error *err);
 int store_results(struct store *store, const char *study, uint64_t case_number, result_visit *visit,
                   void *context, struct error *err);
-/* Replaces the published curves and scalars of a case ({"scalars", "curves"} of interface.md) for
- * the views curve_points and case_scalars; keeps the document too. revision: of case_info when it
- * was read; an older one than published is ignored. */
+/* Replaces the published curves and scalars of a case ({"scalars", "curves"} as in openapi.yaml)
+ * for the views curve_points and case_scalars; keeps the document too. revision: of case_info when
+ * it was read; an older one than published is ignored. */
 int store_publish(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
                   const cJSON *curves, struct error *err);
 /* The published document of a case, or NULL in *out when there is none of this revision. */

@@ -1,4 +1,4 @@
-/* What can be asked of a store, as the JSON documents of interface.md: the one meaning behind the
+/* What can be asked of a store, as the JSON documents of openapi.yaml: the one meaning behind the
  * HTTP routes and the commands on a local file. All documents are the caller's to delete. */
 #ifndef RUGO_SERVER_COMMAND_API_H
 #define RUGO_SERVER_COMMAND_API_H

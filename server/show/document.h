@@ -1,4 +1,4 @@
-/* Reading the JSON documents of interface.md: what is missing or of another type reads as nothing.
+/* Reading the JSON documents of openapi.yaml: what is missing or of another type reads as nothing.
  */
 #ifndef RUGO_SERVER_SHOW_DOCUMENT_H
 #define RUGO_SERVER_SHOW_DOCUMENT_H

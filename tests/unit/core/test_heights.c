@@ -13,7 +13,7 @@ static struct height_moments moments_of(enum heights_type type, double shape) {
     return moments;
 }
 
-/* Table 3.3 and theory.md's bounds, to their printed digits. */
+/* Table 3.3 and the bounds of F4.3, to their printed digits. */
 static void moments_are_those_of_the_table(void **state) {
     (void)state;
     static const double TABLE[][4] = {{1, 2, 9, 1},

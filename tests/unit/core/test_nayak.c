@@ -7,12 +7,12 @@
 static const double ALPHAS[] = {1.5001, 1.51, 1.6, 2, 3.7617, 5, 11.89, 206.45, 1e4};
 enum { ALPHA_COUNT = sizeof ALPHAS / sizeof *ALPHAS };
 
-/* 1e-9 relative as validation.md asks; 1e-6 near alpha = 1.5, where the densities turn steep. */
+/* 1e-9 relative; 1e-6 near alpha = 1.5, where the densities turn steep. */
 static double tolerance(double alpha) {
     return alpha < 1.51 ? 1e-6 : 1e-9;
 }
 
-/* Values of theory.md, computed there with other formulas; printed to 12 digits. */
+/* Values of F6.9, computed with other formulas; printed to 12 digits. */
 static void values(void **state) {
     (void)state;
     static const double SUMMITS_5[] = {0.00157918086611, 0.0368965781848, 0.238734539355,

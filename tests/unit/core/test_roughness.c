@@ -19,7 +19,7 @@ static double *surface(const struct grid *grid, double ratio, struct generator *
     return z;
 }
 
-/* theory.md: m2 and m4 by differences over their spectral values at 4, 8, 16 points a wave; three
+/* F1.3: m2 and m4 by differences over their spectral values at 4, 8, 16 points a wave; three
  * digits. */
 static void differences_have_their_bias(void **state) {
     (void)state;

@@ -26,7 +26,7 @@ static double alpha_of(double hurst, double ratio) {
     return moments.nayak_alpha;
 }
 
-/* Table 3.1 of the reference and its H = 0.2 cases, in the four digits of theory.md. */
+/* Table 3.1 of the reference and its H = 0.2 cases, in the four digits of F2.6. */
 static void discrete_alpha(void **state) {
     (void)state;
     static const double RATIOS[] = {8, 16, 32, 64}, ALPHAS[] = {5.3368, 11.8862, 29.1068, 75.8794};

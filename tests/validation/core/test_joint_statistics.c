@@ -162,7 +162,7 @@ static void peaks_of_profiles(void **state) {
 }
 
 /* With exact derivatives, nine-point summits at 8 points a wave are a little flatter than maxima:
- * 1.495 in theory.md, three digits; by differences 1.464. */
+ * 1.495 (F8.3), three digits; by differences 1.464. */
 static void curvature_at_grid_summits(void **state) {
     (void)state;
     const struct grid grid = {512, 512, 64, 64};

@@ -142,7 +142,7 @@ static void refined_summits_are_nayaks(void **state) {
     }
 }
 
-/* By differences curvature is low: 1.464 at 8 points in theory.md, three digits. */
+/* By differences curvature is low: 1.464 at 8 points (F8.3), three digits. */
 static void difference_curvature_is_low(void **state) {
     (void)state;
     struct figures figures = measure(8, SUMMITS_NINE_POINT);

@@ -10,7 +10,8 @@
     " \"length_ratio\": 1, \"points_per_wavelength\": 64}, \"contact\": {" contact "}}"
 
 /* Every realisation is the wave at another phase of the grid: each by itself, so that phases do not
- * cancel. 1 %: issue and validation.md. The gap is an integral: 0.002 of sqrt(m0). */
+ * cancel. 1 % is what edges reach at 64 points a wave. The gap is an integral: 0.002 of sqrt(m0).
+ */
 static void one_wave_is_westergaards(void **state) {
     (void)state;
     static const char study[] = WAVE("\"pressures\": {\"to\": 0.68, \"steps\": 34}");
@@ -204,7 +205,7 @@ static void any_scale(void **state) {
         cJSON_Delete(documents[a]);
 }
 
-/* Every curve has numbers, or null where theory.md and the interface allow it. */
+/* Every curve has numbers, or null where there is no value to be had. */
 static void assert_sound(const cJSON *document, const char *study) {
     const cJSON *curve;
     cJSON_ArrayForEach(curve, value_at(document, "/curves")) {

@@ -147,7 +147,7 @@ static void table_3_5(void **state) {
 
 /* Density of summits over Nayak's. Nine-point and five-point counts tend to 1.0103 and 1.3064 of it
  * on fine grids; on coarser ones the finite-difference moments take the place of the true ones
- * (theory.md of the project, to 0.5 %). Refined summits tend to 1: below 1 % at 8 points a wave. */
+ * (F8.1, F8.3, to 0.5 %). Refined summits tend to 1: below 1 % at 8 points a wave. */
 static void density_of_summits(void **state) {
     (void)state;
     static const struct {
