@@ -1,5 +1,5 @@
-/* The document of one case: {"realisations", "scalars", "curves"} of schema/result/README.md, and "notes"
- * where there are any. */
+/* The document of one case: {"realisations", "scalars", "curves"} of schema/result/README.md, and
+ * "notes" where there are any. */
 #ifndef RUGO_JOBS_CASE_DOCUMENT_H
 #define RUGO_JOBS_CASE_DOCUMENT_H
 
