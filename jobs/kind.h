@@ -37,8 +37,7 @@ struct job_merger;
 
 struct job_kind {
     const char *name;
-    const struct parameter *parameters;
-    size_t parameter_count;
+    const struct parameter_table *const *tables; /* of its parameters; NULL at the end */
     uint64_t default_realisations;
     const char *const *scalars;     /* names of the scalars of one realisation, NULL-terminated */
     const struct result_view *view; /* schema/result/view.h; NULL: nothing special is shown */

@@ -1,5 +1,5 @@
 #include "jobs/surface_case.h"
-#include "jobs/case_reader.h"
+#include "jobs/surface_parameters.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,42 +7,40 @@
 #define TWO_PI 6.283185307179586
 static const double ROUNDING = 1e-9; /* relative: guards integers behind divisions */
 
-const struct parameter SURFACE_PARAMETERS[] = {
-#include "jobs/surface_parameters.inc"
-};
-_Static_assert(sizeof SURFACE_PARAMETERS / sizeof *SURFACE_PARAMETERS == SURFACE_PARAMETER_COUNT,
-               "the count in surface_case.h");
+static const struct parameter_table *const TABLES[] = {&SURFACE_PARAMETERS, NULL};
 
 /* Heights and the iteration that gives them. */
-static void read_heights(struct surface_case *out, const struct case_reader *reader) {
+static void read_heights(struct surface_case *out, struct values *values) {
     struct surface_options *options = &out->options;
     *options = SURFACE_DEFAULTS;
-    options->heights.type = (enum heights_type)case_choice(reader, "/surface/heights/distribution");
-    double shape = case_number(reader, "/surface/heights/shape");
+    options->heights.type =
+        (enum heights_type)values_choice(values, "/surface/heights/distribution");
+    double shape = values_number(values, "/surface/heights/shape");
     if (options->heights.type != HEIGHTS_GAUSSIAN) {
         if (isnan(shape))
-            fault_add(reader->faults, "/surface/heights/shape",
-                      "a Weibull distribution needs its shape, a number in [0.5, 20]");
+            values_fault(values, "/surface/heights/shape",
+                         "a Weibull distribution needs its shape, a number in [0.5, 20]");
         options->heights.shape = shape;
     }
-    options->tolerance = case_number(reader, "/surface/heights/tolerance");
-    options->keep = (enum surface_keep)case_choice(reader, "/surface/heights/keep");
-    options->iteration = (enum surface_iteration)case_choice(reader, "/surface/heights/iteration");
-    options->draw = (enum surface_draw)case_choice(reader, "/surface/heights/draw");
-    options->stall_gain = case_number(reader, "/surface/heights/stall_gain");
-    double stall = case_number(reader, "/surface/heights/stall_iterations");
-    double most = case_number(reader, "/surface/heights/max_iterations");
-    double relaxed = case_number(reader, "/surface/heights/relaxed_iterations");
+    options->tolerance = values_number(values, "/surface/heights/tolerance");
+    options->keep = (enum surface_keep)values_choice(values, "/surface/heights/keep");
+    options->iteration =
+        (enum surface_iteration)values_choice(values, "/surface/heights/iteration");
+    options->draw = (enum surface_draw)values_choice(values, "/surface/heights/draw");
+    options->stall_gain = values_number(values, "/surface/heights/stall_gain");
+    double stall = values_number(values, "/surface/heights/stall_iterations");
+    double most = values_number(values, "/surface/heights/max_iterations");
+    double relaxed = values_number(values, "/surface/heights/relaxed_iterations");
     options->stall_iterations = isnan(stall) ? options->stall_iterations : (size_t)stall;
     options->max_iterations = isnan(most) ? options->max_iterations : (size_t)most;
     options->relaxed_iterations = isnan(relaxed) ? options->relaxed_iterations : (size_t)relaxed;
 }
 
-static void read_scale(struct surface_case *out, const struct case_reader *reader) {
-    double slope = case_number(reader, "/surface/rms_slope");
-    double height = case_number(reader, "/surface/rms_height");
+static void read_scale(struct surface_case *out, struct values *values) {
+    double slope = values_number(values, "/surface/rms_slope");
+    double height = values_number(values, "/surface/rms_height");
     if (!isnan(slope) && !isnan(height))
-        fault_add(reader->faults, "/surface/rms_height", "give rms_slope or rms_height, not both");
+        values_fault(values, "/surface/rms_height", "give rms_slope or rms_height, not both");
     out->spectrum.scale = !isnan(slope)    ? SCALE_RMS_SLOPE
                           : !isnan(height) ? SCALE_RMS_HEIGHT
                                            : SCALE_NONE;
@@ -50,14 +48,14 @@ static void read_scale(struct surface_case *out, const struct case_reader *reade
 }
 
 /* lambda_l/lambda_s from nayak_alpha; NaN with a fault where no ratio gives it. */
-static int solve_ratio(struct surface_case *out, const struct case_reader *reader, double alpha,
+static int solve_ratio(struct surface_case *out, struct values *values, double alpha,
                        double rolloff, struct error *err) {
     struct error reason = {0};
     double reached;
     out->wavelength_ratio = NAN;
     if (isnan(out->spectrum.hurst) || isnan(rolloff) || isnan(out->length_ratio))
         return 0; /* at fault already */
-    int status = case_choice(reader, "/surface/alpha_formula") == 1
+    int status = values_choice(values, "/surface/alpha_formula") == ALPHA_CONTINUOUS
                      ? spectrum_ratio_continuous(out->dimension, out->spectrum.hurst, rolloff,
                                                  alpha, &out->wavelength_ratio, &reason)
                      : spectrum_ratio_discrete(out->dimension, out->spectrum.hurst, rolloff,
@@ -68,7 +66,7 @@ static int solve_ratio(struct surface_case *out, const struct case_reader *reade
     out->wavelength_ratio = NAN;
     if (status == ERROR_MEMORY)
         return error_set(err, status, "%s", reason.text);
-    fault_add(reader->faults, "/surface/nayak_alpha", "%s", reason.text);
+    values_fault(values, "/surface/nayak_alpha", "%s", reason.text);
     return 0;
 }
 
@@ -88,50 +86,49 @@ static bool band_has_mode(int dimension, double low, double high) {
     return false;
 }
 
-static int read_self_affine(struct surface_case *out, const struct case_reader *reader,
-                            struct error *err) {
-    double alpha = case_number(reader, "/surface/nayak_alpha");
-    double rolloff = case_number(reader, "/surface/rolloff_ratio");
-    out->spectrum.hurst = case_number(reader, "/surface/hurst");
+static int read_self_affine(struct surface_case *out, struct values *values, struct error *err) {
+    double alpha = values_number(values, "/surface/nayak_alpha");
+    double rolloff = values_number(values, "/surface/rolloff_ratio");
+    out->spectrum.hurst = values_number(values, "/surface/hurst");
     if (isnan(out->spectrum.hurst))
-        fault_add(reader->faults, "/surface/hurst",
-                  "a self-affine spectrum needs it: a number in (0, 1]");
+        values_fault(values, "/surface/hurst",
+                     "a self-affine spectrum needs it: a number in (0, 1]");
     if (!isnan(alpha) && !isnan(out->wavelength_ratio))
-        fault_add(reader->faults, "/surface/nayak_alpha",
-                  "give wavelength_ratio or nayak_alpha, not both");
+        values_fault(values, "/surface/nayak_alpha",
+                     "give wavelength_ratio or nayak_alpha, not both");
     else if (!isnan(alpha)) {
-        int status = solve_ratio(out, reader, alpha, rolloff, err);
+        int status = solve_ratio(out, values, alpha, rolloff, err);
         if (status != 0)
             return status;
     } else if (isnan(out->wavelength_ratio))
-        fault_add(reader->faults, "/surface/wavelength_ratio",
-                  "give wavelength_ratio, or nayak_alpha in its place");
+        values_fault(values, "/surface/wavelength_ratio",
+                     "give wavelength_ratio, or nayak_alpha in its place");
     double ratio = out->wavelength_ratio;
     if (rolloff > ratio * (1 + ROUNDING))
-        fault_add(reader->faults, "/surface/rolloff_ratio",
-                  "%g is more than wavelength_ratio, %g: the roll-off lies within the band",
-                  rolloff, ratio);
+        values_fault(values, "/surface/rolloff_ratio",
+                     "%g is more than wavelength_ratio, %g: the roll-off lies within the band",
+                     rolloff, ratio);
     if (!isnan(ratio) && !isnan(out->length_ratio) &&
         !band_has_mode(out->dimension, out->length_ratio, out->length_ratio * ratio))
-        fault_add(reader->faults, "/surface/length_ratio",
-                  "no wave of this cell lies between lambda_l and lambda_s: take an integer, or a "
-                  "wider band");
+        values_fault(
+            values, "/surface/length_ratio",
+            "no wave of this cell lies between lambda_l and lambda_s: take an integer, or a "
+            "wider band");
     out->spectrum.wavelength_short = 1;
     out->spectrum.wavelength_long = ratio;
     out->spectrum.wavelength_rolloff = fmax(1, ratio / rolloff);
     return 0;
 }
 
-static int read_exponential(struct surface_case *out, const struct case_reader *reader,
-                            struct error *err) {
+static int read_exponential(struct surface_case *out, struct values *values, struct error *err) {
     double *lengths;
     size_t n;
-    int status = case_numbers(reader, "/surface/spectrum/length", &lengths, &n, err);
+    int status = values_numbers(values, "/surface/spectrum/length", &lengths, &n, err);
     if (status != 0)
         return status;
     if (lengths == NULL) {
-        fault_add(reader->faults, "/surface/spectrum/length",
-                  "exponential_acf needs its correlation lengths, [b] or [bx, by]");
+        values_fault(values, "/surface/spectrum/length",
+                     "exponential_acf needs its correlation lengths, [b] or [bx, by]");
         return 0;
     }
     out->spectrum.correlation_x = lengths[0];
@@ -140,37 +137,36 @@ static int read_exponential(struct surface_case *out, const struct case_reader *
     return 0;
 }
 
-static void check_table(const struct surface_case *surface, const struct case_reader *reader,
-                        double points) {
+static void check_table(const struct surface_case *surface, struct values *values, double points) {
     const struct spectrum *spectrum = &surface->spectrum;
     bool any = false;
     for (size_t a = 0; a < spectrum->table_count; a++) {
         any = any || spectrum->table_density[a] > 0;
         if (a > 0 && spectrum->table_wave_number[a] <= spectrum->table_wave_number[a - 1]) {
-            fault_add(reader->faults, "/surface/spectrum/wave_number",
-                      "must rise; number %zu does not", a);
+            values_fault(values, "/surface/spectrum/wave_number", "must rise; number %zu does not",
+                         a);
             return;
         }
     }
     double last = spectrum->table_wave_number[spectrum->table_count - 1];
     if (!any)
-        fault_add(reader->faults, "/surface/spectrum/density", "must be above 0 somewhere");
+        values_fault(values, "/surface/spectrum/density", "must be above 0 somewhere");
     if (last > TWO_PI / 2 * points * (1 + ROUNDING))
-        fault_add(reader->faults, "/surface/spectrum/wave_number",
-                  "%g is beyond what points_per_wavelength resolves, %g radians per lambda_s", last,
-                  TWO_PI / 2 * points);
+        values_fault(values, "/surface/spectrum/wave_number",
+                     "%g is beyond what points_per_wavelength resolves, %g radians per lambda_s",
+                     last, TWO_PI / 2 * points);
 }
 
-static int read_table(struct surface_case *out, const struct case_reader *reader, double points,
+static int read_table(struct surface_case *out, struct values *values, double points,
                       struct error *err) {
     double *wave_number = NULL, *density = NULL;
     size_t n = 0, densities = 0;
-    int status = case_numbers(reader, "/surface/spectrum/wave_number", &wave_number, &n, err);
+    int status = values_numbers(values, "/surface/spectrum/wave_number", &wave_number, &n, err);
     if (status == 0)
-        status = case_numbers(reader, "/surface/spectrum/density", &density, &densities, err);
+        status = values_numbers(values, "/surface/spectrum/density", &density, &densities, err);
     if (status == 0 && (wave_number == NULL || density == NULL || n != densities))
-        fault_add(reader->faults, "/surface/spectrum/density",
-                  "a table needs wave_number and density, as many of each");
+        values_fault(values, "/surface/spectrum/density",
+                     "a table needs wave_number and density, as many of each");
     else if (status == 0) {
         out->table = array_create(2 * n, sizeof *out->table);
         if (out->table == NULL)
@@ -182,7 +178,7 @@ static int read_table(struct surface_case *out, const struct case_reader *reader
         out->spectrum.table_count = n;
         out->spectrum.table_wave_number = out->table;
         out->spectrum.table_density = out->table + n;
-        check_table(out, reader, points);
+        check_table(out, values, points);
     }
     free(wave_number);
     free(density);
@@ -206,7 +202,7 @@ size_t surface_case_side(double points) {
     return n;
 }
 
-static void read_grid(struct surface_case *out, const struct case_reader *reader,
+static void read_grid(struct surface_case *out, struct values *values,
                       double points_per_wavelength) {
     double length = out->length_ratio * out->wavelength_ratio;
     double points = length * points_per_wavelength;
@@ -214,54 +210,55 @@ static void read_grid(struct surface_case *out, const struct case_reader *reader
         return; /* at fault already */
     double total = out->dimension == 1 ? points : points * points;
     if (total > SURFACE_POINTS_MOST * (1 + ROUNDING)) {
-        fault_add(reader->faults, "/surface/points_per_wavelength",
-                  "a grid of %.0f points a side is too large: at most %.0f", points,
-                  out->dimension == 1 ? SURFACE_POINTS_MOST : floor(sqrt(SURFACE_POINTS_MOST)));
+        values_fault(values, "/surface/points_per_wavelength",
+                     "a grid of %.0f points a side is too large: at most %.0f", points,
+                     out->dimension == 1 ? SURFACE_POINTS_MOST : floor(sqrt(SURFACE_POINTS_MOST)));
         return;
     }
     size_t side = surface_case_side(points);
     out->grid = (struct grid){side, out->dimension == 1 ? 1 : side, length, length};
 }
 
-static int read_all(struct surface_case *out, const struct case_reader *reader, struct error *err) {
-    double dimension = case_number(reader, "/surface/dimension");
-    double points = case_number(reader, "/surface/points_per_wavelength");
+int surface_case_fill(struct surface_case *out, struct values *values, struct error *err) {
+    *out = (struct surface_case){0};
+    double dimension = values_number(values, "/surface/dimension");
+    double points = values_number(values, "/surface/points_per_wavelength");
     out->dimension = dimension == 1 ? 1 : 2;
-    out->length_ratio = case_number(reader, "/surface/length_ratio");
-    out->wavelength_ratio = case_number(reader, "/surface/wavelength_ratio");
-    out->spectrum.type = (enum spectrum_type)case_choice(reader, "/surface/spectrum/type");
-    read_heights(out, reader);
-    read_scale(out, reader);
+    out->length_ratio = values_number(values, "/surface/length_ratio");
+    out->wavelength_ratio = values_number(values, "/surface/wavelength_ratio");
+    out->spectrum.type = (enum spectrum_type)values_choice(values, "/surface/spectrum/type");
+    read_heights(out, values);
+    read_scale(out, values);
     int status = 0;
     if (out->spectrum.type == SPECTRUM_SELF_AFFINE)
-        status = read_self_affine(out, reader, err);
+        status = read_self_affine(out, values, err);
     else if (isnan(out->wavelength_ratio))
-        fault_add(reader->faults, "/surface/wavelength_ratio",
-                  "this spectrum needs it for the size of the cell, L/lambda_s = length_ratio "
-                  "wavelength_ratio");
+        values_fault(values, "/surface/wavelength_ratio",
+                     "this spectrum needs it for the size of the cell, L/lambda_s = length_ratio "
+                     "wavelength_ratio");
     if (status == 0 && out->spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
-        status = read_exponential(out, reader, err);
+        status = read_exponential(out, values, err);
     if (status == 0 && out->spectrum.type == SPECTRUM_TABLE)
-        status = read_table(out, reader, points, err);
+        status = read_table(out, values, points, err);
     if (status == 0)
-        read_grid(out, reader, points);
+        read_grid(out, values, points);
+    else
+        surface_case_clear(out);
     return status;
 }
 
 int surface_case_read(struct surface_case *out, const cJSON *parameters, struct fault_list *faults,
                       struct error *err) {
-    struct fault_list own = {0};
-    struct fault_list *list = faults != NULL ? faults : &own;
-    const struct case_reader reader = {parameters, SURFACE_PARAMETERS, SURFACE_PARAMETER_COUNT,
-                                       list};
-    size_t before = list->count;
+    struct values *values = NULL;
     *out = (struct surface_case){0};
-    int status = read_all(out, &reader, err);
+    int status = values_create(&values, parameters, TABLES, faults, err);
     if (status == 0)
-        status = case_status(list, before, err);
+        status = surface_case_fill(out, values, err);
+    if (status == 0)
+        status = values_status(values, err);
     if (status != 0)
         surface_case_clear(out);
-    fault_list_clear(&own);
+    values_destroy(&values);
     return status;
 }
 

@@ -3,14 +3,7 @@
 #define RUGO_JOBS_SURFACE_CASE_H
 
 #include "core/surface/surface.h"
-#include "schema/study/fault.h"
-#include "schema/study/parameter.h"
-#include <cjson/cJSON.h>
-
-/* Table rows of /surface/...: a kind puts the same rows at the head of its own table by including
- * surface_parameters.inc there. */
-enum { SURFACE_PARAMETER_COUNT = 24 };
-extern const struct parameter SURFACE_PARAMETERS[];
+#include "schema/study/values.h"
 
 struct surface_case {
     int dimension;    /* 1 profile, 2 surface */
@@ -21,11 +14,15 @@ struct surface_case {
     double length_ratio;
     double *table; /* owned: memory behind a table spectrum */
 };
-/* Reads the surface of a case; adds faults (pointer "/surface/...") where values do not fit
- * together and returns ERROR_INPUT. faults may be NULL: the first fault is the error in any case.
- * *out is left cleared on failure. Absent values are their defaults. */
+/* Reads the surface of a case; adds faults (pointer "/surface/...") where values do not fit their
+ * rows or each other, and returns ERROR_INPUT. faults may be NULL: the first fault is the error in
+ * any case. *out is left cleared on failure. Absent values are their defaults. */
 int surface_case_read(struct surface_case *out, const cJSON *parameters, struct fault_list *faults,
                       struct error *err);
+/* The same from values that a kind has checked by tables with SURFACE_PARAMETERS among them: what
+ * does not fit together is told by values_status alone, and *out then lacks what depends on it (a
+ * grid that cannot be made has nx = 0). Fails only with ERROR_MEMORY, *out cleared. */
+int surface_case_fill(struct surface_case *out, struct values *values, struct error *err);
 void surface_case_clear(struct surface_case *surface);
 
 /* Whether the returned surfaces have the prescribed spectrum exactly. */

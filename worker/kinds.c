@@ -34,8 +34,7 @@ static void kinds_fill(void) {
         const struct job_kind *kind = JOB_KINDS[n];
         kinds[n] = (struct study_kind){
             .name = kind->name,
-            .parameters = kind->parameters,
-            .parameter_count = kind->parameter_count,
+            .tables = kind->tables,
             .default_realisations = kind->default_realisations,
             .check = check_kind,
             .context = kind,

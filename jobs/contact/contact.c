@@ -283,8 +283,7 @@ static int curves(struct job_merger *merger, cJSON **out, struct error *err) {
 
 const struct job_kind CONTACT_KIND = {
     .name = "contact",
-    .parameters = CONTACT_PARAMETERS,
-    .parameter_count = CONTACT_PARAMETER_COUNT,
+    .tables = CONTACT_TABLES,
     .default_realisations = 20,
     .scalars = CONTACT_SCALARS,
     .view = &CONTACT_VIEW,

@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_case.h"
-#include "jobs/case_reader.h"
+#include "jobs/fingerprint.h"
+#include "jobs/surface_parameters.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,21 +12,9 @@ static const double FULL_SLOPE_MOST = 2;
  * of 32 to 2048 points and surfaces of 16 or 32 a side none mesh at 1, few to most at 2 and 3, all
  * at 4. */
 static const double FULL_HEIGHT_LEAST = 4;
-enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS }; /* the order of units in the table */
 
-const char *const CONTACT_MODEL_NAMES[] = {
-    [MODEL_HALFSPACE] = "halfspace", [MODEL_LAYERED] = "layered", [MODEL_FULL] = "full", NULL};
-const char *const FULL_KINEMATICS_NAMES[] = {[KINEMATICS_HENCKY] = "hencky",
-                                             [KINEMATICS_ST_VENANT] = "st_venant_kirchhoff",
-                                             [KINEMATICS_SMALL] = "small",
-                                             NULL};
-
-const struct parameter CONTACT_PARAMETERS[] = {
-#include "jobs/contact/contact_parameters.inc"
-#include "jobs/surface_parameters.inc"
-};
-_Static_assert(sizeof CONTACT_PARAMETERS / sizeof *CONTACT_PARAMETERS == CONTACT_PARAMETER_COUNT,
-               "the count in contact_case.h");
+const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
+                                                        NULL};
 
 static bool has_scale(const struct surface_case *surface) {
     return surface->spectrum.scale == SCALE_RMS_HEIGHT ||
@@ -51,10 +40,10 @@ static int read_scale(const struct surface_case *surface, double *rms_height, do
 }
 
 /* Height of the block in lambda_s; INFINITY, or NaN where it is not given. */
-static int read_height(const struct contact_case *study, const struct case_reader *reader,
-                       double *out, struct error *err) {
-    size_t unit;
-    *out = case_measure(reader, "/contact/block_height", &unit);
+static int read_height(const struct contact_case *study, struct values *values, double *out,
+                       struct error *err) {
+    int unit;
+    *out = values_measure(values, "/contact/block_height", &unit);
     if (!isfinite(*out) || study->surface.grid.nx == 0)
         return 0;
     if (unit == HEIGHT_LENGTHS) {
@@ -65,53 +54,55 @@ static int read_height(const struct contact_case *study, const struct case_reade
     int status = read_scale(&study->surface, &rms_height, &rms_slope, err);
     *out *= rms_height;
     if (status == 0 && isnan(rms_height))
-        fault_add(reader->faults, "/contact/block_height",
-                  "rms_heights need the scale of the surface: give rms_slope or rms_height");
+        values_fault(values, "/contact/block_height",
+                     "rms_heights need the scale of the surface: give rms_slope or rms_height");
     return status;
 }
 
 /* What the finite elements on the true geometry ask of the surface: its slopes matter. */
-static int read_full(struct contact_case *out, const struct case_reader *reader,
-                     struct error *err) {
+static int read_full(struct contact_case *out, struct values *values, struct error *err) {
     const struct surface_case *surface = &out->surface;
     double rms_height, rms_slope;
     if (surface->grid.nx == 0)
         return 0;
     if (!has_scale(surface))
-        fault_add(reader->faults, "/surface/rms_slope",
-                  "the model full needs the scale of the surface, whose slopes count in it: give "
-                  "rms_slope or rms_height");
+        values_fault(
+            values, "/surface/rms_slope",
+            "the model full needs the scale of the surface, whose slopes count in it: give "
+            "rms_slope or rms_height");
     int status = read_scale(surface, &rms_height, &rms_slope, err);
     if (status != 0)
         return status;
     double height = out->blocks[contact_case_full(out)].height / rms_height;
     if (rms_slope > FULL_SLOPE_MOST)
-        fault_add(reader->faults,
-                  surface->spectrum.scale == SCALE_RMS_SLOPE ? "/surface/rms_slope"
-                                                             : "/surface/rms_height",
-                  "RMS slope %.4g: the model full can mesh surfaces up to about %g, whose steepest "
-                  "edges are three times as steep",
-                  rms_slope, FULL_SLOPE_MOST);
+        values_fault(
+            values,
+            surface->spectrum.scale == SCALE_RMS_SLOPE ? "/surface/rms_slope"
+                                                       : "/surface/rms_height",
+            "RMS slope %.4g: the model full can mesh surfaces up to about %g, whose steepest "
+            "edges are three times as steep",
+            rms_slope, FULL_SLOPE_MOST);
     else if (height < FULL_HEIGHT_LEAST * (1 - ROUNDING))
-        fault_add(reader->faults, "/contact/block_height",
-                  "%.4g RMS heights of the surface: the model full needs %g or more; the layers of "
-                  "lower blocks fold over the surface's valleys",
-                  height, FULL_HEIGHT_LEAST);
+        values_fault(
+            values, "/contact/block_height",
+            "%.4g RMS heights of the surface: the model full needs %g or more; the layers of "
+            "lower blocks fold over the surface's valleys",
+            height, FULL_HEIGHT_LEAST);
     out->rms_slope = rms_slope;
     return 0;
 }
 
-static int read_blocks(struct contact_case *out, const struct case_reader *reader,
-                       struct error *err) {
-    size_t models[CONTACT_MODELS];
-    double height, poisson = case_number(reader, "/contact/poisson");
-    double growth = case_number(reader, "/contact/layer_growth");
+static int read_blocks(struct contact_case *out, struct values *values, struct error *err) {
+    int models[CONTACT_MODELS];
+    double height, poisson = values_number(values, "/contact/poisson");
+    double growth = values_number(values, "/contact/layer_growth");
     bool elements = false;
-    out->model_count = case_choices(reader, "/contact/model", models);
-    out->kinematics = (enum kinematics)case_choice(reader, "/contact/kinematics");
-    out->transition_depth = case_number(reader, "/contact/transition_depth");
-    size_t weighting = case_choice(reader, "/contact/gap_weighting");
-    int status = read_height(out, reader, &height, err);
+    out->model_count = values_choices(values, "/contact/model", models);
+    out->kinematics = (enum kinematics)values_choice(values, "/contact/kinematics");
+    out->transition_depth = values_number(values, "/contact/transition_depth");
+    enum gap_weighting weighting =
+        (enum gap_weighting)values_choice(values, "/contact/gap_weighting");
+    int status = read_height(out, values, &height, err);
     if (status != 0)
         return status;
     for (size_t m = 0; m < out->model_count; m++) {
@@ -123,39 +114,38 @@ static int read_blocks(struct contact_case *out, const struct case_reader *reade
                                                   : deep         ? INFINITY
                                                                  : 1.5 * out->surface.grid.lx,
                                         .layer_growth = growth,
-                                        .weighting = (enum gap_weighting)weighting};
+                                        .weighting = weighting};
     }
     if (elements && isinf(height))
-        fault_add(reader->faults, "/contact/block_height",
-                  "only a halfspace can be infinite, and a block of finite elements is asked for");
+        values_fault(
+            values, "/contact/block_height",
+            "only a halfspace can be infinite, and a block of finite elements is asked for");
     if (!elements && out->model_count > 0 && weighting == GAP_DUAL)
-        fault_add(reader->faults, "/contact/gap_weighting",
-                  "\"dual\" belongs to finite elements, and no such model is asked for");
-    return contact_case_full(out) < out->model_count ? read_full(out, reader, err) : 0;
+        values_fault(values, "/contact/gap_weighting",
+                     "\"dual\" belongs to finite elements, and no such model is asked for");
+    return contact_case_full(out) < out->model_count ? read_full(out, values, err) : 0;
 }
 
-static void check_rising(const struct case_reader *reader, const char *path, size_t n,
-                         const double *numbers) {
+static void check_rising(struct values *values, const char *path, size_t n, const double *numbers) {
     for (size_t a = 1; a < n; a++) {
         if (!(numbers[a] > numbers[a - 1])) {
-            fault_add(reader->faults, path, "must rise; number %zu, %g, does not", a, numbers[a]);
+            values_fault(values, path, "must rise; number %zu, %g, does not", a, numbers[a]);
             return;
         }
     }
 }
 
-static int read_loads(struct contact_case *out, const struct case_reader *reader,
-                      struct error *err) {
+static int read_loads(struct contact_case *out, struct values *values, struct error *err) {
     static const char path[] = "/contact/pressures/values";
-    double to = case_number(reader, "/contact/pressures/to");
-    double steps = case_number(reader, "/contact/pressures/steps");
-    int status = case_numbers(reader, path, &out->loads, &out->load_count, err);
+    double to = values_number(values, "/contact/pressures/to");
+    double steps = values_number(values, "/contact/pressures/steps");
+    int status = values_numbers(values, path, &out->loads, &out->load_count, err);
     if (status != 0)
         return status;
     if (out->loads != NULL) {
         if (!isnan(to) || !isnan(steps))
-            fault_add(reader->faults, path, "give the values, or to and steps, not both");
-        check_rising(reader, path, out->load_count, out->loads);
+            values_fault(values, path, "give the values, or to and steps, not both");
+        check_rising(values, path, out->load_count, out->loads);
         return 0;
     }
     to = isnan(to) ? 0.3 : to;
@@ -169,33 +159,31 @@ static int read_loads(struct contact_case *out, const struct case_reader *reader
     return 0;
 }
 
-static void read_estimators(struct contact_case *out, const struct case_reader *reader) {
-    enum { NODES, EDGES, PERIMETER, ESTIMATORS };
+static void read_estimators(struct contact_case *out, struct values *values) {
     static const char path[] = "/contact/estimators";
-    size_t chosen[ESTIMATORS], before = reader->faults->count;
-    size_t n = case_choices(reader, path, chosen);
-    bool wanted[ESTIMATORS] = {false};
+    int chosen[AREA_ESTIMATORS];
+    size_t n = values_choices(values, path, chosen);
+    bool all = n == 0, wanted[AREA_ESTIMATORS] = {false};
     for (size_t a = 0; a < n; a++)
         wanted[chosen[a]] = true;
-    if (wanted[PERIMETER] && out->surface.dimension == 1)
-        fault_add(reader->faults, path, "\"perimeter\" is for surfaces, and this is a profile");
-    bool all = n == 0 && reader->faults->count == before;
-    out->nodes = all || wanted[NODES];
-    out->edges = all || wanted[EDGES];
-    out->perimeter = wanted[PERIMETER] || (all && out->surface.dimension == 2);
+    if (wanted[AREA_PERIMETER] && out->surface.dimension == 1)
+        values_fault(values, path, "\"perimeter\" is for surfaces, and this is a profile");
+    out->nodes = all || wanted[AREA_NODES];
+    out->edges = all || wanted[AREA_EDGES];
+    out->perimeter = wanted[AREA_PERIMETER] || (all && out->surface.dimension == 2);
 }
 
 /* The mesh of `points` a shortest wave; false, and a fault, where it cannot be sampled exactly. A
  * grid of two points a shortest wave holds that wave at its Nyquist frequency, as half of itself,
  * so that it cannot be resampled; but it can be part of a finer one. */
 static bool level_make(struct contact_level *out, const struct contact_case *study, double points,
-                       const char *path, const struct case_reader *reader) {
+                       const char *path, struct values *values) {
     const struct grid *own = &study->surface.grid;
     double wanted = own->lx * points; /* lambda_s is 1 */
     double total = study->surface.dimension == 1 ? wanted : wanted * wanted;
     if (total > SURFACE_POINTS_MOST * (1 + ROUNDING)) {
-        fault_add(
-            reader->faults, path, "a grid of %.0f points a side is too large: at most %.0f", wanted,
+        values_fault(
+            values, path, "a grid of %.0f points a side is too large: at most %.0f", wanted,
             study->surface.dimension == 1 ? SURFACE_POINTS_MOST : floor(sqrt(SURFACE_POINTS_MOST)));
         return false;
     }
@@ -205,35 +193,34 @@ static bool level_make(struct contact_level *out, const struct contact_case *stu
                                   .stride = own->nx % side == 0 ? own->nx / side : 0};
     if (out->stride > 0 || side > 2 * study->band)
         return true;
-    fault_add(
-        reader->faults, path,
+    values_fault(
+        values, path,
         "%g points a shortest wave, %zu in all, neither hold the %zu waves of the surface nor "
         "divide its own %zu points (points_per_wavelength)",
         points, side, study->band, own->nx);
     return false;
 }
 
-static int read_levels(struct contact_case *out, const struct case_reader *reader,
-                       struct error *err) {
+static int read_levels(struct contact_case *out, struct values *values, struct error *err) {
     static const char path[] = "/contact/levels";
     double *points;
     size_t n;
-    int status = case_numbers(reader, path, &points, &n, err);
+    int status = values_numbers(values, path, &points, &n, err);
     if (status != 0 || out->surface.grid.nx == 0) { /* at fault already */
         free(points);
         return status;
     }
-    check_rising(reader, path, n, points);
-    double own = case_number(reader, "/surface/points_per_wavelength");
+    check_rising(values, path, n, points);
+    double own = values_number(values, "/surface/points_per_wavelength");
     for (size_t l = 0; l < (n > 0 ? n : 1); l++) {
         struct contact_level *level = &out->levels[out->level_count];
-        if (level_make(level, out, n > 0 ? points[l] : own, path, reader))
+        if (level_make(level, out, n > 0 ? points[l] : own, path, values))
             out->level_count++;
     }
     for (size_t l = 1; l < out->level_count; l++)
         if (out->levels[l].grid.nx == out->levels[l - 1].grid.nx) {
-            fault_add(reader->faults, path, "%g and %g give the same grid of %zu points a side",
-                      out->levels[l - 1].points, out->levels[l].points, out->levels[l].grid.nx);
+            values_fault(values, path, "%g and %g give the same grid of %zu points a side",
+                         out->levels[l - 1].points, out->levels[l].points, out->levels[l].grid.nx);
             break;
         }
     free(points);
@@ -241,17 +228,18 @@ static int read_levels(struct contact_case *out, const struct case_reader *reade
 }
 
 /* Layers that a block takes on each mesh. */
-static void check_layers(const struct contact_case *study, const struct case_reader *reader) {
+static void check_layers(const struct contact_case *study, struct values *values) {
     double thickness[LAYERS_MOST];
     for (size_t m = 0; m < study->model_count; m++)
         for (size_t l = 0; l < study->level_count; l++)
             if (study->blocks[m].model != MODEL_HALFSPACE && isfinite(study->blocks[m].height) &&
                 isfinite(study->blocks[m].layer_growth) &&
                 block_layers(&study->levels[l].grid, &study->blocks[m], thickness) == 0) {
-                fault_add(reader->faults, "/contact/block_height",
-                          "the block takes more than %d layers at %g points a shortest wave; take "
-                          "a lower block, or a larger layer_growth",
-                          LAYERS_MOST, study->levels[l].points);
+                values_fault(
+                    values, "/contact/block_height",
+                    "the block takes more than %d layers at %g points a shortest wave; take "
+                    "a lower block, or a larger layer_growth",
+                    LAYERS_MOST, study->levels[l].points);
                 return;
             }
 }
@@ -264,12 +252,11 @@ static size_t load_find(const struct contact_case *study, double load) {
     return k;
 }
 
-static int read_pdf(struct contact_case *out, const struct case_reader *reader, struct error *err) {
+static int read_pdf(struct contact_case *out, struct values *values, struct error *err) {
     static const char path[] = "/contact/pressure_pdf/at";
     double *at;
-    int status = case_bins(reader, "/contact/pressure_pdf/bins", BINS_MOST, &out->pressure, err);
-    if (status == 0)
-        status = case_numbers(reader, path, &at, &out->pdf_count, err);
+    values_bins(values, "/contact/pressure_pdf/bins", BINS_MOST, &out->pressure);
+    int status = values_numbers(values, path, &at, &out->pdf_count, err);
     if (status != 0)
         return status;
     bool given = at != NULL;
@@ -280,58 +267,54 @@ static int read_pdf(struct contact_case *out, const struct case_reader *reader, 
         return error_memory(err, out->pdf_count * sizeof *out->pdf_loads, "loads");
     }
     if (given)
-        check_rising(reader, path, out->pdf_count, at);
+        check_rising(values, path, out->pdf_count, at);
     else if (out->load_count > 0)
         out->pdf_loads[0] = out->load_count - 1;
     for (size_t a = 0; given && a < out->pdf_count && out->load_count > 0; a++) {
         out->pdf_loads[a] = load_find(out, at[a]);
         if (out->pdf_loads[a] == out->load_count)
-            fault_add(reader->faults, path, "%g is none of the study's pressures", at[a]);
+            values_fault(values, path, "%g is none of the study's pressures", at[a]);
     }
     free(at);
     if (out->pdf_count * (out->pressure.count + 2) > PRESSURE_CELLS_MOST)
-        fault_add(reader->faults, path, "%zu loads of %zu bins are too many: at most %d in all",
-                  out->pdf_count, out->pressure.count, PRESSURE_CELLS_MOST);
+        values_fault(values, path, "%zu loads of %zu bins are too many: at most %d in all",
+                     out->pdf_count, out->pressure.count, PRESSURE_CELLS_MOST);
     return 0;
 }
 
-static int read_contact(struct contact_case *out, const struct case_reader *reader,
-                        struct error *err) {
+static int read_contact(struct contact_case *out, struct values *values, struct error *err) {
     const struct surface_case *surface = &out->surface;
-    (void)case_number(reader, "/contact/young"); /* its range alone */
-    out->tolerance = case_number(reader, "/contact/tolerance");
+    out->tolerance = values_number(values, "/contact/tolerance");
     if (surface->grid.nx > 0)
         out->band = surface_case_exact(surface) ? surface_case_band(surface) : surface->grid.nx / 2;
-    read_estimators(out, reader);
-    int status = read_blocks(out, reader, err);
+    read_estimators(out, values);
+    int status = read_blocks(out, values, err);
     if (status == 0)
-        status = read_loads(out, reader, err);
+        status = read_loads(out, values, err);
     if (status == 0)
-        status = read_levels(out, reader, err);
+        status = read_levels(out, values, err);
     if (status == 0)
-        status = read_pdf(out, reader, err);
+        status = read_pdf(out, values, err);
     if (status == 0)
-        check_layers(out, reader);
-    out->fingerprint = case_fingerprint(reader);
+        check_layers(out, values);
+    out->fingerprint = case_fingerprint(values, CONTACT_TABLES);
     return status;
 }
 
 int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,
                       struct error *err) {
-    struct fault_list own = {0};
-    struct fault_list *list = faults != NULL ? faults : &own;
-    const struct case_reader reader = {parameters, CONTACT_PARAMETERS, CONTACT_PARAMETER_COUNT,
-                                       list};
+    struct values *values = NULL;
     *out = (struct contact_case){0};
-    size_t before = list->count;
-    int status = surface_case_read(&out->surface, parameters, list, err);
-    if (status == 0 || status == ERROR_INPUT) /* all faults at once */
-        status = read_contact(out, &reader, err);
+    int status = values_create(&values, parameters, CONTACT_TABLES, faults, err);
     if (status == 0)
-        status = case_status(list, before, err);
+        status = surface_case_fill(&out->surface, values, err);
+    if (status == 0)
+        status = read_contact(out, values, err);
+    if (status == 0)
+        status = values_status(values, err);
     if (status != 0)
         contact_case_clear(out);
-    fault_list_clear(&own);
+    values_destroy(&values);
     return status;
 }
 

@@ -7,17 +7,22 @@
 #include "core/contact/contact.h"
 #include "core/full/full.h"
 #include "core/statistics/histogram.h"
+#include "jobs/contact/contact_parameters.h"
 #include "jobs/kind.h"
 #include "jobs/surface_case.h"
 #include "schema/study/fault.h"
 
-/* Table of the kind: the rows of /surface/..., then those of /contact/.... */
-enum { CONTACT_PARAMETER_COUNT = SURFACE_PARAMETER_COUNT + 16 };
-extern const struct parameter CONTACT_PARAMETERS[];
+/* Tables of the kind: CONTACT_PARAMETERS, then SURFACE_PARAMETERS. */
+extern const struct parameter_table *const CONTACT_TABLES[];
 
-enum { CONTACT_MODELS = 3, CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000 };
-extern const char *const CONTACT_MODEL_NAMES[];   /* of enum contact_model; NULL at the end */
-extern const char *const FULL_KINEMATICS_NAMES[]; /* of enum kinematics; NULL at the end */
+enum { CONTACT_MODELS = 3 };
+
+static inline const char *contact_model_name(enum contact_model model) {
+    return choice_name(CONTACT_MODEL_CHOICES, (int)model);
+}
+static inline const char *kinematics_name(enum kinematics kinematics) {
+    return choice_name(KINEMATICS_CHOICES, (int)kinematics);
+}
 
 /* A mesh on which every realisation is solved: the own grid sampled at other points. */
 struct contact_level {

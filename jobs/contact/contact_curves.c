@@ -123,14 +123,14 @@ static const struct curve_theory *theories_of(const struct workshop *shop, const
 
 /* Of strain; NULL of linear models. */
 static const char *kinematics_of(const struct contact_case *study, size_t model) {
-    return contact_case_is_full(study, model) ? FULL_KINEMATICS_NAMES[study->kinematics] : NULL;
+    return contact_case_is_full(study, model) ? kinematics_name(study->kinematics) : NULL;
 }
 
 static bool append(struct workshop *shop, const struct row *row, size_t model, size_t level) {
     const struct contact_case *study = shop->study;
     struct curve curve = {.quantity = row->quantity,
                           .series = row->series,
-                          .model = CONTACT_MODEL_NAMES[study->blocks[model].model],
+                          .model = contact_model_name(study->blocks[model].model),
                           .kinematics = kinematics_of(study, model),
                           .level = study->levels[level].points,
                           .points = (double)grid_points(&study->levels[level].grid),
@@ -241,7 +241,7 @@ static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
     return curve_append(
         shop->curves,
         &(struct curve){.quantity = "contact_pressure_pdf",
-                        .model = CONTACT_MODEL_NAMES[study->blocks[model].model],
+                        .model = contact_model_name(study->blocks[model].model),
                         .kinematics = kinematics_of(study, model),
                         .level = contact_case_finest(study)->points,
                         .points = (double)grid_points(&contact_case_finest(study)->grid),

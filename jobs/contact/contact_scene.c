@@ -214,11 +214,11 @@ static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
 /* "model full (hencky), level 6" */
 static void name_model(const struct contact_case *study, size_t model, size_t level,
                        struct error *err) {
-    const char *name = CONTACT_MODEL_NAMES[study->blocks[model].model];
+    const char *name = contact_model_name(study->blocks[model].model);
     double points = study->levels[level].points;
     if (contact_case_is_full(study, model))
-        error_context(err, "model %s (%s), level %g", name,
-                      FULL_KINEMATICS_NAMES[study->kinematics], points);
+        error_context(err, "model %s (%s), level %g", name, kinematics_name(study->kinematics),
+                      points);
     else
         error_context(err, "model %s, level %g", name, points);
 }

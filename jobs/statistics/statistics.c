@@ -246,8 +246,7 @@ static int curves(struct job_merger *merger, cJSON **out, struct error *err) {
 
 const struct job_kind STATISTICS_KIND = {
     .name = "statistics",
-    .parameters = STATISTICS_PARAMETERS,
-    .parameter_count = STATISTICS_PARAMETER_COUNT,
+    .tables = STATISTICS_TABLES,
     .default_realisations = 1000,
     .scalars = STATISTICS_SCALARS,
     .view = &STATISTICS_VIEW,

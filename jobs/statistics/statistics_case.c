@@ -1,83 +1,43 @@
 #include "jobs/statistics/statistics_case.h"
 #include "core/cost.h"
 #include "core/surface/spectrum_estimate.h"
-#include "jobs/case_reader.h"
+#include "jobs/fingerprint.h"
 #include "jobs/statistics/statistics_tally.h"
+#include "jobs/surface_parameters.h"
 #include <math.h>
 #include <stdlib.h>
 
 enum { BINS_MOST = 10000, JOINT_MOST = 1000000 };
 
-/* The order of choices is that of core's enumerations. */
-const struct parameter STATISTICS_PARAMETERS[] = {
-#include "jobs/surface_parameters.inc"
-    {.path = "/statistics/summits",
-     .type = PARAMETER_CHOICE,
-     .choices = (const char *const[]){"nine_point", "five_point", "refined", NULL},
-     .sweep = true,
-     .default_json = "\"nine_point\"",
-     .help =
-         "what a summit is: higher than 8 or 4 neighbours, or a true maximum between the points"},
-    {.path = "/statistics/curvature",
-     .type = PARAMETER_CHOICE,
-     .choices = (const char *const[]){"finite_difference", "spectral", NULL},
-     .sweep = true,
-     .default_json = "\"finite_difference\"",
-     .help =
-         "curvature of a summit: central differences, or exact derivatives (always, if refined)"},
-    {.path = "/statistics/bins/height",
-     .type = PARAMETER_NUMBERS,
-     .minimum = -1e6,
-     .maximum = 1e6,
-     .items_low = 3,
-     .items_high = 3,
-     .default_json = "[-4, 8, 240]",
-     .help = "[low, high, count] of the histograms of heights z/sqrt(m0)"},
-    {.path = "/statistics/bins/curvature",
-     .type = PARAMETER_NUMBERS,
-     .minimum = -1e6,
-     .maximum = 1e6,
-     .items_low = 3,
-     .items_high = 3,
-     .default_json = "[-16, 0, 160]",
-     .help = "[low, high, count] of the histogram of t1 = -sqrt(3/m4) kappa_m at summits; in "
-             "profiles z''/sqrt(m4)"},
-};
-_Static_assert(sizeof STATISTICS_PARAMETERS / sizeof *STATISTICS_PARAMETERS ==
-                   STATISTICS_PARAMETER_COUNT,
-               "the count in statistics_case.h");
+const struct parameter_table *const STATISTICS_TABLES[] = {&SURFACE_PARAMETERS,
+                                                           &STATISTICS_PARAMETERS, NULL};
 
-static int read_statistics(struct statistics_case *out, const struct case_reader *reader,
-                           struct error *err) {
-    out->stencil = (enum summit_stencil)case_choice(reader, "/statistics/summits");
-    out->curvature = (enum summit_curvature)case_choice(reader, "/statistics/curvature");
-    int status = case_bins(reader, "/statistics/bins/height", BINS_MOST, &out->height, err);
-    if (status == 0)
-        status = case_bins(reader, "/statistics/bins/curvature", BINS_MOST, &out->equivalent, err);
-    if (status == 0 && out->height.count * out->equivalent.count > JOINT_MOST)
-        fault_add(reader->faults, "/statistics/bins/curvature",
-                  "%zu by %zu bins are too many for the joint density: at most %d in all",
-                  out->height.count, out->equivalent.count, JOINT_MOST);
-    out->fingerprint = case_fingerprint(reader);
-    return status;
+static void fill(struct statistics_case *out, struct values *values) {
+    out->stencil = (enum summit_stencil)values_choice(values, "/statistics/summits");
+    out->curvature = (enum summit_curvature)values_choice(values, "/statistics/curvature");
+    values_bins(values, "/statistics/bins/height", BINS_MOST, &out->height);
+    values_bins(values, "/statistics/bins/curvature", BINS_MOST, &out->equivalent);
+    if (out->height.count * out->equivalent.count > JOINT_MOST)
+        values_fault(values, "/statistics/bins/curvature",
+                     "%zu by %zu bins are too many for the joint density: at most %d in all",
+                     out->height.count, out->equivalent.count, JOINT_MOST);
+    out->fingerprint = case_fingerprint(values, STATISTICS_TABLES);
 }
 
 int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
                          struct fault_list *faults, struct error *err) {
-    struct fault_list own = {0};
-    struct fault_list *list = faults != NULL ? faults : &own;
-    const struct case_reader reader = {parameters, STATISTICS_PARAMETERS,
-                                       STATISTICS_PARAMETER_COUNT, list};
+    struct values *values = NULL;
     *out = (struct statistics_case){0};
-    size_t before = list->count;
-    int status = surface_case_read(&out->surface, parameters, list, err);
-    if (status == 0 || status == ERROR_INPUT) /* all faults at once */
-        status = read_statistics(out, &reader, err);
+    int status = values_create(&values, parameters, STATISTICS_TABLES, faults, err);
     if (status == 0)
-        status = case_status(list, before, err);
+        status = surface_case_fill(&out->surface, values, err);
+    if (status == 0) {
+        fill(out, values);
+        status = values_status(values, err);
+    }
     if (status != 0)
         statistics_case_clear(out);
-    fault_list_clear(&own);
+    values_destroy(&values);
     return status;
 }
 

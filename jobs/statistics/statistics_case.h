@@ -8,9 +8,9 @@
 #include "jobs/surface_case.h"
 #include "schema/study/fault.h"
 
-/* Table of the kind: the rows of /surface/..., then those of /statistics/.... */
-enum { STATISTICS_PARAMETER_COUNT = SURFACE_PARAMETER_COUNT + 4 };
-extern const struct parameter STATISTICS_PARAMETERS[];
+extern const struct parameter_table STATISTICS_PARAMETERS;
+/* Tables of the kind: SURFACE_PARAMETERS and the above. */
+extern const struct parameter_table *const STATISTICS_TABLES[];
 
 struct statistics_case {
     struct surface_case surface;

@@ -1,7 +1,9 @@
 /* The JSON Schema of studies, from the same tables that read them. */
-#include "schema/study/study.h"
+#include "schema/study/common.h"
+#include "schema/study/value.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Adds value (taken) to object; false, and gone, when out of memory. */
@@ -36,17 +38,21 @@ static cJSON *checked(cJSON *schema, bool complete) {
 
 static cJSON *number_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
-    bool integer = parameter->type == PARAMETER_INTEGER;
+    bool integer = parameter->type == PARAMETER_INTEGER || parameter->type == PARAMETER_SEED;
     return checked(schema, put_text(schema, "type", integer ? "integer" : "number") &&
                                put_bounds(schema, parameter));
 }
 
 static cJSON *choice_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
-    int count = 0;
-    while (parameter->choices[count])
-        count++;
-    return checked(schema, put(schema, "enum", cJSON_CreateStringArray(parameter->choices, count)));
+    cJSON *names = schema != NULL ? cJSON_AddArrayToObject(schema, "enum") : NULL;
+    bool complete = names != NULL;
+    for (const struct choice *choice = parameter->choices; complete && choice->name != NULL;
+         choice++) {
+        cJSON *name = cJSON_CreateString(choice->name);
+        complete = name != NULL && cJSON_AddItemToArray(names, name);
+    }
+    return checked(schema, complete);
 }
 
 /* {"anyOf": [first, second]}; takes both. */
@@ -77,8 +83,8 @@ static cJSON *choices_schema(const struct parameter *parameter) {
 static cJSON *measure_schema(const struct parameter *parameter) {
     cJSON *object = cJSON_CreateObject(), *units = cJSON_CreateObject();
     bool complete = units != NULL;
-    for (const char *const *unit = parameter->units; complete && *unit; unit++)
-        complete = put(units, *unit, number_schema(parameter));
+    for (const struct choice *unit = parameter->units; complete && unit->name != NULL; unit++)
+        complete = put(units, unit->name, number_schema(parameter));
     units = checked(units, complete);
     complete = put(object, "properties", units) && put_text(object, "type", "object") &&
                put(object, "additionalProperties", cJSON_CreateFalse()) &&
@@ -96,12 +102,46 @@ static cJSON *numbers_schema(const struct parameter *parameter) {
                        put(schema, "maxItems", cJSON_CreateNumber((double)parameter->items_high)));
 }
 
+static cJSON *text_schema(const struct parameter *parameter) {
+    cJSON *schema = cJSON_CreateObject();
+    return checked(schema, put_text(schema, "type", "string") &&
+                               put(schema, "minLength", cJSON_CreateNumber(parameter->minimum)) &&
+                               put(schema, "maxLength", cJSON_CreateNumber(parameter->maximum)));
+}
+
+/* The decimal numbers up to 2^64 - 1: those of fewer digits, and those which have the first digits
+ * of the largest and then a smaller one. */
+static void seed_pattern(char *text, size_t size) {
+    static const char LARGEST[] = "18446744073709551615";
+    size_t digits = strlen(LARGEST);
+    int used = snprintf(text, size, "^0*([0-9]{1,%zu}|%s", digits - 1, LARGEST);
+    for (size_t d = 0; d < digits && used > 0 && (size_t)used < size; d++)
+        if (LARGEST[d] > '0')
+            used += snprintf(text + used, size - (size_t)used, "|%.*s[0-%c][0-9]{%zu}", (int)d,
+                             LARGEST, LARGEST[d] - 1, digits - 1 - d);
+    if (used > 0 && (size_t)used < size)
+        snprintf(text + used, size - (size_t)used, ")$");
+}
+
+/* An integer that JSON numbers hold exactly, or any of 64 bits as a string. */
+static cJSON *seed_schema(const struct parameter *parameter) {
+    char pattern[1024];
+    seed_pattern(pattern, sizeof pattern);
+    cJSON *string = cJSON_CreateObject();
+    bool complete = put_text(string, "type", "string") && put_text(string, "pattern", pattern);
+    return either(number_schema(parameter), checked(string, complete));
+}
+
 /* Schema of one value, without sweeps. */
 static cJSON *value_schema(const struct parameter *parameter) {
     switch (parameter->type) {
     case PARAMETER_NUMBER:
     case PARAMETER_INTEGER:
         return number_schema(parameter);
+    case PARAMETER_TEXT:
+        return text_schema(parameter);
+    case PARAMETER_SEED:
+        return seed_schema(parameter);
     case PARAMETER_CHOICE:
         return choice_schema(parameter);
     case PARAMETER_NUMBERS:
@@ -114,12 +154,30 @@ static cJSON *value_schema(const struct parameter *parameter) {
     return NULL;
 }
 
+/* What is told of a value beside its form. */
+static bool put_remarks(cJSON *schema, const struct parameter *parameter) {
+    char text[600];
+    snprintf(text, sizeof text, "%s%s%s%s", parameter->help, parameter->unit != NULL ? " [" : "",
+             parameter->unit != NULL ? parameter->unit : "", parameter->unit != NULL ? "]" : "");
+    bool complete = put_text(schema, "description", text);
+    if (complete && parameter->default_json != NULL)
+        complete = put(schema, "default", value_default(parameter));
+    cJSON *examples = complete && parameter->example_json != NULL
+                          ? cJSON_AddArrayToObject(schema, "examples")
+                          : NULL;
+    if (!complete || parameter->example_json == NULL)
+        return complete;
+    cJSON *example = cJSON_Parse(parameter->example_json);
+    if (examples != NULL && example != NULL && cJSON_AddItemToArray(examples, example))
+        return true;
+    cJSON_Delete(example);
+    return false;
+}
+
 /* One value, or where it can be swept a list of at least one. */
 static cJSON *parameter_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
-    bool complete = put_text(schema, "description", parameter->help);
-    if (complete && parameter->default_json)
-        complete = put(schema, "default", cJSON_Parse(parameter->default_json));
+    bool complete = put_remarks(schema, parameter);
     cJSON *forms = complete ? cJSON_AddArrayToObject(schema, "anyOf") : NULL;
     cJSON *value = value_schema(parameter);
     if (!forms || !value || !cJSON_AddItemToArray(forms, value)) {
@@ -174,39 +232,59 @@ static bool place(cJSON *schema, const struct parameter *parameter) {
     }
 }
 
-/* What every study has; study.c reads the same. */
-static bool place_common(cJSON *schema, const struct study_kind *kind) {
-    static const char *const TEXTS[][2] = {
-        {"name", "{\"type\": \"string\", \"minLength\": 1, \"maxLength\": 200}"},
-        {"seed",
-         "{\"description\": \"up to 2^53; larger ones, up to 2^64 - 1, as a decimal string\", "
-         "\"anyOf\": [{\"type\": \"integer\", \"minimum\": 0, \"maximum\": 9007199254740992}, "
-         "{\"type\": \"string\", \"pattern\": \"^[0-9]{1,20}$\"}], \"default\": 1}"},
-        {"realisations",
-         "{\"description\": \"of each case\", \"type\": \"integer\", \"minimum\": 1, "
-         "\"maximum\": 10000000}"},
-    };
-    cJSON *properties = cJSON_GetObjectItemCaseSensitive(schema, "properties");
-    cJSON *constant = cJSON_CreateObject();
-    bool complete = put_text(constant, "const", kind->name);
-    constant = checked(constant, complete);
-    complete =
-        put(properties, "kind", constant) && require(schema, "name") && require(schema, "kind");
-    for (size_t t = 0; complete && t < sizeof TEXTS / sizeof *TEXTS; t++)
-        complete = put(properties, TEXTS[t][0], cJSON_Parse(TEXTS[t][1]));
-    return complete;
-}
-
-static cJSON *kind_schema(const struct study_kind *kind) {
+/* What every study of any kind has; other members are for the kind's own part to judge. */
+static cJSON *common_schema(const struct study_kind *kinds, size_t kind_count) {
     cJSON *schema = object_schema();
-    bool complete = schema && place_common(schema, kind);
-    for (size_t p = 0; complete && p < kind->parameter_count; p++)
-        complete = place(schema, &kind->parameters[p]);
+    struct choice *choices = kind_choices(kinds, kind_count);
+    bool complete = schema != NULL && choices != NULL;
+    for (size_t p = 0; complete && p < COMMON_PARAMETERS.count; p++) {
+        struct parameter row = COMMON_PARAMETERS.rows[p];
+        if (row.type == PARAMETER_CHOICE)
+            row.choices = choices;
+        complete = place(schema, &row);
+    }
+    free(choices);
+    if (complete)
+        cJSON_DeleteItemFromObjectCaseSensitive(schema, "additionalProperties");
     return checked(schema, complete);
 }
 
-cJSON *study_schema(const struct study_kind *kinds, size_t kind_count) {
+/* {"properties": {"kind": {"const": name}}, "required": ["kind"]} */
+static cJSON *condition_schema(const struct study_kind *kind) {
     cJSON *schema = cJSON_CreateObject();
+    cJSON *properties = schema != NULL ? cJSON_AddObjectToObject(schema, "properties") : NULL;
+    cJSON *named = properties != NULL ? cJSON_AddObjectToObject(properties, "kind") : NULL;
+    bool complete = put_text(named, "const", kind->name) &&
+                    put(schema, "required", cJSON_CreateArray()) && require(schema, "kind");
+    return checked(schema, complete);
+}
+
+/* What a study of the kind has beside what all have, and nothing else. */
+static cJSON *kind_schema(const struct study_kind *kind) {
+    cJSON *schema = object_schema();
+    const struct parameter *row;
+    bool complete = schema != NULL;
+    for (size_t p = 0; complete && (row = parameter_row(kind->tables, p)) != NULL; p++)
+        complete = place(schema, row);
+    cJSON *properties = cJSON_GetObjectItemCaseSensitive(schema, "properties");
+    for (size_t p = 0; complete && p < COMMON_PARAMETERS.count; p++)
+        complete = put(properties, COMMON_PARAMETERS.rows[p].path + 1, cJSON_CreateObject());
+    cJSON *count = cJSON_GetObjectItemCaseSensitive(properties, "realisations");
+    complete =
+        complete && put(count, "default", cJSON_CreateNumber((double)kind->default_realisations));
+    return checked(schema, complete);
+}
+
+/* {"if": the kind is this one, "then": what it may have}: so that validators judge a study by the
+ * kind that it names, and tell what is wrong with it as such. */
+static cJSON *branch_schema(const struct study_kind *kind) {
+    cJSON *schema = cJSON_CreateObject();
+    return checked(schema, put(schema, "if", condition_schema(kind)) &&
+                               put(schema, "then", kind_schema(kind)));
+}
+
+cJSON *study_schema(const struct study_kind *kinds, size_t kind_count) {
+    cJSON *schema = common_schema(kinds, kind_count);
     bool complete =
         put_text(schema, "$schema", "https://json-schema.org/draft/2020-12/schema") &&
         put_text(schema, "title", "Rugo study") &&
@@ -214,11 +292,11 @@ cJSON *study_schema(const struct study_kind *kinds, size_t kind_count) {
             schema, "description",
             "Structure, types and ranges. What no single value shows (a grid too large for memory, "
             "parameters that exclude each other) is told by rugo check.");
-    cJSON *forms = complete ? cJSON_AddArrayToObject(schema, "oneOf") : NULL;
-    complete = forms != NULL;
+    cJSON *branches = complete ? cJSON_AddArrayToObject(schema, "allOf") : NULL;
+    complete = branches != NULL;
     for (size_t k = 0; complete && k < kind_count; k++) {
-        cJSON *kind = kind_schema(&kinds[k]);
-        complete = kind && cJSON_AddItemToArray(forms, kind);
+        cJSON *branch = branch_schema(&kinds[k]);
+        complete = branch != NULL && cJSON_AddItemToArray(branches, branch);
     }
     return checked(schema, complete);
 }

@@ -1,5 +1,6 @@
-/* One table describes the parameters of a kind of study: it drives reading, errors, the effective
- * values that `rugo check` prints, the JSON Schema and the OpenAPI schema. Plain data. */
+/* Tables of parameters. One row of a table is all that is known of a parameter: from it the study
+ * is read, its faults are told, and its JSON Schema, its help and its reference are written. Plain
+ * data. */
 #ifndef RUGO_SCHEMA_STUDY_PARAMETER_H
 #define RUGO_SCHEMA_STUDY_PARAMETER_H
 
@@ -9,18 +10,29 @@
 enum parameter_type {
     PARAMETER_NUMBER,
     PARAMETER_INTEGER,
+    PARAMETER_TEXT,    /* a string of minimum..maximum characters */
+    PARAMETER_SEED,    /* an integer of minimum..maximum, or any of 64 bits as a decimal string */
     PARAMETER_CHOICE,  /* a string out of choices */
     PARAMETER_NUMBERS, /* an array of items_low..items_high numbers: one value, e.g. bins */
     PARAMETER_CHOICES, /* an array of different strings out of choices, or one alone: one value */
     PARAMETER_MEASURE  /* a string out of choices, or a number with its unit: {"lengths": 1.5} */
 };
 
+/* A name that a study may give, and what it stands for: a value of the enumeration that the job's
+ * struct takes. Arrays of them end with a NULL name. */
+struct choice {
+    const char *name;
+    int value;
+};
+
 struct parameter {
     const char *path;             /* JSON pointer in the study: "/surface/hurst" */
-    const char *help;             /* one line; unit or normalisation in it */
+    const char *help;             /* what it means, one line, without unit and range */
+    const char *unit;             /* NULL: a pure number, or none at all */
     const char *default_json;     /* NULL: absent unless given */
-    const char *const *choices;   /* NULL-terminated */
-    const char *const *units;     /* PARAMETER_MEASURE; NULL-terminated */
+    const char *example_json;     /* a value, or a list of values that makes cases */
+    const struct choice *choices; /* NULL for types without them */
+    const struct choice *units;   /* PARAMETER_MEASURE */
     double minimum, maximum;      /* of each number; ignored for choices */
     size_t items_low, items_high; /* PARAMETER_NUMBERS */
     enum parameter_type type;
@@ -28,6 +40,29 @@ struct parameter {
     bool below_maximum; /* maximum itself excluded */
     bool required;      /* in every study of this kind */
     bool sweep;         /* a list of values makes cases */
+    /* Added after results were stored: counts in the fingerprint of a case only where it is not at
+     * its default (jobs/fingerprint.h). */
+    bool later;
 };
+
+/* The rows of one member of the study, such as "surface". Kinds list the tables that they take,
+ * ended by NULL. */
+struct parameter_table {
+    const char *name;
+    const struct parameter *rows;
+    size_t count;
+};
+
+/* Row number `index` of all tables one after the other; NULL behind the last. */
+const struct parameter *parameter_row(const struct parameter_table *const *tables, size_t index);
+/* The row of a path, and its index where index is not NULL; NULL for an unknown path. */
+const struct parameter *parameter_find(const struct parameter_table *const *tables,
+                                       const char *path, size_t *index);
+size_t parameter_count(const struct parameter_table *const *tables);
+
+/* The choice of a name, or NULL; name may be NULL. */
+const struct choice *choice_find(const struct choice *choices, const char *name);
+/* The name of a value, or NULL. */
+const char *choice_name(const struct choice *choices, int value);
 
 #endif

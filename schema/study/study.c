@@ -1,19 +1,15 @@
 #include "schema/study/study.h"
+#include "schema/study/common.h"
 #include "schema/study/override.h"
 #include "schema/study/sweep.h"
 #include "schema/study/value.h"
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double EXACT_INTEGERS = 0x1p53;
 static const double JOB_SECONDS = 60;        /* a job takes about a minute */
 static const double JOB_REALISATIONS = 5000; /* and its result stays below a few MB */
-static const uint64_t REALISATIONS_MOST = 10000000;
-static const char *const COMMON[] = {"/name", "/kind", "/seed", "/realisations"};
-enum { COMMON_COUNT = sizeof COMMON / sizeof *COMMON };
 
 /* --- names --- */
 
@@ -37,11 +33,12 @@ static size_t name_distance(const char *a, const char *b) {
     return row[length];
 }
 
+/* The path of a row of every study, or of the kind; NULL behind the last. */
 static const char *known_path(const struct study_kind *kind, size_t index) {
-    if (index < COMMON_COUNT)
-        return COMMON[index];
-    index -= COMMON_COUNT;
-    return kind && index < kind->parameter_count ? kind->parameters[index].path : NULL;
+    if (index < COMMON_PARAMETERS.count)
+        return COMMON_PARAMETERS.rows[index].path;
+    const struct parameter *row = parameter_row(kind->tables, index - COMMON_PARAMETERS.count);
+    return row != NULL ? row->path : NULL;
 }
 
 enum place { PLACE_UNKNOWN, PLACE_INSIDE, PLACE_PARAMETER };
@@ -103,91 +100,6 @@ static void check_names(const struct study_kind *kind, const cJSON *object, cons
     }
 }
 
-/* --- what every study has --- */
-
-static void read_name(struct study *study, const cJSON *document, struct fault_list *faults) {
-    const cJSON *name = json_at(document, "/name");
-    if (!name)
-        fault_add(faults, "/name", "missing; give the study a name");
-    else if (!cJSON_IsString(name) || !*name->valuestring || strlen(name->valuestring) > 200)
-        fault_add(faults, "/name", "not a text of 1 to 200 bytes");
-    else
-        study->name = strdup(name->valuestring);
-}
-
-static void read_kind(struct study *study, const cJSON *document, const struct study_kind *kinds,
-                      size_t kind_count, struct fault_list *faults) {
-    const cJSON *kind = json_at(document, "/kind");
-    char allowed[128] = "", text[48];
-    for (size_t k = 0; k < kind_count; k++) {
-        if (cJSON_IsString(kind) && strcmp(kind->valuestring, kinds[k].name) == 0)
-            study->kind = &kinds[k];
-        size_t used = strlen(allowed);
-        snprintf(allowed + used, sizeof allowed - used, "%s\"%s\"", k ? ", " : "", kinds[k].name);
-    }
-    if (study->kind)
-        return;
-    if (!kind) {
-        fault_add(faults, "/kind", "missing; give one of %s", allowed);
-        return;
-    }
-    value_describe(kind, text, sizeof text);
-    fault_add(faults, "/kind", "%s is not one of %s", text, allowed);
-}
-
-static bool decimal_seed(const char *text, uint64_t *seed) {
-    char *end;
-    errno = 0;
-    unsigned long long value = strtoull(text, &end, 10);
-    bool digits = *text && strspn(text, "0123456789") == strlen(text);
-    *seed = value;
-    return digits && !errno && !*end;
-}
-
-static void read_seed(struct study *study, const cJSON *document, struct fault_list *faults) {
-    const cJSON *seed = json_at(document, "/seed");
-    char text[48];
-    study->seed = 1;
-    if (!seed)
-        return;
-    value_describe(seed, text, sizeof text);
-    if (cJSON_IsString(seed)) {
-        if (!decimal_seed(seed->valuestring, &study->seed))
-            fault_add(faults, "/seed", "%s is not a decimal number up to 18446744073709551615",
-                      text);
-    } else if (!cJSON_IsNumber(seed) || seed->valuedouble != rint(seed->valuedouble) ||
-               seed->valuedouble < 0) {
-        fault_add(faults, "/seed", "%s is not an integer of 0 or more", text);
-    } else if (seed->valuedouble > EXACT_INTEGERS) {
-        fault_add(faults, "/seed",
-                  "%s is not in [0, 9007199254740992]; write a larger seed as a "
-                  "decimal string",
-                  text);
-    } else {
-        study->seed = (uint64_t)seed->valuedouble;
-    }
-}
-
-static void read_realisations(struct study *study, const cJSON *document,
-                              struct fault_list *faults) {
-    const cJSON *count = json_at(document, "/realisations");
-    char text[48];
-    study->realisations = study->kind ? study->kind->default_realisations : 1;
-    if (!count)
-        return;
-    value_describe(count, text, sizeof text);
-    if (cJSON_IsObject(count) && cJSON_GetObjectItemCaseSensitive(count, "target_error"))
-        fault_add(faults, "/realisations",
-                  "a target error is for a later version; give a number of realisations");
-    else if (!cJSON_IsNumber(count) || count->valuedouble != rint(count->valuedouble))
-        fault_add(faults, "/realisations", "%s is not an integer", text);
-    else if (!(count->valuedouble >= 1 && count->valuedouble <= (double)REALISATIONS_MOST))
-        fault_add(faults, "/realisations", "%s is not in [1, %llu]", text,
-                  (unsigned long long)REALISATIONS_MOST);
-    else
-        study->realisations = (uint64_t)count->valuedouble;
-}
-
 /* --- what the kind asks for --- */
 
 static void check_list(const struct parameter *parameter, const cJSON *list,
@@ -208,15 +120,15 @@ static void check_list(const struct parameter *parameter, const cJSON *list,
 
 static void check_parameters(const struct study_kind *kind, const cJSON *document,
                              struct fault_list *faults) {
-    for (size_t p = 0; p < kind->parameter_count; p++) {
-        const struct parameter *parameter = &kind->parameters[p];
+    const struct parameter *parameter;
+    for (size_t p = 0; (parameter = parameter_row(kind->tables, p)) != NULL; p++) {
         const cJSON *value = json_at(document, parameter->path);
         if (value && value_is_list(parameter, value))
             check_list(parameter, value, faults);
         else if (value)
             value_check(parameter, value, parameter->path, faults);
         else if (parameter->required)
-            fault_add(faults, parameter->path, "missing: %s", parameter->help);
+            value_missing(parameter, faults);
     }
 }
 
@@ -278,10 +190,9 @@ static int faulty(const struct fault_list *faults, struct error *err) {
 static int fill(struct study *study, const cJSON *document, const struct study_kind *kinds,
                 size_t kind_count, double memory_limit, struct fault_list *faults,
                 struct error *err) {
-    read_name(study, document, faults);
-    read_kind(study, document, kinds, kind_count, faults);
-    read_seed(study, document, faults);
-    read_realisations(study, document, faults);
+    int status = common_read(study, document, kinds, kind_count, faults, err);
+    if (status)
+        return status;
     if (study->kind) {
         check_names(study->kind, document, "", faults);
         check_parameters(study->kind, document, faults);
@@ -289,9 +200,9 @@ static int fill(struct study *study, const cJSON *document, const struct study_k
     if (faults->count || !study->kind)
         return faulty(faults, err);
     study->source = json_print(document);
-    if (!study->name || !study->source)
+    if (!study->source)
         return error_memory(err, strlen(study->kind->name), "a study");
-    int status = sweep_open(study, document, faults, err);
+    status = sweep_open(study, document, faults, err);
     if (!status && !faults->count)
         status = check_cases(study, memory_limit, faults, err);
     if (!status && faults->count)

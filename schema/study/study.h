@@ -19,8 +19,7 @@ struct study_cost {
 /* What the reader must know of a job kind. */
 struct study_kind {
     const char *name;
-    const struct parameter *parameters;
-    size_t parameter_count;
+    const struct parameter_table *const *tables; /* of its parameters; NULL at the end */
     uint64_t default_realisations;
     /* Adds faults that no single range shows, and estimates the cost; context is handed through. */
     int (*check)(const void *context, const cJSON *parameters, struct fault_list *faults,

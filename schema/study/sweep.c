@@ -9,14 +9,16 @@ struct axis {
     const struct parameter *parameter;
     const cJSON *list;
     size_t length, stride;
+    const cJSON *item; /* of the case that is made now */
 };
 
-static const struct parameter *find_parameter(const struct study_kind *kind, const char *pointer) {
-    for (size_t p = 0; p < kind->parameter_count; p++)
-        if (strcmp(kind->parameters[p].path, pointer) == 0)
-            return &kind->parameters[p];
-    return NULL;
-}
+/* Where the value of a parameter comes from in every case. */
+struct origin {
+    const char *path;
+    const struct axis *axis; /* borrowed; NULL: the value below */
+    const cJSON *value;      /* borrowed from the document, or usual */
+    cJSON *usual;            /* owned default */
+};
 
 /* Axes of the document's lists, in its own order. */
 static size_t find_axes(const struct study_kind *kind, const cJSON *object, const char *prefix,
@@ -24,9 +26,10 @@ static size_t find_axes(const struct study_kind *kind, const cJSON *object, cons
     for (const cJSON *member = object->child; member; member = member->next) {
         char pointer[POINTER_SIZE];
         snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
-        const struct parameter *parameter = find_parameter(kind, pointer);
+        const struct parameter *parameter = parameter_find(kind->tables, pointer, NULL);
         if (parameter && value_is_list(parameter, member))
-            axes[count++] = (struct axis){parameter, member, (size_t)cJSON_GetArraySize(member), 1};
+            axes[count++] = (struct axis){parameter, member, (size_t)cJSON_GetArraySize(member), 1,
+                                          member->child};
         else if (cJSON_IsObject(member))
             count = find_axes(kind, member, pointer, axes, count);
     }
@@ -66,57 +69,89 @@ static int put_at(cJSON *root, const char *pointer, cJSON *value) {
     return ERROR_MEMORY;
 }
 
-static cJSON *parameter_value(const struct parameter *parameter, const cJSON *document,
-                              const struct axis *axes, size_t axis_count, size_t number) {
-    for (size_t a = 0; a < axis_count; a++)
-        if (axes[a].parameter == parameter) {
-            size_t index = number / axes[a].stride % axes[a].length;
-            return cJSON_Duplicate(cJSON_GetArrayItem(axes[a].list, (int)index), true);
-        }
-    const cJSON *given = json_at(document, parameter->path);
-    if (given)
-        return cJSON_Duplicate(given, true);
-    return cJSON_Parse(parameter->default_json);
+static void origins_destroy(struct origin *origins, size_t count) {
+    for (size_t p = 0; origins != NULL && p < count; p++)
+        cJSON_Delete(origins[p].usual);
+    free(origins);
 }
 
-static int case_create(struct study *study, size_t number, const cJSON *document,
-                       const struct axis *axes, size_t axis_count) {
-    cJSON *parameters = cJSON_CreateObject();
-    study->cases[number].parameters = parameters;
-    if (!parameters)
-        return ERROR_MEMORY;
-    for (size_t p = 0; p < study->kind->parameter_count; p++) {
-        const struct parameter *parameter = &study->kind->parameters[p];
-        if (!parameter->default_json && !json_at(document, parameter->path))
+/* Of every parameter that is given or has a default; *count of them. */
+static int origins_create(struct origin **out, size_t *count, const struct study_kind *kind,
+                          const cJSON *document, const struct axis *axes, size_t axis_count,
+                          struct error *err) {
+    struct origin *origins = array_create(parameter_count(kind->tables), sizeof *origins);
+    const struct parameter *row;
+    size_t n = 0;
+    bool complete = origins != NULL;
+    for (size_t p = 0; complete && (row = parameter_row(kind->tables, p)) != NULL; p++) {
+        struct origin origin = {.path = row->path, .value = json_at(document, row->path)};
+        if (origin.value == NULL && row->default_json == NULL)
             continue;
-        cJSON *value = parameter_value(parameter, document, axes, axis_count, number);
-        if (put_at(parameters, parameter->path, value))
-            return ERROR_MEMORY;
+        for (size_t a = 0; a < axis_count; a++)
+            if (axes[a].parameter == row)
+                origin.axis = &axes[a];
+        if (origin.value == NULL)
+            origin.value = origin.usual = value_default(row);
+        complete = origin.value != NULL;
+        origins[n++] = origin;
     }
+    if (!complete) {
+        origins_destroy(origins, n);
+        return error_memory(err, parameter_count(kind->tables) * sizeof *origins, "parameters");
+    }
+    *out = origins;
+    *count = n;
     return 0;
 }
 
-static int fill(struct study *study, const cJSON *document, const struct axis *axes, size_t count,
+/* Moves each axis to its item in a case; cases come in order, from 0. */
+static void axes_move(struct axis *axes, size_t count, size_t number) {
+    for (size_t a = 0; number > 0 && a < count; a++)
+        if (number % axes[a].stride == 0)
+            axes[a].item = axes[a].item->next != NULL ? axes[a].item->next : axes[a].list->child;
+}
+
+static int case_create(struct study_case *one, const struct origin *origins, size_t count) {
+    one->parameters = cJSON_CreateObject();
+    for (size_t p = 0; one->parameters != NULL && p < count; p++) {
+        const struct axis *axis = origins[p].axis;
+        cJSON *value = cJSON_Duplicate(axis != NULL ? axis->item : origins[p].value, true);
+        if (put_at(one->parameters, origins[p].path, value) != 0)
+            return ERROR_MEMORY;
+    }
+    return one->parameters != NULL ? 0 : ERROR_MEMORY;
+}
+
+static int fill(struct study *study, const cJSON *document, struct axis *axes, size_t count,
                 size_t cases, struct error *err) {
+    struct origin *origins = NULL;
+    size_t origin_count;
     study->swept = array_create(count + 1, sizeof *study->swept);
     study->cases = array_create(cases, sizeof *study->cases);
-    if (!study->swept || !study->cases)
+    if (study->swept == NULL || study->cases == NULL)
         return error_memory(err, cases * sizeof *study->cases, "cases");
     study->case_count = cases;
     for (size_t a = 0; a < count; a++)
-        if (!(study->swept[a] = strdup(axes[a].parameter->path)))
+        if ((study->swept[a] = strdup(axes[a].parameter->path)) == NULL)
             return error_memory(err, POINTER_SIZE, "a pointer");
-    for (size_t number = 0; number < cases; number++)
-        if (case_create(study, number, document, axes, count))
-            return error_memory(err, cases * sizeof *study->cases, "the parameters of cases");
-    return 0;
+    int status = origins_create(&origins, &origin_count, study->kind, document, axes, count, err);
+    if (status != 0)
+        return status;
+    for (size_t number = 0; status == 0 && number < cases; number++) {
+        axes_move(axes, count, number);
+        if (case_create(&study->cases[number], origins, origin_count) != 0)
+            status = error_memory(err, cases * sizeof *study->cases, "the parameters of cases");
+    }
+    origins_destroy(origins, origin_count);
+    return status;
 }
 
 int sweep_open(struct study *study, const cJSON *document, struct fault_list *faults,
                struct error *err) {
-    struct axis *axes = array_create(study->kind->parameter_count, sizeof *axes);
-    if (!axes)
-        return error_memory(err, study->kind->parameter_count * sizeof *axes, "sweeps");
+    size_t rows = parameter_count(study->kind->tables);
+    struct axis *axes = array_create(rows, sizeof *axes);
+    if (axes == NULL)
+        return error_memory(err, rows * sizeof *axes, "sweeps");
     size_t cases, count = find_axes(study->kind, document, "", axes, 0);
     int status = 0;
     if (set_strides(axes, count, &cases))

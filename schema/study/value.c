@@ -1,4 +1,5 @@
 #include "schema/study/value.h"
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,50 +37,101 @@ static bool in_range(const struct parameter *parameter, double value) {
     return above && below;
 }
 
-static bool number_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
-                         struct fault_list *faults) {
-    char text[48], range[80];
+/* "TEXT is not WHAT", of the value as it was written. */
+static bool is_not(const cJSON *value, const char *pointer, struct fault_list *faults,
+                   const char *what) {
+    char text[48];
     value_describe(value, text, sizeof text);
-    bool integer = parameter->type == PARAMETER_INTEGER;
-    if (!cJSON_IsNumber(value)) {
-        fault_add(faults, pointer, "%s is not %s", text, integer ? "an integer" : "a number");
-        return false;
-    }
-    if (integer && value->valuedouble != rint(value->valuedouble)) {
-        fault_add(faults, pointer, "%s is not an integer", text);
-        return false;
-    }
-    if (!in_range(parameter, value->valuedouble)) {
-        value_range(parameter, range, sizeof range);
-        fault_add(faults, pointer, "%s is not in %s", text, range);
-        return false;
-    }
-    return true;
-}
-
-static bool is_one_of(const char *const *names, const char *name) {
-    for (; name && *names; names++)
-        if (strcmp(*names, name) == 0)
-            return true;
+    fault_add(faults, pointer, "%s is not %s", text, what);
     return false;
 }
 
+static bool range_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
+                        struct fault_list *faults) {
+    if (in_range(parameter, value->valuedouble))
+        return true;
+    char range[80], what[96];
+    value_range(parameter, range, sizeof range);
+    snprintf(what, sizeof what, "in %s", range);
+    return is_not(value, pointer, faults, what);
+}
+
+static bool number_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
+                         struct fault_list *faults) {
+    bool integer = parameter->type == PARAMETER_INTEGER;
+    if (!cJSON_IsNumber(value))
+        return is_not(value, pointer, faults, integer ? "an integer" : "a number");
+    if (integer && value->valuedouble != rint(value->valuedouble))
+        return is_not(value, pointer, faults, "an integer");
+    return range_check(parameter, value, pointer, faults);
+}
+
+/* Characters of UTF-8: bytes that do not continue one. */
+static size_t characters(const char *text) {
+    size_t n = 0;
+    for (; *text != '\0'; text++)
+        n += ((unsigned char)*text & 0xc0u) != 0x80u;
+    return n;
+}
+
+static bool text_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
+                       struct fault_list *faults) {
+    if (cJSON_IsString(value) && in_range(parameter, (double)characters(value->valuestring)))
+        return true;
+    char what[80];
+    snprintf(what, sizeof what, "a text of %.0f to %.0f characters", parameter->minimum,
+             parameter->maximum);
+    return is_not(value, pointer, faults, what);
+}
+
+bool value_seed(const cJSON *value, uint64_t *seed) {
+    if (cJSON_IsNumber(value)) {
+        *seed = (uint64_t)value->valuedouble;
+        return true;
+    }
+    const char *text = cJSON_GetStringValue(value);
+    if (text == NULL || *text == '\0' || strspn(text, "0123456789") != strlen(text))
+        return false;
+    errno = 0;
+    *seed = strtoull(text, NULL, 10);
+    return errno == 0;
+}
+
+static bool seed_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
+                       struct fault_list *faults) {
+    uint64_t seed;
+    if (cJSON_IsString(value)) {
+        if (value_seed(value, &seed))
+            return true;
+        return is_not(value, pointer, faults, "a decimal number up to 18446744073709551615");
+    }
+    if (!cJSON_IsNumber(value) || value->valuedouble != rint(value->valuedouble) ||
+        value->valuedouble < 0)
+        return is_not(value, pointer, faults, "an integer of 0 or more");
+    if (in_range(parameter, value->valuedouble))
+        return true;
+    char range[80], what[160];
+    value_range(parameter, range, sizeof range);
+    snprintf(what, sizeof what, "in %s; write a larger seed as a decimal string", range);
+    return is_not(value, pointer, faults, what);
+}
+
 /* "first", "second" */
-static void names_print(const char *const *names, char *text, size_t size) {
+void value_choices(const struct choice *choices, char *text, size_t size) {
     size_t used = 0;
-    for (*text = 0; *names && used < size - 1; names++)
-        used += (size_t)snprintf(text + used, size - used, "%s\"%s\"", used ? ", " : "", *names);
+    for (*text = 0; choices->name != NULL && used < size - 1; choices++)
+        used += (size_t)snprintf(text + used, size - used, "%s\"%s\"", used > 0 ? ", " : "",
+                                 choices->name);
 }
 
 static bool choice_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
                          struct fault_list *faults) {
-    if (is_one_of(parameter->choices, cJSON_GetStringValue(value)))
+    if (choice_find(parameter->choices, cJSON_GetStringValue(value)) != NULL)
         return true;
-    char text[48], allowed[256];
-    value_describe(value, text, sizeof text);
-    names_print(parameter->choices, allowed, sizeof allowed);
-    fault_add(faults, pointer, "%s is not one of %s", text, allowed);
-    return false;
+    char allowed[256], what[272];
+    value_choices(parameter->choices, allowed, sizeof allowed);
+    snprintf(what, sizeof what, "one of %s", allowed);
+    return is_not(value, pointer, faults, what);
 }
 
 static bool choices_check(const struct parameter *parameter, const cJSON *value,
@@ -105,21 +157,19 @@ static bool choices_check(const struct parameter *parameter, const cJSON *value,
 
 static bool measure_check(const struct parameter *parameter, const cJSON *value,
                           const char *pointer, struct fault_list *faults) {
-    if (is_one_of(parameter->choices, cJSON_GetStringValue(value)))
+    if (choice_find(parameter->choices, cJSON_GetStringValue(value)) != NULL)
         return true;
     const cJSON *number = cJSON_IsObject(value) ? value->child : NULL;
-    if (number && !number->next && is_one_of(parameter->units, number->string)) {
+    if (number && !number->next && choice_find(parameter->units, number->string) != NULL) {
         char at[POINTER_SIZE];
         snprintf(at, sizeof at, "%s/%s", pointer, number->string);
         return number_check(parameter, number, at, faults);
     }
-    char text[48], allowed[128], units[128];
-    value_describe(value, text, sizeof text);
-    names_print(parameter->choices, allowed, sizeof allowed);
-    names_print(parameter->units, units, sizeof units);
-    fault_add(faults, pointer, "%s is not one of %s, nor an object of one number named %s", text,
-              allowed, units);
-    return false;
+    char allowed[128], units[128], what[320];
+    value_choices(parameter->choices, allowed, sizeof allowed);
+    value_choices(parameter->units, units, sizeof units);
+    snprintf(what, sizeof what, "one of %s, nor an object of one number named %s", allowed, units);
+    return is_not(value, pointer, faults, what);
 }
 
 static bool numbers_check(const struct parameter *parameter, const cJSON *value,
@@ -128,15 +178,13 @@ static bool numbers_check(const struct parameter *parameter, const cJSON *value,
     bool good =
         cJSON_IsArray(value) && count >= parameter->items_low && count <= parameter->items_high;
     if (!good) {
-        char text[48];
-        value_describe(value, text, sizeof text);
+        char what[80];
         if (parameter->items_low == parameter->items_high)
-            fault_add(faults, pointer, "%s is not an array of %zu numbers", text,
-                      parameter->items_low);
+            snprintf(what, sizeof what, "an array of %zu numbers", parameter->items_low);
         else
-            fault_add(faults, pointer, "%s is not an array of %zu to %zu numbers", text,
-                      parameter->items_low, parameter->items_high);
-        return false;
+            snprintf(what, sizeof what, "an array of %zu to %zu numbers", parameter->items_low,
+                     parameter->items_high);
+        return is_not(value, pointer, faults, what);
     }
     size_t i = 0;
     for (const cJSON *item = value->child; item; item = item->next, i++) {
@@ -153,6 +201,10 @@ bool value_check(const struct parameter *parameter, const cJSON *value, const ch
     case PARAMETER_NUMBER:
     case PARAMETER_INTEGER:
         return number_check(parameter, value, pointer, faults);
+    case PARAMETER_TEXT:
+        return text_check(parameter, value, pointer, faults);
+    case PARAMETER_SEED:
+        return seed_check(parameter, value, pointer, faults);
     case PARAMETER_CHOICE:
         return choice_check(parameter, value, pointer, faults);
     case PARAMETER_NUMBERS:
@@ -170,4 +222,16 @@ bool value_is_list(const struct parameter *parameter, const cJSON *value) {
         return false;
     bool one = parameter->type == PARAMETER_NUMBERS || parameter->type == PARAMETER_CHOICES;
     return !one || cJSON_IsArray(value->child);
+}
+
+cJSON *value_default(const struct parameter *parameter) {
+    return parameter->default_json != NULL ? cJSON_Parse(parameter->default_json) : NULL;
+}
+
+void value_missing(const struct parameter *parameter, struct fault_list *faults) {
+    char allowed[256] = "";
+    if (parameter->type == PARAMETER_CHOICE)
+        value_choices(parameter->choices, allowed, sizeof allowed);
+    fault_add(faults, parameter->path, "missing: %s%s%s", parameter->help,
+              *allowed != '\0' ? "; one of " : "", allowed);
 }

@@ -83,7 +83,7 @@ int meshed_case_write(const char *path, const cJSON *parameters, const double *z
         snprintf(title, sizeof title,
                  "lengths in lambda_s; pressure and stress in E* h'; mean pressure %.9g; "
                  "kinematics %s",
-                 pressure, FULL_KINEMATICS_NAMES[kinematics]);
+                 pressure, kinematics_name(kinematics));
     }
     if (status == 0) {
         step.u = full_displacement(meshed.full);

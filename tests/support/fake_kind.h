@@ -6,11 +6,11 @@
 #include "schema/study/study.h"
 #include <math.h>
 
-static const char *const FAKE_COLOURS[] = {"red", "green", NULL};
-static const char *const FAKE_SHAPES[] = {"round", "square", "oval", NULL};
-static const char *const FAKE_DEPTHS[] = {"endless", NULL};
-static const char *const FAKE_UNITS[] = {"metres", "feet", NULL};
-static const struct parameter FAKE_PARAMETERS[] = {
+static const struct choice FAKE_COLOURS[] = {{"red", 3}, {"green", 1}, {0}};
+static const struct choice FAKE_SHAPES[] = {{"round", 0}, {"square", 1}, {"oval", 2}, {0}};
+static const struct choice FAKE_DEPTHS[] = {{"endless", 0}, {0}};
+static const struct choice FAKE_UNITS[] = {{"metres", 0}, {"feet", 1}, {0}};
+static const struct parameter FAKE_ROWS[] = {
     {.path = "/box/width",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
@@ -63,6 +63,10 @@ static const struct parameter FAKE_PARAMETERS[] = {
      .help = "a realisation takes"},
 };
 
+static const struct parameter_table FAKE_PARAMETERS = {"boxes", FAKE_ROWS,
+                                                       sizeof FAKE_ROWS / sizeof *FAKE_ROWS};
+static const struct parameter_table *const FAKE_TABLES[] = {&FAKE_PARAMETERS, NULL};
+
 /* Refuses width 0.5 together with 7 boxes; a worker needs a byte a box; costs /seconds. */
 static inline int fake_check(const void *context, const cJSON *parameters,
                              struct fault_list *faults, struct study_cost *cost,
@@ -79,11 +83,7 @@ static inline int fake_check(const void *context, const cJSON *parameters,
     return 0;
 }
 
-static const struct study_kind FAKE_KIND = {.name = "boxes",
-                                            .parameters = FAKE_PARAMETERS,
-                                            .parameter_count =
-                                                sizeof FAKE_PARAMETERS / sizeof *FAKE_PARAMETERS,
-                                            .default_realisations = 100,
-                                            .check = fake_check};
+static const struct study_kind FAKE_KIND = {
+    .name = "boxes", .tables = FAKE_TABLES, .default_realisations = 100, .check = fake_check};
 
 #endif

@@ -140,7 +140,7 @@ static void faults(void **state) {
     static const struct {
         const char *text, *pointer, *words;
     } BAD[] = {
-        {STUDY(PROFILE, "\"model\": \"mesh\""), "/contact/model", "choices"},
+        {STUDY(PROFILE, "\"model\": \"mesh\""), "/contact/model", "not one of \"halfspace\""},
         {STUDY(PROFILE, "\"model\": \"full\""), "/surface/rms_slope", "slopes count"},
         {STUDY(PROFILE ", \"rms_slope\": 3", "\"model\": [\"layered\", \"full\"]"),
          "/surface/rms_slope", "up to about 2"},
@@ -159,10 +159,12 @@ static void faults(void **state) {
                "\"model\": \"full\", \"block_height\": {\"lengths\": 0.045}"),
          "/contact/block_height", "3.6 RMS heights"},
         {STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": \"full\", \"transition_depth\": 0.5"),
-         "/contact/transition_depth", "[1, 1e+09]"},
-        {STUDY(PROFILE, "\"kinematics\": \"finite\""), "/contact/kinematics", "choices"},
-        {STUDY(PROFILE, "\"model\": [\"layered\", \"layered\"]"), "/contact/model", "different"},
-        {STUDY(PROFILE, "\"model\": []"), "/contact/model", "different"},
+         "/contact/transition_depth", "[1, 1000000000]"},
+        {STUDY(PROFILE, "\"kinematics\": \"finite\""), "/contact/kinematics",
+         "not one of \"hencky\""},
+        {STUDY(PROFILE, "\"model\": [\"layered\", \"layered\"]"), "/contact/model/1",
+         "there already"},
+        {STUDY(PROFILE, "\"model\": []"), "/contact/model", "at least one"},
         {STUDY(PROFILE, "\"young\": 0"), "/contact/young", "(0,"},
         {STUDY(PROFILE, "\"poisson\": 0.5"), "/contact/poisson", "[0, 0.4999]"},
         {STUDY(PROFILE, "\"model\": \"layered\", \"block_height\": \"infinite\""),
@@ -171,8 +173,10 @@ static void faults(void **state) {
          "/contact/block_height", "only a halfspace can be infinite"},
         {STUDY(PROFILE, "\"block_height\": {\"rms_heights\": 160}"), "/contact/block_height",
          "need the scale"},
-        {STUDY(PROFILE, "\"block_height\": {\"metres\": 1}"), "/contact/block_height", "unit"},
-        {STUDY(PROFILE, "\"block_height\": {\"lengths\": 0}"), "/contact/block_height", "(0,"},
+        {STUDY(PROFILE, "\"block_height\": {\"metres\": 1}"), "/contact/block_height",
+         "\"lengths\""},
+        {STUDY(PROFILE, "\"block_height\": {\"lengths\": 0}"), "/contact/block_height/lengths",
+         "(0,"},
         {STUDY(PROFILE, "\"block_height\": {\"lengths\": 1, \"rms_heights\": 1}"),
          "/contact/block_height", "one number"},
         {STUDY(PROFILE, "\"block_height\": \"deep\""), "/contact/block_height", "infinite"},
@@ -186,13 +190,13 @@ static void faults(void **state) {
         {STUDY(PROFILE, "\"pressures\": {\"steps\": 2000}"), "/contact/pressures/steps", "1000"},
         {STUDY(PROFILE, "\"pressures\": {\"values\": [0.2, 0.1]}"), "/contact/pressures/values",
          "must rise"},
-        {STUDY(PROFILE, "\"pressures\": {\"values\": [0, 0.1]}"), "/contact/pressures/values",
+        {STUDY(PROFILE, "\"pressures\": {\"values\": [0, 0.1]}"), "/contact/pressures/values/0",
          "(0,"},
         {STUDY(PROFILE, "\"pressures\": {\"values\": [0.3], \"to\": 0.3}"),
          "/contact/pressures/values", "not both"},
         {STUDY(PROFILE, "\"estimators\": [\"perimeter\"]"), "/contact/estimators", "profile"},
-        {STUDY(PROFILE, "\"estimators\": [\"corners\"]"), "/contact/estimators", "choices"},
-        {STUDY(PROFILE, "\"levels\": [1, 8]"), "/contact/levels", "[2,"},
+        {STUDY(PROFILE, "\"estimators\": [\"corners\"]"), "/contact/estimators/0", "not one of"},
+        {STUDY(PROFILE, "\"levels\": [1, 8]"), "/contact/levels/0", "[2,"},
         {STUDY(PROFILE, "\"levels\": [8, 4]"), "/contact/levels", "must rise"},
         {STUDY(PROFILE, "\"levels\": [2.3, 8]"), NULL, NULL}, /* 20 points hold 8 waves */
         {STUDY(PROFILE ", \"points_per_wavelength\": 6", "\"levels\": [2, 4, 6]"), NULL, NULL},
@@ -234,7 +238,14 @@ static void all_faults_at_once(void **state) {
                                           "\"poisson\": 1, \"levels\": [8, 2], \"tolerance\": 1,"
                                           "\"pressures\": {\"values\": [2, 1]}"));
     assert_int_equal(contact_case_read(&study, parameters, &list, NULL), ERROR_INPUT);
-    assert_true(list.count >= 5);
+    assert_int_equal(list.count, 3); /* that do not fit their rows */
+    fault_list_clear(&list);
+    cJSON_Delete(parameters);
+    parameters = cJSON_Parse(STUDY("\"dimension\": 1, \"wavelength_ratio\": 4",
+                                   "\"levels\": [8, 4], \"pressures\": {\"values\": [2, 1]},"
+                                   "\"gap_weighting\": \"dual\""));
+    assert_int_equal(contact_case_read(&study, parameters, &list, NULL), ERROR_INPUT);
+    assert_int_equal(list.count, 4); /* that do not fit together */
     fault_list_clear(&list);
     cJSON_Delete(parameters);
 }

@@ -2,6 +2,7 @@
  * fingerprints of cases that people have computed must not change, by a bit; these here were
  * written down when the first stores were made. */
 #include "jobs/contact/contact_case.h"
+#include "jobs/fingerprint.h"
 #include "jobs/statistics/statistics_case.h"
 #include <inttypes.h>
 #include <setjmp.h>
@@ -123,10 +124,57 @@ static void contact_cases(void **state) {
     compare(CASES, sizeof CASES / sizeof *CASES, contact_mark);
 }
 
+static const struct parameter OLD[] = {
+    {.path = "/a/b", .type = PARAMETER_NUMBER, .minimum = -9, .maximum = 9, .default_json = "2"},
+    {.path = "/a/c", .type = PARAMETER_INTEGER, .minimum = -9, .maximum = 9},
+};
+static const struct parameter NEW[] = {
+    {.path = "/a/b", .type = PARAMETER_NUMBER, .minimum = -9, .maximum = 9, .default_json = "2"},
+    {.path = "/a/d",
+     .type = PARAMETER_NUMBER,
+     .minimum = -9,
+     .maximum = 9,
+     .default_json = "4",
+     .later = true},
+    {.path = "/a/e", .type = PARAMETER_NUMBER, .minimum = -9, .maximum = 9, .later = true},
+    {.path = "/a/c", .type = PARAMETER_INTEGER, .minimum = -9, .maximum = 9},
+};
+static const struct parameter_table OLD_TABLE = {"a", OLD, 2}, NEW_TABLE = {"a", NEW, 4};
+static const struct parameter_table *const OLD_TABLES[] = {&OLD_TABLE, NULL};
+static const struct parameter_table *const NEW_TABLES[] = {&NEW_TABLE, NULL};
+
+static uint64_t table_mark(const char *text, const struct parameter_table *const *tables) {
+    cJSON *parameters = cJSON_Parse(text);
+    struct values *values = NULL;
+    assert_int_equal(values_create(&values, parameters, tables, NULL, NULL), 0);
+    uint64_t mark = case_fingerprint(values, tables);
+    values_destroy(&values);
+    cJSON_Delete(parameters);
+    return mark;
+}
+
+/* The same whatever the order of keys and whether a default is written out; rows added later count
+ * where they are used, and only there. */
+static void rule(void **state) {
+    (void)state;
+    uint64_t mark = table_mark("{\"a\": {\"b\": 2, \"c\": 3}}", OLD_TABLES);
+    assert_true(mark == table_mark("{\"a\": {\"c\": 3}}", OLD_TABLES));
+    assert_true(mark == table_mark("{\"a\": {\"c\": 3, \"b\": 2}}", OLD_TABLES));
+    assert_true(mark != table_mark("{\"a\": {\"c\": 2, \"b\": 3}}", OLD_TABLES));
+    assert_true(mark != table_mark("{\"a\": {\"b\": 3}}", OLD_TABLES));
+    assert_true(mark == table_mark("{\"a\": {\"c\": 3}}", NEW_TABLES));
+    assert_true(mark == table_mark("{\"a\": {\"c\": 3, \"d\": 4}}", NEW_TABLES));
+    uint64_t used = table_mark("{\"a\": {\"c\": 3, \"d\": 5}}", NEW_TABLES);
+    assert_true(used != mark);
+    assert_true(used != table_mark("{\"a\": {\"c\": 3, \"e\": 5}}", NEW_TABLES));
+    assert_true(used != table_mark("{\"a\": {\"c\": 3, \"d\": 6}}", NEW_TABLES));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(statistics_cases),
         cmocka_unit_test(contact_cases),
+        cmocka_unit_test(rule),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -155,7 +155,7 @@ static const struct broken BROKEN[] = {
     {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"exponential_acf\"}}",
      "/surface/spectrum/length", "correlation lengths"},
     {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"exponential_acf\", \"length\": [0]}}",
-     "/surface/spectrum/length", "1 to 2 numbers"},
+     "/surface/spectrum/length/0", "(0, 10000000000]"},
     {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"table\", \"wave_number\": [1, 2]}}",
      "/surface/spectrum/density", "as many"},
     {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"table\", \"wave_number\": [2, 1],"
@@ -199,7 +199,13 @@ static void all_faults_at_once(void **state) {
     cJSON *parameters =
         case_of("{\"hurst\": 2, \"length_ratio\": 0, \"heights\": {\"shape\": 1, \"keep\": 3}}");
     assert_int_equal(surface_case_read(&surface, parameters, &faults, NULL), ERROR_INPUT);
-    assert_true(faults.count >= 4);
+    assert_int_equal(faults.count, 3); /* that do not fit their rows */
+    fault_list_clear(&faults);
+    cJSON_Delete(parameters);
+    parameters = case_of("{\"length_ratio\": 2, \"rms_slope\": 1, \"rms_height\": 1,"
+                         " \"heights\": {\"distribution\": \"weibull_min\"}}");
+    assert_int_equal(surface_case_read(&surface, parameters, &faults, NULL), ERROR_INPUT);
+    assert_int_equal(faults.count, 4); /* that do not fit together */
     fault_list_clear(&faults);
     cJSON_Delete(parameters);
 }

@@ -22,12 +22,15 @@ static void faults_are_told_with_pointer_and_range(void **state) {
         const char *text, *pointer, *detail;
     } BAD[] = {
         {"[]", "", "a study is a JSON object"},
-        {"{\"kind\":\"boxes\",\"box\":{\"width\":1}}", "/name", "missing; give the study a name"},
+        {"{\"kind\":\"boxes\",\"box\":{\"width\":1}}", "/name",
+         "missing: name of the study, shown with its results"},
         {"{\"name\":\"\",\"kind\":\"boxes\",\"box\":{\"width\":1}}", "/name",
-         "not a text of 1 to 200 bytes"},
+         "\"\" is not a text of 1 to 200 characters"},
         {"{\"name\":7,\"kind\":\"boxes\",\"box\":{\"width\":1}}", "/name",
-         "not a text of 1 to 200 bytes"},
-        {"{\"name\":\"n\"}", "/kind", "missing; give one of \"boxes\""},
+         "7 is not a text of 1 to 200 characters"},
+        {"{\"name\":\"n\"}", "/kind",
+         "missing: what is computed; it says which of the members below the study may have; one of "
+         "\"boxes\""},
         {"{\"name\":\"n\",\"kind\":\"barrels\"}", "/kind", "\"barrels\" is not one of \"boxes\""},
         {"{\"name\":\"n\",\"kind\":3}", "/kind", "3 is not one of \"boxes\""},
         {STUDY("\"box\":{}"), "/box/width", "missing: in metres"},
@@ -256,19 +259,24 @@ static void schema_has_what_the_reader_asks(void **state) {
     (void)state;
     cJSON *schema = study_schema(&FAKE_KIND, 1);
     assert_non_null(schema);
-    const cJSON *box = json_at(schema, "/oneOf/0/properties/box");
+    const cJSON *box = json_at(schema, "/allOf/0/then/properties/box");
     assert_true(cJSON_IsFalse(json_at(box, "/additionalProperties")));
     assert_string_equal(json_at(box, "/required/0")->valuestring, "width");
     assert_true(json_at(box, "/properties/width/anyOf/0/exclusiveMinimum")->valuedouble == 0);
     assert_true(json_at(box, "/properties/width/anyOf/1/minItems")->valuedouble == 1);
     assert_string_equal(json_at(box, "/properties/colour/anyOf/0/enum/1")->valuestring, "green");
-    assert_string_equal(json_at(schema, "/oneOf/0/properties/kind/const")->valuestring, "boxes");
-    assert_null(json_at(schema, "/oneOf/0/properties/seconds/anyOf/1"));
-    const cJSON *shapes = json_at(schema, "/oneOf/0/properties/shapes/anyOf/0");
+    assert_string_equal(json_at(schema, "/allOf/0/if/properties/kind/const")->valuestring, "boxes");
+    assert_null(json_at(schema, "/allOf/0/then/properties/seconds/anyOf/1"));
+    assert_true(cJSON_IsFalse(json_at(schema, "/allOf/0/then/additionalProperties")));
+    assert_string_equal(json_at(schema, "/properties/kind/anyOf/0/enum/0")->valuestring, "boxes");
+    assert_true(json_at(schema, "/properties/name/anyOf/0/maxLength")->valuedouble == 200);
+    assert_true(json_at(schema, "/allOf/0/then/properties/realisations/default")->valuedouble ==
+                100);
+    const cJSON *shapes = json_at(schema, "/allOf/0/then/properties/shapes/anyOf/0");
     assert_string_equal(json_at(shapes, "/anyOf/0/enum/2")->valuestring, "oval");
     assert_string_equal(json_at(shapes, "/anyOf/1/items/enum/2")->valuestring, "oval");
     assert_true(cJSON_IsTrue(json_at(shapes, "/anyOf/1/uniqueItems")));
-    const cJSON *depth = json_at(schema, "/oneOf/0/properties/depth/anyOf/1/items");
+    const cJSON *depth = json_at(schema, "/allOf/0/then/properties/depth/anyOf/1/items");
     assert_string_equal(json_at(depth, "/anyOf/0/enum/0")->valuestring, "endless");
     assert_true(json_at(depth, "/anyOf/1/properties/feet/maximum")->valuedouble == 10);
     assert_true(cJSON_IsFalse(json_at(depth, "/anyOf/1/additionalProperties")));

@@ -1,0 +1,105 @@
+#include "schema/study/common.h"
+#include "schema/study/value.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const struct parameter ROWS[] = {
+    {.path = "/name",
+     .type = PARAMETER_TEXT,
+     .minimum = 1,
+     .maximum = 200,
+     .unit = "characters",
+     .required = true,
+     .example_json = "\"roughness and load\"",
+     .help = "name of the study, shown with its results"},
+    {.path = "/kind",
+     .type = PARAMETER_CHOICE,
+     .required = true,
+     .example_json = "\"statistics\"",
+     .help = "what is computed; it says which of the members below the study may have"},
+    {.path = "/seed",
+     .type = PARAMETER_SEED,
+     .minimum = 0,
+     .maximum = 0x1p53,
+     .default_json = "1",
+     .example_json = "\"18446744073709551615\"",
+     .help = "of all random numbers: the same study and seed give the same results, to the bit; "
+             "seeds above 2^53, up to 2^64 - 1, are written as a decimal string"},
+    {.path = "/realisations",
+     .type = PARAMETER_INTEGER,
+     .minimum = 1,
+     .maximum = 1e7,
+     .example_json = "500",
+     .help = "random surfaces of each case; the kind's own number unless given"},
+};
+const struct parameter_table COMMON_PARAMETERS = {"study", ROWS, sizeof ROWS / sizeof *ROWS};
+
+struct choice *kind_choices(const struct study_kind *kinds, size_t kind_count) {
+    struct choice *choices = array_create(kind_count + 1, sizeof *choices);
+    for (size_t k = 0; choices != NULL && k < kind_count; k++)
+        choices[k] = (struct choice){kinds[k].name, (int)k};
+    return choices;
+}
+
+/* Some ask for an error in place of a number. */
+static bool asks_for_error(const cJSON *realisations, struct fault_list *faults) {
+    if (!cJSON_HasObjectItem(realisations, "target_error"))
+        return false;
+    fault_add(faults, "/realisations",
+              "a target error is for a later version; give a number of realisations");
+    return true;
+}
+
+static int take(struct study *study, const struct parameter *row, const cJSON *value,
+                const struct study_kind *kinds, struct error *err) {
+    uint64_t seed = 0;
+    if (row->type == PARAMETER_CHOICE) {
+        study->kind = &kinds[choice_find(row->choices, value->valuestring)->value];
+    } else if (row->type == PARAMETER_INTEGER) {
+        study->realisations = (uint64_t)value->valuedouble;
+    } else if (row->type == PARAMETER_SEED && value_seed(value, &seed)) {
+        study->seed = seed;
+    } else if (row->type == PARAMETER_TEXT) {
+        study->name = strdup(value->valuestring);
+        if (study->name == NULL)
+            return error_memory(err, strlen(value->valuestring), "a study's name");
+    }
+    return 0;
+}
+
+/* Reads the value of a row where it is given and good, or its default. */
+static int read_row(struct study *study, const struct parameter *row, const cJSON *document,
+                    const struct study_kind *kinds, struct fault_list *faults, struct error *err) {
+    const cJSON *given = json_at(document, row->path);
+    if (given == NULL && row->required)
+        value_missing(row, faults);
+    if (given != NULL) {
+        bool good = !asks_for_error(given, faults) && value_check(row, given, row->path, faults);
+        return good ? take(study, row, given, kinds, err) : 0;
+    }
+    if (row->default_json == NULL)
+        return 0;
+    cJSON *usual = value_default(row);
+    int status = usual != NULL ? take(study, row, usual, kinds, err)
+                               : error_memory(err, strlen(row->default_json), row->path);
+    cJSON_Delete(usual);
+    return status;
+}
+
+int common_read(struct study *study, const cJSON *document, const struct study_kind *kinds,
+                size_t kind_count, struct fault_list *faults, struct error *err) {
+    struct choice *choices = kind_choices(kinds, kind_count);
+    if (choices == NULL)
+        return error_memory(err, kind_count * sizeof *choices, "the kinds of studies");
+    int status = 0;
+    for (size_t p = 0; status == 0 && p < COMMON_PARAMETERS.count; p++) {
+        struct parameter row = COMMON_PARAMETERS.rows[p];
+        if (row.type == PARAMETER_CHOICE)
+            row.choices = choices;
+        status = read_row(study, &row, document, kinds, faults, err);
+    }
+    if (study->realisations == 0)
+        study->realisations = study->kind != NULL ? study->kind->default_realisations : 1;
+    free(choices);
+    return status;
+}

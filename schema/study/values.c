@@ -1,0 +1,211 @@
+#include "schema/study/values.h"
+#include "schema/study/value.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct values {
+    const struct parameter_table *const *tables; /* borrowed */
+    struct fault_list *faults;                   /* borrowed, or own */
+    struct fault_list own;
+    size_t before;       /* faults there when the values were made */
+    const char *misread; /* a path that a reader asked for in vain; borrowed */
+    size_t count;        /* of rows */
+    const cJSON **at;    /* owned array of count borrowed values; NULL: absent */
+    cJSON **defaults;    /* owned array of count owned values, where at has a default */
+};
+
+/* Finds and checks the value of every row. */
+static int values_fill(struct values *values, const cJSON *parameters, struct error *err) {
+    for (size_t p = 0; p < values->count; p++) {
+        const struct parameter *row = parameter_row(values->tables, p);
+        values->at[p] = json_at(parameters, row->path);
+        if (values->at[p] != NULL) {
+            value_check(row, values->at[p], row->path, values->faults);
+        } else if (row->default_json != NULL) {
+            values->defaults[p] = value_default(row);
+            values->at[p] = values->defaults[p];
+            if (values->at[p] == NULL)
+                return error_memory(err, strlen(row->default_json), row->path);
+        } else if (row->required) {
+            value_missing(row, values->faults);
+        }
+    }
+    return values_status(values, err);
+}
+
+int values_create(struct values **out, const cJSON *parameters,
+                  const struct parameter_table *const *tables, struct fault_list *faults,
+                  struct error *err) {
+    struct values *values = array_create(1, sizeof *values);
+    if (values == NULL)
+        return error_memory(err, sizeof *values, "the values of a case");
+    size_t count = parameter_count(tables);
+    *values = (struct values){.tables = tables, .count = count};
+    values->faults = faults != NULL ? faults : &values->own;
+    values->before = values->faults->count;
+    values->at = array_create(count, sizeof *values->at);
+    values->defaults = array_create(count, sizeof *values->defaults);
+    int status = 0;
+    if (values->at == NULL || values->defaults == NULL)
+        status = error_memory(err, 2 * count * sizeof *values->at, "the values of a case");
+    else
+        status = values_fill(values, parameters, err);
+    if (status != 0)
+        values_destroy(&values);
+    else
+        *out = values;
+    return status;
+}
+
+void values_destroy(struct values **values) {
+    struct values *v = *values;
+    if (v == NULL)
+        return;
+    for (size_t p = 0; v->defaults != NULL && p < v->count; p++)
+        cJSON_Delete(v->defaults[p]);
+    fault_list_clear(&v->own);
+    free(v->defaults);
+    free(v->at);
+    free(v);
+    *values = NULL;
+}
+
+const cJSON *values_json(const struct values *values, size_t index) {
+    return index < values->count ? values->at[index] : NULL;
+}
+
+bool values_is_default(const struct values *values, size_t index) {
+    const cJSON *value = values_json(values, index);
+    if (value == NULL || value == values->defaults[index])
+        return true;
+    cJSON *usual = value_default(parameter_row(values->tables, index));
+    bool same = usual != NULL && cJSON_Compare(value, usual, true);
+    cJSON_Delete(usual);
+    return same;
+}
+
+/* The row of a path and its value; NULL, and the path remembered, where it is no row of that type.
+ */
+static const struct parameter *find(struct values *values, const char *path,
+                                    enum parameter_type type, const cJSON **value) {
+    size_t index = 0;
+    const struct parameter *row = parameter_find(values->tables, path, &index);
+    *value = NULL;
+    if (row == NULL || row->type != type) {
+        values->misread = path;
+        return NULL;
+    }
+    *value = values->at[index];
+    return row;
+}
+
+double values_number(struct values *values, const char *path) {
+    const cJSON *value;
+    size_t index;
+    const struct parameter *row = parameter_find(values->tables, path, &index);
+    bool integer = row != NULL && row->type == PARAMETER_INTEGER;
+    row = find(values, path, integer ? PARAMETER_INTEGER : PARAMETER_NUMBER, &value);
+    return row != NULL && value != NULL ? value->valuedouble : NAN;
+}
+
+static int choice_value(const struct choice *choices, const cJSON *value) {
+    const struct choice *choice = choice_find(choices, cJSON_GetStringValue(value));
+    return choice != NULL ? choice->value : 0;
+}
+
+int values_choice(struct values *values, const char *path) {
+    const cJSON *value;
+    const struct parameter *row = find(values, path, PARAMETER_CHOICE, &value);
+    return row != NULL ? choice_value(row->choices, value) : 0;
+}
+
+size_t values_choices(struct values *values, const char *path, int *out) {
+    const cJSON *value;
+    const struct parameter *row = find(values, path, PARAMETER_CHOICES, &value);
+    size_t n = 0;
+    if (row == NULL || value == NULL)
+        return 0;
+    if (!cJSON_IsArray(value))
+        out[n++] = choice_value(row->choices, value);
+    else
+        for (const cJSON *item = value->child; item != NULL; item = item->next)
+            out[n++] = choice_value(row->choices, item);
+    return n;
+}
+
+double values_measure(struct values *values, const char *path, int *unit) {
+    const cJSON *value;
+    const struct parameter *row = find(values, path, PARAMETER_MEASURE, &value);
+    *unit = 0;
+    if (row == NULL || value == NULL)
+        return NAN;
+    if (!cJSON_IsObject(value)) {
+        *unit = choice_value(row->choices, value);
+        return INFINITY;
+    }
+    const struct choice *known = choice_find(row->units, value->child->string);
+    *unit = known != NULL ? known->value : 0;
+    return value->child->valuedouble;
+}
+
+int values_numbers(struct values *values, const char *path, double **out, size_t *n,
+                   struct error *err) {
+    const cJSON *value;
+    *out = NULL;
+    *n = 0;
+    if (find(values, path, PARAMETER_NUMBERS, &value) == NULL || value == NULL)
+        return 0;
+    size_t count = (size_t)cJSON_GetArraySize(value);
+    double *numbers = array_create(count, sizeof *numbers);
+    if (numbers == NULL)
+        return error_memory(err, count * sizeof *numbers, path);
+    for (const cJSON *item = value->child; item != NULL; item = item->next)
+        numbers[(*n)++] = item->valuedouble;
+    *out = numbers;
+    return 0;
+}
+
+void values_bins(struct values *values, const char *path, size_t most, struct bins *out) {
+    const cJSON *value;
+    if (find(values, path, PARAMETER_NUMBERS, &value) == NULL || cJSON_GetArraySize(value) != 3) {
+        values->misread = path; /* its row must ask for three numbers, and have a default */
+        return;
+    }
+    double low = value->child->valuedouble, high = value->child->next->valuedouble;
+    double count = value->child->next->next->valuedouble;
+    if (!(low < high))
+        values_fault(values, path, "low, %g, must be below high, %g", low, high);
+    else if (!(count >= 1 && count <= (double)most && count == floor(count)))
+        values_fault(values, path, "the count, %g, must be an integer in [1, %zu]", count, most);
+    else
+        *out = (struct bins){low, high, (size_t)count};
+}
+
+void values_fault(struct values *values, const char *path, const char *format, ...) {
+    char detail[400];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(detail, sizeof detail, format, arguments);
+    va_end(arguments);
+    fault_add(values->faults, path, "%s", detail);
+    if (parameter_find(values->tables, path, NULL) == NULL)
+        values->misread = path;
+}
+
+int values_status(const struct values *values, struct error *err) {
+    const struct fault_list *faults = values->faults;
+    if (values->misread != NULL)
+        return error_set(err, ERROR_STATE, "the program reads %s in a way that no table has",
+                         values->misread);
+    if (faults->count == values->before)
+        return 0;
+    const struct fault *fault = faults->faults != NULL && values->before < FAULTS_KEPT
+                                    ? &faults->faults[values->before]
+                                    : NULL;
+    if (fault == NULL || fault->pointer == NULL || fault->detail == NULL)
+        return error_set(err, ERROR_INPUT, "the parameters are at fault");
+    return error_set(err, ERROR_INPUT, "%s: %s", fault->pointer, fault->detail);
+}

@@ -1,0 +1,86 @@
+/* Protects: the table of kinds, the rows of their parameters, and the values of JSON that jobs
+ * read and write. */
+#include "jobs/kind.h"
+#include "jobs/value.h"
+#include "schema/study/value.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void values(void **state) {
+    (void)state;
+    cJSON *object = cJSON_Parse("{\"a\": {\"bc\": 1, \"b\": {\"c\": 2}}, \"A\": 3}");
+    assert_true(value_at(object, "/a/b/c")->valuedouble == 2);
+    assert_true(value_at(object, "/a/bc")->valuedouble == 1);
+    assert_true(value_at(object, "/A")->valuedouble == 3);
+    assert_ptr_equal(value_at(object, ""), object);
+    assert_null(value_at(object, "/a/bcd"));
+    assert_null(value_at(object, "/a/bc/d"));
+    cJSON_Delete(object);
+    const double numbers[] = {1, NAN, INFINITY, -2};
+    cJSON *matrix = value_matrix(2, 2, numbers);
+    char *text = cJSON_PrintUnformatted(matrix);
+    assert_string_equal(text, "[[1,null],[null,-2]]");
+    free(text);
+    cJSON_Delete(matrix);
+    assert_false(value_put(NULL, "x", cJSON_CreateNull()));
+}
+
+/* A default or an example in a row is a value of that row; an example may be swept. */
+static void fits(const struct parameter *row, const char *json) {
+    struct fault_list faults = {0};
+    cJSON *value = cJSON_Parse(json);
+    assert_non_null(value);
+    if (row->sweep && value_is_list(row, value))
+        for (const cJSON *item = value->child; item != NULL; item = item->next)
+            value_check(row, item, row->path, &faults);
+    else
+        value_check(row, value, row->path, &faults);
+    if (faults.count > 0)
+        fail_msg("%s: %s: %s", row->path, json, faults.faults[0].detail);
+    cJSON_Delete(value);
+}
+
+static void rows(void **state) {
+    (void)state;
+    for (size_t k = 0; k < JOB_KIND_COUNT; k++) {
+        const struct parameter_table *const *tables = JOB_KINDS[k]->tables;
+        const struct parameter *row;
+        for (size_t p = 0; (row = parameter_row(tables, p)) != NULL; p++) {
+            size_t index = 0;
+            assert_ptr_equal(parameter_find(tables, row->path, &index), row); /* each path once */
+            assert_int_equal(index, p);
+            assert_true(row->path[0] == '/' && strlen(row->help) > 0);
+            bool named = row->type == PARAMETER_CHOICE || row->type == PARAMETER_CHOICES ||
+                         row->type == PARAMETER_MEASURE;
+            assert_true(named == (row->choices != NULL));
+            assert_true((row->type == PARAMETER_MEASURE) == (row->units != NULL));
+            if (row->default_json != NULL)
+                fits(row, row->default_json);
+            assert_non_null(row->example_json);
+            fits(row, row->example_json);
+        }
+    }
+}
+
+static void kinds(void **state) {
+    (void)state;
+    assert_non_null(kind_find("statistics"));
+    assert_non_null(kind_find("contact"));
+    assert_null(kind_find("statistic"));
+    for (size_t k = 0; k < JOB_KIND_COUNT; k++)
+        assert_ptr_equal(kind_find(JOB_KINDS[k]->name), JOB_KINDS[k]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(values),
+        cmocka_unit_test(rows),
+        cmocka_unit_test(kinds),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
