@@ -323,7 +323,7 @@ static int retry_jobs(struct store *store, int64_t row, struct error *err) {
             store, err,
             "UPDATE study SET jobs_waiting = jobs_waiting + jobs_failed + jobs_cancelled, "
             "jobs_failed = 0, jobs_cancelled = 0, realisations_failed = 0, state = "
-            "CASE WHEN jobs_done > 0 THEN 'running' ELSE 'queued' END WHERE id = ?",
+            "CASE WHEN jobs_done + jobs_running > 0 THEN 'running' ELSE 'queued' END WHERE id = ?",
             "i", row);
     return status ? status : study_settle(store, row, err);
 }
