@@ -1,6 +1,7 @@
 #include "server/show/plot.h"
 #include "server/show/plot_choice.h"
 #include "server/show/plot_frame.h"
+#include "server/show/summary_cells.h"
 #include "server/show/view.h"
 #include <math.h>
 #include <stdlib.h>
@@ -145,7 +146,7 @@ static const double *theory_of(const struct plot_line *line, const char *name) {
 
 static bool same_numbers(size_t n, const double *a, const double *b) {
     for (size_t p = 0; p < n; p++)
-        if (!(a[p] == b[p] || (isnan(a[p]) && isnan(b[p]))))
+        if (!same_number(a[p], b[p]))
             return false;
     return true;
 }

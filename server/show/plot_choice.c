@@ -13,10 +13,6 @@ struct choosing {
     int narrow;
 };
 
-static bool same_text(const char *a, const char *b) {
-    return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
-}
-
 /* No matrices. */
 static bool is_candidate(const struct choosing *choosing, const struct curve *curve) {
     return strcmp(curve->quantity, choosing->quantity) == 0 && curve->columns == 0 &&
@@ -144,10 +140,6 @@ static bool varies(const struct study_result *study, const struct case_result *o
         if (!parameter_same(value, parameter_at(&study->cases[c], value->pointer, p)))
             return true;
     return false;
-}
-
-static bool same_number(double a, double b) {
-    return a == b || (isnan(a) && isnan(b));
 }
 
 static bool same_pressure(const struct curve *a, const struct curve *b) {

@@ -11,7 +11,7 @@ enum { BAR = 20, TERMINAL_MS = 500, PLAIN_MS = 10000 };
  * the clock. */
 static double estimate_left(struct study_progress *progress, const struct study_status *now,
                             int64_t clock) {
-    double estimate = now->seconds_left / (double)(now->workers ? now->workers : 1);
+    double estimate = now->seconds_left / (double)(now->workers > 0 ? now->workers : 1);
     if (!(fabs(estimate - progress->estimate) <= 0)) { /* also the first, or a NaN */
         progress->estimate = estimate;
         progress->estimate_ms = clock;
@@ -34,7 +34,7 @@ static void print_bar(const struct study_status *now, double share, const char *
     char bar[BAR + 1];
     for (int i = 0; i < BAR; i++)
         bar[i] = i < (int)(share * BAR) ? '#' : '.';
-    bar[BAR] = 0;
+    bar[BAR] = '\0';
     fprintf(stderr, "\r[%s] %5.1f %%  %llu of %llu realisations, %s left   ", bar, 100 * share,
             (unsigned long long)now->realisations_done, (unsigned long long)now->realisations_total,
             left);
@@ -47,9 +47,9 @@ int progress_tick(void *context) {
         return 0;
     bool terminal = isatty(STDERR_FILENO);
     struct study_status now;
-    if (store_status(progress->store, progress->study, &now, NULL))
+    if (store_status(progress->store, progress->study, &now, NULL) != 0)
         return 0; /* the next tick may find it unlocked */
-    if (!progress->next_ms) {
+    if (progress->next_ms == 0) {
         progress->start_ms = clock;
         progress->start_done = now.realisations_done;
     }

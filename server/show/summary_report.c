@@ -74,14 +74,9 @@ struct series_list {
     struct series_cost rows[SERIES_MOST];
 };
 
-static bool same_text(const char *a, const char *b) {
-    return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
-}
-
 static bool same_place(const struct curve *a, const struct curve *b) {
     return same_text(a->model, b->model) && same_text(a->kinematics, b->kinematics) &&
-           same_text(a->series, b->series) &&
-           (a->level == b->level || (isnan(a->level) && isnan(b->level)));
+           same_text(a->series, b->series) && same_number(a->level, b->level);
 }
 
 static struct series_cost *find_series(struct series_list *list, const struct curve *place) {

@@ -11,9 +11,9 @@
 
 static void append(struct text_table *table, char *text) {
     if (table->cells == table->capacity) {
-        size_t capacity = table->capacity ? 2 * table->capacity : 256;
+        size_t capacity = table->capacity > 0 ? 2 * table->capacity : 256;
         char **larger = realloc(table->text, capacity * sizeof *larger);
-        if (!larger) {
+        if (larger == NULL) {
             free(text);
             table->failed = true;
             return;
@@ -45,7 +45,7 @@ void table_number(struct text_table *table, double value) {
 /* Characters on a screen: bytes that begin a UTF-8 sequence. */
 static size_t width_of(const char *text) {
     size_t width = 0;
-    for (; *text; text++)
+    for (; *text != '\0'; text++)
         width += ((unsigned char)*text & 0xc0) != 0x80;
     return width;
 }
@@ -103,7 +103,7 @@ static size_t width_between(const struct column_shape *shapes, size_t begin, siz
 static size_t room_of(FILE *file) {
     struct winsize size;
     bool known = isatty(fileno(file)) && ioctl(fileno(file), TIOCGWINSZ, &size) == 0;
-    return known && size.ws_col ? size.ws_col : SIZE_MAX / 2;
+    return known && size.ws_col > 0 ? size.ws_col : SIZE_MAX / 2;
 }
 
 void table_fold(struct text_table *table) {
@@ -114,19 +114,19 @@ void table_fold(struct text_table *table) {
 void table_print(const struct text_table *table, FILE *file) {
     struct column_shape *shapes =
         table->failed ? NULL : array_create(table->columns, sizeof *shapes);
-    if (!shapes || !table->columns) {
+    if (shapes == NULL || table->columns == 0) {
         free(shapes);
         fprintf(file, "(no memory for a table)\n");
         return;
     }
     for (size_t c = 0; c < table->columns; c++)
         shapes[c] = shape_of(table, c);
-    size_t keys = table->fold_count ? table->folds[0] : 0, room = room_of(file);
+    size_t keys = table->fold_count > 0 ? table->folds[0] : 0, room = room_of(file);
     size_t begin = 0, end = 0, key_width = width_between(shapes, 0, keys);
     for (size_t fold = 0; fold <= table->fold_count; fold++) {
         size_t next = fold < table->fold_count ? table->folds[fold] : table->columns;
         /* the last gap is no width */
-        bool fits = (begin ? key_width : 0) + width_between(shapes, begin, next) <= room + 2;
+        bool fits = (begin > 0 ? key_width : 0) + width_between(shapes, begin, next) <= room + 2;
         if (!fits && end > keys) {
             print_part(table, shapes, keys, begin, end, file);
             fputc('\n', file);
