@@ -14,12 +14,12 @@ struct access {
     struct client *client;
 };
 
-bool access_options_check(const char *command, const struct access_options *options) {
+int access_options_check(const char *command, const struct access_options *options) {
     if (options->database && options->server)
         return usage_error(command, "--db and --server exclude each other");
     if (options->token_file && !options->server)
         return usage_error(command, "--token-file goes with --server");
-    return true;
+    return 0;
 }
 
 static int open_client(struct access *access, const struct access_options *options,
@@ -41,7 +41,7 @@ int access_open(struct access **out, const struct access_options *options, enum 
                                   .existing = mode != ACCESS_CREATE};
     int status = options->server
                      ? open_client(access, options, err)
-                     : store_open(&access->store, options->database ? options->database : "rugo.db",
+                     : store_open(&access->store, options->database ? options->database : DATABASE,
                                   &store, err);
     if (status) {
         access_close(&access);

@@ -4,22 +4,29 @@
 #define RUGO_SERVER_COMMAND_ACCESS_H
 
 #include "schema/study/fault.h"
-#include "server/command/options.h"
+#include "server/command/command.h"
 #include "worker/aggregate.h"
 
 struct access_options {
-    const char *database, *server, *token_file; /* as given; database NULL: rugo.db */
+    const char *database, *server, *token_file; /* as given; database NULL: DATABASE */
 };
-#define ACCESS_OPTION_ROWS(options)                                                                \
-    {"db", OPTION_TEXT, &(options)->database}, {"server", OPTION_TEXT, &(options)->server}, {      \
-        "token-file", OPTION_TEXT, &(options)->token_file                                          \
+/* The rows of its options, where it is the member `place` of the command's struct. */
+#define ACCESS_ROWS(options)                                                                       \
+    {"db",   0,    OPTION_TEXT,                                                                    \
+     0,      0,    offsetof(options, place.database),                                              \
+     "FILE", NULL, "the local store (" DATABASE ")"},                                              \
+        {"server", 0,    OPTION_TEXT,       0, 0, offsetof(options, place.server),                 \
+         "URL",    NULL, "a server instead"},                                                      \
+    {                                                                                              \
+        "token-file", 0, OPTION_TEXT, 0, 0, offsetof(options, place.token_file), "FILE", NULL,     \
+            "its token; or RUGO_TOKEN"                                                             \
     }
 
 enum access_mode { ACCESS_READ, ACCESS_WRITE, ACCESS_CREATE };
 struct access;
 
-/* False after a usage error was told (both places, or a token without a server). */
-bool access_options_check(const char *command, const struct access_options *options);
+/* 0, or EXIT_USAGE after a usage error was told (both places, or a token without a server). */
+int access_options_check(const char *command, const struct access_options *options);
 int access_open(struct access **out, const struct access_options *options, enum access_mode mode,
                 struct error *err);
 void access_close(struct access **access);

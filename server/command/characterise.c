@@ -1,31 +1,19 @@
 /* rugo characterise FILE: what a height map in a file is like. */
 #include "server/command/command.h"
 #include "server/command/map_file.h"
-#include "server/command/options.h"
 #include "server/show/characterisation.h"
 #include <stdlib.h>
 #include <string.h>
 
-static const char NAME[] = "characterise";
 struct options {
-    const char *path;
     double dx; /* 0: not given */
-    bool json;
+    int json;
 };
-
-static bool read_options(int argc, char **argv, struct options *out) {
-    const char *dx = NULL, *format = "text";
-    const struct option_row rows[] = {
-        {"dx", OPTION_TEXT, &dx}, {"format", OPTION_TEXT, &format}, {NULL, OPTION_FLAG, NULL}};
-    if (!options_parse(argc, argv, rows, 1, 1, &out->path))
-        return false;
-    if (!map_spacing(NAME, dx, &out->dx))
-        return false;
-    out->json = strcmp(format, "json") == 0;
-    if (!out->json && strcmp(format, "text") != 0)
-        return usage_error(NAME, "--format %.40s is not json or text", format);
-    return true;
-}
+#define AT(member) offsetof(struct options, member)
+static const struct option_row OPTIONS[] = {
+    {"dx", 0, OPTION_NUMBER, 0, 0, AT(dx), "D", NULL, MAP_SPACING_HELP},
+    {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
+    {0}};
 
 static int print(const struct options *options, const struct height_map *map, struct error *err) {
     struct characterisation values;
@@ -44,15 +32,24 @@ static int print(const struct options *options, const struct height_map *map, st
     return status;
 }
 
-int command_characterise(int argc, char **argv) {
-    struct options options = {0};
+static int run(const void *values, const char *const *arguments) {
+    const struct options *options = values;
     struct height_map map = {0};
     struct error err = {0};
-    if (!read_options(argc, argv, &options))
-        return EXIT_USAGE;
-    int status = map_file_read(&map, options.path, options.dx, &err);
+    int status = map_file_read(&map, arguments[0], options->dx, &err);
     if (status == 0)
-        status = print(&options, &map, &err);
+        status = print(options, &map, &err);
     height_map_clear(&map);
-    return status == 0 ? EXIT_DONE : command_fail(NAME, &err);
+    return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
 }
+
+const struct command COMMAND_CHARACTERISE = {
+    .name = "characterise",
+    .arguments = "FILE",
+    .summary = "parameters and summits of a height map in a file",
+    .least = 1,
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -172,30 +172,41 @@ static int check(const char *file, const char *const *sets, bool json, struct fa
     return status;
 }
 
-int command_check(int argc, char **argv) {
-    bool schema = false;
-    const char *file = NULL, *format = NULL, **sets = array_create((size_t)argc + 1, sizeof *sets);
-    struct option_row rows[] = {{"set", OPTION_LIST, sets},
-                                {"format", OPTION_TEXT, &format},
-                                {"schema", OPTION_FLAG, &schema},
-                                {0}};
+struct options {
+    const char **sets;
+    int json;
+    bool schema;
+};
+#define AT(member) offsetof(struct options, member)
+static const struct option_row OPTIONS[] = {
+    {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
+    {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
+    {"schema", 0, OPTION_FLAG, 0, 0, AT(schema), NULL, NULL,
+     "print the JSON Schema of studies instead; needs no study"},
+    {0}};
+
+static int run(const void *values, const char *const *arguments) {
+    const struct options *options = values;
+    const char *file = arguments[0];
     struct error err = {0};
     struct fault_list faults = {0};
-    bool good = sets && options_parse(argc, argv, rows, 0, 1, &file);
-    if (good && format && strcmp(format, "text") != 0 && strcmp(format, "json") != 0)
-        good = usage_error(argv[0], "--format %.40s is neither text nor json", format);
-    if (good && !file && !schema)
-        good = usage_error(argv[0], "an argument is missing");
-    int status = 0;
-    if (good && schema)
-        status = print_document(study_schema(kinds_table(), kinds_count()), &err);
-    else if (good)
-        status = check(file, sets, format && strcmp(format, "json") == 0, &faults, &err);
-    int result = !good          ? EXIT_USAGE
-                 : !status      ? EXIT_DONE
-                 : faults.count ? command_fail_faults(file, &faults)
-                                : command_fail(argv[0], &err);
+    if (file == NULL && !options->schema)
+        return usage_error("check", "an argument is missing");
+    int status = options->schema ? print_document(study_schema(kinds_table(), kinds_count()), &err)
+                                 : check(file, options->sets, options->json, &faults, &err);
+    int result = status == 0        ? EXIT_DONE
+                 : faults.count > 0 ? command_fail_faults(file, &faults)
+                                    : command_fail("check", &err);
     fault_list_clear(&faults);
-    free(sets);
     return result;
 }
+
+const struct command COMMAND_CHECK = {
+    .name = "check",
+    .arguments = "STUDY.json",
+    .summary = "read and validate a study, print cases and cost, run nothing",
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,34 +1,33 @@
-/* The subcommands of `rugo`. Each sits in the file of its name; main.c has the table. */
+/* The subcommands of `rugo`. Each sits in the file of its name; commands.c has the table. */
 #ifndef RUGO_SERVER_COMMAND_COMMAND_H
 #define RUGO_SERVER_COMMAND_COMMAND_H
 
 #include "schema/study/fault.h"
 #include "schema/study/study.h"
+#include "server/command/options.h"
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 
+#define PROGRAM_VERSION "0.1.0"
+#define DATABASE "rugo.db" /* where no other is named */
+#define SET_HELP "change the study, e.g. --set realisations=100"
+
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
+enum { ARGUMENTS_MOST = 1, WORKERS_MOST = 4096, SECONDS_MOST = 31536000 };
 
 struct command {
     const char *name, *arguments, *summary;
-    int (*run)(int argc, char **argv); /* argv[0] is the command; returns an exit status */
-    const char *help;                  /* options, one a line */
+    int least, most; /* arguments beside the options, at most ARGUMENTS_MOST */
+    const struct option_row *options;
+    size_t options_size; /* of the struct that their offsets are of */
+    /* Returns an exit status. */
+    int (*run)(const void *options, const char *const *arguments);
 };
-int command_run(int argc, char **argv);
-int command_check(int argc, char **argv);
-int command_submit(int argc, char **argv);
-int command_status(int argc, char **argv);
-int command_curves(int argc, char **argv);
-int command_report(int argc, char **argv);
-int command_snapshot(int argc, char **argv);
-int command_cancel(int argc, char **argv);
-int command_retry(int argc, char **argv);
-int command_serve(int argc, char **argv);
-int command_work(int argc, char **argv);
-int command_generate(int argc, char **argv);
-int command_characterise(int argc, char **argv);
-int command_press(int argc, char **argv);
+extern const struct command *const COMMANDS[]; /* all, ended by NULL */
+extern const struct command COMMAND_RUN, COMMAND_CHECK, COMMAND_SUBMIT, COMMAND_STATUS,
+    COMMAND_CURVES, COMMAND_REPORT, COMMAND_SNAPSHOT, COMMAND_CANCEL, COMMAND_RETRY, COMMAND_SERVE,
+    COMMAND_WORK, COMMAND_GENERATE, COMMAND_CHARACTERISE, COMMAND_PRESS, COMMAND_HELP;
 
 /* Set by SIGINT and SIGTERM once signals_catch was called; the second SIGINT ends at once. */
 extern atomic_int stop_requested;

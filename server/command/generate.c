@@ -4,7 +4,6 @@
 #include "jobs/surface_case.h"
 #include "server/command/command.h"
 #include "server/command/meshed_case.h"
-#include "server/command/options.h"
 #include "server/show/characterisation.h"
 #include "worker/kinds.h"
 #include <errno.h>
@@ -13,83 +12,80 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char NAME[] = "generate";
-
 struct options {
-    const char *study, *output; /* output NULL: standard output */
-    const char **overrides;     /* owned, NULL-terminated; its strings are of argv */
+    const char *output;     /* NULL: standard output */
+    const char **overrides; /* of --set */
     int64_t case_number, realisation;
-    enum height_map_format format;
+    const char *format;
     const char *mesh; /* NULL: the surface alone */
     double pressure;  /* p/(E* h') on the mesh; 0: not pressed */
 };
+#define AT(member) offsetof(struct options, member)
+static const struct option_row OPTIONS[] = {
+    {"case", 0, OPTION_INDEX, 0, 0, AT(case_number), "K", "0", "of this case"},
+    {"realisation", 0, OPTION_INDEX, 0, 0, AT(realisation), "R", "0", "this realisation"},
+    {"format", 0, OPTION_TEXT, 0, 0, AT(format), "npy|csv|xyz", NULL,
+     "of the height map (that of the file's name, or npy)"},
+    {"output", 'o', OPTION_TEXT, 0, 0, AT(output), "FILE", NULL, "write the height map there"},
+    {"mesh", 0, OPTION_TEXT, 0, 0, AT(mesh), "FILE.vtu", NULL,
+     "write the block of the model full, meshed on the surface"},
+    {"pressure", 0, OPTION_NUMBER, 0, 0, AT(pressure), "P", NULL,
+     "the mesh pressed to p/(E* h'), with displacement, pressure, stress"},
+    {"set", 0, OPTION_LIST, 0, 0, AT(overrides), "PATH=VALUE", NULL, SET_HELP},
+    {0}};
+
+/* What to do, from the options. */
+struct order {
+    const struct options *options;
+    const char *study, *output; /* output NULL: standard output */
+    enum height_map_format format;
+};
 
 /* A mesh takes the place of a surface on standard output. */
-static bool writes_surface(const struct options *options) {
-    return options->mesh == NULL || options->output != NULL;
+static bool writes_surface(const struct order *order) {
+    return order->options->mesh == NULL || order->output != NULL;
 }
 
-static bool read_pressure(struct options *options, const char *text) {
-    if (text == NULL)
-        return true;
-    char *stop;
-    options->pressure = strtod(text, &stop);
-    if (options->mesh == NULL)
-        return usage_error(NAME, "--pressure belongs to --mesh FILE");
-    if (stop == text || *stop != '\0' || !(options->pressure > 0 && isfinite(options->pressure)))
-        return usage_error(NAME, "--pressure %.40s is no number above 0", text);
-    return true;
-}
-
-/* The format asked for, or that of the output's name, or npy. */
-static bool choose_format(struct options *options, const char *name) {
-    if (options->output != NULL && strcmp(options->output, "-") == 0)
-        options->output = NULL;
-    options->format = HEIGHT_MAP_FORMATS;
+/* The format asked for, or that of the output's name, or npy; 0 or EXIT_USAGE. */
+static int choose_format(struct order *order) {
+    const char *name = order->options->format;
+    order->format = HEIGHT_MAP_FORMATS;
     if (name != NULL) {
-        for (options->format = HEIGHT_MAP_NPY;
-             options->format < HEIGHT_MAP_FORMATS &&
-             strcmp(name, HEIGHT_MAP_NAMES[options->format]) != 0;)
-            options->format++;
-        if (options->format == HEIGHT_MAP_FORMATS)
-            return usage_error(NAME, "--format %.40s is not npy, csv or xyz", name);
-    } else if (options->output != NULL)
-        options->format = height_map_format_of(options->output);
-    if (options->format == HEIGHT_MAP_FORMATS)
-        options->format = HEIGHT_MAP_NPY;
-    if (!writes_surface(options))
-        return true;
-    if (options->output == NULL && options->format == HEIGHT_MAP_NPY && isatty(STDOUT_FILENO))
-        return usage_error(NAME, "npy is not for a terminal: give -o FILE or --format");
-    return true;
+        for (order->format = HEIGHT_MAP_NPY; order->format < HEIGHT_MAP_FORMATS &&
+                                             strcmp(name, HEIGHT_MAP_NAMES[order->format]) != 0;)
+            order->format++;
+        if (order->format == HEIGHT_MAP_FORMATS)
+            return usage_error("generate", "--format %.40s is not npy, csv or xyz", name);
+    } else if (order->output != NULL)
+        order->format = height_map_format_of(order->output);
+    if (order->format == HEIGHT_MAP_FORMATS)
+        order->format = HEIGHT_MAP_NPY;
+    if (writes_surface(order) && order->output == NULL && order->format == HEIGHT_MAP_NPY &&
+        isatty(STDOUT_FILENO))
+        return usage_error("generate", "npy is not for a terminal: give -o FILE or --format");
+    return 0;
 }
 
-static bool read_options(int argc, char **argv, struct options *out) {
-    const char *format = NULL, *pressure = NULL;
-    const struct option_row rows[] = {{"case", OPTION_INDEX, &out->case_number},
-                                      {"realisation", OPTION_INDEX, &out->realisation},
-                                      {"format", OPTION_TEXT, &format},
-                                      {"o", OPTION_TEXT, &out->output},
-                                      {"output", OPTION_TEXT, &out->output},
-                                      {"mesh", OPTION_TEXT, &out->mesh},
-                                      {"pressure", OPTION_TEXT, &pressure},
-                                      {"set", OPTION_LIST, out->overrides},
-                                      {NULL, OPTION_FLAG, NULL}};
-    return options_parse(argc, argv, rows, 1, 1, &out->study) && read_pressure(out, pressure) &&
-           choose_format(out, format);
+static int read_order(struct order *order, const struct options *options, const char *study) {
+    *order = (struct order){.options = options, .study = study, .output = options->output};
+    if (order->output != NULL && strcmp(order->output, "-") == 0)
+        order->output = NULL;
+    if (options->mesh == NULL && options->pressure > 0)
+        return usage_error("generate", "--pressure belongs to --mesh FILE");
+    return choose_format(order);
 }
 
-static int write_output(const struct options *options, const struct grid *grid, const double *z,
+static int write_output(const struct order *order, const struct grid *grid, const double *z,
                         struct error *err) {
-    if (options->output == NULL)
-        return height_map_write(stdout, options->format, grid, z, err);
-    FILE *file = fopen(options->output, "wb");
+    if (order->output == NULL)
+        return height_map_write(stdout, order->format, grid, z, err);
+    FILE *file = fopen(order->output, "wb");
     if (file == NULL)
-        return error_set(err, ERROR_SYSTEM, "cannot open %s: %s", options->output, strerror(errno));
-    int status = height_map_write(file, options->format, grid, z, err);
+        return error_set(err, ERROR_SYSTEM, "cannot open %s: %s", order->output, strerror(errno));
+    int status = height_map_write(file, order->format, grid, z, err);
     if (fclose(file) != 0 && status == 0)
         status =
-            error_set(err, ERROR_SYSTEM, "cannot write %s: %s", options->output, strerror(errno));
+            error_set(err, ERROR_SYSTEM, "cannot write %s: %s", order->output, strerror(errno));
     return status;
 }
 
@@ -99,9 +95,9 @@ static const char *end_name(enum surface_end end) {
 }
 
 /* Beside the surface on standard output, the characterisation goes to standard error. */
-static int characterise(const struct options *options, const struct surface_case *surface,
+static int characterise(const struct order *order, const struct surface_case *surface,
                         const struct surface_report *report, const double *z, struct error *err) {
-    bool beside = writes_surface(options) && options->output == NULL;
+    bool beside = writes_surface(order) && order->output == NULL;
     FILE *file = beside ? stderr : stdout;
     size_t mode_x = surface_case_band(surface);
     size_t mode_y = surface->dimension == 1 ? 0 : mode_x;
@@ -124,24 +120,25 @@ static int characterise(const struct options *options, const struct surface_case
     return 0;
 }
 
-static int write_mesh(const struct options *options, const struct study *study, const double *z,
+static int write_mesh(const struct order *order, const struct study *study, const double *z,
                       struct error *err) {
     if (strcmp(study->kind->name, "contact") != 0)
         return error_set(err, ERROR_INPUT, "--mesh needs a study of kind contact, and this is %s",
                          study->kind->name);
-    return meshed_case_write(options->mesh, study->cases[options->case_number].parameters, z,
-                             options->pressure, err);
+    return meshed_case_write(order->options->mesh,
+                             study->cases[order->options->case_number].parameters, z,
+                             order->options->pressure, err);
 }
 
-static int generate(const struct options *options, const struct study *study, struct error *err) {
+static int generate(const struct order *order, const struct study *study, struct error *err) {
     struct surface_case surface;
     struct surface_report report = {0};
     struct generator *generator = NULL;
-    const struct random_key key = {study->seed, (uint64_t)options->case_number,
-                                   (uint64_t)options->realisation};
+    const struct random_key key = {study->seed, (uint64_t)order->options->case_number,
+                                   (uint64_t)order->options->realisation};
     if (key.case_number >= study->case_count)
         return error_set(err, ERROR_INPUT, "there is no case %lld: the study has %zu",
-                         (long long)options->case_number, study->case_count);
+                         (long long)order->options->case_number, study->case_count);
     int status = surface_case_read(&surface, study->cases[key.case_number].parameters, NULL, err);
     if (status != 0)
         return status;
@@ -154,38 +151,43 @@ static int generate(const struct options *options, const struct study *study, st
     if (status == 0)
         status = generator_run(generator, key, z, &report, err);
     generator_destroy(&generator);
-    if (status == 0 && options->mesh != NULL)
-        status = write_mesh(options, study, z, err);
-    if (status == 0 && writes_surface(options))
-        status = write_output(options, &surface.grid, z, err);
+    if (status == 0 && order->options->mesh != NULL)
+        status = write_mesh(order, study, z, err);
+    if (status == 0 && writes_surface(order))
+        status = write_output(order, &surface.grid, z, err);
     if (status == 0)
-        status = characterise(options, &surface, &report, z, err);
+        status = characterise(order, &surface, &report, z, err);
     free(z);
     surface_case_clear(&surface);
     return status;
 }
 
-int command_generate(int argc, char **argv) {
-    struct options options = {.overrides = array_create((size_t)argc + 1, sizeof(char *))};
+static int run(const void *values, const char *const *arguments) {
+    struct order order;
     struct fault_list faults = {0};
     struct study *study = NULL;
     struct error err = {0};
-    int status = 0, ended = EXIT_DONE;
-    if (options.overrides == NULL)
-        status = error_memory(&err, ((size_t)argc + 1) * sizeof(char *), "options");
-    else if (!read_options(argc, argv, &options)) {
-        free(options.overrides);
+    const struct options *options = values;
+    if (read_order(&order, options, arguments[0]) != 0)
         return EXIT_USAGE;
-    }
+    int status = study_file_read(&study, order.study, options->overrides, &faults, &err);
     if (status == 0)
-        status = study_file_read(&study, options.study, options.overrides, &faults, &err);
-    if (status == 0)
-        status = generate(&options, study, &err);
-    if (status != 0)
-        ended = faults.count > 0 ? command_fail_faults(options.study, &faults)
-                                 : command_fail(NAME, &err);
-    free(options.overrides);
+        status = generate(&order, study, &err);
+    int result = status == 0        ? EXIT_DONE
+                 : faults.count > 0 ? command_fail_faults(order.study, &faults)
+                                    : command_fail("generate", &err);
     study_destroy(&study);
     fault_list_clear(&faults);
-    return ended;
+    return result;
 }
+
+const struct command COMMAND_GENERATE = {
+    .name = "generate",
+    .arguments = "STUDY.json",
+    .summary = "one surface of a study, and its characterisation",
+    .least = 1,
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,21 +1,8 @@
 #include "server/command/map_file.h"
 #include "server/command/command.h"
-#include "server/command/options.h"
-#include <math.h>
 #include <stdlib.h>
 
 static const size_t FILE_MOST = (size_t)1 << 36; /* bytes; 2^31 points as text fit */
-
-bool map_spacing(const char *command, const char *text, double *dx) {
-    char *stop;
-    *dx = 0;
-    if (text == NULL)
-        return true;
-    *dx = strtod(text, &stop);
-    if (stop == text || *stop != '\0' || !(*dx > 0 && isfinite(*dx)))
-        return usage_error(command, "--dx %.40s is not a number above 0", text);
-    return true;
-}
 
 int map_file_read(struct height_map *out, const char *path, double dx, struct error *err) {
     char *text = NULL;

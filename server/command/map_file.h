@@ -4,9 +4,10 @@
 
 #include "core/map/height_map.h"
 
-/* --dx; false, told on standard error, for what is no number above 0. text NULL: *dx is 0. */
-bool map_spacing(const char *command, const char *text, double *dx);
-/* Reads the map by the ending of its name, or by its first byte; errors name the file. */
+#define MAP_SPACING_HELP "distance of points (what the file says, or 1)"
+
+/* Reads the map by the ending of its name, or by its first byte; dx 0: the distance of points
+ * that the file tells, or 1. Errors name the file. */
 int map_file_read(struct height_map *out, const char *path, double dx, struct error *err);
 
 #endif

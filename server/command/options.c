@@ -1,8 +1,9 @@
 #include "server/command/options.h"
+#include "server/command/command.h"
 #include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
-#include <limits.h>
+#include <math.h>
 #include <sched.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -10,16 +11,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROWS_MOST = 16 };
+enum { ROWS_MOST = 16, LONG_CODE = 256 };
 
-bool usage_error(const char *command, const char *format, ...) {
+int usage_error(const char *command, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     fprintf(stderr, "rugo %s: ", command);
     vfprintf(stderr, format, arguments);
     fprintf(stderr, "; see rugo %s --help\n", command);
     va_end(arguments);
-    return false;
+    return EXIT_USAGE;
 }
 
 unsigned processors(void) {
@@ -29,100 +30,229 @@ unsigned processors(void) {
     return count > 0 ? (unsigned)count : 1;
 }
 
-static bool read_integer(const char *text, int64_t least, int64_t most, int64_t *out) {
+/* --- values --- */
+
+static bool read_integer(const char *text, double low, double high, int64_t *out) {
     char *end = NULL;
     if (!isdigit((unsigned char)*text)) /* strtoll would skip blanks and signs */
         return false;
     errno = 0;
     long long value = strtoll(text, &end, 10);
     *out = value;
-    return !errno && !*end && value >= least && value <= most;
+    return errno == 0 && *end == '\0' && (double)value >= low && (double)value <= high;
+}
+
+static bool read_number(const struct option_row *row, const char *text, double *out) {
+    char *end = NULL;
+    double value = strtod(text, &end);
+    *out = value;
+    bool within = row->high == 0 ? value > row->low && isfinite(value)
+                                 : value >= row->low && value <= row->high;
+    return end != text && *end == '\0' && within;
+}
+
+bool rising_numbers(const char *text, size_t most, double *out, size_t *count) {
+    double last = 0;
+    *count = 0;
+    for (char *stop;; text = stop + 1) {
+        double value = strtod(text, &stop);
+        if (stop == text || !(value > last && isfinite(value)) || *count == most)
+            return false;
+        out[(*count)++] = last = value;
+        if (*stop == '\0')
+            return true;
+        if (*stop != ',')
+            return false;
+    }
+}
+
+/* The number of a word in "one|two|three"; -1 where it is none of them. */
+static int read_choice(const char *words, const char *text) {
+    size_t length = strlen(text);
+    for (int n = 0;; n++) {
+        size_t width = strcspn(words, "|");
+        if (width == length && strncmp(words, text, width) == 0)
+            return n;
+        if (words[width] == '\0')
+            return -1;
+        words += width + 1;
+    }
 }
 
 static void list_append(const char **list, const char *text) {
-    while (*list)
+    while (*list != NULL)
         list++;
-    list[0] = text;
-    list[1] = NULL;
+    *list = text;
 }
 
-static bool take_value(const char *command, const struct option_row *row, const char *text) {
-    int64_t number = 0;
+static int refuse_number(const char *command, const struct option_row *row, const char *text) {
+    const char *what = row->type == OPTION_NUMBER ? "number" : "whole number";
+    if (row->type == OPTION_INDEX)
+        return usage_error(command, "--%s %.40s is not a whole number of 0 or more", row->name,
+                           text);
+    if (row->high == 0)
+        return usage_error(command, "--%s %.40s is not a number above %g", row->name, text,
+                           row->low);
+    return usage_error(command, "--%s %.40s is not a %s in [%.10g, %.10g]", row->name, text, what,
+                       row->low, row->high);
+}
+
+static int refuse_choice(const char *command, const struct option_row *row, const char *text) {
+    char words[120];
+    size_t used = 0;
+    for (const char *c = row->argument; *c != '\0' && used + 5 < sizeof words; c++) {
+        const char *part = *c == '|' ? " or " : (char[2]){*c, 0};
+        used += (size_t)snprintf(words + used, sizeof words - used, "%s", part);
+    }
+    return usage_error(command, "--%s %.40s is not %s", row->name, text, words);
+}
+
+static int take_value(const char *command, const struct option_row *row, void *values,
+                      const char *text) {
+    void *value = (char *)values + row->at;
+    int64_t whole = 0;
+    int choice = 0;
     switch (row->type) {
     case OPTION_FLAG:
-        *(bool *)row->value = true;
-        return true;
+        *(bool *)value = true;
+        return 0;
     case OPTION_TEXT:
-        *(const char **)row->value = text;
-        return true;
+        *(const char **)value = text;
+        return 0;
     case OPTION_LIST:
-        list_append(row->value, text);
-        return true;
+        list_append(*(const char ***)value, text);
+        return 0;
     case OPTION_COUNT:
-        if (!read_integer(text, 1, UINT_MAX, &number))
-            return usage_error(command, "--%s %.40s is not a number of at least 1", row->name,
-                               text);
-        *(unsigned *)row->value = (unsigned)number;
-        return true;
+        if (!read_integer(text, row->low, row->high, &whole))
+            return refuse_number(command, row, text);
+        *(unsigned *)value = (unsigned)whole;
+        return 0;
     case OPTION_INDEX:
-        if (!read_integer(text, 0, INT64_MAX, &number))
-            return usage_error(command, "--%s %.40s is not a number of 0 or more", row->name, text);
-        *(int64_t *)row->value = number;
-        return true;
+        if (!read_integer(text, 0, 0x1p62, (int64_t *)value))
+            return refuse_number(command, row, text);
+        return 0;
+    case OPTION_NUMBER:
+        return read_number(row, text, value) ? 0 : refuse_number(command, row, text);
+    case OPTION_CHOICE:
+        choice = read_choice(row->argument, text);
+        if (choice < 0)
+            return refuse_choice(command, row, text);
+        *(int *)value = choice;
+        return 0;
     }
-    return false;
+    return EXIT_USAGE;
 }
 
-/* getopt's own names of the table; a one-letter name becomes a short option. */
+/* Lists get room for as many values as there are words on the command line. */
+static int take_defaults(int argc, const char *command, const struct option_row *rows,
+                         void *values) {
+    for (; rows->name != NULL; rows++) {
+        void *value = (char *)values + rows->at;
+        int status = 0;
+        if (rows->type == OPTION_LIST &&
+            (*(const char ***)value = calloc((size_t)argc + 1, sizeof(char *))) == NULL) {
+            fprintf(stderr, "rugo %s: out of memory\n", command);
+            return EXIT_FAILED;
+        }
+        if (rows->type == OPTION_INDEX)
+            *(int64_t *)value = -1;
+        if (rows->standard != NULL)
+            status = take_value(command, rows, values, rows->standard);
+        if (status != 0)
+            return status;
+    }
+    return 0;
+}
+
+void options_clear(const struct option_row *rows, void *values) {
+    for (; rows->name != NULL; rows++)
+        if (rows->type == OPTION_LIST)
+            free(*(const char ***)((char *)values + rows->at));
+}
+
+/* --- names --- */
+
+static size_t least_of(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+/* The edit distance of two names (Damerau 1964, swaps of neighbours), by rows of its table. */
+static size_t distance(const char *a, const char *b) {
+    enum { LONGEST = 31 };
+    size_t n = strnlen(a, LONGEST), m = strnlen(b, LONGEST), rows[3][LONGEST + 1];
+    for (size_t j = 0; j <= m; j++)
+        rows[0][j] = j;
+    for (size_t i = 1; i <= n; i++) {
+        size_t *row = rows[i % 3], *above = rows[(i - 1) % 3];
+        row[0] = i;
+        for (size_t j = 1; j <= m; j++) {
+            row[j] =
+                least_of(above[j - 1] + (a[i - 1] != b[j - 1]), least_of(above[j], row[j - 1]) + 1);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = least_of(row[j], rows[(i - 2) % 3][j - 2] + 1);
+        }
+    }
+    return rows[n % 3][m];
+}
+
+bool name_is_nearer(const char *typed, const char *name, size_t *best) {
+    size_t far = strlen(typed) > 2 && strstr(name, typed) != NULL ? 1 : distance(typed, name);
+    if (far >= *best || (far > 1 && 3 * far > strlen(typed)))
+        return false;
+    *best = far;
+    return true;
+}
+
+static int unknown_option(const char *command, const struct option_row *rows, const char *given) {
+    const char *near = NULL;
+    char typed[64];
+    size_t best = 3;
+    snprintf(typed, sizeof typed, "%.*s", (int)strcspn(given, "="), given);
+    for (; rows->name != NULL && strncmp(typed, "--", 2) == 0; rows++)
+        if (name_is_nearer(typed + 2, rows->name, &best))
+            near = rows->name;
+    if (near != NULL)
+        return usage_error(command, "unknown option %.60s (did you mean --%s?)", typed, near);
+    return usage_error(command, "unknown option %.60s", typed);
+}
+
+/* getopt's own names of the table. */
 static void fill_names(const struct option_row *rows, struct option *names, char *letters) {
     *letters++ = ':'; /* tell a missing argument from an unknown option */
-    for (int r = 0; rows[r].name; r++) {
+    for (int r = 0; rows[r].name != NULL && r < ROWS_MOST; r++) {
         int argument = rows[r].type == OPTION_FLAG ? no_argument : required_argument;
-        *names++ = (struct option){rows[r].name, argument, NULL, 256 + r};
-        if (rows[r].name[1] == 0) {
-            *letters++ = rows[r].name[0];
-            if (argument == required_argument)
-                *letters++ = ':';
-        }
+        *names++ = (struct option){rows[r].name, argument, NULL, LONG_CODE + r};
+        if (rows[r].letter == 0)
+            continue;
+        *letters++ = rows[r].letter;
+        if (argument == required_argument)
+            *letters++ = ':';
     }
     *letters = 0;
     *names = (struct option){NULL, 0, NULL, 0};
 }
 
 static const struct option_row *find_row(const struct option_row *rows, int code) {
-    if (code >= 256)
-        return &rows[code - 256];
-    for (; rows->name; rows++)
-        if (rows->name[0] == code && rows->name[1] == 0)
-            return rows;
-    return NULL;
+    if (code >= LONG_CODE)
+        return &rows[code - LONG_CODE];
+    while (rows->name != NULL && rows->letter != code)
+        rows++;
+    return rows;
 }
 
 /* What getopt refused: it keeps a short option in optopt, and the code of a long one that came with
  * a value it does not take. */
-static bool refused(char **argv, const struct option_row *rows) {
-    if (optopt >= 256)
-        return usage_error(argv[0], "--%s takes no value", rows[optopt - 256].name);
-    if (optopt)
+static int refused(char **argv, const struct option_row *rows) {
+    if (optopt >= LONG_CODE)
+        return usage_error(argv[0], "--%s takes no value", rows[optopt - LONG_CODE].name);
+    if (optopt != 0)
         return usage_error(argv[0], "unknown option -%c", optopt);
-    return usage_error(argv[0], "unknown option %.60s", argv[optind - 1]);
+    return unknown_option(argv[0], rows, argv[optind - 1]);
 }
 
-bool options_parse(int argc, char **argv, const struct option_row *rows, int least, int most,
-                   const char **arguments) {
-    struct option names[ROWS_MOST + 1];
-    char letters[2 * ROWS_MOST + 2];
-    fill_names(rows, names, letters);
-    opterr = 0;
-    optind = 1;
-    for (int code; (code = getopt_long(argc, argv, letters, names, NULL)) != -1;) {
-        if (code == '?')
-            return refused(argv, rows);
-        if (code == ':')
-            return usage_error(argv[0], "%.60s needs a value", argv[optind - 1]);
-        if (!take_value(argv[0], find_row(rows, code), optarg))
-            return false;
-    }
+/* --- the command line --- */
+
+static int take_arguments(int argc, char **argv, int least, int most, const char **arguments) {
     int count = argc - optind;
     if (count < least)
         return usage_error(argv[0], "%s",
@@ -131,5 +261,24 @@ bool options_parse(int argc, char **argv, const struct option_row *rows, int lea
         return usage_error(argv[0], "unexpected argument %.60s", argv[optind + most]);
     for (int i = 0; i < most; i++)
         arguments[i] = i < count ? argv[optind + i] : NULL;
-    return true;
+    return 0;
+}
+
+int options_parse(int argc, char **argv, const struct option_row *rows, void *values, int least,
+                  int most, const char **arguments) {
+    struct option names[ROWS_MOST + 1];
+    char letters[2 * ROWS_MOST + 2];
+    int status = take_defaults(argc, argv[0], rows, values);
+    fill_names(rows, names, letters);
+    opterr = 0;
+    optind = 0; /* from the start, also for a second command line */
+    for (int code; status == 0 && (code = getopt_long(argc, argv, letters, names, NULL)) != -1;) {
+        if (code == '?')
+            status = refused(argv, rows);
+        else if (code == ':')
+            status = usage_error(argv[0], "%.60s needs a value", argv[optind - 1]);
+        else
+            status = take_value(argv[0], find_row(rows, code), values, optarg);
+    }
+    return status != 0 ? status : take_arguments(argc, argv, least, most, arguments);
 }

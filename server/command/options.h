@@ -1,31 +1,49 @@
-/* Options of the subcommands: one table a command drives getopt_long. */
+/* Options of the subcommands: one table a command is what parses, helps, and makes the man page. */
 #ifndef RUGO_SERVER_COMMAND_OPTIONS_H
 #define RUGO_SERVER_COMMAND_OPTIONS_H
 
-#include "core/error.h"
 #include <stdbool.h>
+#include <stddef.h>
 
-enum option_type {
-    OPTION_FLAG,  /* bool */
-    OPTION_TEXT,  /* const char *, borrowed from argv */
-    OPTION_COUNT, /* unsigned, 1 or more */
-    OPTION_INDEX, /* int64_t, 0 or more */
-    OPTION_LIST   /* const char **: room for argc entries, NULL-terminated; may be given again */
+enum option_type { /* what a value becomes; where it has no default and is not given: */
+                   OPTION_FLAG,   /* bool; false */
+                   OPTION_TEXT,   /* const char *, borrowed from argv or the table; NULL */
+                   OPTION_COUNT,  /* unsigned in [low, high]; 0 */
+                   OPTION_INDEX,  /* int64_t, 0 or more; -1 */
+                   OPTION_NUMBER, /* double in [low, high], or above low where high is 0; 0 */
+                   OPTION_CHOICE, /* int, the number of the word in argument ("text|json"); 0 */
+                   OPTION_LIST, /* const char **, owned, NULL-terminated; may be given again; empty
+                                 */
 };
 struct option_row {
-    const char *name; /* without dashes; a name of one letter is a short option */
+    const char *name; /* without dashes; NULL ends a table */
+    char letter;      /* of the short form; 0: none */
     enum option_type type;
-    void *value;
+    double low, high;
+    size_t at;            /* offset of the value in the command's struct of options */
+    const char *argument; /* what help calls the value; NULL for a flag */
+    const char *standard; /* the default, as it would be typed; NULL: none */
+    const char *help;
 };
 
-/* Reads argv by the table (ended by a NULL name), with at least `least` and at most `most`
- * arguments left, put into arguments[]. False after a word on standard error: the exit status is
- * EXIT_USAGE. */
-bool options_parse(int argc, char **argv, const struct option_row *rows, int least, int most,
-                   const char **arguments);
-/* "rugo COMMAND: text; see rugo COMMAND --help" on standard error; false. */
-__attribute__((format(printf, 2, 3))) bool usage_error(const char *command, const char *format,
-                                                       ...);
+/* Defaults, then what argv gives, into *values (zeros at first). What is left of argv, at least
+ * `least` and at most `most` arguments, goes into arguments[], NULL where absent. 0, or an exit
+ * status after a word on standard error; options_clear is due either way. */
+int options_parse(int argc, char **argv, const struct option_row *rows, void *values, int least,
+                  int most, const char **arguments);
+void options_clear(const struct option_row *rows, void *values);
+
+/* "rugo COMMAND: text; see rugo COMMAND --help" on standard error; EXIT_USAGE. */
+__attribute__((format(printf, 2, 3))) int usage_error(const char *command, const char *format, ...);
+
+/* A text of numbers with commas between, rising and above 0; false where it is not that, or more
+ * than `most`. */
+bool rising_numbers(const char *text, size_t most, double *out, size_t *count);
+
+/* Whether `name` is nearer than *best to what was typed (letters changed, left out, put in or
+ * swapped): *best, 3 at first, becomes its distance. What is typed whole in `name` is near. */
+bool name_is_nearer(const char *typed, const char *name, size_t *best);
+
 /* Processors that this process may use, at least 1. */
 unsigned processors(void);
 

@@ -17,8 +17,24 @@
  * Heartbeats come every 5 s. */
 enum { LEASE_MS = 20000 };
 
+struct options {
+    const char *database, *folder;
+    const char **sets;
+    unsigned threads;
+};
+#define AT(member) offsetof(struct options, member)
+static const struct option_row OPTIONS[] = {
+    {"db", 0, OPTION_TEXT, 0, 0, AT(database), "FILE", DATABASE, "the local store"},
+    {"workers", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(threads), "N", "0",
+     "threads; 0: as many as processors"},
+    {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
+    {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
+     "write curves.json, a CSV a curve and an SVG a quantity"},
+    {0}};
+
 struct run {
-    const char *file, *database, *folder, **sets;
+    const char *file, *database, *folder;
+    const char *const *sets;
     unsigned threads;
     struct store *store;
     char id[STUDY_ID_SIZE];
@@ -138,26 +154,31 @@ static int perform(struct run *run, struct error *err) {
     return status;
 }
 
-int command_run(int argc, char **argv) {
-    struct run run = {.database = "rugo.db", .threads = processors()};
-    run.sets = array_create((size_t)argc + 1, sizeof *run.sets);
-    struct option_row rows[] = {{"db", OPTION_TEXT, &run.database},
-                                {"workers", OPTION_COUNT, &run.threads},
-                                {"set", OPTION_LIST, run.sets},
-                                {"out", OPTION_TEXT, &run.folder},
-                                {0}};
-    if (!run.sets || !options_parse(argc, argv, rows, 1, 1, &run.file)) {
-        free(run.sets);
-        return EXIT_USAGE;
-    }
+static int run_study(const void *values, const char *const *arguments) {
+    const struct options *options = values;
+    struct run run = {.file = arguments[0],
+                      .database = options->database,
+                      .folder = options->folder,
+                      .sets = options->sets,
+                      .threads = options->threads > 0 ? options->threads : processors()};
     struct error err = {0};
     signals_catch();
     int status = perform(&run, &err);
-    int result = !status            ? EXIT_DONE
-                 : run.faults.count ? command_fail_faults(run.file, &run.faults)
-                                    : command_fail(argv[0], &err);
+    int result = status == 0            ? EXIT_DONE
+                 : run.faults.count > 0 ? command_fail_faults(run.file, &run.faults)
+                                        : command_fail("run", &err);
     store_close(&run.store);
     fault_list_clear(&run.faults);
-    free(run.sets);
     return result;
 }
+
+const struct command COMMAND_RUN = {
+    .name = "run",
+    .arguments = "STUDY.json",
+    .summary = "run a study here, from submission to table",
+    .least = 1,
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = sizeof(struct options),
+    .run = run_study,
+};

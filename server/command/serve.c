@@ -1,6 +1,5 @@
 /* `rugo serve`: the HTTP service, with workers of its own if wanted. */
 #include "server/command/command.h"
-#include "server/command/options.h"
 #include "server/http/http.h"
 #include "worker/log.h"
 #include "worker/worker.h"
@@ -11,9 +10,33 @@
 #include <sys/random.h>
 #include <time.h>
 
-struct serve {
-    const char *database, *listen, *token_file, **hosts;
+struct options {
+    const char *database, *listen, *token_file;
+    const char **hosts;
     unsigned workers, lease_s, connections, per_address, deadline_s;
+};
+#define AT(member) offsetof(struct options, member)
+static const struct option_row OPTIONS[] = {
+    {"db", 0, OPTION_TEXT, 0, 0, AT(database), "FILE", DATABASE, "the store"},
+    {"listen", 0, OPTION_TEXT, 0, 0, AT(listen), "ADDR:PORT", "127.0.0.1:8080",
+     "where to listen; port 0 picks a free one"},
+    {"token-file", 0, OPTION_TEXT, 0, 0, AT(token_file), "FILE", NULL,
+     "tokens, role:token a line; needed beyond loopback"},
+    {"workers", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(workers), "N", "0",
+     "run jobs in this process too, on N threads"},
+    {"lease", 0, OPTION_COUNT, 1, SECONDS_MOST, AT(lease_s), "SECONDS", "60",
+     "how long a silent worker keeps its job"},
+    {"connections", 0, OPTION_COUNT, 1, 1000000, AT(connections), "N", "256",
+     "most connections at a time"},
+    {"per-address", 0, OPTION_COUNT, 0, 1000000, AT(per_address), "N", "0",
+     "most connections of one address; 0: no limit"},
+    {"deadline", 0, OPTION_COUNT, 1, SECONDS_MOST, AT(deadline_s), "SECONDS", "30",
+     "most time for one request"},
+    {"allow-host", 0, OPTION_LIST, 0, 0, AT(hosts), "NAME", NULL, "another name of this server"},
+    {0}};
+
+struct serve {
+    const struct options *options;
     char address[INET6_ADDRSTRLEN];
     uint16_t port;
     struct service service;
@@ -22,7 +45,7 @@ struct serve {
 
 /* "127.0.0.1:8080" or "[::1]:8080". */
 static int read_listen(struct serve *serve, struct error *err) {
-    const char *text = serve->listen, *colon = strrchr(text, ':');
+    const char *text = serve->options->listen, *colon = strrchr(text, ':');
     char *end = NULL;
     unsigned long port = colon != NULL ? strtoul(colon + 1, &end, 10) : 65536;
     size_t length = colon != NULL ? (size_t)(colon - text) : 0;
@@ -44,15 +67,15 @@ static bool is_loopback(const char *address) {
 }
 
 static int read_tokens(struct serve *serve, struct error *err) {
-    if (serve->token_file != NULL)
-        return tokens_read(&serve->service.tokens, serve->token_file, err);
+    if (serve->options->token_file != NULL)
+        return tokens_read(&serve->service.tokens, serve->options->token_file, err);
     if (is_loopback(serve->address))
         return 0;
     return error_set(
         err, ERROR_INPUT,
         "--listen %s is not a loopback address: beyond this machine tokens are needed, "
         "see --token-file",
-        serve->listen);
+        serve->options->listen);
 }
 
 /* --- workers of its own --- */
@@ -70,7 +93,7 @@ static void *local_workers_thread(void *context) {
     struct worker_options options = {
         .source = {.url = workers->url,
                    .token = workers->serve->service.tokens != NULL ? workers->token : NULL},
-        .threads = workers->serve->workers,
+        .threads = workers->serve->options->workers,
         .stop = &stop_requested,
     };
     int status = workers_run(&options, &err);
@@ -87,7 +110,7 @@ static void print_url(const struct serve *serve, char *url, size_t size) {
 
 static int local_workers_start(struct local_workers *workers, struct error *err) {
     struct serve *serve = workers->serve;
-    if (!serve->workers)
+    if (!serve->options->workers)
         return 0;
     print_url(serve, workers->url, sizeof workers->url);
     if (pthread_create(&workers->thread, NULL, local_workers_thread, workers) != 0)
@@ -100,7 +123,7 @@ static int local_workers_start(struct local_workers *workers, struct error *err)
 static int local_workers_token(struct local_workers *workers, struct error *err) {
     struct tokens *tokens = workers->serve->service.tokens;
     unsigned char bytes[(TOKEN_SIZE - 1) / 2];
-    if (tokens == NULL || !workers->serve->workers)
+    if (tokens == NULL || !workers->serve->options->workers)
         return 0;
     if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
         return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
@@ -122,7 +145,7 @@ static void announce(const struct serve *serve) {
     print_url(serve, url, sizeof url);
     printf("listening on %s\n", url);
     fflush(stdout);
-    log_line(LEVEL_INFO, NULL, "listening on %s, database %s", url, serve->database);
+    log_line(LEVEL_INFO, NULL, "listening on %s, database %s", url, serve->options->database);
 }
 
 static int serve_run(struct serve *serve, struct error *err) {
@@ -133,14 +156,14 @@ static int serve_run(struct serve *serve, struct error *err) {
     if (status == 0)
         status = local_workers_token(&workers, err);
     if (status == 0)
-        status =
-            service_open(&serve->service, serve->database, 1000 * (int64_t)serve->lease_s, err);
+        status = service_open(&serve->service, serve->options->database,
+                              1000 * (int64_t)serve->options->lease_s, err);
     struct http_options options = {.address = serve->address,
                                    .port = serve->port,
-                                   .connections = serve->connections,
-                                   .per_address = serve->per_address,
-                                   .deadline_s = serve->deadline_s,
-                                   .hosts = serve->hosts};
+                                   .connections = serve->options->connections,
+                                   .per_address = serve->options->per_address,
+                                   .deadline_s = serve->options->deadline_s,
+                                   .hosts = serve->options->hosts};
     if (status == 0)
         status = http_start(&serve->http, &serve->service, &options, err);
     if (status == 0) {
@@ -159,30 +182,20 @@ static int serve_run(struct serve *serve, struct error *err) {
     return status;
 }
 
-int command_serve(int argc, char **argv) {
-    struct serve serve = {.database = "rugo.db",
-                          .listen = "127.0.0.1:8080",
-                          .lease_s = 60,
-                          .connections = 256,
-                          .deadline_s = 30};
-    serve.hosts = array_create((size_t)argc + 1, sizeof *serve.hosts);
-    struct option_row rows[] = {{"db", OPTION_TEXT, &serve.database},
-                                {"listen", OPTION_TEXT, &serve.listen},
-                                {"token-file", OPTION_TEXT, &serve.token_file},
-                                {"workers", OPTION_COUNT, &serve.workers},
-                                {"lease", OPTION_COUNT, &serve.lease_s},
-                                {"connections", OPTION_COUNT, &serve.connections},
-                                {"per-address", OPTION_COUNT, &serve.per_address},
-                                {"deadline", OPTION_COUNT, &serve.deadline_s},
-                                {"allow-host", OPTION_LIST, serve.hosts},
-                                {0}};
-    if (serve.hosts == NULL || !options_parse(argc, argv, rows, 0, 0, NULL)) {
-        free(serve.hosts);
-        return EXIT_USAGE;
-    }
+static int run(const void *values, const char *const *arguments) {
+    (void)arguments;
+    struct serve serve = {.options = values};
     struct error err = {0};
     signals_catch();
     int status = serve_run(&serve, &err);
-    free(serve.hosts);
-    return status != 0 ? command_fail(argv[0], &err) : EXIT_DONE;
+    return status == 0 ? EXIT_DONE : command_fail("serve", &err);
 }
+
+const struct command COMMAND_SERVE = {
+    .name = "serve",
+    .arguments = "",
+    .summary = "the HTTP service",
+    .options = OPTIONS,
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,33 +1,33 @@
 /* `rugo work`: claims and runs jobs of a local store or of a server. */
+#include "server/command/access.h"
 #include "server/command/command.h"
-#include "server/command/options.h"
 #include "worker/worker.h"
 #include <stdlib.h>
 
-struct work_options {
-    const char *database, *server, *token_file;
+struct options {
+    struct access_options place;
     unsigned threads, lease_s;
     bool drain;
 };
+#define AT(member) offsetof(struct options, member)
+static const struct option_row OPTIONS[] = {
+    ACCESS_ROWS(struct options),
+    {"workers", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(threads), "N", "0",
+     "threads; 0: as many as processors"},
+    {"drain", 0, OPTION_FLAG, 0, 0, AT(drain), NULL, NULL, "end when the queue is empty"},
+    {"lease", 0, OPTION_COUNT, 1, SECONDS_MOST, AT(lease_s), "SECONDS", NULL,
+     "how long this worker may be silent, with --db (60)"},
+    {0}};
 
-static bool options_check(const struct work_options *options) {
-    if (options->database && options->server)
-        return usage_error("work", "--db and --server exclude each other");
-    if (options->token_file && !options->server)
-        return usage_error("work", "--token-file goes with --server");
-    if (options->lease_s && options->server)
-        return usage_error("work", "--lease goes with --db; a server has its own");
-    return true;
-}
-
-static int work(const struct work_options *options, const char *token, struct error *err) {
-    const char *database = options->database ? options->database : "rugo.db";
+static int work(const struct options *options, const char *token, struct error *err) {
+    const struct access_options *place = &options->place;
+    const char *database = place->database != NULL ? place->database : DATABASE;
     struct worker_options worker = {
-        .source = {.database = options->server ? NULL : database,
-                   .url = options->server,
+        .source = {.database = place->server != NULL ? NULL : database,
+                   .url = place->server,
                    .token = token,
                    .lease_ms = 1000 * (int64_t)options->lease_s},
-        .threads = options->threads,
+        .threads = options->threads > 0 ? options->threads : processors(),
         .drain = options->drain,
         .stop = &stop_requested,
     };
@@ -37,21 +37,28 @@ static int work(const struct work_options *options, const char *token, struct er
     return status == ERROR_STOPPED && !options->drain ? 0 : status;
 }
 
-int command_work(int argc, char **argv) {
-    struct work_options options = {.threads = processors()};
-    struct option_row rows[] = {{"db", OPTION_TEXT, &options.database},
-                                {"server", OPTION_TEXT, &options.server},
-                                {"token-file", OPTION_TEXT, &options.token_file},
-                                {"workers", OPTION_COUNT, &options.threads},
-                                {"lease", OPTION_COUNT, &options.lease_s},
-                                {"drain", OPTION_FLAG, &options.drain},
-                                {0}};
+static int run(const void *values, const char *const *arguments) {
+    (void)arguments;
+    const struct options *options = values;
     struct error err = {0};
     char *token = NULL;
-    if (!options_parse(argc, argv, rows, 0, 0, NULL) || !options_check(&options))
+    if (access_options_check("work", &options->place) != 0)
         return EXIT_USAGE;
-    int status = options.server ? token_read(options.token_file, &token, &err) : 0;
-    status = status ? status : work(&options, token, &err);
+    if (options->lease_s > 0 && options->place.server != NULL)
+        return usage_error("work", "--lease goes with --db; a server has its own");
+    int status =
+        options->place.server != NULL ? token_read(options->place.token_file, &token, &err) : 0;
+    if (status == 0)
+        status = work(options, token, &err);
     free(token);
-    return status ? command_fail(argv[0], &err) : EXIT_DONE;
+    return status == 0 ? EXIT_DONE : command_fail("work", &err);
 }
+
+const struct command COMMAND_WORK = {
+    .name = "work",
+    .arguments = "",
+    .summary = "claim and run jobs of a store or a server",
+    .options = OPTIONS,
+    .options_size = sizeof(struct options),
+    .run = run,
+};

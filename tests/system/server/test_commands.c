@@ -40,19 +40,26 @@ static void wrong_usage_and_input(void **state) {
         const char *text; /* on standard error */
     } WRONG[] = {
         {"$RUGO", 2, "usage: rugo COMMAND"},
-        {"$RUGO dance", 2, "there is no command \"dance\""},
+        {"$RUGO dance", 2, "there is no command \"dance\"; see rugo --help"},
+        {"$RUGO chekc", 2, "there is no command \"chekc\" (did you mean check?)"},
+        {"$RUGO help dance", 2, "there is no command or topic \"dance\""},
         {"$RUGO run", 2, "rugo run: an argument is missing"},
         {"$RUGO run one.json two.json", 2, "unexpected argument two.json"},
-        {"$RUGO run --colour red one.json", 2, "unknown option --colour"},
-        {"$RUGO run --workers 0 one.json", 2, "--workers 0 is not a number of at least 1"},
-        {"$RUGO run --workers many one.json", 2, "--workers many is not a number"},
+        {"$RUGO run --colour red one.json", 2, "unknown option --colour; see"},
+        {"$RUGO run --wrokers 2 one.json", 2, "--wrokers (did you mean --workers?)"},
+        {"$RUGO generate --file x one.json", 2, "unknown option --file; see"},
+        {"$RUGO press -q text.csv", 2, "unknown option -q"},
+        {"$RUGO check --schema=1", 2, "--schema takes no value"},
+        {"$RUGO run --workers -1 one.json", 2, "--workers -1 is not a whole number in [0, 4096]"},
+        {"$RUGO run --workers many one.json", 2, "--workers many is not a whole number"},
+        {"$RUGO serve --lease 0", 2, "--lease 0 is not a whole number in [1, 31536000]"},
         {"$RUGO run one.json --db", 2, "--db needs a value"},
         {"$RUGO run absent.json", 2, "absent.json: No such file"},
         {"$RUGO run broken.json", 2, "line 1, column 9"},
         {"$RUGO run --set nothing one.json", 2, "\"nothing\" is not PATH=VALUE"},
         {"$RUGO check wrong.json", 2, "/surface/hurst/1: 1.4 is not in (0, 1]"},
         {"$RUGO check wrong.json", 2, "/surface/colour: unknown name"},
-        {"$RUGO check --format xml one.json", 2, "--format xml is neither text nor json"},
+        {"$RUGO check --format xml one.json", 2, "--format xml is not text or json"},
         {"$RUGO check", 2, "an argument is missing"},
         {"$RUGO check --set surface.wavelength_ratio=9000 one.json", 2, "/surface"},
         {"$RUGO submit --db a.db --server http://localhost:1 one.json", 2, "exclude each other"},
@@ -61,7 +68,7 @@ static void wrong_usage_and_input(void **state) {
         {"$RUGO status --db absent.db", 1, "there is no database absent.db"},
         {"$RUGO curves --db absent.db 0123456789abcdef", 1, "there is no database"},
         {"$RUGO curves", 2, "an argument is missing"},
-        {"$RUGO curves --case -1 x", 2, "--case -1 is not a number of 0 or more"},
+        {"$RUGO curves --case -1 x", 2, "--case -1 is not a whole number of 0 or more"},
         {"$RUGO report --db absent.db x", 1, "there is no database"},
         {"$RUGO cancel --db absent.db x", 1, "there is no database"},
         {"$RUGO serve --listen nowhere", 2, "--listen nowhere is not ADDRESS:PORT"},
@@ -97,15 +104,31 @@ static void every_command_has_help(void **state) {
     (void)state;
     static const char *const COMMANDS[] = {"run",    "check",    "submit",       "status", "curves",
                                            "report", "snapshot", "cancel",       "retry",  "serve",
-                                           "work",   "generate", "characterise", "press"};
+                                           "work",   "generate", "characterise", "press",  "help"};
     for (size_t c = 0; c < sizeof COMMANDS / sizeof *COMMANDS; c++) {
-        char line[80], usage[80];
-        snprintf(line, sizeof line, "$RUGO %s --help", COMMANDS[c]);
+        char line[120], usage[80];
+        snprintf(line, sizeof line, "$RUGO %s --help && $RUGO help %s | cmp - shell.out",
+                 COMMANDS[c], COMMANDS[c]);
         snprintf(usage, sizeof usage, "usage: rugo %s", COMMANDS[c]);
         assert_int_equal(shell(line), 0);
         assert_true(contains("shell.out", usage));
+        assert_int_equal(shell("$RUGO help"), 0);
+        assert_true(contains("shell.out", COMMANDS[c]));
     }
     assert_int_equal(shell("$RUGO --help && $RUGO --version"), 0);
+}
+
+/* Its formatter, where there is one, finds nothing to warn of; a shell reads the completion. */
+static void the_manual_page_is_sound(void **state) {
+    (void)state;
+    assert_int_equal(shell("$RUGO help man >rugo.1 && $RUGO help bash >completion"), 0);
+    assert_true(contains("rugo.1", "\\fB\\-\\-workers N\\fR"));
+    assert_int_equal(shell("if command -v groff; then groff -man -ww -Tutf8 rugo.1 >/dev/null; fi"),
+                     0);
+    char *warnings = slurp("shell.err");
+    assert_string_equal(warnings, "");
+    free(warnings);
+    assert_int_equal(shell("if command -v bash; then bash -n completion; fi"), 0);
 }
 
 /* The curves of the only study of a database, without what names the run. */
@@ -248,6 +271,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wrong_usage_and_input),
         cmocka_unit_test(every_command_has_help),
+        cmocka_unit_test(the_manual_page_is_sound),
         cmocka_unit_test(a_run_goes_on_where_it_was),
         cmocka_unit_test(a_finished_run_only_prints),
         cmocka_unit_test(output_that_cannot_be_written_is_an_error),

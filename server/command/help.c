@@ -1,0 +1,92 @@
+#include "server/command/help.h"
+#include <string.h>
+
+/* What `rugo help` tells beside the commands. */
+struct topic {
+    const char *name, *summary;
+    void (*print)(FILE *file);
+};
+static const struct topic TOPICS[] = {
+    {"man", "the manual page rugo(1), as roff", help_man},
+    {"bash", "completion for bash, to be sourced", help_bash},
+};
+enum { TOPIC_COUNT = sizeof TOPICS / sizeof *TOPICS };
+
+const struct command *command_find(const char *name) {
+    for (size_t c = 0; COMMANDS[c] != NULL; c++)
+        if (strcmp(COMMANDS[c]->name, name) == 0)
+            return COMMANDS[c];
+    return NULL;
+}
+
+void help_commands(FILE *file) {
+    fprintf(file, "usage: rugo COMMAND [OPTIONS]\n\n"
+                  "Monte Carlo studies of rough surfaces and rough contact.\n\n");
+    for (size_t c = 0; COMMANDS[c] != NULL; c++)
+        fprintf(file, "  %-12s %s\n", COMMANDS[c]->name, COMMANDS[c]->summary);
+    fprintf(file, "\nrugo help COMMAND tells a command's options; rugo help TOPIC tells of\n");
+    for (size_t t = 0; t < TOPIC_COUNT; t++)
+        fprintf(file, "  %-12s %s\n", TOPICS[t].name, TOPICS[t].summary);
+    fprintf(file, "\nExit status: 0 done, 1 failed, 2 wrong usage or input, 130 interrupted.\n");
+}
+
+void help_option_name(const struct option_row *row, char *text, size_t size) {
+    char letter[5] = "";
+    if (row->letter != 0)
+        snprintf(letter, sizeof letter, "-%c, ", row->letter);
+    snprintf(text, size, "%s--%s%s%s", letter, row->name, row->argument != NULL ? " " : "",
+             row->argument != NULL ? row->argument : "");
+}
+
+void help_option_text(const struct option_row *row, char *text, size_t size) {
+    if (row->standard != NULL)
+        snprintf(text, size, "%s (%s)", row->help, row->standard);
+    else
+        snprintf(text, size, "%s%s", row->help,
+                 row->type == OPTION_LIST ? "; may be repeated" : "");
+}
+
+void help_command(const struct command *command, FILE *file) {
+    fprintf(file, "usage: rugo %s %s%s[OPTIONS]\n\n%s\n\n", command->name, command->arguments,
+            *command->arguments != '\0' ? " " : "", command->summary);
+    for (const struct option_row *row = command->options; row->name != NULL; row++) {
+        char name[80], text[240];
+        help_option_name(row, name, sizeof name);
+        help_option_text(row, text, sizeof text);
+        fprintf(file, "  %-19s%s%s\n", name, strlen(name) > 19 ? "\n                      " : " ",
+                text);
+    }
+}
+
+/* --- the command --- */
+
+static const struct option_row OPTIONS[] = {{0}};
+
+static int run(const void *options, const char *const *arguments) {
+    (void)options;
+    const char *name = arguments[0];
+    const struct command *command = name != NULL ? command_find(name) : NULL;
+    if (name == NULL)
+        help_commands(stdout);
+    else if (command != NULL)
+        help_command(command, stdout);
+    else {
+        for (size_t t = 0; t < TOPIC_COUNT; t++)
+            if (strcmp(TOPICS[t].name, name) == 0) {
+                TOPICS[t].print(stdout);
+                return EXIT_DONE;
+            }
+        return usage_error("help", "there is no command or topic \"%.40s\"", name);
+    }
+    return EXIT_DONE;
+}
+
+const struct command COMMAND_HELP = {
+    .name = "help",
+    .arguments = "[COMMAND|TOPIC]",
+    .summary = "the commands, the options of one, or a topic",
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = 1,
+    .run = run,
+};

@@ -1,0 +1,27 @@
+#include "server/command/question.h"
+#include "server/show/summary_status.h"
+#include <stdio.h>
+
+int question_answer(const struct question *question, const struct access_options *place,
+                    const char *id, const void *options) {
+    struct error err = {0};
+    struct access *access = NULL;
+    cJSON *document = NULL;
+    if (access_options_check(question->command, place) != 0)
+        return EXIT_USAGE;
+    int status = access_open(&access, place, question->mode, &err);
+    if (status == 0)
+        status = question->ask(access, id, options, &document, &err);
+    if (status == 0)
+        status = question->show(document, id, options, &err);
+    cJSON_Delete(document);
+    access_close(&access);
+    return status == 0 ? EXIT_DONE : command_fail(question->command, &err);
+}
+
+int show_progress(const cJSON *document, const char *id, const void *options, struct error *err) {
+    (void)id;
+    (void)options;
+    summary_of_status(document, stdout);
+    return output_flush(err);
+}
