@@ -3,9 +3,19 @@
 #   V=1              show each command
 #   SAN=address,undefined | SAN=thread   sanitizers      COV=1 coverage      DEBUG=1 no optimisation
 #   CI=1             warnings are errors
-# CC, AR, CPPFLAGS, CFLAGS, LDFLAGS and LDLIBS are the user's, from the command line or the environment.
+# CC, AR, CPPFLAGS, CFLAGS, LDFLAGS and LDLIBS are the user's, from the command line or the environment; so are
+# DESTDIR, PREFIX, bindir, libdir, includedir, mandir and INSTALL_PROGRAM (`install` keeps symbols) of `make install`.
 BUILD  ?= build
 PREFIX ?= /usr/local
+bindir     ?= $(PREFIX)/bin
+libdir     ?= $(PREFIX)/lib
+includedir ?= $(PREFIX)/include
+mandir     ?= $(PREFIX)/share/man
+completion ?= $(PREFIX)/share/bash-completion/completions
+INSTALL         ?= install
+INSTALL_PROGRAM ?= $(INSTALL) -s
+INSTALL_DATA    ?= $(INSTALL) -m 644
+OBJCOPY         ?= objcopy
 
 Q      = $(if $(V),,@)
 say    = $(if $(V),@:,@echo)
@@ -50,12 +60,12 @@ BELOW_jobs   = jobs schema core
 BELOW_worker = worker jobs schema core
 BELOW_server = server worker jobs schema core
 MAIN     = server/command/main.c
-sources  = $(filter-out $(MAIN),$(wildcard $(1)/*.c $(1)/*/*.c))
+sources  = $(filter-out $(MAIN) core/example.c,$(wildcard $(1)/*.c $(1)/*/*.c))
 objects  = $(patsubst %,$(BUILD)/%.o,$(1))
 archive  = $(patsubst %,$(BUILD)/lib%.a,$(1))
 
-.PHONY: all deps run test unit faults validation system bench lint format check-format install clean
-all: $(BUILD)/rugo
+.PHONY: all library deps run test unit faults validation system bench lint format check-format install clean
+all: $(BUILD)/rugo library
 
 # Rewritten when the flags change; all that they make depends on it.
 export FLAGS = $(COMPILE) / $(LINK) / $(LDLIBS)
@@ -88,6 +98,29 @@ $(foreach layer,$(LAYERS),$(eval $(call LAYER,$(layer))))
 $(BUILD)/rugo: $(call objects,$(MAIN)) $(call archive,$(BELOW_server))
 	$(say) LD $@
 	$(Q)$(LINK) -pie -o $@ $^ $(LIBS_server) $(LDLIBS)
+
+# The library: core, with the functions of rugo.h alone to be seen from outside.
+VERSION  := $(shell sed -n 's/^.define RUGO_VERSION "\(.*\)"/\1/p' core/rugo.h)
+SONAME    = librugo.so.$(basename $(VERSION))
+SHARED    = librugo.so.$(VERSION)
+library: $(addprefix $(BUILD)/,$(SHARED) librugo.a rugo.pc rugo.1 rugo.bash)
+
+$(BUILD)/$(SHARED): $(call objects,$(call sources,core)) core/rugo.map
+	$(say) LD $@
+	$(Q)$(LINK) -shared -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs) \
+	    -o $@ $(filter %.o,$^) -Wl,--version-script=core/rugo.map $(LIBS_core) $(LDLIBS)
+
+$(BUILD)/librugo.a: $(call objects,$(call sources,core))
+	$(Q)$(LD) -r -o $(BUILD)/librugo.o $^
+	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='rugo_*' -R '.gnu.lto_*' $(BUILD)/librugo.o
+	$(Q)rm -f $@; $(AR) rcs $@ $(BUILD)/librugo.o
+
+$(BUILD)/rugo.pc: core/rugo.pc.in FORCE
+	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@libdir@|$(libdir)|; s|@includedir@|$(includedir)|; s|@VERSION@|$(VERSION)|' $< >$@
+$(BUILD)/rugo.1: $(BUILD)/rugo
+	@$< help man >$@
+$(BUILD)/rugo.bash: $(BUILD)/rugo
+	@$< help bash >$@
 
 # Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them.
 SUPPORT = $(call objects,$(wildcard tests/support/*.c))
@@ -151,7 +184,7 @@ check-format:
 lint: lint-deps check-format check-layers check-citations
 	@printf '%s\n' $(filter %.c,$(SOURCES)) | \
 	    xargs -P $$(nproc) -I {} bash -o pipefail -c \
-	        "clang-tidy --quiet {} -- $(LANGUAGE) 2>&1 | sed '/^[0-9]* warnings* generated/d'"
+	        "clang-tidy --quiet {} -- $(LANGUAGE) -Icore 2>&1 | sed '/^[0-9]* warnings* generated/d'"
 	@echo "lint: $(words $(filter %.c,$(SOURCES))) files clean"
 lint-deps: deps
 	@tests/install-deps "" "clang-format clang-tidy" clang-format clang-tidy
@@ -185,8 +218,26 @@ check-layers: $(patsubst %,$(BUILD)/whole-%,$(LAYERS))
 	@echo "layers: $(LAYERS): each links whole against those below"
 .PHONY: check-layers
 
+INSTALLED = $(bindir)/rugo $(libdir)/$(SHARED) $(libdir)/$(SONAME) $(libdir)/librugo.so $(libdir)/librugo.a \
+            $(libdir)/pkgconfig/rugo.pc $(includedir)/rugo.h $(mandir)/man1/rugo.1 $(completion)/rugo
 install: all
-	install -D $(BUILD)/rugo $(DESTDIR)$(PREFIX)/bin/rugo
+	$(INSTALL) -d $(sort $(dir $(addprefix $(DESTDIR),$(INSTALLED))))
+	$(INSTALL_PROGRAM) $(BUILD)/rugo $(DESTDIR)$(bindir)/rugo
+	$(INSTALL_PROGRAM) -m 644 $(BUILD)/$(SHARED) $(DESTDIR)$(libdir)/$(SHARED)
+	ln -sf $(SHARED) $(DESTDIR)$(libdir)/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(libdir)/librugo.so
+	$(INSTALL_DATA) $(BUILD)/librugo.a $(DESTDIR)$(libdir)/librugo.a
+	$(INSTALL_DATA) $(BUILD)/rugo.pc $(DESTDIR)$(libdir)/pkgconfig/rugo.pc
+	$(INSTALL_DATA) core/rugo.h $(DESTDIR)$(includedir)/rugo.h
+	$(INSTALL_DATA) $(BUILD)/rugo.1 $(DESTDIR)$(mandir)/man1/rugo.1
+	$(INSTALL_DATA) $(BUILD)/rugo.bash $(DESTDIR)$(completion)/rugo
+uninstall:
+	rm -f $(addprefix $(DESTDIR),$(INSTALLED))
+
+# Into a prefix of its own: header, libraries and pkg-config agree, and the example runs with each library.
+check-install: all
+	@CC="$(CC)" MAKE="$(MAKE) --no-print-directory BUILD=$(BUILD)" tests/check-install core/example.c
+.PHONY: uninstall check-install
 clean:
 	rm -rf $(BUILD) $(dir $(wildcard build*/flags))
 

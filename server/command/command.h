@@ -2,6 +2,7 @@
 #ifndef RUGO_SERVER_COMMAND_COMMAND_H
 #define RUGO_SERVER_COMMAND_COMMAND_H
 
+#include "core/rugo.h"
 #include "schema/study/fault.h"
 #include "schema/study/study.h"
 #include "server/command/options.h"
@@ -9,7 +10,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
-#define PROGRAM_VERSION "0.1.0"
+#define PROGRAM_VERSION RUGO_VERSION
 #define DATABASE "rugo.db" /* where no other is named */
 #define SET_HELP "change the study, e.g. --set realisations=100"
 

@@ -1,0 +1,289 @@
+/* librugo: rough surfaces, their statistics, and their elastic contact with a rigid flat.
+ *
+ * Conventions. Lengths are in any one unit; pressures are in units of E* = E/(1 - nu^2), the plane
+ * strain modulus of the block (a half-space depends on neither E nor nu). A map z has grid.nx *
+ * grid.ny doubles, x fastest: z[j*nx + i] is the height at (i*lx/nx, j*ly/ny); it is periodic. A
+ * profile has ny == 1, and ly is ignored.
+ *
+ * Errors. A function that returns int gives 0, or one of the negative codes below after it has
+ * filled *err (which may be NULL) with a sentence that names what is at fault; outputs are
+ * untouched then, unless a comment says otherwise. Functions of theory return NaN out of their
+ * domain.
+ *
+ * Ownership. What x_create gives is given back by x_destroy, which accepts a pointer to NULL and
+ * leaves NULL. Arrays that are passed in are borrowed for the call, or copied.
+ *
+ * Threads. One object belongs to one thread at a time; different objects are independent. FFTW
+ * plans are made behind a lock of the library: a program that makes such plans itself, in other
+ * threads, calls fftw_make_planner_thread_safe.
+ *
+ * Sources are named by author and year; core/theory/BIBLIOGRAPHY.md lists them, and
+ * core/theory/FORMULAS.md the formulas. */
+#ifndef RUGO_H
+#define RUGO_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define RUGO_VERSION "0.1.0"
+#define RUGO_API __attribute__((visibility("default")))
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The version of the library that is linked, as RUGO_VERSION; not to be freed. */
+RUGO_API const char *rugo_version(void);
+
+enum {
+    RUGO_ERROR_INPUT = -1,   /* an argument or a file is wrong */
+    RUGO_ERROR_MEMORY = -2,  /* an allocation failed */
+    RUGO_ERROR_SYSTEM = -3,  /* a file could not be opened, read or written */
+    RUGO_ERROR_NUMERIC = -4, /* no answer to the accuracy asked: no convergence, out of domain */
+};
+struct rugo_error {
+    int code; /* one of the above */
+    char text[480];
+};
+
+struct rugo_grid {
+    size_t nx, ny; /* points along x, at least 2, and y, at least 1 */
+    double lx, ly; /* lengths of the periodic cell */
+};
+
+/* --- spectra --- */
+
+enum rugo_spectrum_type {
+    RUGO_SELF_AFFINE,     /* power |k|^(-2 hurst - 2) (profile - 1), flat beyond the roll-off */
+    RUGO_EXPONENTIAL_ACF, /* autocorrelation exp(-sqrt((x/bx)^2 + (y/by)^2)) */
+    RUGO_TABLE            /* given by its density */
+};
+struct rugo_spectrum {
+    enum rugo_spectrum_type type;
+    double hurst;                             /* self-affine, in [0, 1] */
+    double wavelength_long, wavelength_short; /* self-affine: the band; > 0 */
+    double wavelength_rolloff;                /* self-affine: between the two */
+    double correlation_x, correlation_y;      /* exponential: lengths bx, by */
+    size_t table_count;                       /* table: its length */
+    const double *table_wave_number;          /* rising, radians per length; borrowed */
+    const double *table_density;              /* at these, in any unit; borrowed */
+    double rms_height, rms_slope; /* scale: one of them above 0, the other 0; both 0: height 1 */
+};
+/* A self-affine spectrum without roll-off, of a given RMS slope h' (surface: of the gradient). */
+RUGO_API struct rugo_spectrum rugo_spectrum_self_affine(double hurst, double wavelength_long,
+                                                        double wavelength_short, double rms_slope);
+
+/* Spectral moments m_pq, the sums of kx^p ky^q P(k) over all waves, P(k) the mean square of a wave;
+ * a profile has m20 = m2 and m40 = m4, those with y are 0. */
+struct rugo_moments {
+    double m00, m20, m02, m11, m22, m40, m04, m31, m13;
+    double m0, m2, m4;                           /* isotropic: m00, (m20 + m02)/2, (m40 + m04)/2 */
+    double nayak_alpha;                          /* m0 m4/m2^2 (Nayak 1971); NaN for a flat map */
+    double rms_height, rms_slope, rms_curvature; /* curvature: (z_xx + z_yy)/2; profile z_xx */
+};
+/* Of the surfaces that this spectrum makes on this grid; the same for each of them. INPUT where the
+ * grid holds no wave of the spectrum or does not resolve its shortest one. */
+RUGO_API int rugo_spectrum_moments(const struct rugo_spectrum *spectrum,
+                                   const struct rugo_grid *grid, struct rugo_moments *out,
+                                   struct rugo_error *err);
+/* Nayak's alpha of a continuous self-affine spectrum; dimension 1 (profile) or 2, ratio the longest
+ * over the shortest wavelength, rolloff the longest over that of the roll-off, at least 1. */
+RUGO_API double rugo_alpha_of_ratio(int dimension, double hurst, double ratio, double rolloff);
+/* Its inverse: the ratio that gives alpha. NUMERIC, with the range, where none does. */
+RUGO_API int rugo_ratio_of_alpha(int dimension, double hurst, double rolloff, double alpha,
+                                 double *ratio, struct rugo_error *err);
+
+/* --- random surfaces --- */
+
+enum rugo_heights_type {
+    RUGO_GAUSSIAN,
+    RUGO_WEIBULL_MIN, /* F(z) = 1 - exp(-z^shape), z > 0 */
+    RUGO_WEIBULL_MAX, /* its mirror image */
+    RUGO_QUANTILE     /* any distribution of finite mean and deviation, by its quantiles */
+};
+/* Heights are brought to mean 0 and to the RMS height of the spectrum, whatever the distribution;
+ * a non-Gaussian surface comes from alternating between the spectrum and the heights
+ * (Perez-Rafols & Almqvist 2019). */
+struct rugo_surface_options {
+    enum rugo_heights_type heights;
+    double shape;                                                /* Weibull's, [0.5, 20] */
+    double (*quantile)(double probability, const void *context); /* rising on (0, 1) */
+    const void *quantile_context;                                /* borrowed */
+    int keep_heights;      /* which is exact in the end: 0 the spectrum, 1 the heights */
+    double tolerance;      /* of the iteration, on its three errors */
+    size_t max_iterations; /* of the iteration */
+};
+/* Gaussian; tolerance 1e-3, at most 1000 iterations. */
+RUGO_API struct rugo_surface_options rugo_surface_defaults(void);
+
+/* What one generation did: errors of heights, of the spectrum and of waves outside of it; all 0 for
+ * Gaussian heights, which need no iteration. */
+struct rugo_surface_report {
+    size_t iterations;
+    double error_heights, error_spectrum, error_outside;
+};
+
+/* A workspace for all realisations of one kind of surface. */
+struct rugo_generator;
+/* options NULL: the defaults. INPUT as rugo_spectrum_moments, or for options out of range; MEMORY.
+ */
+RUGO_API int rugo_generator_create(struct rugo_generator **out,
+                                   const struct rugo_spectrum *spectrum,
+                                   const struct rugo_grid *grid,
+                                   const struct rugo_surface_options *options,
+                                   struct rugo_error *err);
+RUGO_API void rugo_generator_destroy(struct rugo_generator **generator);
+/* Fills z, nx*ny heights. The surface depends on (seed, case_number, realisation) alone, by counted
+ * random words (Salmon et al. 2011), with uniform phases (Wu 2000); a Gaussian one is the same on
+ * every grid that resolves it. `rugo generate --case` counts the cases of a study. report: NULL
+ * where not wanted. */
+RUGO_API int rugo_generator_run(struct rugo_generator *generator, uint64_t seed,
+                                uint64_t case_number, uint64_t realisation, double *z,
+                                struct rugo_surface_report *report, struct rugo_error *err);
+/* The map z of the grid `from`, sampled on the grid `to` of the same cell: exact for waves up to
+ * mode_x, mode_y a cell, at most half the points of either grid; others are left out. */
+RUGO_API int rugo_resample(const struct rugo_grid *from, const double *z,
+                           const struct rugo_grid *to, size_t mode_x, size_t mode_y, double *out,
+                           struct rugo_error *err);
+
+/* --- height maps in files --- */
+
+struct rugo_map {
+    struct rugo_grid grid;
+    double *z; /* owned: rugo_map_clear */
+};
+/* Reads NumPy's npy, csv (a grid row a line) or xyz (x y z lines), by the ending of the name. dx:
+ * the spacing of points where the file does not tell (0: 1). INPUT names the line at fault; SYSTEM.
+ */
+RUGO_API int rugo_map_read(struct rugo_map *out, const char *path, double dx,
+                           struct rugo_error *err);
+/* Frees the heights; NULL and {0} are accepted. */
+RUGO_API void rugo_map_clear(struct rugo_map *map);
+/* Writes by the ending of the name, so that reading gives the same heights. */
+RUGO_API int rugo_map_write(const char *path, const struct rugo_grid *grid, const double *z,
+                            struct rugo_error *err);
+
+/* --- statistics of a map --- */
+
+/* By finite differences on the grid, about the mean. */
+struct rugo_roughness {
+    double mean, rms_height, rms_slope, rms_curvature;
+    double skewness, kurtosis; /* NaN for a flat map; a Gaussian has 0 and 3 */
+    double lowest, highest;    /* heights, not less the mean */
+};
+RUGO_API int rugo_roughness(const struct rugo_grid *grid, const double *z,
+                            struct rugo_roughness *out, struct rugo_error *err);
+/* Spectral moments of a map: exact for band-limited ones, where finite differences are not. */
+RUGO_API int rugo_moments(const struct rugo_grid *grid, const double *z, struct rugo_moments *out,
+                          struct rugo_error *err);
+/* How many values rugo_psd gives on a grid; 0 for no grid. */
+RUGO_API size_t rugo_psd_size(const struct rugo_grid *grid);
+/* Power spectral density over |k| (radians per length), in rings: m00 is its integral over the
+ * plane of k, of a profile over both signs. Both arrays have room for rugo_psd_size. */
+RUGO_API int rugo_psd(const struct rugo_grid *grid, const double *z, double *wave_number,
+                      double *density, struct rugo_error *err);
+
+enum rugo_summit_rule {
+    RUGO_NINE_POINT, /* above the 8 neighbours */
+    RUGO_FIVE_POINT, /* above the 4 neighbours */
+    RUGO_REFINED     /* true maxima of the band-limited surface, between the points */
+};
+struct rugo_summit {
+    double x, y, height;
+    double curvature; /* -(z_xx + z_yy)/2, profile -z_xx; positive */
+};
+struct rugo_summits {
+    struct rugo_summit *summits; /* owned: rugo_summits_clear */
+    size_t count;
+};
+/* Summits of a surface, peaks of a profile, in row order; curvatures by finite differences, of
+ * refined ones exact. */
+RUGO_API int rugo_summits_find(struct rugo_summits *out, const struct rugo_grid *grid,
+                               const double *z, enum rugo_summit_rule rule, struct rugo_error *err);
+RUGO_API void rugo_summits_clear(struct rugo_summits *summits);
+
+/* --- theory of Gaussian isotropic surfaces (Nayak 1971), alpha > 3/2 --- */
+
+/* Density of the summits' heights z, in units of sqrt(m0), and its integral from below. */
+RUGO_API double rugo_nayak_summit_pdf(double z, double alpha);
+RUGO_API double rugo_nayak_summit_cdf(double z, double alpha);
+/* Joint density of height z and t1 = -sqrt(3/m4) kappa, kappa the mean curvature; 0 for t1 >= 0. */
+RUGO_API double rugo_nayak_joint_pdf(double z, double t1, double alpha);
+/* Mean curvature of the summits at height z, over sqrt(m4). */
+RUGO_API double rugo_nayak_mean_curvature(double z, double alpha);
+/* Summits per area, from the isotropic moments. */
+RUGO_API double rugo_nayak_summit_density(double m2, double m4);
+
+/* --- theories of contact; load = p/(E* h') --- */
+
+/* Contact fraction by Persson (2001), load >= 0; and the density of the local pressure over E* h'.
+ */
+RUGO_API double rugo_persson_area(double load);
+RUGO_API double rugo_persson_pressure_pdf(double pressure, double load);
+/* Contact fraction by asperities pressed alone, load in [1e-250, 1e6], alpha > 3/2; it may exceed
+ * 1. Bush, Gibson & Thomas (1975); Greenwood & Williamson (1966) with the parameters of McCool
+ * (1986). */
+RUGO_API double rugo_bgt_area(double load, double alpha);
+RUGO_API double rugo_gw_mccool_area(double load, double alpha);
+/* One wave, amplitude Delta (Westergaard 1939), by ratio = p/p* in [0, 1], p* = pi E* Delta/lambda:
+ * the contact fraction; the local over the mean pressure at x wavelengths from a crest; the mean
+ * gap over Delta. */
+RUGO_API double rugo_westergaard_area(double ratio);
+RUGO_API double rugo_westergaard_pressure(double x, double ratio);
+RUGO_API double rugo_westergaard_gap(double ratio);
+
+/* --- contact --- */
+
+enum rugo_model {
+    RUGO_HALFSPACE, /* linear, roughness as a gap, infinite depth or an exact layer */
+    RUGO_LAYERED,   /* linear finite elements on a flat block */
+    RUGO_FULL       /* finite elements on the rough geometry, finite strain (Hencky) */
+};
+struct rugo_block {
+    enum rugo_model model;
+    double poisson;      /* [0, 0.5); without influence on a half-space */
+    double height;       /* in the unit of the grid; HUGE_VAL for a half-space alone */
+    double layer_growth; /* finite elements: thickness of a layer over that above it, [1, 2] */
+};
+/* Poisson's ratio 0.3, growth 1.1; height: infinite for a half-space, else 1.5 grid.lx. */
+RUGO_API struct rugo_block rugo_block_defaults(enum rugo_model model, const struct rugo_grid *grid);
+
+/* One load. Fractions are of the cell; arrays have nx*ny values and are the solver's, valid until
+ * its next call. */
+struct rugo_contact_state {
+    double pressure;   /* mean */
+    const double *p;   /* local pressures; 0 where open */
+    const double *gap; /* between surface and flat */
+    double area;       /* contact fraction, its edges found below the grid: the best estimate */
+    double area_nodes; /* share of nodes in contact: too much ... */
+    double area_lower, area_upper; /* ... and the bracket of it */
+    double mean_gap;
+    double stiffness;  /* -d pressure/d mean_gap; infinite in full contact */
+    size_t patches;    /* islands of contact */
+    size_t iterations; /* of the solver */
+    double violation;  /* largest penetration or gap inside of the contact, over the RMS height */
+};
+/* A solver for one grid and one block. */
+struct rugo_contact;
+/* INPUT for a block out of range or too deep a mesh; MEMORY. */
+RUGO_API int rugo_contact_create(struct rugo_contact **out, const struct rugo_grid *grid,
+                                 const struct rugo_block *block, struct rugo_error *err);
+RUGO_API void rugo_contact_destroy(struct rugo_contact **contact);
+/* Takes a surface (copies; any mean) that is not in contact yet: highest points touch first. INPUT
+ * for a height that is not finite, and for the full model where the surface is too steep. */
+RUGO_API int rugo_contact_begin(struct rugo_contact *contact, const double *z,
+                                struct rugo_error *err);
+/* Presses to a mean pressure >= 0 over E*, without friction or adhesion, by constrained conjugate
+ * gradients (Polonsky & Keer 1999), the full model by Newton's method with an active set. Loads may
+ * rise and fall. NUMERIC, with what was reached, where there is no convergence; linear models then
+ * begin the next load anew. */
+RUGO_API int rugo_contact_press(struct rugo_contact *contact, double pressure,
+                                struct rugo_contact_state *out, struct rugo_error *err);
+/* The least mean pressure of full contact of the surface begun; NaN for the full model. */
+RUGO_API double rugo_contact_full_pressure(const struct rugo_contact *contact);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,47 @@
+#include "core/rugo_shared.h"
+#include <stdio.h>
+
+_Static_assert((int)RUGO_ERROR_INPUT == (int)ERROR_INPUT, "codes of rugo.h are those of error.h");
+_Static_assert((int)RUGO_ERROR_MEMORY == (int)ERROR_MEMORY, "likewise");
+_Static_assert((int)RUGO_ERROR_SYSTEM == (int)ERROR_SYSTEM, "likewise");
+_Static_assert((int)RUGO_ERROR_NUMERIC == (int)ERROR_NUMERIC, "likewise");
+
+const char *rugo_version(void) {
+    return RUGO_VERSION;
+}
+
+int error_give(int status, const struct error *from, struct rugo_error *to) {
+    if (status != 0 && to != NULL) {
+        to->code = status;
+        snprintf(to->text, sizeof to->text, "%s", from->text);
+    }
+    return status;
+}
+
+struct grid grid_of_rugo(const struct rugo_grid *grid) {
+    return (struct grid){.nx = grid->nx, .ny = grid->ny, .lx = grid->lx, .ly = grid->ly};
+}
+
+int grid_take(struct grid *out, const struct rugo_grid *grid, struct error *err) {
+    *out = grid_of_rugo(grid);
+    return grid_check(out, err);
+}
+
+void moments_give(const struct moments *from, struct rugo_moments *to) {
+    *to = (struct rugo_moments){.m00 = from->m00,
+                                .m20 = from->m20,
+                                .m02 = from->m02,
+                                .m11 = from->m11,
+                                .m22 = from->m22,
+                                .m40 = from->m40,
+                                .m04 = from->m04,
+                                .m31 = from->m31,
+                                .m13 = from->m13,
+                                .m0 = from->m0,
+                                .m2 = from->m2,
+                                .m4 = from->m4,
+                                .nayak_alpha = from->nayak_alpha,
+                                .rms_height = from->rms_height,
+                                .rms_slope = from->rms_slope,
+                                .rms_curvature = from->rms_curvature};
+}

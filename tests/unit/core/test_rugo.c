@@ -1,0 +1,255 @@
+/* Protects: the public functions of rugo.h: that each kind of spectrum, height, rule and model is
+ * the one that its name says, what is told of wrong arguments, and that outputs stay untouched
+ * then. */
+#include "core/rugo.h"
+#include "core/surface/surface.h"
+#include "core/theory/contact.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const struct rugo_grid SQUARE = {64, 64, 1, 1};
+enum { POINTS = 64 * 64 };
+
+/* Heights of realisation 3 of seed 11. */
+static void generate(const struct rugo_surface_options *options, double *z,
+                     struct rugo_surface_report *report) {
+    struct rugo_spectrum spectrum = rugo_spectrum_self_affine(0.8, 0.5, 0.125, 0.1);
+    struct rugo_generator *generator = NULL;
+    struct rugo_error err = {0};
+    assert_int_equal(rugo_generator_create(&generator, &spectrum, &SQUARE, options, &err), 0);
+    assert_int_equal(rugo_generator_run(generator, 11, 0, 3, z, report, &err), 0);
+    rugo_generator_destroy(&generator);
+    assert_null(generator);
+    rugo_generator_destroy(&generator);
+}
+
+static double skewness_of(const double *z) {
+    struct rugo_roughness roughness;
+    assert_int_equal(rugo_roughness(&SQUARE, z, &roughness, NULL), 0);
+    return roughness.skewness;
+}
+
+static double exponential_quantile(double probability, const void *context) {
+    return -*(const double *)context * log1p(-probability);
+}
+
+static void a_surface_is_the_librarys(void **state) {
+    (void)state;
+    static double z[POINTS], inner[POINTS];
+    struct rugo_surface_report report;
+    struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                .hurst = 0.8,
+                                .wavelength_long = 0.5,
+                                .wavelength_rolloff = 0.5,
+                                .wavelength_short = 0.125,
+                                .scale = SCALE_RMS_SLOPE,
+                                .scale_value = 0.1};
+    struct grid grid = {64, 64, 1, 1};
+    struct generator *generator = NULL;
+    struct error err = {0};
+    generate(NULL, z, &report);
+    assert_int_equal(report.iterations, 0);
+    assert_int_equal(generator_create(&generator, &spectrum, &grid, &SURFACE_DEFAULTS, &err), 0);
+    assert_int_equal(generator_run(generator, (struct random_key){11, 0, 3}, inner, NULL, &err), 0);
+    generator_destroy(&generator);
+    assert_memory_equal(z, inner, sizeof z);
+}
+
+/* Weibull with C = 1 has the skewness 2 at its minimum, -2 at its maximum; an exponential
+ * distribution is the first. Measured: within 0.02 on these points. */
+static void heights_are_those_named(void **state) {
+    (void)state;
+    static double z[POINTS];
+    struct rugo_surface_options options = rugo_surface_defaults();
+    struct rugo_surface_report report;
+    double scale = 5;
+    options.keep_heights = 1;
+    options.heights = RUGO_WEIBULL_MIN;
+    generate(&options, z, &report);
+    assert_true(report.iterations > 0);
+    check_close(skewness_of(z), 2, 0.3);
+    options.heights = RUGO_WEIBULL_MAX;
+    generate(&options, z, &report);
+    check_close(skewness_of(z), -2, 0.3);
+    options.heights = RUGO_QUANTILE;
+    options.quantile = exponential_quantile;
+    options.quantile_context = &scale;
+    generate(&options, z, NULL);
+    check_close(skewness_of(z), 2, 0.3);
+}
+
+static void spectra_are_those_named(void **state) {
+    (void)state;
+    static const double K[] = {1, 190}, DENSITY[] = {1, 1};
+    struct rugo_spectrum spectrum = rugo_spectrum_self_affine(0.8, 0.5, 0.125, 0.1);
+    struct rugo_moments moments;
+    struct rugo_error err = {0};
+    assert_int_equal(rugo_spectrum_moments(&spectrum, &SQUARE, &moments, &err), 0);
+    check_relative(moments.rms_slope, 0.1, 1e-12);
+    check_relative(moments.nayak_alpha, moments.m0 * moments.m4 / (moments.m2 * moments.m2), 1e-12);
+    double narrow = moments.nayak_alpha;
+    spectrum.rms_slope = 0;
+    spectrum.rms_height = 3;
+    assert_int_equal(rugo_spectrum_moments(&spectrum, &SQUARE, &moments, &err), 0);
+    check_relative(moments.rms_height, 3, 1e-12);
+    check_relative(moments.nayak_alpha, narrow, 1e-12);
+    spectrum.type = RUGO_EXPONENTIAL_ACF; /* not band-limited: fills the grid */
+    spectrum.correlation_x = spectrum.correlation_y = 0.2;
+    assert_int_equal(rugo_spectrum_moments(&spectrum, &SQUARE, &moments, &err), 0);
+    assert_true(moments.nayak_alpha > 2 * narrow);
+    /* White over the disc |k| < 190: the mean of kx^2 is 190^2/4, but for the waves at its rim. */
+    spectrum.type = RUGO_TABLE;
+    spectrum.table_count = 2;
+    spectrum.table_wave_number = K;
+    spectrum.table_density = DENSITY;
+    assert_int_equal(rugo_spectrum_moments(&spectrum, &SQUARE, &moments, &err), 0);
+    check_relative(moments.m2 / moments.m0, 190.0 * 190 / 4, 0.06);
+    double ratio = 0;
+    assert_int_equal(rugo_ratio_of_alpha(2, 0.8, 1, 10, &ratio, &err), 0);
+    check_relative(rugo_alpha_of_ratio(2, 0.8, ratio, 1), 10, 1e-9);
+}
+
+static void a_map_tells_what_it_is_made_of(void **state) {
+    (void)state;
+    static double z[POINTS], fine[4 * POINTS], k[64], density[64];
+    const struct rugo_grid finer = {128, 128, 1, 1};
+    struct rugo_spectrum spectrum = rugo_spectrum_self_affine(0.8, 0.5, 0.125, 0.1);
+    struct rugo_moments expected, moments;
+    struct rugo_error err = {0};
+    struct rugo_summits nine = {0}, five = {0}, refined = {0};
+    generate(NULL, z, NULL);
+    assert_int_equal(rugo_spectrum_moments(&spectrum, &SQUARE, &expected, &err), 0);
+    assert_int_equal(rugo_resample(&SQUARE, z, &finer, 8, 8, fine, &err), 0);
+    check_relative(fine[2 * 128 * 5 + 2 * 7], z[64 * 5 + 7], 1e-9);
+    assert_int_equal(rugo_moments(&finer, fine, &moments, &err), 0);
+    check_relative(moments.m4, expected.m4, 1e-9);
+    assert_in_range(rugo_psd_size(&SQUARE), 16, 64);
+    assert_int_equal(rugo_psd(&SQUARE, z, k, density, &err), 0);
+    assert_true(density[3] > 0 && density[20] < 1e-12 * density[3]);
+    assert_int_equal(rugo_summits_find(&nine, &SQUARE, z, RUGO_NINE_POINT, &err), 0);
+    assert_int_equal(rugo_summits_find(&five, &SQUARE, z, RUGO_FIVE_POINT, &err), 0);
+    assert_int_equal(rugo_summits_find(&refined, &SQUARE, z, RUGO_REFINED, &err), 0);
+    assert_true(five.count > nine.count && nine.count > 10 && refined.count > 10);
+    assert_true(refined.summits[0].curvature > 0);
+    /* about 20 summits: a count is good to its square root */
+    check_close((double)refined.count, rugo_nayak_summit_density(expected.m2, expected.m4), 14);
+    rugo_summits_clear(&nine);
+    rugo_summits_clear(&five);
+    rugo_summits_clear(&refined);
+    assert_null(refined.summits);
+    assert_int_equal(rugo_map_write("z.npy", &SQUARE, z, &err), 0);
+    struct rugo_map map = {.z = NULL};
+    assert_int_equal(rugo_map_read(&map, "z.npy", 1.0 / 64, &err), 0);
+    assert_int_equal(map.grid.nx, 64);
+    check_relative(map.grid.ly, 1, 1e-12);
+    assert_memory_equal(map.z, z, sizeof z);
+    rugo_map_clear(&map);
+    assert_null(map.z);
+}
+
+/* One wave on a half-space is Westergaard's; a finite block is stiffer in its face's waves. */
+static void models_are_those_named(void **state) {
+    (void)state;
+    const struct rugo_grid line = {128, 1, 1, 1};
+    double z[128], area[3];
+    struct rugo_error err = {0};
+    for (int i = 0; i < 128; i++)
+        z[i] = 0.01 * cos(2 * M_PI * i / 128);
+    double full = M_PI * 0.01;
+    for (int model = RUGO_HALFSPACE; model <= RUGO_FULL; model++) {
+        struct rugo_block block = rugo_block_defaults((enum rugo_model)model, &line);
+        struct rugo_contact *contact = NULL;
+        struct rugo_contact_state now;
+        assert_int_equal(rugo_contact_create(&contact, &line, &block, &err), 0);
+        assert_int_equal(rugo_contact_begin(contact, z, &err), 0);
+        assert_int_equal(rugo_contact_press(contact, 0.3 * full, &now, &err), 0);
+        area[model] = now.area;
+        assert_int_equal(now.patches, 1);
+        check_relative(now.pressure, 0.3 * full, 1e-12);
+        assert_true(now.p[0] > 0 && now.p[64] == 0 && now.gap[64] > 0 && now.mean_gap > 0);
+        assert_true(now.area_lower < now.area && now.area < now.area_upper);
+        assert_true(now.stiffness > 0 && isfinite(now.stiffness) && now.iterations > 0);
+        if (model == RUGO_HALFSPACE)
+            check_relative(rugo_contact_full_pressure(contact), full, 1e-6);
+        assert_true(isnan(rugo_contact_full_pressure(contact)) == (model == RUGO_FULL));
+        assert_int_equal(rugo_contact_press(contact, -1, &now, &err), RUGO_ERROR_INPUT);
+        assert_non_null(strstr(err.text, "must be 0 or more, not -1"));
+        rugo_contact_destroy(&contact);
+        rugo_contact_destroy(&contact);
+    }
+    check_relative(area[RUGO_HALFSPACE], rugo_westergaard_area(0.3), 2e-3);
+    check_relative(area[RUGO_LAYERED], area[RUGO_HALFSPACE], 0.02);
+    check_relative(area[RUGO_FULL], area[RUGO_HALFSPACE], 0.05);
+    assert_true(area[RUGO_FULL] != area[RUGO_LAYERED]);
+}
+
+static void theories_are_those_named(void **state) {
+    (void)state;
+    assert_true(rugo_persson_area(0.1) == persson_area(0.1));
+    assert_true(rugo_persson_pressure_pdf(0.2, 0.1) == persson_pressure_pdf(0.2, 0.1));
+    assert_true(rugo_bgt_area(0.1, 5) == bgt_area(0.1, 5));
+    assert_true(rugo_gw_mccool_area(0.1, 5) == gw_mccool_area(0.1, 5));
+    assert_true(rugo_westergaard_pressure(0.01, 0.3) == westergaard_pressure(0.01, 0.3));
+    assert_true(rugo_westergaard_gap(0.3) == westergaard_gap(0.3));
+    check_close(rugo_nayak_summit_pdf(1, 5), 0.44058983, 1e-8); /* F6.9 of FORMULAS.md */
+    check_close(rugo_nayak_joint_pdf(1, -2.5, 5), 0.21168776, 1e-8);
+    check_close(rugo_nayak_mean_curvature(2, 5), 1.72353316, 1e-8);
+    check_close(rugo_nayak_summit_cdf(20, 5), 1, 1e-12);
+    assert_true(isnan(rugo_bgt_area(0.1, 1)));
+    assert_string_equal(rugo_version(), RUGO_VERSION);
+}
+
+static void wrong_arguments_are_told(void **state) {
+    (void)state;
+    const struct rugo_grid empty = {0, 1, 1, 1};
+    struct rugo_spectrum spectrum = rugo_spectrum_self_affine(0.8, 0.5, 0.001, 0.1);
+    struct rugo_surface_options options = rugo_surface_defaults();
+    struct rugo_block block = rugo_block_defaults(RUGO_LAYERED, &SQUARE);
+    struct rugo_generator *generator = NULL;
+    struct rugo_contact *contact = NULL;
+    struct rugo_summits summits = {0};
+    struct rugo_map map = {.z = NULL};
+    struct rugo_moments moments = {.m0 = 7};
+    struct rugo_error err = {0};
+    static double z[POINTS];
+    assert_int_equal(rugo_generator_create(&generator, &spectrum, &SQUARE, NULL, &err),
+                     RUGO_ERROR_INPUT);
+    assert_int_equal(err.code, RUGO_ERROR_INPUT);
+    assert_true(strlen(err.text) > 20);
+    spectrum.wavelength_short = 0.125;
+    spectrum.rms_height = 1;
+    assert_int_equal(rugo_spectrum_moments(&spectrum, &SQUARE, &moments, &err), RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "one must be above 0"));
+    assert_true(moments.m0 == 7);
+    spectrum.rms_height = 0;
+    options.heights = RUGO_QUANTILE;
+    assert_int_equal(rugo_generator_create(&generator, &spectrum, &SQUARE, &options, &err),
+                     RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "no function"));
+    block.poisson = 0.7;
+    assert_int_equal(rugo_contact_create(&contact, &SQUARE, &block, &err), RUGO_ERROR_INPUT);
+    assert_int_equal(rugo_summits_find(&summits, &empty, z, RUGO_NINE_POINT, &err),
+                     RUGO_ERROR_INPUT);
+    assert_int_equal(rugo_psd_size(&empty), 0);
+    assert_int_equal(rugo_map_read(&map, "absent.npy", 0, &err), RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "absent.npy: No such file"));
+    assert_int_equal(rugo_map_read(&map, "map.txt", 0, NULL), RUGO_ERROR_INPUT);
+    assert_int_equal(rugo_map_write("no/such/folder/z.csv", &SQUARE, z, &err), RUGO_ERROR_SYSTEM);
+    assert_null(generator);
+    assert_null(contact);
+    assert_null(map.z);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_surface_is_the_librarys),
+        cmocka_unit_test(heights_are_those_named),
+        cmocka_unit_test(spectra_are_those_named),
+        cmocka_unit_test(a_map_tells_what_it_is_made_of),
+        cmocka_unit_test(models_are_those_named),
+        cmocka_unit_test(theories_are_those_named),
+        cmocka_unit_test(wrong_arguments_are_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
