@@ -22,9 +22,9 @@ struct rugo_block rugo_block_defaults(enum rugo_model model, const struct rugo_g
 }
 
 static int block_take(struct block *out, const struct rugo_block *from, struct error *err) {
-    static const enum contact_model MODELS[] = {[RUGO_HALFSPACE] = MODEL_HALFSPACE,
-                                                [RUGO_LAYERED] = MODEL_LAYERED,
-                                                [RUGO_FULL] = MODEL_FULL};
+    static const enum block_model MODELS[] = {[RUGO_HALFSPACE] = MODEL_HALFSPACE,
+                                              [RUGO_LAYERED] = MODEL_LAYERED,
+                                              [RUGO_FULL] = MODEL_LAYERED}; /* its flat block */
     if ((unsigned)from->model > RUGO_FULL)
         return error_set(err, ERROR_INPUT, "there is no contact model %d", (int)from->model);
     *out = (struct block){.model = MODELS[from->model],
@@ -36,16 +36,12 @@ static int block_take(struct block *out, const struct rugo_block *from, struct e
 }
 
 static int solver_create(struct rugo_contact *contact, const struct grid *grid,
-                         const struct block *block, struct error *err) {
-    struct block linear = *block;
-    if (block->model == MODEL_FULL)
-        linear.model = MODEL_LAYERED;
-    int status = compliance_create(&contact->compliance, grid, &linear, err);
+                         enum rugo_model model, const struct block *block, struct error *err) {
+    int status = compliance_create(&contact->compliance, grid, block, err);
     if (status == 0)
-        status =
-            block->model == MODEL_FULL
-                ? full_create(&contact->full, grid, block, &FULL_DEFAULTS, err)
-                : contact_create(&contact->linear, contact->compliance, &CONTACT_DEFAULTS, err);
+        status = model == RUGO_FULL ? full_create(&contact->full, grid, block, &FULL_DEFAULTS, err)
+                                    : contact_create(&contact->linear, contact->compliance,
+                                                     &CONTACT_DEFAULTS, err);
     if (status == 0)
         status = area_workspace_create(&contact->areas, contact->compliance, err);
     if (status == 0)
@@ -65,7 +61,7 @@ int rugo_contact_create(struct rugo_contact **out, const struct rugo_grid *grid,
     if (status == 0)
         status = block_take(&what, block, &why);
     if (status == 0)
-        status = solver_create(contact, &cell, &what, &why);
+        status = solver_create(contact, &cell, block->model, &what, &why);
     if (status == 0)
         *out = contact;
     else

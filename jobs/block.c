@@ -30,7 +30,7 @@ static int block_fill(const struct block_work *work, const struct job_control *c
     if (names == NULL || scalars == NULL)
         return error_memory(err, (size_t)result->count * row, "scalars");
     for (size_t a = 0; a < work->scalar_count; a++)
-        names[a] = work->names[a];
+        names[a] = work->scalar(a);
     int status = realise_all(work, control, result, scalars, err);
     if (status == 0)
         status = work->encode(work->context, &data, &result->size, err);

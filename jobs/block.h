@@ -9,7 +9,7 @@
 struct block_work {
     void *context;
     size_t scalar_count;
-    const char *const *names; /* of the scalars */
+    const char *(*scalar)(size_t at); /* their names */
     /* The realisation, before which so many of the block are done, into the kind's sums and into
      * scalars[scalar_count]. */
     int (*realise)(void *context, uint64_t realisation, uint64_t done, double *scalars,

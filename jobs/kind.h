@@ -39,7 +39,8 @@ struct job_kind {
     const char *name;
     const struct parameter_table *const *tables; /* of its parameters; NULL at the end */
     uint64_t default_realisations;
-    const char *const *scalars;     /* names of the scalars of one realisation, NULL-terminated */
+    /* Name of a scalar of one realisation; NULL behind the last. */
+    const char *(*scalar)(size_t at);
     const struct result_view *view; /* schema/result/view.h; NULL: nothing special is shown */
 
     /* Parameters of one case: the study's object of effective values, lists already replaced. Adds
@@ -71,7 +72,18 @@ struct job_kind {
     int (*merge)(struct job_merger *merger, const struct block_result *result, struct error *err);
     /* {"realisations": n, "scalars": {...}, "curves": [...]} as in openapi.yaml; caller deletes. */
     int (*curves)(struct job_merger *merger, cJSON **out, struct error *err);
+
+    /* Writes what the case is solved on, for the surface z of its own grid, pressed to p/(E* h')
+     * where that is above 0, as a VTU file. Lengths in lambda_s, pressures and stresses in E* h'.
+     * Nothing is written on failure. NULL for kinds without meshes. */
+    int (*write_mesh)(const char *path, const cJSON *parameters, const double *z, double pressure,
+                      struct error *err);
 };
+
+/* How many scalars a realisation has, and whether these of a result are they: ERROR_INPUT. */
+size_t kind_scalar_count(const struct job_kind *kind);
+int kind_check_names(const struct job_kind *kind, const struct block_result *result,
+                     struct error *err);
 
 /* Seconds on a clock that never steps: for block_result.seconds. */
 double job_clock(void);

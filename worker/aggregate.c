@@ -18,18 +18,10 @@ struct merge {
 };
 
 /* The names tell data of an older program, whose scalars were others. */
-static bool names_agree(const struct job_kind *kind, const struct block_result *block) {
-    size_t n = 0;
-    while (n < block->scalar_count && kind->scalars[n] &&
-           strcmp(kind->scalars[n], block->names[n]) == 0) {
-        n++;
-    }
-    return n == block->scalar_count && !kind->scalars[n];
-}
-
 static int merge_block(void *context, const struct block_result *block, struct error *err) {
     struct merge *merge = context;
-    if (!names_agree(merge->kind, block)) {
+    struct error names;
+    if (kind_check_names(merge->kind, block, &names) != 0) {
         return error_set(err, ERROR_INPUT,
                          "realisations %llu to %llu hold other scalars than kind %s has",
                          (unsigned long long)block->first,

@@ -29,9 +29,6 @@ static int block_check(const struct block *block, struct error *err) {
         return 0;
     case MODEL_LAYERED:
         return layered_check(block, err);
-    case MODEL_FULL:
-        return error_set(err, ERROR_INPUT,
-                         "the model on the true geometry is not linear: it has no compliance");
     }
     return error_set(err, ERROR_INPUT, "contact model %d is unknown", (int)block->model);
 }

@@ -17,16 +17,15 @@
 
 #include "core/surface/grid.h"
 
-/* From the simplest to the most complete. MODEL_FULL is that of core/full, and has no compliance.
- */
-enum contact_model { MODEL_HALFSPACE, MODEL_LAYERED, MODEL_FULL };
+/* The linear ones; that of core/full looks at all of a block but this. */
+enum block_model { MODEL_HALFSPACE, MODEL_LAYERED };
 /* Weighting of the gap by the mortar functions of the finite elements: the standard ones (Petrov-
  * Galerkin, as the reference) average it over neighbours by (1, 4, 1)/6 in each direction; the dual
  * ones leave the gap at the node. */
 enum gap_weighting { GAP_STANDARD, GAP_DUAL };
 
 struct block {
-    enum contact_model model;
+    enum block_model model;
     double poisson;               /* in [0, 0.5); without influence on a half-space */
     double height;                /* unit of the grid's lengths; INFINITY: MODEL_HALFSPACE alone */
     double layer_growth;          /* layered: thickness of a layer over that above it, in [1, 2] */

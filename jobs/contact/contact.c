@@ -167,7 +167,8 @@ static int encode(void *context, unsigned char **data, size_t *size, struct erro
 static int run(struct job_runner *runner, uint64_t first, uint64_t count,
                const struct job_control *control, struct block_result *out, struct error *err) {
     struct batch batch = {.runner = runner, .control = control};
-    const struct block_work work = {&batch, CONTACT_SCALAR_COUNT, CONTACT_SCALARS, realise, encode};
+    const struct block_work work = {&batch, contact_scalar_count(), contact_scalar_name, realise,
+                                    encode};
     int status = contact_tally_create(&batch.tally, &runner->study, err);
     if (status != 0)
         return status;
@@ -203,7 +204,7 @@ static int merger_create(struct job_merger **out, const cJSON *parameters, struc
     if (merger == NULL)
         return error_memory(err, sizeof *merger, "a merger");
     const struct surface_case *surface = &merger->study.surface;
-    merger->realisations.scalar_count = CONTACT_SCALAR_COUNT;
+    merger->realisations.scalar_count = contact_scalar_count();
     int status = contact_case_read(&merger->study, parameters, NULL, err);
     if (status == 0)
         status = modes_create(&merger->modes, &surface->spectrum, &surface->grid, err);
@@ -223,7 +224,7 @@ static int check_block(const struct block_result *result, const struct contact_t
     const struct contact_case *study = tally->study;
     double scalars = 0, tallied = 0;
     for (uint64_t r = 0; r < result->count; r++)
-        scalars += result->scalars[r * CONTACT_SCALAR_COUNT + CONTACT_SCALAR_ITERATIONS];
+        scalars += result->scalars[r * result->scalar_count + CONTACT_SCALAR_ITERATIONS];
     for (size_t k = 0; k < study->load_count; k++)
         tallied += contact_tally_total(tally, MEASURE_ITERATIONS,
                                        contact_case_cell(study, 0, study->level_count - 1, k));
@@ -281,11 +282,37 @@ static int curves(struct job_merger *merger, cJSON **out, struct error *err) {
     return case_document(merger->realisations.count, scalars, list, &merger->tally.notes, out, err);
 }
 
+/* --- a mesh to look at --- */
+
+/* The first model that has one writes it. */
+static int write_case_mesh(const char *path, const struct contact_case *study, const double *z,
+                           double pressure, struct error *err) {
+    for (size_t m = 0; m < study->model_count; m++)
+        if (study->models[m]->write_mesh != NULL)
+            return study->models[m]->write_mesh(path, study, m, z, pressure, err);
+    size_t t = 0;
+    while (CONTACT_MODELS[t] != NULL && CONTACT_MODELS[t]->write_mesh == NULL)
+        t++;
+    return error_set(err, ERROR_INPUT, "--mesh needs \"%s\" among /contact/model",
+                     CONTACT_MODELS[t] != NULL ? CONTACT_MODELS[t]->name : "a model with a mesh");
+}
+
+static int write_mesh(const char *path, const cJSON *parameters, const double *z, double pressure,
+                      struct error *err) {
+    struct contact_case study;
+    int status = contact_case_read(&study, parameters, NULL, err);
+    if (status != 0)
+        return status;
+    status = write_case_mesh(path, &study, z, pressure, err);
+    contact_case_clear(&study);
+    return status;
+}
+
 const struct job_kind CONTACT_KIND = {
     .name = "contact",
     .tables = CONTACT_TABLES,
     .default_realisations = 20,
-    .scalars = CONTACT_SCALARS,
+    .scalar = contact_scalar_name,
     .view = &CONTACT_VIEW,
     .check = check,
     .shared_create = shared_create,
@@ -298,4 +325,5 @@ const struct job_kind CONTACT_KIND = {
     .fits = fits,
     .merge = merge,
     .curves = curves,
+    .write_mesh = write_mesh,
 };

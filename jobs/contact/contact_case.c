@@ -6,28 +6,21 @@
 
 static const double ROUNDING = 1e-9; /* relative: numbers that are meant to be equal */
 enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
-/* Elements allow edges of slope 6 (core/full/mesh.c), which is where steepest ones lie then. */
-static const double FULL_SLOPE_MOST = 2;
-/* RMS heights. Layers fold over valleys deeper than two thirds of the block: of Gaussian profiles
- * of 32 to 2048 points and surfaces of 16 or 32 a side none mesh at 1, few to most at 2 and 3, all
- * at 4. */
-static const double FULL_HEIGHT_LEAST = 4;
-
 const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
                                                         NULL};
 
-static bool has_scale(const struct surface_case *surface) {
-    return surface->spectrum.scale == SCALE_RMS_HEIGHT ||
-           surface->spectrum.scale == SCALE_RMS_SLOPE;
+bool contact_case_has_scale(const struct contact_case *study) {
+    enum spectrum_scale scale = study->surface.spectrum.scale;
+    return scale == SCALE_RMS_HEIGHT || scale == SCALE_RMS_SLOPE;
 }
 
-/* Of the prescribed spectrum, lengths in lambda_s; NaN without a scale. */
-static int read_scale(const struct surface_case *surface, double *rms_height, double *rms_slope,
-                      struct error *err) {
+int contact_case_scale(const struct contact_case *study, double *rms_height, double *rms_slope,
+                       struct error *err) {
+    const struct surface_case *surface = &study->surface;
     struct modes *modes = NULL;
     struct moments moments;
     *rms_height = *rms_slope = NAN;
-    if (!has_scale(surface))
+    if (!contact_case_has_scale(study))
         return 0;
     int status = modes_create(&modes, &surface->spectrum, &surface->grid, err);
     if (status != 0)
@@ -51,7 +44,7 @@ static int read_height(const struct contact_case *study, struct values *values, 
         return 0;
     }
     double rms_height, rms_slope;
-    int status = read_scale(&study->surface, &rms_height, &rms_slope, err);
+    int status = contact_case_scale(study, &rms_height, &rms_slope, err);
     *out *= rms_height;
     if (status == 0 && isnan(rms_height))
         values_fault(values, "/contact/block_height",
@@ -59,41 +52,17 @@ static int read_height(const struct contact_case *study, struct values *values, 
     return status;
 }
 
-/* What the finite elements on the true geometry ask of the surface: its slopes matter. */
-static int read_full(struct contact_case *out, struct values *values, struct error *err) {
-    const struct surface_case *surface = &out->surface;
-    double rms_height, rms_slope;
-    if (surface->grid.nx == 0)
-        return 0;
-    if (!has_scale(surface))
-        values_fault(
-            values, "/surface/rms_slope",
-            "the model full needs the scale of the surface, whose slopes count in it: give "
-            "rms_slope or rms_height");
-    int status = read_scale(surface, &rms_height, &rms_slope, err);
-    if (status != 0)
-        return status;
-    double height = out->blocks[contact_case_full(out)].height / rms_height;
-    if (rms_slope > FULL_SLOPE_MOST)
-        values_fault(
-            values,
-            surface->spectrum.scale == SCALE_RMS_SLOPE ? "/surface/rms_slope"
-                                                       : "/surface/rms_height",
-            "RMS slope %.4g: the model full can mesh surfaces up to about %g, whose steepest "
-            "edges are three times as steep",
-            rms_slope, FULL_SLOPE_MOST);
-    else if (height < FULL_HEIGHT_LEAST * (1 - ROUNDING))
-        values_fault(
-            values, "/contact/block_height",
-            "%.4g RMS heights of the surface: the model full needs %g or more; the layers of "
-            "lower blocks fold over the surface's valleys",
-            height, FULL_HEIGHT_LEAST);
-    out->rms_slope = rms_slope;
-    return 0;
+/* What each model alone asks of the case. */
+static int check_models(struct contact_case *out, struct values *values, struct error *err) {
+    int status = 0;
+    for (size_t m = 0; m < out->model_count && status == 0; m++)
+        if (out->models[m]->check != NULL)
+            status = out->models[m]->check(out, m, values, err);
+    return status;
 }
 
 static int read_blocks(struct contact_case *out, struct values *values, struct error *err) {
-    int models[CONTACT_MODELS];
+    int models[CONTACT_MODELS_MOST];
     double height, poisson = values_number(values, "/contact/poisson");
     double growth = values_number(values, "/contact/layer_growth");
     bool elements = false;
@@ -106,15 +75,14 @@ static int read_blocks(struct contact_case *out, struct values *values, struct e
     if (status != 0)
         return status;
     for (size_t m = 0; m < out->model_count; m++) {
-        bool deep = models[m] == MODEL_HALFSPACE;
-        elements = elements || !deep;
-        out->blocks[m] = (struct block){.model = (enum contact_model)models[m],
-                                        .poisson = poisson,
-                                        .height = !isnan(height) ? height
-                                                  : deep         ? INFINITY
-                                                                 : 1.5 * out->surface.grid.lx,
-                                        .layer_growth = growth,
-                                        .weighting = weighting};
+        const struct contact_model *model = out->models[m] = CONTACT_MODELS[models[m]];
+        elements = elements || model->elements;
+        out->blocks[m] = (struct block){
+            .model = model->block,
+            .poisson = poisson,
+            .height = !isnan(height) ? height : model->default_height * out->surface.grid.lx,
+            .layer_growth = growth,
+            .weighting = weighting};
     }
     if (elements && isinf(height))
         values_fault(
@@ -123,7 +91,7 @@ static int read_blocks(struct contact_case *out, struct values *values, struct e
     if (!elements && out->model_count > 0 && weighting == GAP_DUAL)
         values_fault(values, "/contact/gap_weighting",
                      "\"dual\" belongs to finite elements, and no such model is asked for");
-    return contact_case_full(out) < out->model_count ? read_full(out, values, err) : 0;
+    return check_models(out, values, err);
 }
 
 static void check_rising(struct values *values, const char *path, size_t n, const double *numbers) {
@@ -232,7 +200,7 @@ static void check_layers(const struct contact_case *study, struct values *values
     double thickness[LAYERS_MOST];
     for (size_t m = 0; m < study->model_count; m++)
         for (size_t l = 0; l < study->level_count; l++)
-            if (study->blocks[m].model != MODEL_HALFSPACE && isfinite(study->blocks[m].height) &&
+            if (study->models[m]->elements && isfinite(study->blocks[m].height) &&
                 isfinite(study->blocks[m].layer_growth) &&
                 block_layers(&study->levels[l].grid, &study->blocks[m], thickness) == 0) {
                 values_fault(
@@ -328,14 +296,7 @@ void contact_case_clear(struct contact_case *study) {
 size_t contact_case_complete(const struct contact_case *study) {
     size_t complete = 0;
     for (size_t m = 1; m < study->model_count; m++)
-        if (study->blocks[m].model > study->blocks[complete].model)
+        if (study->models[m]->rank > study->models[complete]->rank)
             complete = m;
     return complete;
-}
-
-size_t contact_case_full(const struct contact_case *study) {
-    size_t m = 0;
-    while (m < study->model_count && !contact_case_is_full(study, m))
-        m++;
-    return m;
 }

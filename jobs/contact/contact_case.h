@@ -4,25 +4,16 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_CASE_H
 #define RUGO_JOBS_CONTACT_CONTACT_CASE_H
 
-#include "core/contact/contact.h"
-#include "core/full/full.h"
+#include "core/full/material.h"
 #include "core/statistics/histogram.h"
 #include "jobs/contact/contact_parameters.h"
+#include "jobs/contact/model.h"
 #include "jobs/kind.h"
 #include "jobs/surface_case.h"
 #include "schema/study/fault.h"
 
 /* Tables of the kind: CONTACT_PARAMETERS, then SURFACE_PARAMETERS. */
 extern const struct parameter_table *const CONTACT_TABLES[];
-
-enum { CONTACT_MODELS = 3 };
-
-static inline const char *contact_model_name(enum contact_model model) {
-    return choice_name(CONTACT_MODEL_CHOICES, (int)model);
-}
-static inline const char *kinematics_name(enum kinematics kinematics) {
-    return choice_name(KINEMATICS_CHOICES, (int)kinematics);
-}
 
 /* A mesh on which every realisation is solved: the own grid sampled at other points. */
 struct contact_level {
@@ -35,10 +26,11 @@ struct contact_case {
     struct surface_case surface; /* and its own grid, on which realisations are generated */
     size_t band;                 /* highest wave number of a realisation on its own grid */
     size_t model_count;
-    struct block blocks[CONTACT_MODELS]; /* one a model, in the order given */
-    enum kinematics kinematics;          /* of the model full, as the next two */
-    double transition_depth;             /* full.h */
-    double rms_slope;                    /* of the prescribed spectrum; where full is a model */
+    const struct contact_model *models[CONTACT_MODELS_MOST]; /* in the order given */
+    struct block blocks[CONTACT_MODELS_MOST];                /* one a model */
+    enum kinematics kinematics;                              /* of strain */
+    double transition_depth;                                 /* of columns (mesh.h) */
+    double rms_slope; /* of the prescribed spectrum; 0 where no model asks for it */
     size_t level_count;
     struct contact_level levels[CONTACT_LEVELS_MOST]; /* rising: the last is the finest */
     size_t load_count;
@@ -69,13 +61,11 @@ static inline size_t contact_case_cells(const struct contact_case *study) {
 
 /* The most complete of the models: that from which the errors of the others are counted. */
 size_t contact_case_complete(const struct contact_case *study);
-/* Whether a model is the finite elements on the true geometry, which may find no answer: the
- * realisation has no values then, from that load on. */
-static inline bool contact_case_is_full(const struct contact_case *study, size_t model) {
-    return study->blocks[model].model == MODEL_FULL;
-}
-/* Position of that model, or model_count without it. */
-size_t contact_case_full(const struct contact_case *study);
+/* Whether the surface has lengths of its own, and its RMS height and slope by the prescribed
+ * spectrum, in lambda_s; NaN where it has none. */
+bool contact_case_has_scale(const struct contact_case *study);
+int contact_case_scale(const struct contact_case *study, double *rms_height, double *rms_slope,
+                       struct error *err);
 
 /* Memory, time and error of one realisation, before anything ran. */
 void contact_case_estimate(const struct contact_case *study, struct job_estimate *out);

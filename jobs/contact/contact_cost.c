@@ -2,21 +2,11 @@
 #include "core/cost.h"
 #include "jobs/contact/contact_case.h"
 #include "jobs/contact/contact_scene.h"
-#include "jobs/contact/contact_solver.h"
 #include "jobs/contact/contact_tally.h"
 #include <math.h>
 
 /* The program, its libraries, and tables that do not grow with the grid. */
 static const double PROCESS_BYTES = 1.2e7;
-
-/* CPU seconds of one model on one level, all loads. */
-static double solver_seconds(const struct contact_case *study, size_t model,
-                             const struct grid *grid) {
-    if (!contact_case_is_full(study, model))
-        return cost_linear_contact(grid, study->tolerance, study->load_count);
-    struct full_size size = contact_full_size(study, model, grid);
-    return cost_full_contact(grid, &size, study->load_count);
-}
 
 void contact_case_estimate(const struct contact_case *study, struct job_estimate *out) {
     const struct surface_case *surface = &study->surface;
@@ -30,7 +20,7 @@ void contact_case_estimate(const struct contact_case *study, struct job_estimate
         1e-4 + 1e-9 * cost_generation(&surface->options) * (double)grid_points(&surface->grid);
     for (size_t l = 0; l < study->level_count; l++)
         for (size_t m = 0; m < study->model_count; m++)
-            out->seconds += solver_seconds(study, m, &study->levels[l].grid);
+            out->seconds += study->models[m]->seconds(study, m, &study->levels[l].grid);
     bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
     out->relative_error = cost_area_scatter(surface->dimension, surface->length_ratio,
                                             affine ? surface->spectrum.hurst : NAN);

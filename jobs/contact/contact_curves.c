@@ -121,16 +121,17 @@ static const struct curve_theory *theories_of(const struct workshop *shop, const
     }
 }
 
-/* Of strain; NULL of linear models. */
+/* Of strain; NULL where there is nothing to choose. */
 static const char *kinematics_of(const struct contact_case *study, size_t model) {
-    return contact_case_is_full(study, model) ? kinematics_name(study->kinematics) : NULL;
+    const struct contact_model *of = study->models[model];
+    return of->kinematics != NULL ? of->kinematics(study) : NULL;
 }
 
 static bool append(struct workshop *shop, const struct row *row, size_t model, size_t level) {
     const struct contact_case *study = shop->study;
     struct curve curve = {.quantity = row->quantity,
                           .series = row->series,
-                          .model = contact_model_name(study->blocks[model].model),
+                          .model = study->models[model]->name,
                           .kinematics = kinematics_of(study, model),
                           .level = study->levels[level].points,
                           .points = (double)grid_points(&study->levels[level].grid),
@@ -150,7 +151,7 @@ static bool append(struct workshop *shop, const struct row *row, size_t model, s
         shop->standard_error[k] = factor * mean.standard_error;
         shop->valueless[k] = (double)contact_tally_valueless(shop->tally, row->measure, cell);
     }
-    if (row->measure == MEASURE_STIFFNESS || contact_case_is_full(study, model))
+    if (row->measure == MEASURE_STIFFNESS || study->models[model]->may_fail)
         curve.valueless = shop->valueless;
     const struct curve_theory *theories = theories_of(shop, row);
     for (size_t a = 0; theories != NULL && a < CURVE_THEORIES_MOST; a++)
@@ -206,17 +207,22 @@ static bool append_others(struct workshop *shop) {
         {"patch_largest_area", NULL, "largest patch/cell", MEASURE_PATCH_LARGEST, 1},
         {"iterations", NULL, "iterations", MEASURE_ITERATIONS, 1},
         {"work", NULL, "points x transforms", MEASURE_WORK, 1}};
-    static const struct row FULL[] = {
-        {"stretch", NULL, "contact area now/undeformed", MEASURE_STRETCH, 1},
-        {"load_cuts", NULL, "load steps made smaller", MEASURE_CUTS, 1},
-        {"set_changes", NULL, "changes of single nodes of the active set", MEASURE_CHANGES, 1}};
-    size_t full = contact_case_full(shop->study);
     bool done = true;
     for (size_t a = 0; a < sizeof rows / sizeof *rows && done; a++)
         done = append_row(shop, &rows[a]);
-    if (full < shop->study->model_count)
-        for (size_t a = 0; a < sizeof FULL / sizeof *FULL && done; a++)
-            done = append_model(shop, &FULL[a], full);
+    return done;
+}
+
+/* Curves that a model alone has. */
+static bool append_own(struct workshop *shop, size_t m) {
+    const struct contact_model *model = shop->study->models[m];
+    bool done = true;
+    for (size_t a = 0; a < model->curve_count && done; a++) {
+        const struct model_curve *own = &model->curves[a];
+        enum contact_measure measure = (enum contact_measure)(MEASURE_OWN + own->measure);
+        const struct row row = {own->quantity, NULL, own->y_label, measure, 1};
+        done = append_model(shop, &row, m);
+    }
     return done;
 }
 
@@ -241,7 +247,7 @@ static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
     return curve_append(
         shop->curves,
         &(struct curve){.quantity = "contact_pressure_pdf",
-                        .model = contact_model_name(study->blocks[model].model),
+                        .model = study->models[model]->name,
                         .kinematics = kinematics_of(study, model),
                         .level = contact_case_finest(study)->points,
                         .points = (double)grid_points(&contact_case_finest(study)->grid),
@@ -253,7 +259,7 @@ static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
                         .y = shop->y,
                         .standard_error = shop->standard_error,
                         .theories = {{theory ? "persson" : NULL, shop->pdf}},
-                        .valueless = contact_case_is_full(study, model) ? shop->valueless : NULL,
+                        .valueless = study->models[model]->may_fail ? shop->valueless : NULL,
                         .counted = true,
                         .underflow = (double)count[0] / units,
                         .overflow = (double)count[bins->count + 1] / units});
@@ -262,6 +268,8 @@ static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
 static bool append_all(struct workshop *shop) {
     const struct contact_case *study = shop->study;
     bool done = append_areas(shop) && append_others(shop);
+    for (size_t m = 0; m < study->model_count && done; m++)
+        done = append_own(shop, m);
     for (size_t m = 0; m < study->model_count; m++)
         for (size_t a = 0; a < study->pdf_count && done; a++)
             done = append_pressures(shop, m, a);

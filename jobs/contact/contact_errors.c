@@ -7,9 +7,7 @@ static double assumed_order(const struct contact_case *study, enum contact_measu
                             size_t model) {
     switch (measure) {
     case MEASURE_EDGES:
-        if (study->surface.dimension == 1)
-            return 2;
-        return study->blocks[model].model == MODEL_HALFSPACE ? 1.5 : 2.5;
+        return study->models[model]->edge_order[study->surface.dimension - 1];
     case MEASURE_GAP:
         return 2;
     default:

@@ -1,10 +1,8 @@
 /* The rows of /contact/.... Several have defaults that depend on others: contact_case.c. */
 #include "jobs/contact/contact_parameters.h"
-#include "core/contact/compliance.h"
 #include "core/full/material.h"
+#include "jobs/contact/model.h"
 
-const struct choice CONTACT_MODEL_CHOICES[] = {
-    {"halfspace", MODEL_HALFSPACE}, {"layered", MODEL_LAYERED}, {"full", MODEL_FULL}, {0}};
 const struct choice KINEMATICS_CHOICES[] = {{"hencky", KINEMATICS_HENCKY},
                                             {"st_venant_kirchhoff", KINEMATICS_ST_VENANT},
                                             {"small", KINEMATICS_SMALL},

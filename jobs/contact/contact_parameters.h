@@ -10,8 +10,7 @@ enum { CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000 };
 enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS };
 enum area_estimator { AREA_NODES, AREA_EDGES, AREA_PERIMETER, AREA_ESTIMATORS };
 
-extern const struct choice CONTACT_MODEL_CHOICES[]; /* of enum contact_model */
-extern const struct choice KINEMATICS_CHOICES[];    /* of enum kinematics */
+extern const struct choice KINEMATICS_CHOICES[]; /* of enum kinematics */
 extern const struct parameter_table CONTACT_PARAMETERS;
 
 #endif

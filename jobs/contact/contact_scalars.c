@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1] = {
+static const char *const NAMES[CONTACT_SCALAR_COUNT] = {
     [CONTACT_SCALAR_KAPPA] = "kappa",
     [CONTACT_SCALAR_POWER_LAW_A] = "power_law_a",
     [CONTACT_SCALAR_POWER_LAW_B] = "power_law_b",
@@ -15,16 +15,6 @@ const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1] = {
     [CONTACT_SCALAR_GAP_LAST] = "mean_gap_last",
     [CONTACT_SCALAR_ITERATIONS] = "iterations",
     [CONTACT_SCALAR_VIOLATION] = "violation",
-    [CONTACT_SCALAR_FULL_LOAD_REACHED] = "full_load_reached",
-    [CONTACT_SCALAR_FULL_ITERATIONS] = "full_iterations",
-    [CONTACT_SCALAR_FULL_CUTS] = "full_load_cuts",
-    [CONTACT_SCALAR_FULL_CHANGES] = "full_set_changes",
-    [CONTACT_SCALAR_FULL_BALANCE] = "full_force_balance",
-    [CONTACT_SCALAR_FULL_PENETRATION] = "full_penetration",
-    [CONTACT_SCALAR_FULL_WEIGHTED_PENETRATION] = "full_weighted_penetration",
-    [CONTACT_SCALAR_FULL_STRETCH] = "full_stretch",
-    [CONTACT_SCALAR_FULL_SLOPE] = "full_steepest_slope",
-    [CONTACT_SCALAR_FULL_QUALITY] = "full_mesh_quality",
     [CONTACT_SCALAR_RMS_HEIGHT] = "rms_height",
     [CONTACT_SCALAR_RMS_SLOPE] = "rms_slope",
     [CONTACT_SCALAR_NAYAK_ALPHA] = "nayak_alpha",
@@ -36,6 +26,46 @@ const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1] = {
     [CONTACT_SCALAR_EPS_S0] = "eps_s0",
 };
 
+/* What a scalar is: number `at` of the model's own, or, without a model, an enum contact_scalar. */
+struct place {
+    const struct contact_model *model;
+    size_t at;
+};
+
+static struct place place_of(size_t scalar) {
+    if (scalar < CONTACT_SCALARS_OF_MODELS)
+        return (struct place){NULL, scalar};
+    for (size_t m = 0; CONTACT_MODELS[m] != NULL; m++) {
+        size_t at = scalar - CONTACT_SCALARS_OF_MODELS;
+        if (at < CONTACT_MODELS[m]->scalar_count)
+            return (struct place){CONTACT_MODELS[m], at};
+        scalar -= CONTACT_MODELS[m]->scalar_count;
+    }
+    return (struct place){NULL, scalar};
+}
+
+size_t contact_scalar_count(void) {
+    size_t count = CONTACT_SCALAR_COUNT;
+    for (size_t m = 0; CONTACT_MODELS[m] != NULL; m++)
+        count += CONTACT_MODELS[m]->scalar_count;
+    return count;
+}
+
+const char *contact_scalar_name(size_t scalar) {
+    if (scalar >= contact_scalar_count())
+        return NULL;
+    struct place place = place_of(scalar);
+    return place.model != NULL ? place.model->scalars[place.at] : NAMES[place.at];
+}
+
+/* Position of a model in a case; model_count where it is none of its. */
+static size_t position_of(const struct contact_case *study, const struct contact_model *model) {
+    size_t m = 0;
+    while (m < study->model_count && study->models[m] != model)
+        m++;
+    return m;
+}
+
 /* Of a measure on the finest level, by load. */
 static const double *finest_values(struct contact_tally *tally, enum contact_measure measure,
                                    size_t model) {
@@ -44,45 +74,25 @@ static const double *finest_values(struct contact_tally *tally, enum contact_mea
            contact_case_cell(study, model, study->level_count - 1, 0);
 }
 
-/* Over the loads that have values, which come first; 0 without any. */
-static double sum_of(size_t n, const double *values) {
-    double sum = 0;
-    for (size_t k = 0; k < n && !isnan(values[k]); k++)
-        sum += values[k];
-    return sum;
-}
-
-static double largest_of(size_t n, const double *values) {
-    double largest = 0;
-    for (size_t k = 0; k < n && !isnan(values[k]); k++)
-        largest = fmax(largest, values[k]);
-    return largest;
-}
-
-/* What the model full tells of itself. */
-static void measure_full(struct contact_tally *tally, double *out) {
+/* What each model of the case tells of itself, behind the scalars that come first; NaN of others.
+ */
+static void measure_models(struct contact_tally *tally, double *out) {
     const struct contact_case *study = tally->study;
-    size_t full = contact_case_full(study), n = study->load_count, solved = 0;
-    for (size_t a = CONTACT_SCALAR_FULL_LOAD_REACHED; a <= CONTACT_SCALAR_FULL_QUALITY; a++)
-        out[a] = NAN;
-    if (full == study->model_count)
-        return;
-    const double *iterations = finest_values(tally, MEASURE_ITERATIONS, full);
-    while (solved < n && !isnan(iterations[solved]))
-        solved++;
-    out[CONTACT_SCALAR_FULL_LOAD_REACHED] = solved > 0 ? study->loads[solved - 1] : 0;
-    out[CONTACT_SCALAR_FULL_ITERATIONS] = sum_of(n, iterations);
-    out[CONTACT_SCALAR_FULL_CUTS] = sum_of(n, finest_values(tally, MEASURE_CUTS, full));
-    out[CONTACT_SCALAR_FULL_CHANGES] = sum_of(n, finest_values(tally, MEASURE_CHANGES, full));
-    out[CONTACT_SCALAR_FULL_BALANCE] = largest_of(n, finest_values(tally, MEASURE_BALANCE, full));
-    out[CONTACT_SCALAR_FULL_PENETRATION] =
-        largest_of(n, finest_values(tally, MEASURE_DEEPEST, full));
-    out[CONTACT_SCALAR_FULL_WEIGHTED_PENETRATION] =
-        largest_of(n, finest_values(tally, MEASURE_PENETRATION, full));
-    if (solved > 0)
-        out[CONTACT_SCALAR_FULL_STRETCH] = finest_values(tally, MEASURE_STRETCH, full)[solved - 1];
-    out[CONTACT_SCALAR_FULL_SLOPE] = tally->slope;
-    out[CONTACT_SCALAR_FULL_QUALITY] = tally->quality;
+    double *at = out + CONTACT_SCALARS_OF_MODELS;
+    for (size_t t = 0; CONTACT_MODELS[t] != NULL; t++) {
+        const struct contact_model *model = CONTACT_MODELS[t];
+        size_t m = position_of(study, model);
+        for (size_t a = 0; a < model->scalar_count; a++)
+            at[a] = NAN;
+        if (m < study->model_count && model->measure != NULL) {
+            struct model_values values = {
+                .load_count = study->load_count, .loads = study->loads, .facts = tally->facts[m]};
+            for (size_t a = 0; a < MEASURE_COUNT; a++)
+                values.of[a] = finest_values(tally, (enum contact_measure)a, m);
+            model->measure(&values, at);
+        }
+        at += model->scalar_count;
+    }
 }
 
 /* Fits of the fraction against the load. */
@@ -103,27 +113,36 @@ static int measure_fits(const struct contact_case *study, const double *fraction
 }
 
 int contact_scalars_measure(struct contact_tally *tally, const struct roughness *roughness,
-                            double nayak_alpha, const struct surface_report *report,
-                            double out[CONTACT_SCALAR_COUNT], struct error *err) {
+                            double nayak_alpha, const struct surface_report *report, double *out,
+                            struct error *err) {
     const struct contact_case *study = tally->study;
     size_t n = study->load_count;
     const double *fraction = finest_values(tally, MEASURE_EDGES, 0);
     bool iterated = report->end != END_DIRECT;
-    out[CONTACT_SCALAR_AREA_LAST] = fraction[n - 1];
-    out[CONTACT_SCALAR_GAP_LAST] = finest_values(tally, MEASURE_GAP, 0)[n - 1];
-    out[CONTACT_SCALAR_ITERATIONS] = sum_of(n, finest_values(tally, MEASURE_ITERATIONS, 0));
-    out[CONTACT_SCALAR_VIOLATION] = largest_of(n, finest_values(tally, MEASURE_VIOLATION, 0));
-    measure_full(tally, out);
-    out[CONTACT_SCALAR_RMS_HEIGHT] = roughness->rms_height;
-    out[CONTACT_SCALAR_RMS_SLOPE] = roughness->rms_slope;
-    out[CONTACT_SCALAR_NAYAK_ALPHA] = nayak_alpha;
-    out[CONTACT_SCALAR_SKEWNESS] = roughness->skewness;
-    out[CONTACT_SCALAR_KURTOSIS] = roughness->kurtosis;
-    out[CONTACT_SCALAR_GENERATOR_ITERATIONS] = (double)report->iterations;
-    out[CONTACT_SCALAR_EPS_H] = iterated ? report->eps_h : NAN;
-    out[CONTACT_SCALAR_EPS_S] = iterated ? report->eps_s : NAN;
-    out[CONTACT_SCALAR_EPS_S0] = iterated ? report->eps_s0 : NAN;
-    return measure_fits(study, fraction, out, err);
+    double scalars[CONTACT_SCALAR_COUNT] = {
+        [CONTACT_SCALAR_AREA_LAST] = fraction[n - 1],
+        [CONTACT_SCALAR_GAP_LAST] = finest_values(tally, MEASURE_GAP, 0)[n - 1],
+        [CONTACT_SCALAR_ITERATIONS] = model_sum(n, finest_values(tally, MEASURE_ITERATIONS, 0)),
+        [CONTACT_SCALAR_VIOLATION] = model_largest(n, finest_values(tally, MEASURE_VIOLATION, 0)),
+        [CONTACT_SCALAR_RMS_HEIGHT] = roughness->rms_height,
+        [CONTACT_SCALAR_RMS_SLOPE] = roughness->rms_slope,
+        [CONTACT_SCALAR_NAYAK_ALPHA] = nayak_alpha,
+        [CONTACT_SCALAR_SKEWNESS] = roughness->skewness,
+        [CONTACT_SCALAR_KURTOSIS] = roughness->kurtosis,
+        [CONTACT_SCALAR_GENERATOR_ITERATIONS] = (double)report->iterations,
+        [CONTACT_SCALAR_EPS_H] = iterated ? report->eps_h : NAN,
+        [CONTACT_SCALAR_EPS_S] = iterated ? report->eps_s : NAN,
+        [CONTACT_SCALAR_EPS_S0] = iterated ? report->eps_s0 : NAN,
+    };
+    int status = measure_fits(study, fraction, scalars, err);
+    size_t count = contact_scalar_count();
+    for (size_t a = 0; a < count; a++) {
+        struct place place = place_of(a);
+        if (place.model == NULL)
+            out[a] = scalars[place.at];
+    }
+    measure_models(tally, out);
+    return status;
 }
 
 static void theories(const struct contact_case *study, const struct moments *moments,
@@ -147,21 +166,21 @@ static void theories(const struct contact_case *study, const struct moments *mom
 int contact_scalars_json(const struct contact_case *study, const struct moments *moments,
                          const struct realisations *realisations, cJSON **out, struct error *err) {
     double theory[CONTACT_SCALAR_COUNT];
-    size_t n = (size_t)realisations->count;
+    size_t n = (size_t)realisations->count, count = contact_scalar_count();
     double *column = array_create(n, sizeof *column);
     cJSON *scalars = cJSON_CreateObject();
     bool done = column != NULL && scalars != NULL;
     theories(study, moments, theory);
-    bool full = contact_case_full(study) < study->model_count;
-    for (size_t a = 0; a < CONTACT_SCALAR_COUNT && done; a++) {
-        bool of_full = a >= CONTACT_SCALAR_FULL_LOAD_REACHED && a <= CONTACT_SCALAR_FULL_QUALITY;
-        if (of_full && !full)
+    for (size_t a = 0; a < count && done; a++) {
+        struct place place = place_of(a);
+        if (place.model != NULL && position_of(study, place.model) == study->model_count)
             continue;
         realisations_column(realisations, a, column);
         struct estimate estimate = estimate_mean(n, column);
-        if (a == CONTACT_SCALAR_NAYAK_ALPHA && surface_case_exact(&study->surface))
+        bool own = place.model != NULL;
+        if (!own && place.at == CONTACT_SCALAR_NAYAK_ALPHA && surface_case_exact(&study->surface))
             estimate = (struct estimate){moments->nayak_alpha, 0};
-        done = scalar_put(scalars, CONTACT_SCALARS[a], estimate, theory[a]);
+        done = scalar_put(scalars, contact_scalar_name(a), estimate, own ? NAN : theory[place.at]);
     }
     /* as given, or as solved for nayak_alpha */
     done = done && scalar_put(scalars, "wavelength_ratio",

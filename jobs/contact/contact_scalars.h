@@ -16,18 +16,8 @@ enum contact_scalar {
     CONTACT_SCALAR_GAP_LAST,
     CONTACT_SCALAR_ITERATIONS, /* of all loads */
     CONTACT_SCALAR_VIOLATION,  /* the largest */
-    /* Of the model full on the finest level; none without it. */
-    CONTACT_SCALAR_FULL_LOAD_REACHED, /* the last with values; 0: no mesh, or no equilibrium */
-    CONTACT_SCALAR_FULL_ITERATIONS,   /* Newton's, of all loads, as the cuts */
-    CONTACT_SCALAR_FULL_CUTS,
-    CONTACT_SCALAR_FULL_CHANGES,     /* of single nodes of the active set, of all loads */
-    CONTACT_SCALAR_FULL_BALANCE,     /* largest, as the penetrations, which are in RMS heights */
-    CONTACT_SCALAR_FULL_PENETRATION, /* of the nodes */
-    CONTACT_SCALAR_FULL_WEIGHTED_PENETRATION,
-    CONTACT_SCALAR_FULL_STRETCH, /* at the last load reached */
-    CONTACT_SCALAR_FULL_SLOPE,   /* steepest edge of the face; none without a mesh, as the next */
-    CONTACT_SCALAR_FULL_QUALITY, /* least Jacobian over edges of the undeformed elements */
-    CONTACT_SCALAR_RMS_HEIGHT,   /* by finite differences, as the slope */
+    CONTACT_SCALARS_OF_MODELS, /* own scalars of all models of the program stand between */
+    CONTACT_SCALAR_RMS_HEIGHT = CONTACT_SCALARS_OF_MODELS, /* by finite differences, as the slope */
     CONTACT_SCALAR_RMS_SLOPE,
     CONTACT_SCALAR_NAYAK_ALPHA, /* spectral */
     CONTACT_SCALAR_SKEWNESS,
@@ -38,13 +28,15 @@ enum contact_scalar {
     CONTACT_SCALAR_EPS_S0,
     CONTACT_SCALAR_COUNT
 };
-extern const char *const CONTACT_SCALARS[CONTACT_SCALAR_COUNT + 1]; /* names, NULL at the end */
+/* Of one realisation, in all, and the name of one; NULL behind the last. */
+size_t contact_scalar_count(void);
+const char *contact_scalar_name(size_t scalar);
 
 /* Of the realisation whose values the tally holds. nayak_alpha: of its own spectrum. Fails only
  * with ERROR_MEMORY; a fit that finds too few points has no value. */
 int contact_scalars_measure(struct contact_tally *tally, const struct roughness *roughness,
-                            double nayak_alpha, const struct surface_report *report,
-                            double out[CONTACT_SCALAR_COUNT], struct error *err);
+                            double nayak_alpha, const struct surface_report *report, double *out,
+                            struct error *err);
 
 /* {name: {"value", "standard_error", "theory"?}} over the realisations; caller deletes. */
 int contact_scalars_json(const struct contact_case *study, const struct moments *moments,

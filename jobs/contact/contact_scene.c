@@ -1,7 +1,6 @@
 #include "jobs/contact/contact_scene.h"
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
-#include "jobs/contact/contact_solver.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +12,8 @@ static const double STIFFNESS_MOST = 1e6;
 struct contact_scene {
     const struct contact_case *study;
     double rms_slope, rms_height; /* of the prescribed spectrum */
-    struct contact_solver *solvers[CONTACT_MODELS][CONTACT_LEVELS_MOST];
-    struct area_workspace *areas[CONTACT_MODELS][CONTACT_LEVELS_MOST];
+    struct contact_solver *solvers[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
+    struct area_workspace *areas[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
     double *z; /* a level's sampling; room for the finest */
 };
@@ -25,8 +24,8 @@ int contact_compliances_create(struct contact_compliances *out, const struct con
     *out = (struct contact_compliances){0};
     for (size_t m = 0; m < study->model_count && status == 0; m++)
         for (size_t l = 0; l < study->level_count && status == 0; l++) {
-            struct block block = contact_linear_block(&study->blocks[m]);
-            status = compliance_create(&out->of[m][l], &study->levels[l].grid, &block, err);
+            status =
+                compliance_create(&out->of[m][l], &study->levels[l].grid, &study->blocks[m], err);
         }
     if (status != 0)
         contact_compliances_clear(out);
@@ -34,7 +33,7 @@ int contact_compliances_create(struct contact_compliances *out, const struct con
 }
 
 void contact_compliances_clear(struct contact_compliances *compliances) {
-    for (size_t m = 0; m < CONTACT_MODELS; m++)
+    for (size_t m = 0; m < CONTACT_MODELS_MOST; m++)
         for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++)
             compliance_destroy(&compliances->of[m][l]);
 }
@@ -48,8 +47,8 @@ static int scene_fill(struct contact_scene *scene, const struct contact_complian
         for (size_t m = 0; m < study->model_count && status == 0; m++) {
             status = area_workspace_create(&scene->areas[m][l], compliances->of[m][l], err);
             if (status == 0)
-                status = contact_solver_create(&scene->solvers[m][l], study, m,
-                                               compliances->of[m][l], err);
+                status = study->models[m]->create(&scene->solvers[m][l], study, m,
+                                                  compliances->of[m][l], err);
         }
     }
     if (status != 0)
@@ -81,9 +80,10 @@ void contact_scene_destroy(struct contact_scene **scene) {
         return;
     for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++) {
         patch_finder_destroy(&s->finders[l]);
-        for (size_t m = 0; m < CONTACT_MODELS; m++) {
+        for (size_t m = 0; m < CONTACT_MODELS_MOST; m++) {
             area_workspace_destroy(&s->areas[m][l]);
-            contact_solver_destroy(&s->solvers[m][l]);
+            if (s->solvers[m][l] != NULL)
+                s->study->models[m]->destroy(&s->solvers[m][l]);
         }
     }
     free(s->z);
@@ -97,9 +97,8 @@ double contact_scene_bytes(const struct contact_case *study) {
         const struct grid *grid = &study->levels[l].grid;
         bytes += 32.0 * (double)grid_points(grid); /* patches */
         for (size_t m = 0; m < study->model_count; m++) {
-            struct block block = contact_linear_block(&study->blocks[m]);
-            bytes += 8.0 * (double)grid_points(grid) + contact_solver_bytes(study, m, grid) +
-                     compliance_bytes(grid, &block);
+            bytes += 8.0 * (double)grid_points(grid) + study->models[m]->bytes(study, m, grid) +
+                     compliance_bytes(grid, &study->blocks[m]);
         }
     }
     return bytes;
@@ -119,25 +118,19 @@ int contact_level_sample(const struct contact_case *study, const struct contact_
     return 0;
 }
 
-/* What areas on the undeformed face are worth in the present configuration: 1 where strains are
- * small, and where nothing touches. */
-static double present(const struct full_report *report) {
-    bool finite = report != NULL && report->kinematics != KINEMATICS_SMALL;
-    return finite && isfinite(report->stretch) ? report->stretch : 1;
-}
-
 /* Measures of a solved load into a cell. */
 static void measure(struct contact_scene *scene, size_t model, size_t level,
-                    const struct contact_state *state, const struct full_report *report,
-                    struct contact_tally *tally, size_t cell) {
+                    const struct contact_pressed *pressed, struct contact_tally *tally,
+                    size_t cell) {
     double points = (double)grid_points(&scene->study->levels[level].grid);
+    const struct contact_state *state = &pressed->state;
     double stiffness = state->stiffness * scene->rms_height / scene->rms_slope;
-    double now = present(report);
+    double now = pressed->stretch;
     struct contact_area area;
     struct patches patches;
     contact_area(scene->areas[model][level], state->p, state->opening, &area);
     patches_find(scene->finders[level], state->p, &patches, NULL);
-    const double values[MEASURE_COUNT] = {
+    const double values[MEASURE_OWN] = {
         [MEASURE_NODES] = now * area.nodes,
         [MEASURE_EDGES] = now * area.edges,
         [MEASURE_PERIMETER] = now * area.perimeter,
@@ -152,14 +145,12 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
         [MEASURE_WORK] = state->work / points,
         [MEASURE_VIOLATION] = state->violation,
         [MEASURE_PENETRATION] = state->penetration,
-        [MEASURE_CUTS] = report != NULL ? (double)report->cuts : NAN,
-        [MEASURE_CHANGES] = report != NULL ? (double)report->changes : NAN,
-        [MEASURE_DEEPEST] = report != NULL ? report->penetration : NAN,
-        [MEASURE_BALANCE] = report != NULL ? fabs(report->balance) : NAN,
-        [MEASURE_STRETCH] = report != NULL ? report->stretch : NAN,
     };
-    for (size_t a = 0; a < MEASURE_COUNT; a++)
+    for (size_t a = 0; a < MEASURE_OWN; a++)
         contact_tally_values(tally, (enum contact_measure)a)[cell] = values[a];
+    for (size_t a = 0; a < MODEL_MEASURES_MOST; a++)
+        contact_tally_values(tally, (enum contact_measure)(MEASURE_OWN + a))[cell] =
+            pressed->own[a];
 }
 
 /* On areas as they are now, whose forces are those on the undeformed ones. */
@@ -176,65 +167,67 @@ struct stopper {
     void *context;
 };
 
+static struct contact_pressed not_pressed(void) {
+    struct contact_pressed out = {.stretch = 1, .reached = NAN};
+    for (size_t a = 0; a < MODEL_MEASURES_MOST; a++)
+        out.own[a] = NAN;
+    return out;
+}
+
 /* All loads of one model and level, rising, each from the last. */
-static int solve_loads(struct contact_scene *scene, size_t model, size_t level,
+static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
                        struct contact_tally *tally, const struct stopper *stopper,
                        struct error *err) {
     const struct contact_case *study = scene->study;
-    struct contact_solver *solver = scene->solvers[model][level];
-    struct contact_state state;
-    const struct full_report *report;
-    const struct mesh *mesh = contact_solver_mesh(solver);
+    const struct contact_model *model = study->models[m];
+    struct contact_solver *solver = scene->solvers[m][level];
+    double unused[MODEL_FACTS_MOST];
     bool finest = level + 1 == study->level_count;
-    int status = contact_solver_begin(solver, scene->z, stopper->stop, stopper->context, err);
-    if (status == 0 && finest && mesh != NULL) {
-        tally->slope = mesh->slope;
-        tally->quality = mesh->quality;
-    }
+    int status = model->begin(solver, scene->z, stopper->stop, stopper->context,
+                              finest ? tally->facts[m] : unused, err);
     for (size_t k = 0; k < study->load_count && status == 0; k++) {
+        struct contact_pressed pressed = not_pressed();
         if (stopper->stop(stopper->context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
                              study->load_count);
-        status =
-            contact_solver_press(solver, study->loads[k] * scene->rms_slope, &state, &report, err);
+        status = model->press(solver, study->loads[k] * scene->rms_slope, &pressed, err);
         if (status == 0)
-            measure(scene, model, level, &state, report, tally,
-                    contact_case_cell(study, model, level, k));
-        else if (report != NULL)
+            measure(scene, m, level, &pressed, tally, contact_case_cell(study, m, level, k));
+        else if (!isnan(pressed.reached))
             error_context(err, "load %g, reached %.4g", study->loads[k],
-                          report->reached / scene->rms_slope);
+                          pressed.reached / scene->rms_slope);
         else
             error_context(err, "load %g", study->loads[k]);
         if (status == 0 && finest)
-            count_pressures(scene, model, k, state.p, present(report), tally);
+            count_pressures(scene, m, k, pressed.state.p, pressed.stretch, tally);
     }
     return status;
 }
 
-/* "model full (hencky), level 6" */
-static void name_model(const struct contact_case *study, size_t model, size_t level,
+/* "model layered, level 6", and the kinematics behind the name of a model that has several. */
+static void name_model(const struct contact_case *study, size_t m, size_t level,
                        struct error *err) {
-    const char *name = contact_model_name(study->blocks[model].model);
+    const struct contact_model *model = study->models[m];
     double points = study->levels[level].points;
-    if (contact_case_is_full(study, model))
-        error_context(err, "model %s (%s), level %g", name, kinematics_name(study->kinematics),
+    if (model->kinematics != NULL)
+        error_context(err, "model %s (%s), level %g", model->name, model->kinematics(study),
                       points);
     else
-        error_context(err, "model %s, level %g", name, points);
+        error_context(err, "model %s, level %g", model->name, points);
 }
 
-/* Where the model full finds no answer, a note tells why. */
-static int solve_model(struct contact_scene *scene, size_t model, size_t level,
+/* Where a model that may fail finds no answer, a note tells why. */
+static int solve_model(struct contact_scene *scene, size_t m, size_t level,
                        struct contact_tally *tally, const struct stopper *stopper,
                        struct error *err) {
     const struct contact_case *study = scene->study;
     struct error why = {0};
-    int status = solve_loads(scene, model, level, tally, stopper, &why);
+    int status = solve_loads(scene, m, level, tally, stopper, &why);
     if (status == 0)
         return 0;
-    name_model(study, model, level, &why);
+    name_model(study, m, level, &why);
     bool unsolved = status == ERROR_NUMERIC || status == ERROR_INPUT;
-    if (unsolved && contact_case_is_full(study, model)) {
+    if (unsolved && study->models[m]->may_fail) {
         notes_add(&tally->notes, tally->realisation, why.text);
         return 0;
     }

@@ -6,10 +6,9 @@
 #include "jobs/contact/contact_case.h"
 #include "jobs/contact/contact_tally.h"
 
-/* By model and level; of the model full that of contact_linear_block, which tells its areas where
- * edges lie. Immutable. */
+/* By model and level; they tell areas where edges of contact lie. Immutable. */
 struct contact_compliances {
-    struct compliance *of[CONTACT_MODELS][CONTACT_LEVELS_MOST]; /* owned */
+    struct compliance *of[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST]; /* owned */
 };
 int contact_compliances_create(struct contact_compliances *out, const struct contact_case *study,
                                struct error *err);
@@ -29,11 +28,11 @@ void contact_scene_destroy(struct contact_scene **scene);
 double contact_scene_bytes(const struct contact_case *study);
 
 /* Solves every level, model and load of one realisation, z on the own grid of the case, into the
- * tally's values. stop is asked before each load, and by the model full before each iteration of
- * Newton's; non-zero ends it with ERROR_STOPPED. ERROR_NUMERIC names model, level and load.
+ * tally's values. stop is asked before each load, and within loads by models that take long;
+ * non-zero ends it with ERROR_STOPPED. ERROR_NUMERIC names model, level and load.
  *
- * Where the model full finds no mesh or no equilibrium, the realisation has no values of it on that
- * level from that load on: that is no error, but a note of the tally. */
+ * Where a model that may fail finds no answer, the realisation has no values of it on that level
+ * from that load on: that is no error, but a note of the tally. */
 int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
                         int (*stop)(void *context), void *context, struct error *err);
 

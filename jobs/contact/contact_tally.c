@@ -51,7 +51,9 @@ static void values_begin(struct contact_tally *tally) {
     size_t n = MEASURE_COUNT * contact_case_cells(tally->study);
     for (size_t a = 0; a < n; a++)
         tally->values[a] = NAN;
-    tally->slope = tally->quality = NAN;
+    for (size_t m = 0; m < CONTACT_MODELS_MOST; m++)
+        for (size_t a = 0; a < MODEL_FACTS_MOST; a++)
+            tally->facts[m][a] = NAN;
 }
 
 int contact_tally_create(struct contact_tally *out, const struct contact_case *study,
@@ -100,7 +102,7 @@ double contact_tally_bytes(const struct contact_case *study) {
 }
 
 uint64_t contact_tally_units(const struct contact_case *study, size_t model) {
-    return contact_case_is_full(study, model) ? STRETCHED_UNITS : 1;
+    return study->models[model]->stretches ? STRETCHED_UNITS : 1;
 }
 
 void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, const double *p,
@@ -248,7 +250,7 @@ static int refuse(struct error *err, const char *reason) {
 }
 
 /* Whether a cell has as many values as it can: none more than there are realisations, one of each
- * where all have one, and of the model full no more than at the load before. */
+ * where all have one, and of a model that may fail no more than at the load before. */
 static bool count_fits(const struct contact_tally *tally, enum contact_measure measure,
                        size_t cell) {
     const struct contact_case *study = tally->study;
@@ -258,20 +260,22 @@ static bool count_fits(const struct contact_tally *tally, enum contact_measure m
                   measure == MEASURE_ITERATIONS;
     if (!always)
         return count[cell] <= tally->realisations;
-    if (contact_case_is_full(study, model))
+    if (study->models[model]->may_fail)
         return count[cell] <=
                (cell % study->load_count > 0 ? count[cell - 1] : tally->realisations);
     return count[cell] == tally->realisations;
 }
 
-/* Realisations and levels that the model full did not bring to the last load: a note each. */
+/* Realisations and levels that a model which may fail did not bring to the last load: a note each.
+ */
 static uint64_t unsolved(const struct contact_tally *tally) {
     const struct contact_case *study = tally->study;
-    size_t full = contact_case_full(study), last = study->load_count - 1;
+    size_t last = study->load_count - 1;
     uint64_t count = 0;
-    for (size_t l = 0; l < study->level_count && full < study->model_count; l++)
-        count +=
-            contact_tally_valueless(tally, MEASURE_NODES, contact_case_cell(study, full, l, last));
+    for (size_t m = 0; m < study->model_count; m++)
+        for (size_t l = 0; l < study->level_count && study->models[m]->may_fail; l++)
+            count +=
+                contact_tally_valueless(tally, MEASURE_NODES, contact_case_cell(study, m, l, last));
     return count;
 }
 

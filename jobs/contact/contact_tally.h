@@ -2,7 +2,7 @@
  *
  * Each realisation is solved for every model, level and load (a cell of contact_case_cell) and
  * gives a value of each measure there, or none (NaN): a measure that is not defined there, or any
- * where the model full found no answer. Differences between levels and between models
+ * where a model found no answer. Differences between levels and between models
  * are summed on their own: both see the same surface, so that their errors are those of pairs. */
 #ifndef RUGO_JOBS_CONTACT_CONTACT_TALLY_H
 #define RUGO_JOBS_CONTACT_CONTACT_TALLY_H
@@ -10,30 +10,6 @@
 #include "jobs/contact/contact_case.h"
 #include "jobs/notes.h"
 #include "jobs/tally.h"
-
-enum contact_measure {
-    MEASURE_NODES, /* share of the cell, as all areas */
-    MEASURE_EDGES,
-    MEASURE_PERIMETER, /* surfaces alone */
-    MEASURE_GAP,       /* mean gap/sqrt(m0) */
-    MEASURE_PAIRED,    /* measures above: differences are summed too */
-    MEASURE_NODES_LOWER = MEASURE_PAIRED,
-    MEASURE_NODES_UPPER,
-    MEASURE_STIFFNESS, /* -d(p/(E* h'))/d(gap/sqrt(m0)); none in full contact */
-    MEASURE_PATCHES,
-    MEASURE_PATCH_MEAN, /* share of the cell; none without patches */
-    MEASURE_PATCH_LARGEST,
-    MEASURE_ITERATIONS,
-    MEASURE_WORK, /* transforms of the level's grid */
-    MEASURE_VIOLATION,
-    MEASURE_PENETRATION, /* of the weighted gap */
-    MEASURE_CUTS,        /* of load steps; of the model full alone, as all below */
-    MEASURE_CHANGES,     /* of single nodes of the active set */
-    MEASURE_DEEPEST,     /* node through the flat */
-    MEASURE_BALANCE,     /* |sum of contact forces/load - 1| */
-    MEASURE_STRETCH,     /* area of the nodes in contact now, over that undeformed */
-    MEASURE_COUNT
-};
 
 /* Sums over the realisations that have a value in a cell, and how many these are. */
 struct contact_sums {
@@ -55,11 +31,11 @@ struct contact_tally {
     struct tally pressures;    /* finest level: by model, load of pdf_loads, bin with under- and
                                   overflow; in contact_tally_units of a node's undeformed area;
                                   nodes that are open are in none */
-    struct notes notes;        /* why the model full has no values, a realisation and level */
+    struct notes notes;        /* why a model has no values, a realisation and level */
     uint64_t realisation;      /* the one under way, for these */
     double *values;            /* owned: the realisation under way, by measure and cell */
-    double slope, quality;     /* the same: finest mesh of the model full (mesh.h); NaN without */
-    uint64_t *bin;             /* owned: scratch, zero in between */
+    double facts[CONTACT_MODELS_MOST][MODEL_FACTS_MOST]; /* the same, on the finest level */
+    uint64_t *bin;                                       /* owned: scratch, zero in between */
 };
 int contact_tally_create(struct contact_tally *out, const struct contact_case *study,
                          struct error *err);

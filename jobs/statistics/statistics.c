@@ -130,7 +130,7 @@ static int encode(void *context, unsigned char **data, size_t *size, struct erro
 static int run(struct job_runner *runner, uint64_t first, uint64_t count,
                const struct job_control *control, struct block_result *out, struct error *err) {
     struct batch batch = {.runner = runner};
-    const struct block_work work = {&batch, SCALAR_COUNT, STATISTICS_SCALARS, realise, encode};
+    const struct block_work work = {&batch, SCALAR_COUNT, statistics_scalar_name, realise, encode};
     int status =
         statistics_tally_create(&batch.tally, &runner->study, &runner->moments,
                                 runner->spectra.densities, runner->spectra.correlations, err);
@@ -248,7 +248,7 @@ const struct job_kind STATISTICS_KIND = {
     .name = "statistics",
     .tables = STATISTICS_TABLES,
     .default_realisations = 1000,
-    .scalars = STATISTICS_SCALARS,
+    .scalar = statistics_scalar_name,
     .view = &STATISTICS_VIEW,
     .check = check,
     .runner_create = runner_create,

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char *const STATISTICS_SCALARS[SCALAR_COUNT + 1] = {
+static const char *const NAMES[SCALAR_COUNT] = {
     [SCALAR_RMS_HEIGHT] = "rms_height",
     [SCALAR_RMS_SLOPE] = "rms_slope",
     [SCALAR_RMS_CURVATURE] = "rms_curvature",
@@ -36,6 +36,10 @@ const char *const STATISTICS_SCALARS[SCALAR_COUNT + 1] = {
     [SCALAR_EPS_S_AMPLITUDE] = "eps_s_amplitude",
     [SCALAR_EPS_S0_AMPLITUDE] = "eps_s0_amplitude",
 };
+
+const char *statistics_scalar_name(size_t at) {
+    return at < SCALAR_COUNT ? NAMES[at] : NULL;
+}
 
 /* Mean and variance of heights, mean curvature, of the summits of one realisation; NaN (0/0) where
  * there is none. */
@@ -130,7 +134,7 @@ static bool put_scalars(cJSON *scalars, const struct statistics_case *study,
             estimate = summit_estimate(columns, a);
         else
             estimate = estimate_mean(columns->n, column(columns, a));
-        done = scalar_put(scalars, STATISTICS_SCALARS[a], estimate, theory[a]);
+        done = scalar_put(scalars, NAMES[a], estimate, theory[a]);
     }
     /* as given, or as solved for nayak_alpha */
     return done && scalar_put(scalars, "wavelength_ratio",

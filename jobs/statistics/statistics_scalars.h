@@ -37,7 +37,7 @@ enum statistics_scalar {
     SCALAR_EPS_S0_AMPLITUDE,
     SCALAR_COUNT
 };
-extern const char *const STATISTICS_SCALARS[SCALAR_COUNT + 1]; /* names, NULL at the end */
+const char *statistics_scalar_name(size_t at); /* NULL behind the last */
 
 /* What is known of one realisation. */
 struct realisation_measures {

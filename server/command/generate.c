@@ -3,7 +3,6 @@
 #include "core/map/height_map.h"
 #include "jobs/surface_case.h"
 #include "server/command/command.h"
-#include "server/command/meshed_case.h"
 #include "server/show/characterisation.h"
 #include "worker/kinds.h"
 #include <errno.h>
@@ -122,12 +121,17 @@ static int characterise(const struct order *order, const struct surface_case *su
 
 static int write_mesh(const struct order *order, const struct study *study, const double *z,
                       struct error *err) {
-    if (strcmp(study->kind->name, "contact") != 0)
-        return error_set(err, ERROR_INPUT, "--mesh needs a study of kind contact, and this is %s",
-                         study->kind->name);
-    return meshed_case_write(order->options->mesh,
-                             study->cases[order->options->case_number].parameters, z,
-                             order->options->pressure, err);
+    const struct job_kind *kind = kind_find(study->kind->name);
+    size_t other = 0;
+    if (kind != NULL && kind->write_mesh != NULL)
+        return kind->write_mesh(order->options->mesh,
+                                study->cases[order->options->case_number].parameters, z,
+                                order->options->pressure, err);
+    while (other < JOB_KIND_COUNT && JOB_KINDS[other]->write_mesh == NULL)
+        other++;
+    return error_set(err, ERROR_INPUT, "--mesh needs a study of kind %s, and this is %s",
+                     other < JOB_KIND_COUNT ? JOB_KINDS[other]->name : "with meshes",
+                     study->kind->name);
 }
 
 static int generate(const struct order *order, const struct study *study, struct error *err) {

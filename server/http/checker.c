@@ -82,25 +82,12 @@ static void keep(struct checker *checker, struct case_merger *one) {
         let_go(checker, dropped);
 }
 
-static int check_names(const struct job_kind *kind, const struct block_result *result,
-                       struct error *err) {
-    size_t n = 0;
-    for (; kind->scalars[n]; n++)
-        if (n >= result->scalar_count || strcmp(kind->scalars[n], result->names[n]) != 0)
-            return error_set(err, ERROR_INPUT, "scalars: number %zu is not \"%s\"", n,
-                             kind->scalars[n]);
-    if (n != result->scalar_count)
-        return error_set(err, ERROR_INPUT, "scalars: %zu names; allowed: %zu", result->scalar_count,
-                         n);
-    return 0;
-}
-
 int checker_check(struct checker *checker, const struct claimed_job *job,
                   const struct block_result *result, struct error *err) {
     const struct job_kind *kind = kind_find(job->kind);
     if (!kind)
         return error_set(err, ERROR_SYSTEM, "this server does not know the kind %.40s", job->kind);
-    int status = check_names(kind, result, err);
+    int status = kind_check_names(kind, result, err);
     if (status)
         return status;
     struct case_merger *one = take(checker, job);

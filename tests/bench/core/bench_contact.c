@@ -39,7 +39,7 @@ static void bench_clear(struct bench *bench) {
 
 /* A cell 8 longest waves wide; `points` a shortest wave. */
 static int bench_create(struct bench *bench, size_t n, int dimension, double points,
-                        enum contact_model model, struct error *err) {
+                        enum block_model model, struct error *err) {
     double cell = (double)n / points;
     struct grid grid = {n, dimension == 2 ? n : 1, cell, cell};
     struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
@@ -99,7 +99,7 @@ static int bench_run(struct bench *bench, uint64_t realisation, size_t loads, co
 }
 
 /* Some surfaces at the loads into the means of result. */
-static int measure(size_t n, int dimension, double points, enum contact_model model, size_t loads,
+static int measure(size_t n, int dimension, double points, enum block_model model, size_t loads,
                    const double *load, struct result *result, double *preparation,
                    struct error *err) {
     struct bench bench;
@@ -116,7 +116,7 @@ static int measure(size_t n, int dimension, double points, enum contact_model mo
     return status;
 }
 
-static int profiles(enum contact_model model, struct error *err) {
+static int profiles(enum block_model model, struct error *err) {
     printf("profiles, %s, 10 loads to 0.3: time a load, and the area's error at the loads\n",
            model == MODEL_LAYERED ? "layered" : "halfspace");
     for (size_t n = 512; n <= 8192; n *= 4) {
@@ -136,7 +136,7 @@ static int profiles(enum contact_model model, struct error *err) {
     return 0;
 }
 
-static int surfaces(enum contact_model model, struct error *err) {
+static int surfaces(enum block_model model, struct error *err) {
     printf("surfaces, %s, 8 loads 0.01 to 0.5: time a load and in all\n",
            model == MODEL_LAYERED ? "layered" : "halfspace");
     for (size_t n = 256; n <= 2048; n *= 2) {

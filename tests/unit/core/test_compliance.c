@@ -33,7 +33,7 @@ static struct block with_poisson(double poisson) {
     return block;
 }
 
-static struct block with_height(enum contact_model model, double height) {
+static struct block with_height(enum block_model model, double height) {
     struct block block = LAYERED;
     block.model = model;
     block.height = height;
@@ -65,7 +65,7 @@ static void refuses_what_is_out_of_range(void **state) {
     for (size_t c = 0; c < 4; c++)
         check_refused(grid, with_growth(GROWTH[c]), "layer growth");
     struct block block = LAYERED;
-    block.model = (enum contact_model)7;
+    block.model = (enum block_model)7;
     check_refused(grid, block, "contact model 7 is unknown");
     block = LAYERED;
     block.weighting = (enum gap_weighting)7;

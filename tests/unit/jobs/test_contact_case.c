@@ -73,6 +73,16 @@ static void blocks(void **state) {
     contact_case_clear(&study);
 }
 
+/* The name that a study gives is the one that curves tell, and there is room for all models. */
+static void models_bear_their_names(void **state) {
+    (void)state;
+    size_t m = 0;
+    for (; CONTACT_MODELS[m] != NULL; m++)
+        assert_string_equal(CONTACT_MODELS[m]->name, choice_name(CONTACT_MODEL_CHOICES, (int)m));
+    assert_null(CONTACT_MODEL_CHOICES[m].name);
+    assert_true(m == 3 && m <= CONTACT_MODELS_MOST);
+}
+
 /* Errors are counted from full, wherever it stands. */
 static void models_beside_full(void **state) {
     (void)state;
@@ -80,8 +90,7 @@ static void models_beside_full(void **state) {
         STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": [\"layered\", \"full\", \"halfspace\"]"));
     assert_int_equal(study.model_count, 3);
     assert_int_equal(contact_case_complete(&study), 1);
-    assert_int_equal(contact_case_full(&study), 1);
-    assert_true(contact_case_is_full(&study, 1) && !contact_case_is_full(&study, 0));
+    assert_string_equal(study.models[1]->name, "full");
     assert_int_equal(study.kinematics, KINEMATICS_HENCKY);
     assert_true(fabs(study.rms_slope - 0.1) < 1e-12);
     for (size_t m = 0; m < 2; m++) {
@@ -100,7 +109,7 @@ static void models_beside_full(void **state) {
     study = read_case(STUDY(PROFILE, "\"model\": [\"layered\", \"halfspace\"]"));
     assert_int_equal(study.blocks[0].weighting, GAP_STANDARD);
     assert_int_equal(contact_case_complete(&study), 0);
-    assert_int_equal(contact_case_full(&study), 2);
+    assert_string_equal(study.models[0]->name, "layered");
     contact_case_clear(&study);
 }
 
@@ -298,6 +307,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
         cmocka_unit_test(blocks),
+        cmocka_unit_test(models_bear_their_names),
         cmocka_unit_test(models_beside_full),
         cmocka_unit_test(loads_and_pressures),
         cmocka_unit_test(levels),

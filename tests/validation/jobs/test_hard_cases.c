@@ -173,7 +173,7 @@ static double scalar_of(const char *scale, const char *name) {
         kind->run(runner, 0, 1, NULL, &result, &err) != 0)
         fail_msg("%s: %s", scale, err.text);
     size_t at = 0;
-    while (strcmp(kind->scalars[at], name) != 0)
+    while (strcmp(kind->scalar(at), name) != 0)
         at++;
     double value = result.scalars != NULL ? result.scalars[at] : NAN;
     block_result_clear(&result);

@@ -1,0 +1,16 @@
+#include "jobs/contact/model.h"
+#include <math.h>
+
+double model_sum(size_t n, const double *values) {
+    double sum = 0;
+    for (size_t k = 0; k < n && !isnan(values[k]); k++)
+        sum += values[k];
+    return sum;
+}
+
+double model_largest(size_t n, const double *values) {
+    double largest = 0;
+    for (size_t k = 0; k < n && !isnan(values[k]); k++)
+        largest = fmax(largest, values[k]);
+    return largest;
+}

@@ -1,0 +1,215 @@
+/* The model "full": finite elements on the rough geometry itself (core/full). */
+#include "jobs/contact/model_full.h"
+#include "core/cost.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double ROUNDING = 1e-9; /* relative */
+/* Elements allow edges of slope 6 (core/full/mesh.c), which is where steepest ones lie then. */
+static const double SLOPE_MOST = 2;
+/* RMS heights. Layers fold over valleys deeper than two thirds of the block: of Gaussian profiles
+ * of 32 to 2048 points and surfaces of 16 or 32 a side none mesh at 1, few to most at 2 and 3, all
+ * at 4. */
+static const double HEIGHT_LEAST = 4;
+/* Measures, facts and scalars of its own. */
+enum {
+    FULL_CUTS,    /* of load steps */
+    FULL_CHANGES, /* of single nodes of the active set */
+    FULL_DEEPEST, /* node through the flat */
+    FULL_BALANCE, /* |sum of contact forces/load - 1| */
+    FULL_STRETCH  /* area of the nodes in contact now, over that undeformed */
+};
+static const struct model_curve CURVES[] = {
+    {"stretch", "contact area now/undeformed", FULL_STRETCH},
+    {"load_cuts", "load steps made smaller", FULL_CUTS},
+    {"set_changes", "changes of single nodes of the active set", FULL_CHANGES}};
+enum { FACT_SLOPE, FACT_QUALITY }; /* mesh.h */
+enum full_scalar {
+    SCALAR_LOAD_REACHED, /* the last with values; 0: no mesh, or no equilibrium */
+    SCALAR_ITERATIONS,   /* Newton's, of all loads, as the cuts */
+    SCALAR_CUTS,
+    SCALAR_CHANGES,     /* of single nodes of the active set, of all loads */
+    SCALAR_BALANCE,     /* largest, as the penetrations, which are in RMS heights */
+    SCALAR_PENETRATION, /* of the nodes */
+    SCALAR_WEIGHTED_PENETRATION,
+    SCALAR_STRETCH, /* at the last load reached */
+    SCALAR_SLOPE,   /* steepest edge of the face; none without a mesh, as the next */
+    SCALAR_QUALITY, /* least Jacobian over edges of the undeformed elements */
+    SCALAR_COUNT
+};
+static const char *const SCALARS[SCALAR_COUNT] = {
+    [SCALAR_LOAD_REACHED] = "full_load_reached",
+    [SCALAR_ITERATIONS] = "full_iterations",
+    [SCALAR_CUTS] = "full_load_cuts",
+    [SCALAR_CHANGES] = "full_set_changes",
+    [SCALAR_BALANCE] = "full_force_balance",
+    [SCALAR_PENETRATION] = "full_penetration",
+    [SCALAR_WEIGHTED_PENETRATION] = "full_weighted_penetration",
+    [SCALAR_STRETCH] = "full_stretch",
+    [SCALAR_SLOPE] = "full_steepest_slope",
+    [SCALAR_QUALITY] = "full_mesh_quality",
+};
+
+struct full_options full_model_options(const struct contact_case *study) {
+    struct full_options options = FULL_DEFAULTS;
+    options.kinematics = study->kinematics;
+    options.transition = study->transition_depth;
+    options.tolerance = study->tolerance;
+    return options;
+}
+
+static const char *kinematics_name(const struct contact_case *study) {
+    return choice_name(KINEMATICS_CHOICES, (int)study->kinematics);
+}
+
+/* What finite elements on the true geometry ask of the surface: its slopes matter. */
+static int check(struct contact_case *study, size_t model, struct values *values,
+                 struct error *err) {
+    const struct surface_case *surface = &study->surface;
+    double rms_height, rms_slope;
+    if (surface->grid.nx == 0)
+        return 0; /* at fault already */
+    if (!contact_case_has_scale(study))
+        values_fault(
+            values, "/surface/rms_slope",
+            "the model full needs the scale of the surface, whose slopes count in it: give "
+            "rms_slope or rms_height");
+    int status = contact_case_scale(study, &rms_height, &rms_slope, err);
+    if (status != 0)
+        return status;
+    double height = study->blocks[model].height / rms_height;
+    if (rms_slope > SLOPE_MOST)
+        values_fault(
+            values,
+            surface->spectrum.scale == SCALE_RMS_SLOPE ? "/surface/rms_slope"
+                                                       : "/surface/rms_height",
+            "RMS slope %.4g: the model full can mesh surfaces up to about %g, whose steepest "
+            "edges are three times as steep",
+            rms_slope, SLOPE_MOST);
+    else if (height < HEIGHT_LEAST * (1 - ROUNDING))
+        values_fault(
+            values, "/contact/block_height",
+            "%.4g RMS heights of the surface: the model full needs %g or more; the layers of "
+            "lower blocks fold over the surface's valleys",
+            height, HEIGHT_LEAST);
+    study->rms_slope = rms_slope;
+    return 0;
+}
+
+/* --- cost --- */
+
+static double bytes(const struct contact_case *study, size_t model, const struct grid *grid) {
+    const struct block *block = &study->blocks[model];
+    struct full_options options = full_model_options(study);
+    struct full_size size = cost_full_size(grid, block, &options, study->rms_slope);
+    return cost_full_bytes(grid, block, &options, &size);
+}
+
+static double seconds(const struct contact_case *study, size_t model, const struct grid *grid) {
+    struct full_options options = full_model_options(study);
+    struct full_size size = cost_full_size(grid, &study->blocks[model], &options, study->rms_slope);
+    return cost_full_contact(grid, &size, study->load_count);
+}
+
+/* --- solving --- */
+
+struct contact_solver {
+    struct full *full;
+    double transforms; /* that its work is worth */
+};
+
+static void destroy(struct contact_solver **solver) {
+    if (*solver != NULL)
+        full_destroy(&(*solver)->full);
+    free(*solver);
+    *solver = NULL;
+}
+
+static int create(struct contact_solver **out, const struct contact_case *study, size_t model,
+                  const struct compliance *compliance, struct error *err) {
+    struct full_options options = full_model_options(study);
+    const struct grid *grid = &compliance->grid;
+    struct contact_solver *solver = array_create(1, sizeof *solver);
+    if (solver == NULL)
+        return error_memory(err, sizeof *solver, "a contact solver");
+    solver->transforms = cost_full_transforms(grid);
+    int status = full_create(&solver->full, grid, &study->blocks[model], &options, err);
+    if (status != 0)
+        destroy(&solver);
+    *out = solver;
+    return status;
+}
+
+static int begin(struct contact_solver *solver, const double *z, int (*stop)(void *context),
+                 void *context, double *facts, struct error *err) {
+    full_set_stop(solver->full, stop, context);
+    int status = full_begin(solver->full, z, err);
+    if (status != 0)
+        return status;
+    const struct mesh *mesh = full_mesh(solver->full);
+    facts[FACT_SLOPE] = mesh->slope;
+    facts[FACT_QUALITY] = mesh->quality;
+    return 0;
+}
+
+/* Areas are stretched unless strains are small, or nothing touches. */
+static int press(struct contact_solver *solver, double pressure, struct contact_pressed *out,
+                 struct error *err) {
+    struct full_report report = {.reached = NAN};
+    int status = full_press(solver->full, pressure, &out->state, &report, err);
+    out->reached = report.reached;
+    if (status != 0)
+        return status;
+    out->state.work *= solver->transforms;
+    if (report.kinematics != KINEMATICS_SMALL && isfinite(report.stretch))
+        out->stretch = report.stretch;
+    out->own[FULL_CUTS] = (double)report.cuts;
+    out->own[FULL_CHANGES] = (double)report.changes;
+    out->own[FULL_DEEPEST] = report.penetration;
+    out->own[FULL_BALANCE] = fabs(report.balance);
+    out->own[FULL_STRETCH] = report.stretch;
+    return 0;
+}
+
+static void measure(const struct model_values *values, double *out) {
+    const double *const *own = &values->of[MEASURE_OWN];
+    size_t n = values->load_count, solved = 0;
+    while (solved < n && !isnan(values->of[MEASURE_ITERATIONS][solved]))
+        solved++;
+    out[SCALAR_LOAD_REACHED] = solved > 0 ? values->loads[solved - 1] : 0;
+    out[SCALAR_ITERATIONS] = model_sum(n, values->of[MEASURE_ITERATIONS]);
+    out[SCALAR_CUTS] = model_sum(n, own[FULL_CUTS]);
+    out[SCALAR_CHANGES] = model_sum(n, own[FULL_CHANGES]);
+    out[SCALAR_BALANCE] = model_largest(n, own[FULL_BALANCE]);
+    out[SCALAR_PENETRATION] = model_largest(n, own[FULL_DEEPEST]);
+    out[SCALAR_WEIGHTED_PENETRATION] = model_largest(n, values->of[MEASURE_PENETRATION]);
+    if (solved > 0)
+        out[SCALAR_STRETCH] = own[FULL_STRETCH][solved - 1];
+    out[SCALAR_SLOPE] = values->facts[FACT_SLOPE];
+    out[SCALAR_QUALITY] = values->facts[FACT_QUALITY];
+}
+
+const struct contact_model FULL_MODEL = {
+    .name = "full",
+    .rank = 2,
+    .block = MODEL_LAYERED,
+    .elements = true,
+    .may_fail = true,
+    .stretches = true,
+    .default_height = 1.5,
+    .edge_order = {2, 2.5},
+    .curve_count = sizeof CURVES / sizeof *CURVES,
+    .curves = CURVES,
+    .scalar_count = SCALAR_COUNT,
+    .scalars = SCALARS,
+    .kinematics = kinematics_name,
+    .check = check,
+    .bytes = bytes,
+    .seconds = seconds,
+    .create = create,
+    .destroy = destroy,
+    .begin = begin,
+    .press = press,
+    .measure = measure,
+    .write_mesh = full_write_mesh,
+};
