@@ -1,22 +1,43 @@
 #include "jobs/kind.h"
+#include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-/* One line a kind; each is defined in the file of its name. */
-#define KINDS(KIND) KIND(STATISTICS_KIND) KIND(CONTACT_KIND)
-
-#define DECLARE(kind) extern const struct job_kind kind;
-KINDS(DECLARE)
-
-#define ADDRESS(kind) &(kind),
-const struct job_kind *const JOB_KINDS[] = {KINDS(ADDRESS)};
-const size_t JOB_KIND_COUNT = sizeof JOB_KINDS / sizeof JOB_KINDS[0];
 
 const struct job_kind *kind_find(const char *name) {
     for (size_t a = 0; a < JOB_KIND_COUNT; a++)
         if (strcmp(JOB_KINDS[a]->name, name) == 0)
             return JOB_KINDS[a];
     return NULL;
+}
+
+int kind_case_create(void **out, const struct job_kind *kind, const cJSON *parameters,
+                     struct fault_list *faults, struct error *err) {
+    void *study = array_create(1, kind->case_size);
+    if (study == NULL)
+        return error_memory(err, kind->case_size, "a case");
+    int status = kind->read(study, parameters, faults, err);
+    if (status != 0)
+        kind_case_destroy(kind, &study);
+    *out = study;
+    return status;
+}
+
+void kind_case_destroy(const struct job_kind *kind, void **study) {
+    if (*study != NULL)
+        kind->clear(*study);
+    free(*study);
+    *study = NULL;
+}
+
+int kind_check(const struct job_kind *kind, const cJSON *parameters, struct fault_list *faults,
+               struct study_cost *cost, struct error *err) {
+    void *study = NULL;
+    size_t before = faults->count;
+    int status = kind_case_create(&study, kind, parameters, faults, err);
+    if (status != 0)
+        return status == ERROR_INPUT && faults->count > before ? 0 : status;
+    kind->estimate(study, cost);
+    kind_case_destroy(kind, &study);
+    return 0;
 }
 
 size_t kind_scalar_count(const struct job_kind *kind) {
@@ -37,10 +58,4 @@ int kind_check_names(const struct job_kind *kind, const struct block_result *res
         return error_set(err, ERROR_INPUT, "scalars: %zu names; allowed: %zu", result->scalar_count,
                          count);
     return 0;
-}
-
-double job_clock(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }

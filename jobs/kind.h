@@ -1,96 +1,131 @@
-/* What one unit of work is. A kind reads its parameters, runs realisations, encodes a partial
- * result, merges partial results and turns them into curves. A new kind is one file that fills a
- * struct job_kind, and one line in the table of kind.c.
+/* What one unit of work is. A kind reads a case's parameters, measures realisations into a tally,
+ * writes that tally as bytes and reads it back, and turns it into curves. runner.h runs blocks of
+ * realisations and merger.h merges them, whatever the kind: a new kind is one file that fills a
+ * struct job_kind, and one line in the table of kinds.c.
  *
- * Life of a job: check -> shared_create (once a case and process) -> runner_create -> run (blocks,
- * one thread a runner) -> runner_destroy -> shared_destroy;
- * of a curve: merger_create -> add (in any order: the same bits) -> curves -> merger_destroy. */
+ * What a kind keeps (a case, what its runners share, a workspace, a tally) are structs of its own,
+ * whose sizes it tells. They are zeroed before they are filled, and cleared by the kind in the end,
+ * also where the filling failed half way. */
 #ifndef RUGO_JOBS_KIND_H
 #define RUGO_JOBS_KIND_H
 
-#include "core/error.h"
+#include "core/random.h"
+#include "core/statistics/roughness.h"
+#include "core/surface/surface.h"
 #include "schema/result/block_result.h"
+#include "schema/result/bytes.h"
 #include "schema/study/fault.h"
 #include "schema/study/parameter.h"
+#include "schema/study/study.h"
 #include <cjson/cJSON.h>
 #include <stdint.h>
 
-/* What a case costs; rough, before anything ran. */
-struct job_estimate {
-    size_t nx, ny;         /* grid of one realisation (the finest) */
-    double memory_bytes;   /* peak of one worker thread */
-    double seconds;        /* CPU seconds a realisation on a 3 GHz core */
-    double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
+struct realisations; /* realisations.h */
+struct result_view;  /* schema/result/view.h */
+struct surface_case; /* surface_case.h */
+
+/* The prescribed spectrum of a case with a surface, which sets its scales; empty without. */
+struct surface_basis {
+    const struct modes *modes; /* borrowed */
+    struct moments moments;
 };
 
-/* Asked between realisations, and again and again within one that may take long: how many of the
- * block are done; non-zero stops with ERROR_STOPPED. */
-struct job_control {
-    int (*poll)(void *context, uint64_t done);
-    void *context;
+/* A realisation to be measured. Without a surface z is NULL, and what is behind it empty. */
+struct realisation {
+    struct random_key key; /* its number among others */
+    const double *z;       /* heights on the own grid of the case */
+    struct surface_report report;
+    struct roughness roughness;
+    struct moments moments; /* of its own spectrum: the prescribed one where that is exact */
+    /* To be asked again and again within one that may take long: non-zero stops it with
+     * ERROR_STOPPED. */
+    int (*stop)(void *context);
+    void *stop_context;
 };
-
-struct result_view;
-struct job_shared;
-struct job_runner;
-struct job_merger;
 
 struct job_kind {
     const char *name;
     const struct parameter_table *const *tables; /* of its parameters; NULL at the end */
     uint64_t default_realisations;
-    /* Name of a scalar of one realisation; NULL behind the last. */
-    const char *(*scalar)(size_t at);
-    const struct result_view *view; /* schema/result/view.h; NULL: nothing special is shown */
+    const char *(*scalar)(size_t at); /* of one realisation: a name; NULL behind the last */
+    const struct result_view *view;   /* NULL: nothing special is shown */
 
-    /* Parameters of one case: the study's object of effective values, lists already replaced. Adds
-     * faults that no single range shows (grid too large, alpha out of reach) and estimates the
-     * cost. */
-    int (*check)(const cJSON *parameters, struct fault_list *faults, struct job_estimate *estimate,
-                 struct error *err);
-    /* What all runners of a case can share, such as a factorised matrix: immutable once made, read
-     * by many threads. Both NULL for kinds that share nothing. */
-    int (*shared_create)(struct job_shared **out, const cJSON *parameters, struct error *err);
-    void (*shared_destroy)(struct job_shared **shared);
-    /* Borrows shared, of the same parameters, as long as it lives; NULL where the kind shares
-     * nothing, or for the runner to make its own. */
-    int (*runner_create)(struct job_runner **out, const cJSON *parameters,
-                         const struct job_shared *shared, uint64_t seed, uint64_t case_number,
-                         struct error *err);
-    void (*runner_destroy)(struct job_runner **runner);
-    /* Runs realisations first .. first + count - 1 into out (untouched on failure). */
-    int (*run)(struct job_runner *runner, uint64_t first, uint64_t count,
-               const struct job_control *control, struct block_result *out, struct error *err);
+    /* --- a case --- */
+    size_t case_size;
+    /* Of a study's object of effective values, lists already replaced. Adds faults that no single
+     * range shows (grid too large, alpha out of reach) and returns ERROR_INPUT; faults may be NULL:
+     * the first is the error in any case. */
+    int (*read)(void *study, const cJSON *parameters, struct fault_list *faults, struct error *err);
+    void (*clear)(void *study);
+    void (*estimate)(const void *study, struct study_cost *out);
+    /* Tells cases apart, whatever the order of keys. */
+    uint64_t (*fingerprint)(const void *study);
+    /* The surface that each realisation is given; NULL: kinds without surfaces. */
+    const struct surface_case *(*surface)(const void *study);
 
-    int (*merger_create)(struct job_merger **out, const cJSON *parameters, struct error *err);
-    void (*merger_destroy)(struct job_merger **merger);
-    /* Whether merge would take the block: 0 or its error. Changes nothing, so that many threads may
-     * ask one merger. */
-    int (*fits)(const struct job_merger *merger, const struct block_result *result,
-                struct error *err);
-    /* Decodes and adds one block; ERROR_INPUT for data that is not this case's (nothing added). */
-    int (*merge)(struct job_merger *merger, const struct block_result *result, struct error *err);
-    /* {"realisations": n, "scalars": {...}, "curves": [...]} as in openapi.yaml; caller deletes. */
-    int (*curves)(struct job_merger *merger, cJSON **out, struct error *err);
+    /* --- what all runners of a case can share, such as a factorised matrix; 0 and NULL: nothing.
+     * Immutable once made, read by many threads. --- */
+    size_t shared_size;
+    int (*shared_create)(void *shared, const void *study, struct error *err);
+    void (*shared_clear)(void *shared);
 
+    /* --- what one runner works with; 0 and NULL: nothing. Borrows its arguments. --- */
+    size_t workspace_size;
+    int (*workspace_create)(void *workspace, const void *study, const struct surface_basis *basis,
+                            const void *shared, struct error *err);
+    void (*workspace_clear)(void *workspace);
+
+    /* --- a tally: what realisations add up to, exact, so that any order of merging gives the same
+     * bits. Borrows its arguments. --- */
+    size_t tally_size;
+    int (*tally_create)(void *tally, const void *study, const struct surface_basis *basis,
+                        struct error *err);
+    void (*tally_clear)(void *tally);
+    /* Adds a realisation, and fills scalars (as many as there are; NaN: none). */
+    int (*realise)(void *workspace, const struct realisation *realisation, void *tally,
+                   double *scalars, struct error *err);
+    void (*merge)(void *into, const void *from);
+    uint64_t format, format_version; /* marks of its bytes, between the kinds of the program */
+    void (*put)(struct bytes *bytes, const void *tally);
+    /* Into a new tally. Fails the reader for what put cannot have made. */
+    void (*get)(struct byte_reader *reader, void *tally);
+    /* Whether a tally that was read can be, and whether it can be of these scalars. */
+    bool (*adds_up)(const void *tally);
+    bool (*belongs)(const void *tally, const struct block_result *result);
+
+    /* {"realisations": n, "scalars": {...}, "curves": [...]}; caller deletes. */
+    int (*curves)(const void *study, const struct surface_basis *basis, const void *tally,
+                  const struct realisations *realisations, cJSON **out, struct error *err);
     /* Writes what the case is solved on, for the surface z of its own grid, pressed to p/(E* h')
      * where that is above 0, as a VTU file. Lengths in lambda_s, pressures and stresses in E* h'.
      * Nothing is written on failure. NULL for kinds without meshes. */
-    int (*write_mesh)(const char *path, const cJSON *parameters, const double *z, double pressure,
+    int (*write_mesh)(const char *path, const void *study, const double *z, double pressure,
                       struct error *err);
 };
 
+/* All kinds, in a fixed order; kind_find gives NULL for an unknown name. kinds.c holds nothing but
+ * these two: a program that defines them itself has the kinds that it names there. */
+extern const struct job_kind *const JOB_KINDS[];
+extern const size_t JOB_KIND_COUNT;
+/* Defines both from a list: #define LIST(KIND) KIND(STATISTICS_KIND) KIND(CONTACT_KIND) */
+#define JOB_KIND_DECLARE(kind) extern const struct job_kind kind;
+#define JOB_KIND_ADDRESS(kind) &(kind),
+#define JOB_KIND_TABLE(LIST)                                                                       \
+    LIST(JOB_KIND_DECLARE)                                                                         \
+    const struct job_kind *const JOB_KINDS[] = {LIST(JOB_KIND_ADDRESS)};                           \
+    const size_t JOB_KIND_COUNT = sizeof JOB_KINDS / sizeof JOB_KINDS[0];
+
+const struct job_kind *kind_find(const char *name);
+/* Reads a case into memory of its own, zeroed and filled; kind_case_destroy accepts NULL. */
+int kind_case_create(void **out, const struct job_kind *kind, const cJSON *parameters,
+                     struct fault_list *faults, struct error *err);
+void kind_case_destroy(const struct job_kind *kind, void **study);
+/* Adds what is wrong with a case to faults (0 then too), or estimates what it costs. */
+int kind_check(const struct job_kind *kind, const cJSON *parameters, struct fault_list *faults,
+               struct study_cost *cost, struct error *err);
 /* How many scalars a realisation has, and whether these of a result are they: ERROR_INPUT. */
 size_t kind_scalar_count(const struct job_kind *kind);
 int kind_check_names(const struct job_kind *kind, const struct block_result *result,
                      struct error *err);
-
-/* Seconds on a clock that never steps: for block_result.seconds. */
-double job_clock(void);
-
-/* All kinds, in a fixed order; kind_find gives NULL for an unknown name. */
-extern const struct job_kind *const JOB_KINDS[];
-extern const size_t JOB_KIND_COUNT;
-const struct job_kind *kind_find(const char *name);
 
 #endif

@@ -2,7 +2,8 @@
 #ifndef RUGO_JOBS_REALISATIONS_H
 #define RUGO_JOBS_REALISATIONS_H
 
-#include "jobs/kind.h"
+#include "core/error.h"
+#include "schema/result/block_result.h"
 
 struct realisation_block {
     uint64_t first, count;

@@ -1,5 +1,6 @@
 #include "worker/aggregate.h"
 #include "jobs/kind.h"
+#include "jobs/merger.h"
 #include "schema/json/flat.h"
 #include "schema/json/wire_field.h"
 
@@ -27,20 +28,20 @@ static int merge_block(void *context, const struct block_result *block, struct e
                          (unsigned long long)block->first,
                          (unsigned long long)(block->first + block->count - 1), merge->kind->name);
     }
-    return merge->kind->merge(merge->merger, block, err);
+    return merger_add(merge->merger, block, err);
 }
 
 static int case_merge(struct store *store, const char *study, uint64_t case_number,
                       const struct job_kind *kind, const cJSON *parameters, cJSON **out,
                       struct error *err) {
     struct merge merge = {.kind = kind};
-    int status = kind->merger_create(&merge.merger, parameters, err);
+    int status = merger_create(&merge.merger, kind, parameters, err);
     if (status) {
         return status;
     }
     status = store_results(store, study, case_number, merge_block, &merge, err);
-    status = status ? status : kind->curves(merge.merger, out, err);
-    kind->merger_destroy(&merge.merger);
+    status = status ? status : merger_curves(merge.merger, out, err);
+    merger_destroy(&merge.merger);
     return status ? error_context(err, "case %llu", (unsigned long long)case_number) : 0;
 }
 

@@ -8,19 +8,7 @@ static const double MEMORY_PART = 0.9;
 
 static int check_kind(const void *context, const cJSON *parameters, struct fault_list *faults,
                       struct study_cost *cost, struct error *err) {
-    const struct job_kind *kind = context;
-    struct job_estimate estimate = {0};
-    int status = kind->check(parameters, faults, &estimate, err);
-    if (status == 0) {
-        *cost = (struct study_cost){
-            .nx = estimate.nx,
-            .ny = estimate.ny,
-            .memory_bytes = estimate.memory_bytes,
-            .seconds = estimate.seconds,
-            .relative_error = estimate.relative_error,
-        };
-    }
-    return status;
+    return kind_check(context, parameters, faults, cost, err);
 }
 
 enum { KINDS_MOST = 8 };

@@ -75,7 +75,7 @@ static struct shared_part *part_link(struct shared_parts *parts, const struct jo
 static int part_make(struct shared_parts *parts, struct shared_part *part, const cJSON *parameters,
                      struct error *err) {
     struct job_shared *content = NULL;
-    int status = part->kind->shared_create(&content, parameters, err);
+    int status = job_shared_create(&content, part->kind, parameters, err);
     pthread_mutex_lock(&parts->lock);
     part->content = content;
     if (status != 0)
@@ -120,7 +120,7 @@ void shared_parts_let_go(struct shared_parts *parts, struct shared_part **handle
         part_unlink(parts, part);
     pthread_mutex_unlock(&parts->lock);
     if (last) {
-        part->kind->shared_destroy(&part->content);
+        job_shared_destroy(&part->content);
         free(part);
     }
 }

@@ -6,7 +6,7 @@
 #ifndef RUGO_WORKER_SHARED_PARTS_H
 #define RUGO_WORKER_SHARED_PARTS_H
 
-#include "jobs/kind.h"
+#include "jobs/runner.h"
 #include "schema/store/store.h"
 #include <pthread.h>
 

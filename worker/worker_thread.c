@@ -1,4 +1,5 @@
 #include "worker/worker_thread.h"
+#include "jobs/runner.h"
 #include "worker/log.h"
 
 #include <stdarg.h>
@@ -50,7 +51,7 @@ static bool can_wait(int status) {
 
 static void runner_drop(struct worker_thread *thread) {
     if (thread->runner != NULL) {
-        thread->kind->runner_destroy(&thread->runner);
+        runner_destroy(&thread->runner);
         thread->runner = NULL;
     }
     shared_parts_let_go(&thread->pool->parts, &thread->part);
@@ -66,9 +67,8 @@ static int runner_prepare(struct worker_thread *thread, const struct claimed_job
     int status = shared_parts_take(&thread->pool->parts, kind, job->study, job->case_number,
                                    job->parameters, &thread->part, err);
     if (status == 0)
-        status =
-            kind->runner_create(&thread->runner, job->parameters, shared_part_content(thread->part),
-                                job->seed, job->case_number, err);
+        status = runner_create(&thread->runner, kind, job->parameters,
+                               shared_part_content(thread->part), job->seed, job->case_number, err);
     if (status != 0) {
         runner_drop(thread);
     } else {
@@ -95,8 +95,7 @@ static int job_run(struct worker_thread *thread, const struct claimed_job *job,
     struct job_control control = {.poll = thread_poll, .context = thread};
     int status = runner_prepare(thread, job, report->kind, err);
     if (status == 0) {
-        status = report->kind->run(thread->runner, job->first, job->count, &control,
-                                   &report->result, err);
+        status = runner_run(thread->runner, job->first, job->count, &control, &report->result, err);
     }
     return status;
 }

@@ -68,6 +68,6 @@ int contact_case_scale(const struct contact_case *study, double *rms_height, dou
                        struct error *err);
 
 /* Memory, time and error of one realisation, before anything ran. */
-void contact_case_estimate(const struct contact_case *study, struct job_estimate *out);
+void contact_case_estimate(const struct contact_case *study, struct study_cost *out);
 
 #endif

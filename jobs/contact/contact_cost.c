@@ -8,7 +8,7 @@
 /* The program, its libraries, and tables that do not grow with the grid. */
 static const double PROCESS_BYTES = 1.2e7;
 
-void contact_case_estimate(const struct contact_case *study, struct job_estimate *out) {
+void contact_case_estimate(const struct contact_case *study, struct study_cost *out) {
     const struct surface_case *surface = &study->surface;
     const struct grid *finest = &contact_case_finest(study)->grid;
     size_t mode_x = surface_case_band(surface), mode_y = surface->dimension == 1 ? 0 : mode_x;

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { FORMAT_KIND = 0x434f, FORMAT_VERSION = 4 }; /* "CO" */
 enum { SCALE_BITS_MOST = 16 };
 /* Areas that strains have changed are rounded to 2^-20 of a node's, so that sums stay exact. */
 static const uint64_t STRETCHED_UNITS = 1 << 20;
@@ -221,32 +220,26 @@ struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t
                        &total);
 }
 
-int contact_tally_encode(const struct contact_tally *tally, unsigned char **data, size_t *size,
-                         struct error *err) {
-    struct bytes bytes = {0};
-    bytes_put_unsigned(&bytes, FORMAT_KIND);
-    bytes_put_unsigned(&bytes, FORMAT_VERSION);
-    bytes_put_unsigned(&bytes, tally->study->fingerprint);
-    bytes_put_unsigned(&bytes, tally->realisations);
+void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally) {
+    bytes_put_unsigned(bytes, tally->realisations);
     for (size_t a = 0; a < CONTACT_SUMS; a++) {
-        tally_sums_put(&bytes, &tally->sums[a].sums);
-        tally_put(&bytes, &tally->sums[a].counts);
+        tally_sums_put(bytes, &tally->sums[a].sums);
+        tally_put(bytes, &tally->sums[a].counts);
     }
-    tally_total_put(&bytes, &tally->points);
-    tally_put(&bytes, &tally->pressures);
-    notes_put(&bytes, &tally->notes);
-    bytes_seal(&bytes);
-    if (bytes.failed) {
-        bytes_clear(&bytes);
-        return error_memory(err, bytes.capacity, "a partial result");
-    }
-    *data = bytes.data;
-    *size = bytes.size;
-    return 0;
+    tally_total_put(bytes, &tally->points);
+    tally_put(bytes, &tally->pressures);
+    notes_put(bytes, &tally->notes);
 }
 
-static int refuse(struct error *err, const char *reason) {
-    return error_set(err, ERROR_INPUT, "the partial result %s", reason);
+void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally) {
+    tally->realisations = bytes_get_unsigned(reader);
+    for (size_t a = 0; a < CONTACT_SUMS; a++) {
+        tally_sums_get(reader, &tally->sums[a].sums);
+        tally_get(reader, &tally->sums[a].counts);
+    }
+    tally_total_get(reader, &tally->points);
+    tally_get_weighed(reader, &tally->pressures);
+    notes_get(reader, &tally->notes);
 }
 
 /* Whether a cell has as many values as it can: none more than there are realisations, one of each
@@ -292,8 +285,7 @@ static bool pressures_fit(const struct contact_tally *tally, size_t model, size_
     return fabs(sum - area) <= 1e-6 * area + 0.5;
 }
 
-/* Whether the counts can be, and belong together. */
-static bool adds_up(const struct contact_tally *tally) {
+bool contact_tally_adds_up(const struct contact_tally *tally) {
     const struct contact_case *study = tally->study;
     for (size_t a = 0; a < MEASURE_COUNT; a++)
         for (size_t cell = 0; cell < contact_case_cells(study); cell++)
@@ -311,30 +303,6 @@ static bool adds_up(const struct contact_tally *tally) {
                 return false;
     return tally->points.realisations == tally->realisations &&
            tally->notes.count == unsolved(tally);
-}
-
-int contact_tally_decode(struct contact_tally *tally, const unsigned char *data, size_t size,
-                         struct error *err) {
-    struct byte_reader reader = bytes_open(data, size);
-    if (reader.failed)
-        return refuse(err, "is cut short or damaged: its seal does not match");
-    if (bytes_get_unsigned(&reader) != FORMAT_KIND)
-        return refuse(err, "is not one of contact");
-    if (bytes_get_unsigned(&reader) != FORMAT_VERSION)
-        return refuse(err, "is of another version of its format");
-    if (bytes_get_unsigned(&reader) != tally->study->fingerprint)
-        return refuse(err, "is of a case with other parameters");
-    tally->realisations = bytes_get_unsigned(&reader);
-    for (size_t a = 0; a < CONTACT_SUMS; a++) {
-        tally_sums_get(&reader, &tally->sums[a].sums);
-        tally_get(&reader, &tally->sums[a].counts);
-    }
-    tally_total_get(&reader, &tally->points);
-    tally_get_weighed(&reader, &tally->pressures);
-    notes_get(&reader, &tally->notes);
-    if (reader.failed || reader.at != reader.end)
-        return refuse(err, "is malformed");
-    return adds_up(tally) ? 0 : refuse(err, "does not add up");
 }
 
 void contact_tally_merge(struct contact_tally *into, const struct contact_tally *from) {

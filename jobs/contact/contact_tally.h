@@ -75,11 +75,10 @@ uint64_t contact_tally_units(const struct contact_case *study, size_t model);
 /* First cell of the pressures of a model and load: underflow, the bins, overflow. */
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at);
 
-/* As those of statistics_tally.h. */
-int contact_tally_encode(const struct contact_tally *tally, unsigned char **data, size_t *size,
-                         struct error *err);
-int contact_tally_decode(struct contact_tally *tally, const unsigned char *data, size_t size,
-                         struct error *err);
+/* As job_kind has them. Counts that add up can be, and belong together. */
+void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally);
+void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally);
+bool contact_tally_adds_up(const struct contact_tally *tally);
 void contact_tally_merge(struct contact_tally *into, const struct contact_tally *from);
 
 #endif

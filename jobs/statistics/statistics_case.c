@@ -56,7 +56,7 @@ static double expected_seconds(const struct statistics_case *study) {
     return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points);
 }
 
-void statistics_case_estimate(const struct statistics_case *study, struct job_estimate *out) {
+void statistics_case_estimate(const struct statistics_case *study, struct study_cost *out) {
     const struct surface_case *surface = &study->surface;
     const struct grid *grid = &surface->grid;
     size_t mode_x = surface_case_band(surface);

@@ -26,6 +26,6 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
 void statistics_case_clear(struct statistics_case *study);
 
 /* Memory, time and error of one realisation, before anything ran. */
-void statistics_case_estimate(const struct statistics_case *study, struct job_estimate *out);
+void statistics_case_estimate(const struct statistics_case *study, struct study_cost *out);
 
 #endif

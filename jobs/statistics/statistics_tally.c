@@ -2,8 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FORMAT_KIND = 0x5354, FORMAT_VERSION = 1 }; /* "ST" */
-
 static size_t cells_of(const struct bins *bins) {
     return bins->count + 2;
 }
@@ -113,37 +111,39 @@ void statistics_tally_summits(struct statistics_tally *tally, const struct summi
     add_cells(&tally->equivalent, NULL, marginal + tally->summit.size, summits->count);
 }
 
-int statistics_tally_encode(const struct statistics_tally *tally, unsigned char **data,
-                            size_t *size, struct error *err) {
-    struct bytes bytes = {0};
-    bytes_put_unsigned(&bytes, FORMAT_KIND);
-    bytes_put_unsigned(&bytes, FORMAT_VERSION);
-    bytes_put_unsigned(&bytes, tally->study->fingerprint);
-    bytes_put_unsigned(&bytes, tally->density.size);
-    bytes_put_unsigned(&bytes, tally->correlation.size);
-    tally_total_put(&bytes, &tally->points);
-    tally_total_put(&bytes, &tally->summits);
-    tally_put(&bytes, &tally->height);
-    tally_put(&bytes, &tally->height_below);
-    tally_put(&bytes, &tally->summit);
-    tally_put(&bytes, &tally->summit_below);
-    tally_put(&bytes, &tally->equivalent);
-    tally_put(&bytes, &tally->joint);
-    tally_sums_put(&bytes, &tally->curvature);
-    tally_sums_put(&bytes, &tally->density);
-    tally_sums_put(&bytes, &tally->correlation);
-    bytes_seal(&bytes);
-    if (bytes.failed) {
-        bytes_clear(&bytes);
-        return error_memory(err, bytes.capacity, "a partial result");
-    }
-    *data = bytes.data;
-    *size = bytes.size;
-    return 0;
+void statistics_tally_put(struct bytes *bytes, const struct statistics_tally *tally) {
+    bytes_put_unsigned(bytes, tally->density.size);
+    bytes_put_unsigned(bytes, tally->correlation.size);
+    tally_total_put(bytes, &tally->points);
+    tally_total_put(bytes, &tally->summits);
+    tally_put(bytes, &tally->height);
+    tally_put(bytes, &tally->height_below);
+    tally_put(bytes, &tally->summit);
+    tally_put(bytes, &tally->summit_below);
+    tally_put(bytes, &tally->equivalent);
+    tally_put(bytes, &tally->joint);
+    tally_sums_put(bytes, &tally->curvature);
+    tally_sums_put(bytes, &tally->density);
+    tally_sums_put(bytes, &tally->correlation);
 }
 
-static int refuse(struct error *err, const char *reason) {
-    return error_set(err, ERROR_INPUT, "the partial result %s", reason);
+void statistics_tally_get(struct byte_reader *reader, struct statistics_tally *tally) {
+    if (bytes_get_unsigned(reader) != tally->density.size ||
+        bytes_get_unsigned(reader) != tally->correlation.size) {
+        reader->failed = 1;
+        return;
+    }
+    tally_total_get(reader, &tally->points);
+    tally_total_get(reader, &tally->summits);
+    tally_get(reader, &tally->height);
+    tally_get(reader, &tally->height_below);
+    tally_get(reader, &tally->summit);
+    tally_get(reader, &tally->summit_below);
+    tally_get(reader, &tally->equivalent);
+    tally_get(reader, &tally->joint);
+    tally_sums_get(reader, &tally->curvature);
+    tally_sums_get(reader, &tally->density);
+    tally_sums_get(reader, &tally->correlation);
 }
 
 /* Whether every thing of a histogram is in one of its cells. */
@@ -154,38 +154,10 @@ static bool adds_up(const struct tally *tally, const struct tally_total *total) 
     return sum == total->sum;
 }
 
-int statistics_tally_decode(struct statistics_tally *tally, const unsigned char *data, size_t size,
-                            struct error *err) {
-    struct byte_reader reader = bytes_open(data, size);
-    if (reader.failed)
-        return refuse(err, "is cut short or damaged: its seal does not match");
-    if (bytes_get_unsigned(&reader) != FORMAT_KIND)
-        return refuse(err, "is not one of statistics");
-    if (bytes_get_unsigned(&reader) != FORMAT_VERSION)
-        return refuse(err, "is of another version of its format");
-    if (bytes_get_unsigned(&reader) != tally->study->fingerprint)
-        return refuse(err, "is of a case with other parameters");
-    if (bytes_get_unsigned(&reader) != tally->density.size ||
-        bytes_get_unsigned(&reader) != tally->correlation.size)
-        return refuse(err, "has other spectra");
-    tally_total_get(&reader, &tally->points);
-    tally_total_get(&reader, &tally->summits);
-    tally_get(&reader, &tally->height);
-    tally_get(&reader, &tally->height_below);
-    tally_get(&reader, &tally->summit);
-    tally_get(&reader, &tally->summit_below);
-    tally_get(&reader, &tally->equivalent);
-    tally_get(&reader, &tally->joint);
-    tally_sums_get(&reader, &tally->curvature);
-    tally_sums_get(&reader, &tally->density);
-    tally_sums_get(&reader, &tally->correlation);
-    if (reader.failed || reader.at != reader.end)
-        return refuse(err, "is malformed");
-    if (tally->points.realisations != tally->summits.realisations ||
-        !adds_up(&tally->height, &tally->points) || !adds_up(&tally->summit, &tally->summits) ||
-        !adds_up(&tally->equivalent, &tally->summits) || !adds_up(&tally->joint, &tally->summits))
-        return refuse(err, "does not add up");
-    return 0;
+bool statistics_tally_adds_up(const struct statistics_tally *tally) {
+    return tally->points.realisations == tally->summits.realisations &&
+           adds_up(&tally->height, &tally->points) && adds_up(&tally->summit, &tally->summits) &&
+           adds_up(&tally->equivalent, &tally->summits) && adds_up(&tally->joint, &tally->summits);
 }
 
 void statistics_tally_merge(struct statistics_tally *into, const struct statistics_tally *from) {

@@ -36,12 +36,10 @@ double statistics_tally_bytes(const struct statistics_case *study);
 void statistics_tally_heights(struct statistics_tally *tally, size_t n, const double *z);
 void statistics_tally_summits(struct statistics_tally *tally, const struct summit_list *summits);
 
-/* The encoded form is sealed by a hash and opened only by a case with the same parameters. */
-int statistics_tally_encode(const struct statistics_tally *tally, unsigned char **data,
-                            size_t *size, struct error *err);
-/* Into a new tally; ERROR_INPUT leaves its contents undefined. */
-int statistics_tally_decode(struct statistics_tally *tally, const unsigned char *data, size_t size,
-                            struct error *err);
+/* As job_kind has them. A tally adds up where every thing of a histogram is in one of its cells. */
+void statistics_tally_put(struct bytes *bytes, const struct statistics_tally *tally);
+void statistics_tally_get(struct byte_reader *reader, struct statistics_tally *tally);
+bool statistics_tally_adds_up(const struct statistics_tally *tally);
 /* Exact: any order gives the same bits. */
 void statistics_tally_merge(struct statistics_tally *into, const struct statistics_tally *from);
 

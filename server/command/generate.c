@@ -119,14 +119,23 @@ static int characterise(const struct order *order, const struct surface_case *su
     return 0;
 }
 
+static int write_case_mesh(const struct order *order, const struct job_kind *kind,
+                           const cJSON *parameters, const double *z, struct error *err) {
+    void *study = NULL;
+    int status = kind_case_create(&study, kind, parameters, NULL, err);
+    if (status == 0)
+        status = kind->write_mesh(order->options->mesh, study, z, order->options->pressure, err);
+    kind_case_destroy(kind, &study);
+    return status;
+}
+
 static int write_mesh(const struct order *order, const struct study *study, const double *z,
                       struct error *err) {
     const struct job_kind *kind = kind_find(study->kind->name);
     size_t other = 0;
     if (kind != NULL && kind->write_mesh != NULL)
-        return kind->write_mesh(order->options->mesh,
-                                study->cases[order->options->case_number].parameters, z,
-                                order->options->pressure, err);
+        return write_case_mesh(order, kind, study->cases[order->options->case_number].parameters, z,
+                               err);
     while (other < JOB_KIND_COUNT && JOB_KINDS[other]->write_mesh == NULL)
         other++;
     return error_set(err, ERROR_INPUT, "--mesh needs a study of kind %s, and this is %s",

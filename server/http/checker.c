@@ -1,5 +1,6 @@
 #include "server/http/checker.h"
 #include "jobs/kind.h"
+#include "jobs/merger.h"
 #include "schema/json/json.h"
 #include <pthread.h>
 #include <stdio.h>
@@ -24,7 +25,7 @@ struct checker {
 
 static void case_merger_destroy(struct case_merger **one) {
     if (*one && (*one)->merger)
-        (*one)->kind->merger_destroy(&(*one)->merger);
+        merger_destroy(&(*one)->merger);
     free(*one);
     *one = NULL;
 }
@@ -38,7 +39,7 @@ static int case_merger_create(struct case_merger **out, const struct claimed_job
     one->case_number = job->case_number;
     one->kind = kind;
     one->holders = 1;
-    int status = kind->merger_create(&one->merger, job->parameters, err);
+    int status = merger_create(&one->merger, kind, job->parameters, err);
     if (status != 0)
         case_merger_destroy(&one);
     else
@@ -97,7 +98,7 @@ int checker_check(struct checker *checker, const struct claimed_job *job,
             return status;
         keep(checker, one);
     }
-    status = kind->fits(one->merger, result, err);
+    status = merger_fits(one->merger, result, err);
     let_go(checker, one);
     return status;
 }

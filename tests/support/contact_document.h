@@ -3,6 +3,8 @@
 #define RUGO_TESTS_SUPPORT_CONTACT_DOCUMENT_H
 
 #include "jobs/kind.h"
+#include "jobs/merger.h"
+#include "jobs/runner.h"
 #include "jobs/value.h"
 #include <math.h>
 #include <setjmp.h>
@@ -24,14 +26,14 @@ static inline cJSON *solve(const char *study, uint64_t count) {
     struct error err = {0};
     cJSON *document = NULL, *parameters = cJSON_Parse(study);
     assert_non_null(parameters);
-    if (kind->runner_create(&runner, parameters, NULL, CONTACT_SEED, 0, &err) != 0 ||
-        kind->merger_create(&merger, parameters, &err) != 0 ||
-        kind->run(runner, 0, count, NULL, &result, &err) != 0 ||
-        kind->merge(merger, &result, &err) != 0 || kind->curves(merger, &document, &err) != 0)
+    if (runner_create(&runner, kind, parameters, NULL, CONTACT_SEED, 0, &err) != 0 ||
+        merger_create(&merger, kind, parameters, &err) != 0 ||
+        runner_run(runner, 0, count, NULL, &result, &err) != 0 ||
+        merger_add(merger, &result, &err) != 0 || merger_curves(merger, &document, &err) != 0)
         fail_msg("%s: %s", study, err.text);
     block_result_clear(&result);
-    kind->runner_destroy(&runner);
-    kind->merger_destroy(&merger);
+    runner_destroy(&runner);
+    merger_destroy(&merger);
     cJSON_Delete(parameters);
     return document;
 }

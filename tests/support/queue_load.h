@@ -3,6 +3,7 @@
 #define RUGO_TESTS_SUPPORT_QUEUE_LOAD_H
 
 #include "jobs/kind.h"
+#include "jobs/runner.h"
 #include "schema/store/store.h"
 #include "schema/study/fault.h"
 #include "worker/kinds.h"
@@ -72,12 +73,12 @@ static inline int queue_compute(struct block_result *result, struct error *err) 
     struct job_runner *runner = NULL;
     const struct job_kind *kind = kind_find("statistics");
     struct study *study = queue_study(1, err);
-    int status = study ? kind->runner_create(&runner, study->cases[0].parameters, NULL, 1, 0, err)
+    int status = study ? runner_create(&runner, kind, study->cases[0].parameters, NULL, 1, 0, err)
                        : err->code;
     if (!status)
-        status = kind->run(runner, 0, 1, NULL, result, err);
+        status = runner_run(runner, 0, 1, NULL, result, err);
     if (runner)
-        kind->runner_destroy(&runner);
+        runner_destroy(&runner);
     study_destroy(&study);
     return status;
 }

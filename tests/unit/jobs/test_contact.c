@@ -2,6 +2,8 @@
  * gives the same document, foreign and damaged results are refused whole, and means, errors and
  * paired differences are those that the realisations themselves give. */
 #include "jobs/kind.h"
+#include "jobs/merger.h"
+#include "jobs/runner.h"
 #include "jobs/value.h"
 #include "schema/result/bytes.h"
 #include "tests/support/seed.h"
@@ -55,7 +57,7 @@ static struct job_shared *shared_of(const char *study) {
     struct job_shared *shared = NULL;
     struct error err = {0};
     cJSON *parameters = parse(study);
-    if (kind()->shared_create(&shared, parameters, &err) != 0)
+    if (job_shared_create(&shared, kind(), parameters, &err) != 0)
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
     return shared;
@@ -66,7 +68,7 @@ static struct job_runner *runner_of(const char *study, const struct job_shared *
     struct job_runner *runner = NULL;
     struct error err = {0};
     cJSON *parameters = parse(study);
-    if (kind()->runner_create(&runner, parameters, shared, SEED, CASE, &err) != 0)
+    if (runner_create(&runner, kind(), parameters, shared, SEED, CASE, &err) != 0)
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
     return runner;
@@ -76,7 +78,7 @@ static struct job_merger *merger_of(const char *study) {
     struct job_merger *merger = NULL;
     struct error err = {0};
     cJSON *parameters = parse(study);
-    if (kind()->merger_create(&merger, parameters, &err) != 0)
+    if (merger_create(&merger, kind(), parameters, &err) != 0)
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
     return merger;
@@ -85,21 +87,21 @@ static struct job_merger *merger_of(const char *study) {
 static struct block_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
     struct block_result result = {0};
     struct error err = {0};
-    if (kind()->run(runner, first, count, NULL, &result, &err) != 0)
+    if (runner_run(runner, first, count, NULL, &result, &err) != 0)
         fail_msg("%s", err.text);
     return result;
 }
 
 static void merge(struct job_merger *merger, const struct block_result *result) {
     struct error err = {0};
-    if (kind()->merge(merger, result, &err) != 0)
+    if (merger_add(merger, result, &err) != 0)
         fail_msg("%s", err.text);
 }
 
 static cJSON *curves_of(struct job_merger *merger) {
     cJSON *document = NULL;
     struct error err = {0};
-    if (kind()->curves(merger, &document, &err) != 0)
+    if (merger_curves(merger, &document, &err) != 0)
         fail_msg("%s", err.text);
     return document;
 }
@@ -120,8 +122,8 @@ static cJSON *document_of(const char *study, uint64_t count) {
     merge(merger, &result);
     cJSON *document = curves_of(merger);
     block_result_clear(&result);
-    kind()->merger_destroy(&merger);
-    kind()->runner_destroy(&runner);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
     return document;
 }
 
@@ -180,19 +182,19 @@ static void any_split_and_order(void **state) {
             char *got = text_of(merger);
             assert_string_equal(got, expected);
             free(got);
-            kind()->merger_destroy(&merger);
+            merger_destroy(&merger);
         }
         free(expected);
-        kind()->runner_destroy(&runners[0]);
-        kind()->runner_destroy(&runners[1]);
-        kind()->shared_destroy(&shared);
+        runner_destroy(&runners[0]);
+        runner_destroy(&runners[1]);
+        job_shared_destroy(&shared);
     }
 }
 
 static void assert_refused(struct job_merger *merger, const struct block_result *result,
                            const char *words) {
     struct error err = {0};
-    int status = kind()->merge(merger, result, &err);
+    int status = merger_add(merger, result, &err);
     if (status != ERROR_INPUT || strstr(err.text, words) == NULL)
         fail_msg("'%s' expected, but status %d, '%s'", words, status, err.text);
 }
@@ -237,9 +239,9 @@ static void foreign_and_damaged(void **state) {
     block_result_clear(&good);
     block_result_clear(&next);
     block_result_clear(&foreign);
-    kind()->merger_destroy(&merger);
-    kind()->runner_destroy(&runner);
-    kind()->runner_destroy(&other);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
+    runner_destroy(&other);
 }
 
 /* Changed bytes under a seal made anew: taken or refused, but never a crash, a read past the end or
@@ -265,7 +267,7 @@ static void malicious(void **state) {
         for (size_t a = 0; a < 8; a++)
             copy[bad.size - 8 + a] = (unsigned char)(hash >> (8 * a));
         struct error err = {0};
-        int status = kind()->merge(merger, &bad, &err);
+        int status = merger_add(merger, &bad, &err);
         assert_true(status == 0 || status == ERROR_INPUT);
         taken += status == 0;
     }
@@ -273,8 +275,8 @@ static void malicious(void **state) {
     cJSON_Delete(curves_of(merger));
     free(copy);
     block_result_clear(&good);
-    kind()->merger_destroy(&merger);
-    kind()->runner_destroy(&runner);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
 }
 
 /* Values y of each realisation by itself. */
@@ -291,9 +293,9 @@ static void each_realisation(const char *series, const char *model, double level
         assert_true(isnan(at(curve, "/standard_error", point)));
         cJSON_Delete(document);
         block_result_clear(&result);
-        kind()->merger_destroy(&single);
+        merger_destroy(&single);
     }
-    kind()->runner_destroy(&runner);
+    runner_destroy(&runner);
 }
 
 static double mean_of(const double *y, double *standard_error) {
@@ -380,8 +382,8 @@ static void failures_are_told(void **state) {
     assert_null(value_at(document, "/notes"));
     cJSON_Delete(document);
     block_result_clear(&result);
-    kind()->merger_destroy(&merger);
-    kind()->runner_destroy(&runner);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
 }
 
 /* What must be true of any solution, and what full contact leaves without a value. */
@@ -438,7 +440,7 @@ static void no_realisation_yet(void **state) {
     assert_true(isnan(at(curve, "/y", 0)) && isnan(at(curve, "/discretisation_error", 0)));
     assert_true(text_is(curve, "/discretisation_order_from", "assumed"));
     cJSON_Delete(document);
-    kind()->merger_destroy(&merger);
+    merger_destroy(&merger);
 }
 
 /* Stops in the midst of a realisation, which has four questions: one before it, one a load. */
@@ -455,10 +457,10 @@ static void stopping(void **state) {
     const struct job_control control = {stop_at_last, &asked};
     struct block_result result = {.first = 77};
     struct error err = {0};
-    assert_int_equal(kind()->run(runner, 0, 9, &control, &result, &err), ERROR_STOPPED);
+    assert_int_equal(runner_run(runner, 0, 9, &control, &result, &err), ERROR_STOPPED);
     assert_true(result.first == 77 && result.data == NULL);
     assert_int_equal(asked, 13);
-    kind()->runner_destroy(&runner);
+    runner_destroy(&runner);
 }
 
 static int stop_at_number(void *context, uint64_t done) {
@@ -478,7 +480,7 @@ static void stopping_within_a_load(void **state) {
     for (int number = 0;; number += step, step += 7) {
         int left = number;
         const struct job_control control = {stop_at_number, &left};
-        int status = kind()->run(runner, 0, 2, &control, &result, &err);
+        int status = runner_run(runner, 0, 2, &control, &result, &err);
         if (status == 0)
             break;
         assert_int_equal(status, ERROR_STOPPED);
@@ -489,7 +491,7 @@ static void stopping_within_a_load(void **state) {
     assert_memory_equal(result.data, whole.data, whole.size);
     block_result_clear(&whole);
     block_result_clear(&result);
-    kind()->runner_destroy(&runner);
+    runner_destroy(&runner);
 }
 
 int main(void) {

@@ -289,7 +289,7 @@ static void fingerprints(void **state) {
 static void estimates(void **state) {
     (void)state;
     struct contact_case study = read_case(STUDY(PROFILE, ""));
-    struct job_estimate small, large;
+    struct study_cost small, large;
     contact_case_estimate(&study, &small);
     contact_case_clear(&study);
     study = read_case("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 16}, \"contact\":"

@@ -3,6 +3,8 @@
  * are those that the realisations themselves give. */
 #include "core/statistics/summits.h"
 #include "jobs/kind.h"
+#include "jobs/merger.h"
+#include "jobs/runner.h"
 #include "jobs/value.h"
 #include "schema/result/bytes.h"
 #include "schema/study/fault.h"
@@ -46,7 +48,7 @@ static struct job_runner *runner_of(const char *study) {
     struct job_runner *runner = NULL;
     struct error err = {0};
     cJSON *parameters = parse(study);
-    if (kind()->runner_create(&runner, parameters, NULL, SEED, CASE, &err) != 0)
+    if (runner_create(&runner, kind(), parameters, NULL, SEED, CASE, &err) != 0)
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
     return runner;
@@ -56,7 +58,7 @@ static struct job_merger *merger_of(const char *study) {
     struct job_merger *merger = NULL;
     struct error err = {0};
     cJSON *parameters = parse(study);
-    if (kind()->merger_create(&merger, parameters, &err) != 0)
+    if (merger_create(&merger, kind(), parameters, &err) != 0)
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
     return merger;
@@ -65,21 +67,21 @@ static struct job_merger *merger_of(const char *study) {
 static struct block_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
     struct block_result result = {0};
     struct error err = {0};
-    if (kind()->run(runner, first, count, NULL, &result, &err) != 0)
+    if (runner_run(runner, first, count, NULL, &result, &err) != 0)
         fail_msg("%s", err.text);
     return result;
 }
 
 static void merge(struct job_merger *merger, const struct block_result *result) {
     struct error err = {0};
-    if (kind()->merge(merger, result, &err) != 0)
+    if (merger_add(merger, result, &err) != 0)
         fail_msg("%s", err.text);
 }
 
 static cJSON *curves_of(struct job_merger *merger) {
     cJSON *document = NULL;
     struct error err = {0};
-    if (kind()->curves(merger, &document, &err) != 0)
+    if (merger_curves(merger, &document, &err) != 0)
         fail_msg("%s", err.text);
     return document;
 }
@@ -146,19 +148,19 @@ static void any_split_and_order(void **state) {
             char *got = text_of(merger);
             assert_string_equal(got, expected);
             free(got);
-            kind()->merger_destroy(&merger);
+            merger_destroy(&merger);
         }
         free(expected);
-        kind()->merger_destroy(&whole);
-        kind()->runner_destroy(&runners[0]);
-        kind()->runner_destroy(&runners[1]);
+        merger_destroy(&whole);
+        runner_destroy(&runners[0]);
+        runner_destroy(&runners[1]);
     }
 }
 
 static void assert_refused(struct job_merger *merger, const struct block_result *result,
                            const char *words) {
     struct error err = {0};
-    int status = kind()->merge(merger, result, &err);
+    int status = merger_add(merger, result, &err);
     if (status != ERROR_INPUT || strstr(err.text, words) == NULL)
         fail_msg("'%s' expected, but status %d, '%s'", words, status, err.text);
 }
@@ -203,9 +205,9 @@ static void foreign_and_damaged(void **state) {
     block_result_clear(&good);
     block_result_clear(&next);
     block_result_clear(&foreign);
-    kind()->merger_destroy(&merger);
-    kind()->runner_destroy(&runner);
-    kind()->runner_destroy(&other);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
+    runner_destroy(&other);
 }
 
 /* Changed bytes under a seal made anew, as someone might send on purpose: taken or refused, but
@@ -231,7 +233,7 @@ static void malicious(void **state) {
         for (size_t a = 0; a < 8; a++)
             copy[bad.size - 8 + a] = (unsigned char)(hash >> (8 * a));
         struct error err = {0};
-        int status = kind()->merge(merger, &bad, &err);
+        int status = merger_add(merger, &bad, &err);
         assert_true(status == 0 || status == ERROR_INPUT);
         taken += status == 0;
     }
@@ -239,8 +241,8 @@ static void malicious(void **state) {
     cJSON_Delete(curves_of(merger));
     free(copy);
     block_result_clear(&good);
-    kind()->merger_destroy(&merger);
-    kind()->runner_destroy(&runner);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
 }
 
 /* A histogram is the counts over all realisations, and its error that of the ratio, from the
@@ -262,7 +264,7 @@ static void curves_against_brute_force(void **state) {
         assert_true(isnan(at(curve_of(document, "summit_height_pdf"), "/standard_error", bin)));
         cJSON_Delete(document);
         block_result_clear(&result);
-        kind()->merger_destroy(&single);
+        merger_destroy(&single);
         total += n[r];
         sum += n[r] * share[r];
     }
@@ -276,8 +278,8 @@ static void curves_against_brute_force(void **state) {
                 1e-12);
     assert_true(fabs(scalar(document, "summits", "value") - total / m) <= 1e-12 * total);
     cJSON_Delete(document);
-    kind()->merger_destroy(&merger);
-    kind()->runner_destroy(&runner);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
 }
 
 /* Densities and what fell outside add up to one; the joint density has the marginals. */
@@ -308,8 +310,8 @@ static void normalisation(void **state) {
     assert_true(value_at(heights, "/underflow")->valuedouble > 0);
     cJSON_Delete(document);
     block_result_clear(&result);
-    kind()->merger_destroy(&merger);
-    kind()->runner_destroy(&runner);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
 }
 
 /* Bins that miss everything: no share, all counted outside, no NaN where there is a number. */
@@ -330,8 +332,8 @@ static void bins_that_miss(void **state) {
                 3 * scalar(document, "summits", "value"));
     cJSON_Delete(document);
     block_result_clear(&result);
-    kind()->merger_destroy(&merger);
-    kind()->runner_destroy(&runner);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
 }
 
 /* Before any result there are curves too, all of them empty of values. */
@@ -343,7 +345,7 @@ static void no_realisation_yet(void **state) {
     assert_true(isnan(at(curve_of(document, "summit_height_pdf"), "/y", 0)));
     assert_true(scalar(document, "nayak_alpha", "value") > 1.5);
     cJSON_Delete(document);
-    kind()->merger_destroy(&merger);
+    merger_destroy(&merger);
 }
 
 static int stop_at_two(void *context, uint64_t done) {
@@ -357,19 +359,19 @@ static void stopping(void **state) {
     const struct job_control control = {stop_at_two, NULL};
     struct block_result result = {.first = 77};
     struct error err = {0};
-    assert_int_equal(kind()->run(runner, 0, 5, &control, &result, &err), ERROR_STOPPED);
+    assert_int_equal(runner_run(runner, 0, 5, &control, &result, &err), ERROR_STOPPED);
     assert_non_null(strstr(err.text, "2 of 5"));
     assert_true(result.first == 77 && result.data == NULL);
-    kind()->runner_destroy(&runner);
+    runner_destroy(&runner);
 }
 
 /* Faults of a statistics case come with those of its surface. */
 static void checking(void **state) {
     (void)state;
     struct fault_list faults = {0};
-    struct job_estimate estimate;
+    struct study_cost estimate;
     cJSON *parameters = parse(GAUSSIAN);
-    assert_int_equal(kind()->check(parameters, &faults, &estimate, NULL), 0);
+    assert_int_equal(kind_check(kind(), parameters, &faults, &estimate, NULL), 0);
     assert_int_equal(faults.count, 0);
     assert_int_equal(estimate.nx, 32);
     assert_true(estimate.memory_bytes > 1e5 && estimate.memory_bytes < 1e8);
@@ -378,7 +380,7 @@ static void checking(void **state) {
     cJSON_Delete(parameters);
     parameters = parse("{\"surface\": {\"hurst\": 0.8}, \"statistics\": {\"bins\":"
                        " {\"height\": [3, 3, 5], \"curvature\": [0, 1, 0.5]}}}");
-    assert_int_equal(kind()->check(parameters, &faults, &estimate, NULL), 0);
+    assert_int_equal(kind_check(kind(), parameters, &faults, &estimate, NULL), 0);
     assert_int_equal(faults.count, 3);
     assert_string_equal(faults.faults[1].pointer, "/statistics/bins/height");
     assert_non_null(strstr(faults.faults[1].detail, "below high"));

@@ -1,4 +1,5 @@
 /* Curves, CSV and report of a study: complete, partial, filtered, empty. */
+#include "jobs/runner.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/aggregate.h"
 #include "worker/worker.h"
@@ -50,10 +51,10 @@ static void run_one(struct fixture *fixture) {
     assert_int_equal(found, 1);
     const struct job_kind *kind = kind_find(job.kind);
     assert_int_equal(
-        kind->runner_create(&runner, job.parameters, NULL, job.seed, job.case_number, &err), 0);
-    assert_int_equal(kind->run(runner, job.first, job.count, NULL, &result, &err), 0);
+        runner_create(&runner, kind, job.parameters, NULL, job.seed, job.case_number, &err), 0);
+    assert_int_equal(runner_run(runner, job.first, job.count, NULL, &result, &err), 0);
     assert_int_equal(source_complete(source, &job, &result, &err), 0);
-    kind->runner_destroy(&runner);
+    runner_destroy(&runner);
     block_result_clear(&result);
     claimed_job_clear(&job);
     source_destroy(&source);

@@ -12,39 +12,55 @@
 
 enum { THREADS = 8, ROUNDS = 200, CASES = 3, VALUES = 64 };
 
-struct job_shared {
+struct part {
     int values[VALUES];
 };
 static atomic_int alive, made, failures_left;
 
-static int create(struct job_shared **out, const cJSON *parameters, struct error *err) {
+static int read_case(void *study, const cJSON *parameters, struct fault_list *faults,
+                     struct error *err) {
+    (void)study;
     (void)parameters;
-    if (atomic_load(&failures_left) > 0 && atomic_fetch_sub(&failures_left, 1) > 0) {
-        return error_set(err, ERROR_MEMORY, "no room today");
-    }
-    struct job_shared *shared = array_create(1, sizeof *shared);
-    if (!shared) {
-        return error_memory(err, sizeof *shared, "a part");
-    }
-    for (int n = 0; n < VALUES; n++) {
-        shared->values[n] = n;
-    }
-    nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL); /* so that others have to wait */
-    atomic_fetch_add(&made, 1);
-    atomic_fetch_add(&alive, 1);
-    *out = shared;
+    (void)faults;
+    (void)err;
     return 0;
 }
 
-static void destroy(struct job_shared **shared) {
-    free(*shared);
-    *shared = NULL;
-    atomic_fetch_sub(&alive, 1);
+static void clear_case(void *study) {
+    (void)study;
 }
 
-static const struct job_kind SHARING = {
-    .name = "sharing", .shared_create = create, .shared_destroy = destroy};
+static int create(void *shared, const void *study, struct error *err) {
+    struct part *part = shared;
+    (void)study;
+    if (atomic_load(&failures_left) > 0 && atomic_fetch_sub(&failures_left, 1) > 0)
+        return error_set(err, ERROR_MEMORY, "no room today");
+    for (int n = 0; n < VALUES; n++)
+        part->values[n] = n;
+    nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL); /* so that others have to wait */
+    atomic_fetch_add(&made, 1);
+    atomic_fetch_add(&alive, 1);
+    return 0;
+}
+
+static void clear(void *shared) {
+    const struct part *part = shared;
+    if (part->values[1] == 1) /* made */
+        atomic_fetch_sub(&alive, 1);
+}
+
+static const struct job_kind SHARING = {.name = "sharing",
+                                        .read = read_case,
+                                        .clear = clear_case,
+                                        .shared_size = sizeof(struct part),
+                                        .shared_create = create,
+                                        .shared_clear = clear};
 static const struct job_kind ALONE = {.name = "alone"};
+
+static int value_of(const struct shared_part *part, int n) {
+    const struct part *content = job_shared_content(shared_part_content(part));
+    return content->values[n];
+}
 
 static struct shared_part *take(struct shared_parts *parts, uint64_t case_number) {
     struct shared_part *part = NULL;
@@ -68,7 +84,7 @@ static void held_and_let_go(void **state) {
     shared_parts_let_go(&parts, &first);
     assert_null(first);
     assert_int_equal(atomic_load(&alive), 2);
-    assert_int_equal(shared_part_content(second)->values[VALUES - 1], VALUES - 1);
+    assert_int_equal(value_of(second, VALUES - 1), VALUES - 1);
     shared_parts_let_go(&parts, &second);
     assert_int_equal(atomic_load(&alive), 1);
     shared_parts_let_go(&parts, &other);
@@ -105,7 +121,7 @@ static void *hold_often(void *context) {
     for (unsigned round = 0; round < ROUNDS; round++) {
         struct shared_part *part = take(parts, round / 4 % CASES);
         for (int n = 0; part && n < VALUES; n++) {
-            wrong += shared_part_content(part)->values[n] != n;
+            wrong += value_of(part, n) != n;
         }
         shared_parts_let_go(parts, &part);
     }

@@ -1,6 +1,8 @@
 /* The named catalogue of hard surfaces: each ends in curves with finite roughness and densities
  * that add up, or is refused with words when it is checked; never a hang, a NaN or a crash. */
 #include "jobs/kind.h"
+#include "jobs/merger.h"
+#include "jobs/runner.h"
 #include "jobs/value.h"
 #include "schema/study/fault.h"
 #include <math.h>
@@ -126,13 +128,13 @@ static void assert_numbers(const struct hard_case *hard, const cJSON *value) {
 static void run_case(const struct hard_case *hard) {
     const struct job_kind *kind = kind_find("statistics");
     struct fault_list faults = {0};
-    struct job_estimate estimate;
+    struct study_cost estimate;
     struct job_runner *runner = NULL;
     struct job_merger *merger = NULL;
     struct block_result result = {0};
     struct error err = {0};
     cJSON *parameters = parameters_of(hard), *document = NULL;
-    assert_int_equal(kind->check(parameters, &faults, &estimate, &err), 0);
+    assert_int_equal(kind_check(kind, parameters, &faults, &estimate, &err), 0);
     if (hard->refusal != NULL) {
         if (faults.count == 0 || strstr(faults.faults[0].detail, hard->refusal) == NULL)
             fail_msg("%s: not refused as it should be: %s", hard->name,
@@ -145,10 +147,10 @@ static void run_case(const struct hard_case *hard) {
         fail_msg("%s: %s: %s", hard->name, faults.faults[0].pointer, faults.faults[0].detail);
     assert_true(estimate.seconds > 0 && estimate.memory_bytes > 0 && estimate.relative_error > 0 &&
                 isfinite(estimate.relative_error));
-    if (kind->runner_create(&runner, parameters, NULL, 7, 0, &err) != 0 ||
-        kind->run(runner, 0, 3, NULL, &result, &err) != 0 ||
-        kind->merger_create(&merger, parameters, &err) != 0 ||
-        kind->merge(merger, &result, &err) != 0 || kind->curves(merger, &document, &err) != 0)
+    if (runner_create(&runner, kind, parameters, NULL, 7, 0, &err) != 0 ||
+        runner_run(runner, 0, 3, NULL, &result, &err) != 0 ||
+        merger_create(&merger, kind, parameters, &err) != 0 ||
+        merger_add(merger, &result, &err) != 0 || merger_curves(merger, &document, &err) != 0)
         fail_msg("%s: %s", hard->name, err.text);
     assert_finite(hard, document, "/scalars/rms_height/value");
     assert_finite(hard, document, "/scalars/nayak_alpha/value");
@@ -156,8 +158,8 @@ static void run_case(const struct hard_case *hard) {
     assert_numbers(hard, document);
     cJSON_Delete(document);
     block_result_clear(&result);
-    kind->runner_destroy(&runner);
-    kind->merger_destroy(&merger);
+    runner_destroy(&runner);
+    merger_destroy(&merger);
     cJSON_Delete(parameters);
 }
 
@@ -169,15 +171,15 @@ static double scalar_of(const char *scale, const char *name) {
     char text[200];
     snprintf(text, sizeof text, "{'surface': {'hurst': 0.6, 'wavelength_ratio': 8, %s}}", scale);
     cJSON *parameters = parameters_of(&(struct hard_case){"units", text, NULL});
-    if (kind->runner_create(&runner, parameters, NULL, 7, 0, &err) != 0 ||
-        kind->run(runner, 0, 1, NULL, &result, &err) != 0)
+    if (runner_create(&runner, kind, parameters, NULL, 7, 0, &err) != 0 ||
+        runner_run(runner, 0, 1, NULL, &result, &err) != 0)
         fail_msg("%s: %s", scale, err.text);
     size_t at = 0;
     while (strcmp(kind->scalar(at), name) != 0)
         at++;
     double value = result.scalars != NULL ? result.scalars[at] : NAN;
     block_result_clear(&result);
-    kind->runner_destroy(&runner);
+    runner_destroy(&runner);
     cJSON_Delete(parameters);
     return value;
 }

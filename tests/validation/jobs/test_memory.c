@@ -1,6 +1,7 @@
 /* The memory that `check` states for a worker is what a realisation takes at its peak, within 20 %:
  * each case runs in a process of its own, whose largest resident set is measured. */
 #include "jobs/kind.h"
+#include "jobs/runner.h"
 #include "schema/study/fault.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -36,11 +37,11 @@ static const struct {
 static int run_one(const struct job_kind *kind, const cJSON *parameters) {
     struct job_runner *runner = NULL;
     struct block_result result = {0};
-    int status = kind->runner_create(&runner, parameters, NULL, 1, 0, NULL);
+    int status = runner_create(&runner, kind, parameters, NULL, 1, 0, NULL);
     if (status == 0)
-        status = kind->run(runner, 0, 1, NULL, &result, NULL);
+        status = runner_run(runner, 0, 1, NULL, &result, NULL);
     block_result_clear(&result);
-    kind->runner_destroy(&runner);
+    runner_destroy(&runner);
     return status == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
@@ -49,11 +50,11 @@ static void stated_memory(void **state) {
     for (size_t a = 0; a < sizeof CASES / sizeof *CASES; a++) {
         const struct job_kind *kind = kind_find(CASES[a].kind);
         struct fault_list faults = {0};
-        struct job_estimate estimate = {0};
+        struct study_cost estimate = {0};
         struct rusage usage;
         int ended = 0;
         cJSON *parameters = cJSON_Parse(CASES[a].parameters);
-        assert_int_equal(kind->check(parameters, &faults, &estimate, NULL), 0);
+        assert_int_equal(kind_check(kind, parameters, &faults, &estimate, NULL), 0);
         assert_int_equal(faults.count, 0);
         double available = (double)sysconf(_SC_AVPHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
         if (available < 1.5 * estimate.memory_bytes) {

@@ -3,6 +3,8 @@
  * on Weibull surfaces. Seeds are fixed: a failure can be looked at again. */
 #include "core/theory/nayak.h"
 #include "jobs/kind.h"
+#include "jobs/merger.h"
+#include "jobs/runner.h"
 #include "jobs/value.h"
 #include <math.h>
 #include <setjmp.h>
@@ -31,13 +33,13 @@ __attribute__((format(printf, 2, 3))) static cJSON *study(uint64_t count, const 
             *at = '"';
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
-    if (kind->runner_create(&runner, parameters, NULL, 31, 0, &err) != 0 ||
-        kind->run(runner, 0, count, NULL, &result, &err) != 0 ||
-        kind->merger_create(&merger, parameters, &err) != 0 ||
-        kind->merge(merger, &result, &err) != 0 || kind->curves(merger, &curves, &err) != 0)
+    if (runner_create(&runner, kind, parameters, NULL, 31, 0, &err) != 0 ||
+        runner_run(runner, 0, count, NULL, &result, &err) != 0 ||
+        merger_create(&merger, kind, parameters, &err) != 0 ||
+        merger_add(merger, &result, &err) != 0 || merger_curves(merger, &curves, &err) != 0)
         fail_msg("%s: %s", text, err.text);
-    kind->runner_destroy(&runner);
-    kind->merger_destroy(&merger);
+    runner_destroy(&runner);
+    merger_destroy(&merger);
     block_result_clear(&result);
     cJSON_Delete(parameters);
     return curves;

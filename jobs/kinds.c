@@ -1,0 +1,4 @@
+#include "jobs/kind.h"
+
+#define KINDS(KIND) KIND(STATISTICS_KIND) KIND(CONTACT_KIND)
+JOB_KIND_TABLE(KINDS)

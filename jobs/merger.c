@@ -1,0 +1,118 @@
+#include "jobs/merger.h"
+#include "jobs/partial.h"
+#include "jobs/realisations.h"
+#include "jobs/surface_case.h"
+#include <stdlib.h>
+
+struct job_merger {
+    const struct job_kind *kind;
+    void *study; /* owned, as all below: the case */
+    struct modes *modes;
+    struct surface_basis basis;
+    void *tally; /* of all blocks so far */
+    struct realisations realisations;
+};
+
+static void tally_destroy(const struct job_kind *kind, void **tally) {
+    if (*tally != NULL)
+        kind->tally_clear(*tally);
+    free(*tally);
+    *tally = NULL;
+}
+
+static int tally_make(const struct job_merger *merger, void **out, struct error *err) {
+    const struct job_kind *kind = merger->kind;
+    void *tally = array_create(1, kind->tally_size);
+    if (tally == NULL)
+        return error_memory(err, kind->tally_size, "a tally");
+    int status = kind->tally_create(tally, merger->study, &merger->basis, err);
+    if (status != 0)
+        tally_destroy(kind, &tally);
+    *out = tally;
+    return status;
+}
+
+void merger_destroy(struct job_merger **merger) {
+    struct job_merger *gone = *merger;
+    if (gone == NULL)
+        return;
+    tally_destroy(gone->kind, &gone->tally);
+    realisations_clear(&gone->realisations);
+    modes_destroy(&gone->modes);
+    kind_case_destroy(gone->kind, &gone->study);
+    free(gone);
+    *merger = NULL;
+}
+
+static int merger_fill(struct job_merger *merger, const cJSON *parameters, struct error *err) {
+    const struct job_kind *kind = merger->kind;
+    int status = kind_case_create(&merger->study, kind, parameters, NULL, err);
+    if (status == 0 && kind->surface != NULL) {
+        const struct surface_case *surface = kind->surface(merger->study);
+        status = modes_create(&merger->modes, &surface->spectrum, &surface->grid, err);
+    }
+    if (status != 0)
+        return status;
+    merger->basis.modes = merger->modes;
+    if (merger->modes != NULL)
+        modes_moments(merger->modes, &merger->basis.moments);
+    return tally_make(merger, &merger->tally, err);
+}
+
+int merger_create(struct job_merger **out, const struct job_kind *kind, const cJSON *parameters,
+                  struct error *err) {
+    struct job_merger *merger = array_create(1, sizeof *merger);
+    if (merger == NULL)
+        return error_memory(err, sizeof *merger, "a merger");
+    merger->kind = kind;
+    merger->realisations.scalar_count = kind_scalar_count(kind);
+    int status = merger_fill(merger, parameters, err);
+    if (status != 0)
+        merger_destroy(&merger);
+    *out = merger;
+    return status;
+}
+
+/* Decodes a block that the merger could take into a new tally, the caller's to destroy; NULL on
+ * failure. */
+static int block_read(const struct job_merger *merger, const struct block_result *result,
+                      void **out, struct error *err) {
+    const struct job_kind *kind = merger->kind;
+    void *tally = NULL;
+    int status = realisations_check(&merger->realisations, result, err);
+    if (status == 0)
+        status = tally_make(merger, &tally, err);
+    if (status == 0)
+        status = partial_decode(kind, merger->study, result->data, result->size, tally, err);
+    if (status == 0 && !kind->belongs(tally, result))
+        status = error_set(err, ERROR_INPUT,
+                           "the partial result does not belong to the scalars beside it");
+    if (status != 0)
+        tally_destroy(kind, &tally);
+    *out = tally;
+    return status;
+}
+
+int merger_fits(const struct job_merger *merger, const struct block_result *result,
+                struct error *err) {
+    void *tally;
+    int status = block_read(merger, result, &tally, err);
+    tally_destroy(merger->kind, &tally);
+    return status;
+}
+
+int merger_add(struct job_merger *merger, const struct block_result *result, struct error *err) {
+    void *tally;
+    int status = block_read(merger, result, &tally, err);
+    if (status == 0)
+        status = realisations_add(&merger->realisations, result, err);
+    if (status == 0)
+        merger->kind->merge(merger->tally, tally);
+    tally_destroy(merger->kind, &tally);
+    return status;
+}
+
+int merger_curves(const struct job_merger *merger, cJSON **out, struct error *err) {
+    return merger->kind->curves(merger->study, &merger->basis, merger->tally, &merger->realisations,
+                                out, err);
+}

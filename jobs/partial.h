@@ -1,0 +1,15 @@
+/* A tally as bytes: the partial result of a block. Sealed by a hash, and opened only by a case of
+ * the same kind, version of its format and parameters. */
+#ifndef RUGO_JOBS_PARTIAL_H
+#define RUGO_JOBS_PARTIAL_H
+
+#include "jobs/kind.h"
+
+/* The caller frees *data. */
+int partial_encode(const struct job_kind *kind, const void *study, const void *tally,
+                   unsigned char **data, size_t *size, struct error *err);
+/* Into a new tally of the case; ERROR_INPUT leaves its contents undefined. */
+int partial_decode(const struct job_kind *kind, const void *study, const unsigned char *data,
+                   size_t size, void *tally, struct error *err);
+
+#endif

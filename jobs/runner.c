@@ -1,0 +1,250 @@
+#include "jobs/runner.h"
+#include "jobs/partial.h"
+#include "jobs/surface_case.h"
+#include <stdlib.h>
+#include <time.h>
+
+/* --- what runners share --- */
+
+struct job_shared {
+    const struct job_kind *kind;
+    void *content; /* owned */
+};
+
+static int shared_make(struct job_shared **out, const struct job_kind *kind, const void *study,
+                       struct error *err) {
+    struct job_shared *shared = array_create(1, sizeof *shared);
+    if (shared == NULL)
+        return error_memory(err, sizeof *shared, "what runners share");
+    shared->kind = kind;
+    shared->content = array_create(1, kind->shared_size);
+    int status = shared->content != NULL
+                     ? kind->shared_create(shared->content, study, err)
+                     : error_memory(err, kind->shared_size, "what runners share");
+    if (status != 0)
+        job_shared_destroy(&shared);
+    *out = shared;
+    return status;
+}
+
+int job_shared_create(struct job_shared **out, const struct job_kind *kind, const cJSON *parameters,
+                      struct error *err) {
+    void *study = NULL;
+    *out = NULL;
+    if (kind->shared_create == NULL)
+        return 0;
+    int status = kind_case_create(&study, kind, parameters, NULL, err);
+    if (status != 0)
+        return status;
+    status = shared_make(out, kind, study, err);
+    kind_case_destroy(kind, &study);
+    return status;
+}
+
+void job_shared_destroy(struct job_shared **shared) {
+    if (*shared == NULL)
+        return;
+    if ((*shared)->content != NULL)
+        (*shared)->kind->shared_clear((*shared)->content);
+    free((*shared)->content);
+    free(*shared);
+    *shared = NULL;
+}
+
+const void *job_shared_content(const struct job_shared *shared) {
+    return shared->content;
+}
+
+/* --- a runner --- */
+
+struct job_runner {
+    const struct job_kind *kind;
+    void *study;                        /* owned, as all below: the case */
+    const struct surface_case *surface; /* its part; NULL without */
+    struct random_key key;
+    struct generator *generator;
+    struct surface_basis basis; /* of the generator */
+    struct job_shared *own;     /* where none was given */
+    void *workspace;
+    double *z; /* points of the own grid */
+};
+
+void runner_destroy(struct job_runner **runner) {
+    struct job_runner *gone = *runner;
+    if (gone == NULL)
+        return;
+    if (gone->workspace != NULL)
+        gone->kind->workspace_clear(gone->workspace);
+    free(gone->workspace);
+    free(gone->z);
+    job_shared_destroy(&gone->own);
+    generator_destroy(&gone->generator);
+    kind_case_destroy(gone->kind, &gone->study);
+    free(gone);
+    *runner = NULL;
+}
+
+static int surface_make(struct job_runner *runner, struct error *err) {
+    const struct surface_case *surface = runner->surface;
+    size_t points = grid_points(&surface->grid);
+    int status = generator_create(&runner->generator, &surface->spectrum, &surface->grid,
+                                  &surface->options, err);
+    if (status != 0)
+        return status;
+    runner->basis.modes = generator_modes(runner->generator);
+    modes_moments(runner->basis.modes, &runner->basis.moments);
+    runner->z = array_create(points, sizeof *runner->z);
+    return runner->z != NULL ? 0 : error_memory(err, points * sizeof *runner->z, "a surface");
+}
+
+static int workspace_make(struct job_runner *runner, const struct job_shared *shared,
+                          struct error *err) {
+    const struct job_kind *kind = runner->kind;
+    if (kind->workspace_create == NULL)
+        return 0;
+    runner->workspace = array_create(1, kind->workspace_size);
+    if (runner->workspace == NULL)
+        return error_memory(err, kind->workspace_size, "a workspace");
+    return kind->workspace_create(runner->workspace, runner->study, &runner->basis,
+                                  shared != NULL ? shared->content : NULL, err);
+}
+
+static int runner_fill(struct job_runner *runner, const cJSON *parameters,
+                       const struct job_shared *shared, struct error *err) {
+    const struct job_kind *kind = runner->kind;
+    int status = kind_case_create(&runner->study, kind, parameters, NULL, err);
+    if (status == 0 && kind->surface != NULL) {
+        runner->surface = kind->surface(runner->study);
+        status = surface_make(runner, err);
+    }
+    if (status == 0 && shared == NULL && kind->shared_create != NULL) {
+        status = shared_make(&runner->own, kind, runner->study, err);
+        shared = runner->own;
+    }
+    return status != 0 ? status : workspace_make(runner, shared, err);
+}
+
+int runner_create(struct job_runner **out, const struct job_kind *kind, const cJSON *parameters,
+                  const struct job_shared *shared, uint64_t seed, uint64_t case_number,
+                  struct error *err) {
+    struct job_runner *runner = array_create(1, sizeof *runner);
+    if (runner == NULL)
+        return error_memory(err, sizeof *runner, "a runner");
+    runner->kind = kind;
+    runner->key = (struct random_key){seed, case_number, 0};
+    int status = runner_fill(runner, parameters, shared, err);
+    if (status != 0)
+        runner_destroy(&runner);
+    *out = runner;
+    return status;
+}
+
+/* --- a block --- */
+
+/* Whom to ask whether to stop, and what is done. */
+struct progress {
+    const struct job_control *control; /* may be NULL */
+    uint64_t done;
+};
+
+static int is_stopped(void *context) {
+    const struct progress *progress = context;
+    const struct job_control *control = progress->control;
+    return control != NULL && control->poll != NULL &&
+           control->poll(control->context, progress->done) != 0;
+}
+
+static int surface_generate(struct job_runner *runner, struct realisation *realisation,
+                            struct error *err) {
+    const struct surface_case *surface = runner->surface;
+    realisation->z = runner->z;
+    realisation->moments = runner->basis.moments;
+    int status =
+        generator_run(runner->generator, runner->key, runner->z, &realisation->report, err);
+    if (status == 0 && !surface_case_exact(surface))
+        status = roughness_spectral(&surface->grid, runner->z, &realisation->moments, err);
+    if (status == 0)
+        roughness_measure(&surface->grid, runner->z, &realisation->roughness);
+    return status;
+}
+
+static int realise(struct job_runner *runner, uint64_t number, struct progress *progress,
+                   void *tally, double *scalars, struct error *err) {
+    runner->key.realisation = number;
+    struct realisation realisation = {
+        .key = runner->key, .stop = is_stopped, .stop_context = progress};
+    int status = runner->surface != NULL ? surface_generate(runner, &realisation, err) : 0;
+    if (status == 0)
+        status = runner->kind->realise(runner->workspace, &realisation, tally, scalars, err);
+    return status != 0 ? error_context(err, "realisation %llu", (unsigned long long)number) : 0;
+}
+
+/* Into room of the result's size. */
+static int realise_all(struct job_runner *runner, const struct job_control *control,
+                       const struct block_result *result, void *tally, double *scalars,
+                       struct error *err) {
+    struct progress progress = {.control = control};
+    for (uint64_t r = 0; r < result->count; r++) {
+        progress.done = r;
+        if (is_stopped(&progress))
+            return error_set(err, ERROR_STOPPED, "stopped after %llu of %llu realisations",
+                             (unsigned long long)r, (unsigned long long)result->count);
+        int status = realise(runner, result->first + r, &progress, tally,
+                             scalars + r * result->scalar_count, err);
+        if (status != 0)
+            return status;
+    }
+    return 0;
+}
+
+static int block_fill(struct job_runner *runner, const struct job_control *control, void *tally,
+                      struct block_result *result, struct error *err) {
+    const struct job_kind *kind = runner->kind;
+    size_t row = result->scalar_count * sizeof(double);
+    const char **names = array_create(result->scalar_count, sizeof *names);
+    double *scalars = array_create((size_t)result->count, row);
+    unsigned char *data = NULL;
+    result->names = names;
+    result->scalars = scalars;
+    if (names == NULL || scalars == NULL)
+        return error_memory(err, (size_t)result->count * row, "scalars");
+    for (size_t a = 0; a < result->scalar_count; a++)
+        names[a] = kind->scalar(a);
+    int status = realise_all(runner, control, result, tally, scalars, err);
+    if (status == 0)
+        status = partial_encode(kind, runner->study, tally, &data, &result->size, err);
+    result->data = data;
+    return status;
+}
+
+/* Seconds on a clock that never steps. */
+static double clock_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+int runner_run(struct job_runner *runner, uint64_t first, uint64_t count,
+               const struct job_control *control, struct block_result *out, struct error *err) {
+    const struct job_kind *kind = runner->kind;
+    double start = clock_seconds();
+    struct block_result result = {
+        .first = first, .count = count, .scalar_count = kind_scalar_count(kind)};
+    if (count == 0 || count > UINT64_MAX - first)
+        return error_set(err, ERROR_INPUT, "a block needs at least one realisation");
+    void *tally = array_create(1, kind->tally_size);
+    if (tally == NULL)
+        return error_memory(err, kind->tally_size, "a tally");
+    int status = kind->tally_create(tally, runner->study, &runner->basis, err);
+    if (status == 0)
+        status = block_fill(runner, control, tally, &result, err);
+    kind->tally_clear(tally);
+    free(tally);
+    if (status != 0) {
+        block_result_clear(&result);
+        return status;
+    }
+    result.seconds = clock_seconds() - start;
+    *out = result;
+    return 0;
+}

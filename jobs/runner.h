@@ -1,0 +1,36 @@
+/* Runs realisations of a case, block by block, whatever the kind.
+ *
+ * Life: shared_create (once a case and process) -> runner_create (one a thread) -> runner_run
+ * (blocks) -> runner_destroy -> shared_destroy. */
+#ifndef RUGO_JOBS_RUNNER_H
+#define RUGO_JOBS_RUNNER_H
+
+#include "jobs/kind.h"
+
+/* Asked between realisations, and again and again within one that may take long: how many of the
+ * block are done; non-zero stops with ERROR_STOPPED. */
+struct job_control {
+    int (*poll)(void *context, uint64_t done);
+    void *context;
+};
+
+/* What all runners of a case share. *out is NULL for kinds that share nothing. */
+struct job_shared;
+int job_shared_create(struct job_shared **out, const struct job_kind *kind, const cJSON *parameters,
+                      struct error *err);
+void job_shared_destroy(struct job_shared **shared);
+const void *job_shared_content(const struct job_shared *shared); /* the kind's struct */
+
+struct job_runner;
+/* Borrows shared, of the same parameters, as long as it lives; NULL where the kind shares nothing,
+ * or for the runner to make its own. */
+int runner_create(struct job_runner **out, const struct job_kind *kind, const cJSON *parameters,
+                  const struct job_shared *shared, uint64_t seed, uint64_t case_number,
+                  struct error *err);
+void runner_destroy(struct job_runner **runner);
+/* Runs realisations first .. first + count - 1 into out (untouched on failure), the caller's to
+ * clear. control may be NULL. */
+int runner_run(struct job_runner *runner, uint64_t first, uint64_t count,
+               const struct job_control *control, struct block_result *out, struct error *err);
+
+#endif
