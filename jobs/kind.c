@@ -1,4 +1,5 @@
 #include "jobs/kind.h"
+#include "jobs/fingerprint.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +23,7 @@ int kind_case_create(void **out, const struct job_kind *kind, const cJSON *param
 }
 
 void kind_case_destroy(const struct job_kind *kind, void **study) {
-    if (*study != NULL)
+    if (*study != NULL && kind->clear != NULL)
         kind->clear(*study);
     free(*study);
     *study = NULL;
@@ -38,6 +39,16 @@ int kind_check(const struct job_kind *kind, const cJSON *parameters, struct faul
     kind->estimate(study, cost);
     kind_case_destroy(kind, &study);
     return 0;
+}
+
+int kind_fingerprint(const struct job_kind *kind, const cJSON *parameters, uint64_t *out,
+                     struct error *err) {
+    struct values *values = NULL;
+    int status = values_create(&values, parameters, kind->tables, NULL, err);
+    if (status == 0)
+        *out = case_fingerprint(values, kind->tables);
+    values_destroy(&values);
+    return status;
 }
 
 size_t kind_scalar_count(const struct job_kind *kind) {

@@ -32,6 +32,7 @@ struct surface_basis {
 
 /* A realisation to be measured. Without a surface z is NULL, and what is behind it empty. */
 struct realisation {
+    const void *study;     /* the case */
     struct random_key key; /* its number among others */
     const double *z;       /* heights on the own grid of the case */
     struct surface_report report;
@@ -56,10 +57,8 @@ struct job_kind {
      * range shows (grid too large, alpha out of reach) and returns ERROR_INPUT; faults may be NULL:
      * the first is the error in any case. */
     int (*read)(void *study, const cJSON *parameters, struct fault_list *faults, struct error *err);
-    void (*clear)(void *study);
+    void (*clear)(void *study); /* NULL: nothing to clear */
     void (*estimate)(const void *study, struct study_cost *out);
-    /* Tells cases apart, whatever the order of keys. */
-    uint64_t (*fingerprint)(const void *study);
     /* The surface that each realisation is given; NULL: kinds without surfaces. */
     const struct surface_case *(*surface)(const void *study);
 
@@ -89,7 +88,7 @@ struct job_kind {
     void (*put)(struct bytes *bytes, const void *tally);
     /* Into a new tally. Fails the reader for what put cannot have made. */
     void (*get)(struct byte_reader *reader, void *tally);
-    /* Whether a tally that was read can be, and whether it can be of these scalars. */
+    /* Whether a tally that was read can be (NULL: always), and whether of these scalars. */
     bool (*adds_up)(const void *tally);
     bool (*belongs)(const void *tally, const struct block_result *result);
 
@@ -123,6 +122,9 @@ void kind_case_destroy(const struct job_kind *kind, void **study);
 /* Adds what is wrong with a case to faults (0 then too), or estimates what it costs. */
 int kind_check(const struct job_kind *kind, const cJSON *parameters, struct fault_list *faults,
                struct study_cost *cost, struct error *err);
+/* The mark of a case in its partial results (fingerprint.h). */
+int kind_fingerprint(const struct job_kind *kind, const cJSON *parameters, uint64_t *out,
+                     struct error *err);
 /* How many scalars a realisation has, and whether these of a result are they: ERROR_INPUT. */
 size_t kind_scalar_count(const struct job_kind *kind);
 int kind_check_names(const struct job_kind *kind, const struct block_result *result,

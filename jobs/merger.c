@@ -6,7 +6,8 @@
 
 struct job_merger {
     const struct job_kind *kind;
-    void *study; /* owned, as all below: the case */
+    void *study;          /* owned, as all below: the case */
+    uint64_t fingerprint; /* of the case */
     struct modes *modes;
     struct surface_basis basis;
     void *tally; /* of all blocks so far */
@@ -47,6 +48,8 @@ void merger_destroy(struct job_merger **merger) {
 static int merger_fill(struct job_merger *merger, const cJSON *parameters, struct error *err) {
     const struct job_kind *kind = merger->kind;
     int status = kind_case_create(&merger->study, kind, parameters, NULL, err);
+    if (status == 0)
+        status = kind_fingerprint(kind, parameters, &merger->fingerprint, err);
     if (status == 0 && kind->surface != NULL) {
         const struct surface_case *surface = kind->surface(merger->study);
         status = modes_create(&merger->modes, &surface->spectrum, &surface->grid, err);
@@ -83,7 +86,7 @@ static int block_read(const struct job_merger *merger, const struct block_result
     if (status == 0)
         status = tally_make(merger, &tally, err);
     if (status == 0)
-        status = partial_decode(kind, merger->study, result->data, result->size, tally, err);
+        status = partial_decode(kind, merger->fingerprint, result->data, result->size, tally, err);
     if (status == 0 && !kind->belongs(tally, result))
         status = error_set(err, ERROR_INPUT,
                            "the partial result does not belong to the scalars beside it");

@@ -5,11 +5,11 @@
 
 #include "jobs/kind.h"
 
-/* The caller frees *data. */
-int partial_encode(const struct job_kind *kind, const void *study, const void *tally,
+/* fingerprint: of the case (kind_fingerprint). The caller frees *data. */
+int partial_encode(const struct job_kind *kind, uint64_t fingerprint, const void *tally,
                    unsigned char **data, size_t *size, struct error *err);
 /* Into a new tally of the case; ERROR_INPUT leaves its contents undefined. */
-int partial_decode(const struct job_kind *kind, const void *study, const unsigned char *data,
+int partial_decode(const struct job_kind *kind, uint64_t fingerprint, const unsigned char *data,
                    size_t size, void *tally, struct error *err);
 
 #endif

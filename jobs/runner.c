@@ -61,6 +61,7 @@ struct job_runner {
     const struct job_kind *kind;
     void *study;                        /* owned, as all below: the case */
     const struct surface_case *surface; /* its part; NULL without */
+    uint64_t fingerprint;               /* of the case */
     struct random_key key;
     struct generator *generator;
     struct surface_basis basis; /* of the generator */
@@ -113,6 +114,8 @@ static int runner_fill(struct job_runner *runner, const cJSON *parameters,
                        const struct job_shared *shared, struct error *err) {
     const struct job_kind *kind = runner->kind;
     int status = kind_case_create(&runner->study, kind, parameters, NULL, err);
+    if (status == 0)
+        status = kind_fingerprint(kind, parameters, &runner->fingerprint, err);
     if (status == 0 && kind->surface != NULL) {
         runner->surface = kind->surface(runner->study);
         status = surface_make(runner, err);
@@ -172,7 +175,7 @@ static int realise(struct job_runner *runner, uint64_t number, struct progress *
                    void *tally, double *scalars, struct error *err) {
     runner->key.realisation = number;
     struct realisation realisation = {
-        .key = runner->key, .stop = is_stopped, .stop_context = progress};
+        .study = runner->study, .key = runner->key, .stop = is_stopped, .stop_context = progress};
     int status = runner->surface != NULL ? surface_generate(runner, &realisation, err) : 0;
     if (status == 0)
         status = runner->kind->realise(runner->workspace, &realisation, tally, scalars, err);
@@ -212,7 +215,7 @@ static int block_fill(struct job_runner *runner, const struct job_control *contr
         names[a] = kind->scalar(a);
     int status = realise_all(runner, control, result, tally, scalars, err);
     if (status == 0)
-        status = partial_encode(kind, runner->study, tally, &data, &result->size, err);
+        status = partial_encode(kind, runner->fingerprint, tally, &data, &result->size, err);
     result->data = data;
     return status;
 }

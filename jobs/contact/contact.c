@@ -19,11 +19,6 @@ static void estimate(const void *study, struct study_cost *out) {
     contact_case_estimate(study, out);
 }
 
-static uint64_t fingerprint(const void *study) {
-    const struct contact_case *contact = study;
-    return contact->fingerprint;
-}
-
 static const struct surface_case *surface_of(const void *study) {
     const struct contact_case *contact = study;
     return &contact->surface;
@@ -155,7 +150,6 @@ const struct job_kind CONTACT_KIND = {
     .read = read_case,
     .clear = clear_case,
     .estimate = estimate,
-    .fingerprint = fingerprint,
     .surface = surface_of,
     .shared_size = sizeof(struct contact_compliances),
     .shared_create = shared_create,

@@ -1,5 +1,4 @@
 #include "jobs/contact/contact_case.h"
-#include "jobs/fingerprint.h"
 #include "jobs/surface_parameters.h"
 #include <math.h>
 #include <stdlib.h>
@@ -265,7 +264,6 @@ static int read_contact(struct contact_case *out, struct values *values, struct 
         status = read_pdf(out, values, err);
     if (status == 0)
         check_layers(out, values);
-    out->fingerprint = case_fingerprint(values, CONTACT_TABLES);
     return status;
 }
 

@@ -40,7 +40,6 @@ struct contact_case {
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
     struct bins pressure; /* of p/(E* h') */
-    uint64_t fingerprint; /* of all parameters */
 };
 /* As surface_case_read. */
 int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,

@@ -18,11 +18,6 @@ static void estimate(const void *study, struct study_cost *out) {
     statistics_case_estimate(study, out);
 }
 
-static uint64_t fingerprint(const void *study) {
-    const struct statistics_case *statistics = study;
-    return statistics->fingerprint;
-}
-
 static const struct surface_case *surface_of(const void *study) {
     const struct statistics_case *statistics = study;
     return &statistics->surface;
@@ -141,7 +136,6 @@ const struct job_kind STATISTICS_KIND = {
     .read = read_case,
     .clear = clear_case,
     .estimate = estimate,
-    .fingerprint = fingerprint,
     .surface = surface_of,
     .workspace_size = sizeof(struct workspace),
     .workspace_create = workspace_create,

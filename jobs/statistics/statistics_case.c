@@ -1,7 +1,6 @@
 #include "jobs/statistics/statistics_case.h"
 #include "core/cost.h"
 #include "core/surface/spectrum_estimate.h"
-#include "jobs/fingerprint.h"
 #include "jobs/statistics/statistics_tally.h"
 #include "jobs/surface_parameters.h"
 #include <math.h>
@@ -21,7 +20,6 @@ static void fill(struct statistics_case *out, struct values *values) {
         values_fault(values, "/statistics/bins/curvature",
                      "%zu by %zu bins are too many for the joint density: at most %d in all",
                      out->height.count, out->equivalent.count, JOINT_MOST);
-    out->fingerprint = case_fingerprint(values, STATISTICS_TABLES);
 }
 
 int statistics_case_read(struct statistics_case *out, const cJSON *parameters,

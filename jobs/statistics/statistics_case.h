@@ -18,7 +18,6 @@ struct statistics_case {
     enum summit_curvature curvature;
     struct bins height;     /* of z* = z/sqrt(m0) */
     struct bins equivalent; /* of t1 = -sqrt(3/m4) kappa_m; profiles z''/sqrt(m4) */
-    uint64_t fingerprint;   /* of all parameters */
 };
 /* As surface_case_read. */
 int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
