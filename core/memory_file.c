@@ -44,6 +44,8 @@ bool memory_file_open(struct memory_file *memory) {
     memory->file = fopencookie(memory, "w", (cookie_io_functions_t){.write = take});
     if (memory->file == NULL)
         free(memory->text);
+    else
+        setvbuf(memory->file, memory->buffer, _IOFBF, sizeof memory->buffer);
     return memory->file != NULL;
 }
 

@@ -11,6 +11,7 @@ struct memory_file {
     char *text; /* owned, as all below */
     size_t size, room;
     bool failed;
+    char buffer[4096]; /* of the file: a large one of its own would be one more thing to fail */
 };
 /* False when out of memory: nothing to close then. The struct must stay where it is until closed.
  */

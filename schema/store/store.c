@@ -122,9 +122,10 @@ static int open_file(struct store *store, struct error *err) {
     int status = check_file_system(store->path, err);
     if (status)
         return status;
-    if (sqlite3_open_v2(store->path, &store->db, flags, NULL))
-        return error_set(err, ERROR_SYSTEM, "database %s cannot be opened: %s", store->path,
-                         store->db ? sqlite3_errmsg(store->db) : "out of memory");
+    int code = sqlite3_open_v2(store->path, &store->db, flags, NULL);
+    if (code != SQLITE_OK)
+        return error_set(err, code == SQLITE_NOMEM ? ERROR_MEMORY : ERROR_SYSTEM,
+                         "database %s cannot be opened: %s", store->path, sqlite3_errstr(code));
     return configure(store, err);
 }
 

@@ -5,10 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Stands for a text that there was no memory for. */
+static char no_text[] = "";
+
 static char *text_copy(const char *text) {
-    size_t size = strlen(text) + 1;
-    char *copy = malloc(size);
-    return copy ? memcpy(copy, text, size) : NULL;
+    char *copy = strdup(text);
+    return copy != NULL ? copy : no_text;
+}
+
+static void text_free(char *text) {
+    if (text != no_text)
+        free(text);
 }
 
 void fault_add(struct fault_list *list, const char *pointer, const char *format, ...) {
@@ -30,8 +37,8 @@ void fault_add(struct fault_list *list, const char *pointer, const char *format,
 void fault_list_clear(struct fault_list *list) {
     size_t kept = list->count < FAULTS_KEPT ? list->count : FAULTS_KEPT;
     for (size_t i = 0; list->faults && i < kept; i++) {
-        free(list->faults[i].pointer);
-        free(list->faults[i].detail);
+        text_free(list->faults[i].pointer);
+        text_free(list->faults[i].detail);
     }
     free(list->faults);
     *list = (struct fault_list){0};

@@ -12,10 +12,10 @@ struct fault {
     char *detail;  /* what is wrong and what is allowed */
 };
 struct fault_list {
-    struct fault *faults; /* count entries, or FAULTS_KEPT if fewer */
+    struct fault *faults; /* count entries, or FAULTS_KEPT if fewer; NULL: no memory for them */
     size_t count;
 };
-/* Adds a fault; out of memory only counts it. */
+/* Adds a fault; out of memory only counts it, or leaves its texts empty. */
 __attribute__((format(printf, 3, 4))) void fault_add(struct fault_list *list, const char *pointer,
                                                      const char *format, ...);
 void fault_list_clear(struct fault_list *list);

@@ -5,8 +5,11 @@
 
 /* The value as JSON, or as a string where it is none. */
 static int override_value(const char *text, cJSON **out, struct error *err) {
-    if (json_parse(text, strlen(text), NULL, out, NULL) == 0)
+    struct error parsed = {0};
+    if (json_parse(text, strlen(text), NULL, out, &parsed) == 0)
         return 0;
+    if (parsed.code == ERROR_MEMORY)
+        return error_set(err, ERROR_MEMORY, "%s", parsed.text);
     *out = cJSON_CreateString(text);
     return *out ? 0 : error_memory(err, strlen(text), "a value");
 }
@@ -46,7 +49,10 @@ int override_apply(cJSON *document, const char *text, struct error *err) {
             status = error_set(err, ERROR_INPUT,
                                "\"%.100s\": what is before \"%.60s\" is not an object", text, name);
         } else if (next) {
+            bool there = cJSON_GetObjectItemCaseSensitive(object, name) != NULL;
             object = member_object(object, name);
+            if (object == NULL && !there)
+                status = error_memory(err, strlen(name), "a member");
         } else {
             status = override_value(equals + 1, &value, err);
             if (!status)

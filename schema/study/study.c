@@ -135,6 +135,8 @@ static void check_parameters(const struct study_kind *kind, const cJSON *documen
 /* Cases of a sweep share most of their faults: each is told once. */
 static void merge_faults(struct fault_list *all, const struct fault_list *found) {
     size_t kept = found->count < FAULTS_KEPT ? found->count : FAULTS_KEPT;
+    if (found->faults == NULL)
+        all->count += found->count;
     for (size_t i = 0; found->faults && i < kept; i++) {
         const struct fault *fault = &found->faults[i];
         bool known = false;

@@ -5,21 +5,29 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-enum {
-    FIRST_ALL = 150, /* so many from the start are failed each */
-    SPREAD = 150     /* and of the rest about so many */
-};
+/* What one loop may take, unless all allocations are asked for; at least LEAST of them. */
+static const double SECONDS = 2;
+enum { LEAST = 40 };
 
 /* Of the leak checker, where there is one. */
 __attribute__((weak)) int __lsan_do_recoverable_leak_check(void);
 
-static uint64_t next_of(uint64_t n, uint64_t total) {
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* From one allocation that fails to the next: 1, or more where a call takes long. */
+static uint64_t step_of(uint64_t total, double seconds_a_call) {
     const char *wish = getenv("RUGO_FAULTS");
-    bool all = wish != NULL && strcmp(wish, "all") == 0;
-    return all || n < FIRST_ALL || total <= FIRST_ALL + SPREAD
-               ? n + 1
-               : n + 1 + (total - FIRST_ALL) / SPREAD;
+    if (wish != NULL && strcmp(wish, "all") == 0)
+        return 1;
+    /* Two modes, and each time the call that fails and the one that passes. */
+    double most = fmax(SECONDS / (4 * seconds_a_call), LEAST);
+    return (double)total <= most ? 1 : (uint64_t)ceil((double)total / most);
 }
 
 static void run_undisturbed(const struct failing_call *call, const char *when, uint64_t n) {
@@ -54,13 +62,14 @@ static bool fail_allocation(const struct failing_call *call, enum failing_mode m
 
 void each_allocation(const struct failing_call *call) {
     run_undisturbed(call, "before", 0); /* what libraries keep for good is made here */
+    double begin = now();
     failing_arm(FAIL_ONE, UINT64_MAX);
     run_undisturbed(call, "before", 0);
-    uint64_t total = failing_disarm().asked, failed = 0;
+    uint64_t total = failing_disarm().asked, failed = 0, step = step_of(total, now() - begin);
     if (total == 0)
         fail_msg("%s allocates nothing: the loop shows nothing", call->name);
     for (enum failing_mode mode = FAIL_ONE; mode <= FAIL_FROM; mode++)
-        for (uint64_t n = 0; !fail_allocation(call, mode, n); n = next_of(n, total))
+        for (uint64_t n = 0; !fail_allocation(call, mode, n); n += step)
             failed++;
     if (__lsan_do_recoverable_leak_check != NULL && __lsan_do_recoverable_leak_check() != 0)
         fail_msg("%s leaks after a failed allocation", call->name);

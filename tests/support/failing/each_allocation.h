@@ -11,13 +11,15 @@ struct failing_call {
     void *context;
     /* A code beside ERROR_MEMORY that the call may give for want of memory: 0, there is none. */
     int also;
-    /* Whether a call may do without the memory: 0 although an allocation failed. */
+    /* Whether the call, or a library within (the caches of SQLite), can do without some of its
+     * memory: then it may succeed, and its result is as good. */
     int may_succeed;
 };
 
 /* Fails each allocation of the call alone, and then each with all behind it. After each: an error
- * with a text, no leak, and the same call succeeds. Where there are many, a few hundred spread over
- * all of them, or with RUGO_FAULTS=all each. Fails the test. */
+ * with a text, no leak, and the same call succeeds. Where this would
+ * take more than some seconds, as many as fit, spread over all; with RUGO_FAULTS=all each. Fails
+ * the test. */
 void each_allocation(const struct failing_call *call);
 
 #endif

@@ -18,6 +18,8 @@ void *BEHIND(malloc)(size_t size);
 void *BEHIND(calloc)(size_t count, size_t size);
 void *BEHIND(realloc)(void *memory, size_t size);
 
+/* So that the libraries find them too. */
+#define EXPORTED __attribute__((visibility("default")))
 /* Asked before a sanitizer has set itself up. */
 #define UNCHECKED __attribute__((no_sanitize("address", "thread", "undefined")))
 
@@ -74,21 +76,21 @@ void failing_where(void) {
     backtrace_symbols_fd(failing.frames, failing.frame_count, STDERR_FILENO);
 }
 
-UNCHECKED void *malloc(size_t size) {
+EXPORTED UNCHECKED void *malloc(size_t size) {
     return fails() ? NULL : BEHIND(malloc)(size);
 }
 
-UNCHECKED void *calloc(size_t count, size_t size) {
+EXPORTED UNCHECKED void *calloc(size_t count, size_t size) {
     return fails() ? NULL : BEHIND(calloc)(count, size);
 }
 
-UNCHECKED void *realloc(void *memory, size_t size) {
+EXPORTED UNCHECKED void *realloc(void *memory, size_t size) {
     /* A size of 0 frees, which cannot fail. */
     return (memory == NULL || size > 0) && fails() ? NULL : BEHIND(realloc)(memory, size);
 }
 
 void *fftw_malloc(size_t size);
-void *fftw_malloc(size_t size) {
+EXPORTED void *fftw_malloc(size_t size) {
     static void *(*real)(size_t size);
     if (real == NULL)
         *(void **)&real = dlsym(RTLD_NEXT, "fftw_malloc");

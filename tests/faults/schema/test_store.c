@@ -1,0 +1,218 @@
+/* Protects: whichever allocation fails, in SQLite too, an operation of the store says so and is not
+ * done by half; the handle goes on, and no result that was taken is lost. */
+#include "tests/support/check.h"
+
+#include "schema/store/store.h"
+#include "tests/support/failing/each_allocation.h"
+#include "tests/support/fake_kind.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char STUDY[] = "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":20,\"seconds\":6,"
+                            "\"box\":{\"width\":1}}";
+
+struct life {
+    struct store *store;
+    struct study *study;
+    uint64_t taken; /* results that store_complete said to have */
+};
+
+static int open_and_close(void *context, struct error *err) {
+    const char *path = context;
+    struct store *store = NULL;
+    int status = store_open(&store, path, &(struct store_options){0}, err);
+    assert_true(status == 0 || store == NULL);
+    store_close(&store);
+    return status;
+}
+
+static int open_new(void *context, struct error *err) {
+    int status = open_and_close(context, err);
+    unlink(context);
+    return status;
+}
+
+static int complete_jobs(struct life *life, struct claimed_job *jobs, size_t count,
+                         struct error *err) {
+    static const char *const NAMES[] = {"a"};
+    double scalars[20] = {1, NAN, 3};
+    int status = 0;
+    for (size_t n = 0; n < count && status == 0; n++) {
+        struct block_result result = {.first = jobs[n].first,
+                                      .count = jobs[n].count,
+                                      .scalar_count = 1,
+                                      .names = NAMES,
+                                      .scalars = scalars,
+                                      .data = (const unsigned char *)"data",
+                                      .size = 4,
+                                      .seconds = 2};
+        bool first = false, case_done = false;
+        status = store_heartbeat(life->store, jobs[n].id, jobs[n].token, 1, err);
+        if (status == 0)
+            status = store_complete(life->store, jobs[n].id, jobs[n].token, &result, &first,
+                                    &case_done, err);
+        life->taken += status == 0 && first;
+    }
+    return status;
+}
+
+static int count_result(void *context, const struct block_result *result, struct error *err) {
+    (void)err;
+    *(uint64_t *)context += result->count;
+    return 0;
+}
+
+static int look(struct life *life, const char *id, struct error *err) {
+    struct study_status status = {0};
+    struct case_info info = {0};
+    struct case_cost cost;
+    uint64_t seen = 0;
+    int result = store_status(life->store, id, &status, err);
+    if (result == 0)
+        result = store_case(life->store, id, 0, &info, err);
+    if (result == 0)
+        result = store_cost(life->store, id, 0, &cost, err);
+    if (result == 0)
+        result = store_results(life->store, id, 0, count_result, &seen, err);
+    if (result == 0) {
+        assert_string_equal(status.state, "done");
+        assert_int_equal(info.realisations_done, 20);
+        assert_int_equal(seen, 20);
+    }
+    case_info_clear(&info);
+    study_status_clear(&status);
+    return result;
+}
+
+/* A study from its submission to its last result, on a handle that has seen failures. */
+static int live(void *context, struct error *err) {
+    struct life *life = context;
+    char id[STUDY_ID_SIZE];
+    struct claimed_job jobs[4] = {0};
+    struct claim claim = {.worker = "w", .host = "h", .study = id, .count = 4};
+    size_t count = 0;
+    bool existing = false;
+    int status = store_submit(life->store, life->study, NULL, id, &existing, err);
+    if (status == 0)
+        status = store_claim(life->store, &claim, jobs, &count, err);
+    if (status == 0)
+        status = complete_jobs(life, jobs, count, err);
+    for (size_t n = 0; n < count; n++)
+        claimed_job_clear(&jobs[n]);
+    return status == 0 ? look(life, id, err) : status;
+}
+
+/* The other ways of a job and a study. */
+static int give_up(void *context, struct error *err) {
+    struct life *life = context;
+    char id[STUDY_ID_SIZE];
+    struct claimed_job job = {0};
+    struct claim claim = {.worker = "w", .host = "h", .study = id, .count = 1};
+    struct failure *failures = NULL;
+    size_t count = 0;
+    uint64_t again = 0;
+    bool existing = false;
+    int status = store_begin(life->store, err);
+    if (status != 0)
+        return status;
+    status = store_submit(life->store, life->study, NULL, id, &existing, err);
+    if (status == 0)
+        status = store_claim(life->store, &claim, &job, &count, err);
+    if (status == 0)
+        status = store_fail(life->store, job.id, job.token, "no reason", true, err);
+    if (status == 0)
+        status = store_failures(life->store, id, &failures, &count, err);
+    if (status == 0)
+        status = store_retry(life->store, id, &again, err);
+    if (status == 0)
+        status = store_cancel(life->store, id, err);
+    claimed_job_clear(&job);
+    failures_free(failures, status == 0 ? count : 0);
+    struct error late = {0};
+    int committed = store_commit(life->store, &late);
+    if (status == 0 && committed != 0)
+        *err = late;
+    return status == 0 ? committed : status;
+}
+
+static int list(void *context, struct error *err) {
+    struct life *life = context;
+    struct study_status *statuses = NULL;
+    struct store_metrics metrics;
+    size_t count = 0;
+    int status = store_list(life->store, "", 3, &statuses, &count, err);
+    for (size_t n = 0; status == 0 && n < count; n++)
+        study_status_clear(&statuses[n]);
+    if (status == 0)
+        free(statuses);
+    return status == 0 ? store_metrics(life->store, &metrics, err) : status;
+}
+
+static int snapshot(void *context, struct error *err) {
+    struct life *life = context;
+    int status = store_snapshot(life->store, "snapshot.db", err);
+    unlink("snapshot.db");
+    return status;
+}
+
+static struct life life;
+
+static int open_life(void **state) {
+    struct fault_list faults = {0};
+    struct error err = {0};
+    (void)state;
+    return store_open(&life.store, "life.db", &(struct store_options){0}, &err) != 0 ||
+           study_read(&life.study, STUDY, strlen(STUDY), NULL, &FAKE_KIND, 1, 0, &faults, &err) !=
+               0;
+}
+
+static int close_life(void **state) {
+    (void)state;
+    study_destroy(&life.study);
+    store_close(&life.store);
+    return 0;
+}
+
+static void opening(void **state) {
+    (void)state;
+    char fresh[] = "new.db", old[] = "life.db";
+    each_allocation(
+        &(struct failing_call){.name = "store, new", open_new, fresh, .may_succeed = 1});
+    each_allocation(&(struct failing_call){.name = "store", open_and_close, old, .may_succeed = 1});
+}
+
+static uint64_t jobs_done(void) {
+    struct error err = {0};
+    struct store_metrics metrics;
+    struct store *store = NULL;
+    assert_int_equal(store_open(&store, "life.db", &(struct store_options){0}, &err), 0);
+    assert_int_equal(store_metrics(store, &metrics, &err), 0);
+    store_close(&store);
+    return metrics.jobs_done;
+}
+
+static void a_study(void **state) {
+    (void)state;
+    each_allocation(&(struct failing_call){.name = "study", live, &life, .may_succeed = 1});
+    assert_true(life.taken > 0);
+    assert_true(jobs_done() >= life.taken);
+}
+
+static void other_ways(void **state) {
+    (void)state;
+    each_allocation(
+        &(struct failing_call){.name = "fail, retry, cancel", give_up, &life, .may_succeed = 1});
+    each_allocation(&(struct failing_call){.name = "list", list, &life, .may_succeed = 1});
+    each_allocation(&(struct failing_call){.name = "snapshot", snapshot, &life, .may_succeed = 1});
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(opening),
+        cmocka_unit_test(a_study),
+        cmocka_unit_test(other_ways),
+    };
+    return cmocka_run_group_tests(tests, open_life, close_life);
+}
