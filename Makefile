@@ -146,12 +146,17 @@ unit faults validation system: all
 	@$(MAKE) --no-print-directory $(call all_tests,$@)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,$@)
 
-# Faults: every allocation of a test program fails in turn (tests/support/failing).
+# Faults: every allocation of a test program, and of the program itself, fails in turn; a hook is linked in.
 FAILING = $(patsubst %,$(BUILD)/tests/support/failing/%.c.o,failing_allocator each_allocation)
+HOOK    = $(patsubst %,$(BUILD)/tests/support/failing/%.c.o,failing_allocator failing_environment)
 $(call all_tests,faults): $(FAILING)
+$(TESTS_faults_server): | $(BUILD)/rugo-failing
+$(BUILD)/rugo-failing: $(call objects,$(MAIN)) $(HOOK) $(call archive,$(BELOW_server))
+	$(say) LD $@
+	$(Q)$(LINK) -pie -o $@ $^ $(LIBS_server) $(LDLIBS)
 run-faults:
 	@$(MAKE) --no-print-directory -j$$(nproc) $(call all_tests,faults)
-	@tests/run-tests $(call all_tests,faults)
+	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,faults)
 .PHONY: run-faults
 
 # Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads.

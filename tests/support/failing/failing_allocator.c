@@ -27,8 +27,7 @@ enum { FRAMES_MOST = 48 };
 static struct {
     atomic_bool armed;
     atomic_uint_fast64_t asked, failed;
-    enum failing_mode mode; /* as first, changed only while not armed */
-    uint64_t first;
+    uint64_t first, most;      /* changed only while not armed */
     void *frames[FRAMES_MOST]; /* of the first failure */
     int frame_count;
 } failing;
@@ -37,7 +36,7 @@ UNCHECKED static bool fails(void) {
     if (!atomic_load(&failing.armed))
         return false;
     uint64_t n = atomic_fetch_add(&failing.asked, 1);
-    if (failing.mode == FAIL_ONE ? n != failing.first : n < failing.first)
+    if (n < failing.first || n - failing.first >= failing.most)
         return false;
     if (atomic_fetch_add(&failing.failed, 1) == 0)
         failing.frame_count = backtrace(failing.frames, FRAMES_MOST);
@@ -58,10 +57,10 @@ static void prepare_backtrace(void) {
         __lsan_enable();
 }
 
-void failing_arm(enum failing_mode mode, uint64_t n) {
+void failing_arm(uint64_t first, uint64_t most) {
     prepare_backtrace();
-    failing.mode = mode;
-    failing.first = n;
+    failing.first = first;
+    failing.most = most;
     atomic_store(&failing.asked, 0);
     atomic_store(&failing.failed, 0);
     atomic_store(&failing.armed, true);

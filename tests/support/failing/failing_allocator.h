@@ -9,11 +9,8 @@
 
 #include <stdint.h>
 
-enum failing_mode {
-    FAIL_ONE, /* allocation n alone, counted from 0 */
-    FAIL_FROM /* allocation n and all behind it */
-};
-void failing_arm(enum failing_mode mode, uint64_t n);
+/* From now on allocation `first`, counted from 0, and those behind it fail, `most` of them. */
+void failing_arm(uint64_t first, uint64_t most);
 
 struct failing_count {
     uint64_t asked, failed; /* allocations since failing_arm */

@@ -1,5 +1,6 @@
-/* Arms the hook of a whole program by RUGO_FAIL_ALLOCATION: "one N" or "from N". At the end of the
- * process the number of allocations asked for goes to the file RUGO_COUNT_ALLOCATIONS. */
+/* Arms the hook of a whole program by RUGO_FAIL_ALLOCATION=FIRST,MOST. At the end of the process
+ * the number of allocations asked for, and of those that failed, goes to the file
+ * RUGO_COUNT_ALLOCATIONS. */
 #include "tests/support/failing/failing_allocator.h"
 #include <fcntl.h>
 #include <inttypes.h>
@@ -10,9 +11,9 @@
 
 __attribute__((constructor)) static void arm(void) {
     const char *wish = getenv("RUGO_FAIL_ALLOCATION");
-    const char *number = wish != NULL ? strchr(wish, ' ') : NULL;
-    if (number != NULL)
-        failing_arm(*wish == 'o' ? FAIL_ONE : FAIL_FROM, strtoull(number, NULL, 10));
+    const char *most = wish != NULL ? strchr(wish, ',') : NULL;
+    if (most != NULL)
+        failing_arm(strtoull(wish, NULL, 10), strtoull(most + 1, NULL, 10));
 }
 
 __attribute__((destructor)) static void tell(void) {
