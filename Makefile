@@ -133,15 +133,15 @@ $(1)-$(2): $$(TESTS_$(1)_$(2))
 	tests/run-tests $$^
 .PHONY: $(1)-$(2)
 endef
-LADDERS = unit faults validation system bench
+LADDERS = unit faults fuzz validation system bench
 $(foreach ladder,$(LADDERS),$(foreach layer,$(LAYERS),$(eval $(call TESTS,$(ladder),$(layer)))))
 all_tests = $(foreach layer,$(LAYERS),$(TESTS_$(1)_$(layer)))
 
 test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) run-tests-built
 .PHONY: run-tests-built
-run-tests-built: all $(foreach ladder,unit faults validation system,$(call all_tests,$(ladder)))
-	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(foreach ladder,unit faults validation system,$(call all_tests,$(ladder)))
+run-tests-built: all $(foreach ladder,unit faults fuzz validation system,$(call all_tests,$(ladder)))
+	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(foreach ladder,unit faults fuzz validation system,$(call all_tests,$(ladder)))
 unit faults validation system: all
 	@$(MAKE) --no-print-directory $(call all_tests,$@)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,$@)
@@ -158,6 +158,32 @@ run-faults:
 	@$(MAKE) --no-print-directory -j$$(nproc) $(call all_tests,faults)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,faults)
 .PHONY: run-faults
+
+# Fuzzing: a target of tests/fuzz/<layer> is a test that replays its corpus (tests/support/fuzz), and with clang's
+# libFuzzer in a build of its own it runs for SECONDS, beginning with its corpus. What it finds stays in $(BUILD)-fuzz.
+SECONDS = 60
+REPLAY  = $(BUILD)/tests/support/fuzz/replay.c.o
+$(call all_tests,fuzz): $(REPLAY)
+fuzz: fuzz-deps
+	@$(MAKE) --no-print-directory BUILD=$(BUILD)-fuzz CC=clang SAN=address,undefined,fuzzer-no-link run-fuzz
+fuzz-deps: deps
+	@tests/install-deps "" "clang libclang-rt-dev" clang
+define FUZZ
+$(BUILD)/fuzz/$(notdir $(1)): $(1).c.o $(call archive,$(BELOW_server))
+	@mkdir -p $$(@D)
+	$(say) LD $$@
+	$(Q)$(LINK) -fsanitize=fuzzer -pie -o $$@ $$^ $(LIBS_server) $(LDLIBS)
+run-fuzz-$(notdir $(1)): $(BUILD)/fuzz/$(notdir $(1))
+	@mkdir -p $$<.corpus
+	@cd $$(<D) && ./$$(<F) -max_total_time=$(SECONDS) -timeout=20 -rss_limit_mb=4096 -max_len=8192 -close_fd_mask=2 \
+	    -verbosity=0 -print_final_stats=1 $$(<F).corpus $(abspath tests/fuzz/corpus)/$$(<F) >$$(<F).log 2>&1 || \
+	    { tail -n 60 $$(<F).log; exit 1; }
+	@sed -n 's/^stat::number_of_executed_units: */fuzz $$(<F): executions /p' $$<.log
+.PHONY: run-fuzz-$(notdir $(1))
+endef
+$(foreach target,$(call all_tests,fuzz),$(eval $(call FUZZ,$(target))))
+run-fuzz: $(foreach target,$(call all_tests,fuzz),run-fuzz-$(notdir $(target)))
+.PHONY: fuzz fuzz-deps run-fuzz
 
 # Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads.
 run-unit:

@@ -84,9 +84,11 @@ static int find_summits(void *context, struct error *err) {
     struct summit_finder *finder = NULL;
     struct summit_list list = {0};
     double z[POINTS];
-    for (size_t i = 0; i < POINTS; i++)
-        z[i] = cos(4 * M_PI * ((double)(i % SIDE) + 0.2) / SIDE) *
-               cos(4 * M_PI * (double)(i / SIDE) / SIDE);
+    for (size_t i = 0; i < POINTS; i++) {
+        size_t row = i / SIDE;
+        z[i] =
+            cos(4 * M_PI * ((double)(i % SIDE) + 0.2) / SIDE) * cos(4 * M_PI * (double)row / SIDE);
+    }
     int status = summit_finder_create(&finder, &GRID, look->stencil, look->curvature, 4, 4, err);
     if (status == 0)
         status = summits_find(finder, z, &list, err);

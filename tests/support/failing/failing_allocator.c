@@ -79,13 +79,13 @@ EXPORTED UNCHECKED void *malloc(size_t size) {
     return fails() ? NULL : BEHIND(malloc)(size);
 }
 
-EXPORTED UNCHECKED void *calloc(size_t count, size_t size) {
-    return fails() ? NULL : BEHIND(calloc)(count, size);
+EXPORTED UNCHECKED void *calloc(size_t nmemb, size_t size) {
+    return fails() ? NULL : BEHIND(calloc)(nmemb, size);
 }
 
-EXPORTED UNCHECKED void *realloc(void *memory, size_t size) {
+EXPORTED UNCHECKED void *realloc(void *ptr, size_t size) {
     /* A size of 0 frees, which cannot fail. */
-    return (memory == NULL || size > 0) && fails() ? NULL : BEHIND(realloc)(memory, size);
+    return (ptr == NULL || size > 0) && fails() ? NULL : BEHIND(realloc)(ptr, size);
 }
 
 void *fftw_malloc(size_t size);

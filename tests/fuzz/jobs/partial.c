@@ -1,0 +1,70 @@
+/* Partial results of both kinds, as someone might send them on purpose: the first byte chooses the
+ * case, the second the number of realisations, the rest is the data, under a seal made for it. What
+ * fits is merged and makes curves, what does not is refused by both. */
+#include "jobs/kind.h"
+#include "schema/result/bytes.h"
+#include "tests/support/fuzz/fuzz.h"
+
+enum { CASES = 4, REALISATIONS_MOST = 4, SCALARS_MOST = 64 };
+static const struct {
+    const char *kind, *text;
+} STUDIES[CASES] = {
+    {"statistics", "{\"surface\":{\"dimension\":1,\"hurst\":0.6,\"wavelength_ratio\":4},"
+                   "\"statistics\":{\"bins\":{\"height\":[-3,3,6],\"curvature\":[-6,0,6]}}}"},
+    {"statistics", "{\"surface\":{\"hurst\":0.6,\"wavelength_ratio\":2,\"length_ratio\":2},"
+                   "\"statistics\":{\"bins\":{\"height\":[-3,3,6],\"curvature\":[-6,0,6]}}}"},
+    {"contact", "{\"surface\":{\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":2},"
+                "\"contact\":{\"levels\":[2,4],\"pressures\":{\"values\":[0.1]},"
+                "\"pressure_pdf\":{\"at\":[0.1],\"bins\":[0,1,4]}}}"},
+    {"contact", "{\"surface\":{\"hurst\":0.8,\"wavelength_ratio\":2,\"points_per_wavelength\":4},"
+                "\"contact\":{\"pressures\":{\"values\":[0.1,0.2]},"
+                "\"pressure_pdf\":{\"at\":[0.1],\"bins\":[0,1,4]}}}"},
+};
+static cJSON *parameters[CASES];
+static double scalars[REALISATIONS_MOST * SCALARS_MOST];
+
+static size_t scalar_count(const struct job_kind *kind) {
+    size_t count = 0;
+    while (kind->scalars[count] != NULL)
+        count++;
+    MUST(count <= SCALARS_MOST);
+    return count;
+}
+
+static void seal(unsigned char *data, size_t size) {
+    uint64_t hash = hash_bytes(HASH_START, size, data);
+    for (size_t a = 0; a < 8; a++)
+        data[size + a] = (unsigned char)(hash >> (8 * a));
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    if (size < 2)
+        return 0;
+    size_t which = data[0] % CASES;
+    const struct job_kind *kind = kind_find(STUDIES[which].kind);
+    if (parameters[which] == NULL)
+        parameters[which] = cJSON_Parse(STUDIES[which].text);
+    unsigned char *sealed = malloc(size - 2 + 8);
+    MUST(sealed != NULL && parameters[which] != NULL);
+    memcpy(sealed, data + 2, size - 2);
+    seal(sealed, size - 2);
+    struct block_result result = {.count = 1 + data[1] % REALISATIONS_MOST,
+                                  .scalar_count = scalar_count(kind),
+                                  .names = kind->scalars,
+                                  .scalars = scalars,
+                                  .data = sealed,
+                                  .size = size - 2 + 8,
+                                  .seconds = 1};
+    struct job_merger *merger = NULL;
+    struct error err = {0};
+    MUST(kind->merger_create(&merger, parameters[which], &err) == 0);
+    int fits = kind->fits(merger, &result, &err);
+    MUST(kind->merge(merger, &result, &err) == fits);
+    MUST(fits == 0 || (fits == ERROR_INPUT && *err.text != 0));
+    cJSON *document = NULL;
+    MUST(kind->curves(merger, &document, &err) == 0);
+    cJSON_Delete(document);
+    kind->merger_destroy(&merger);
+    free(sealed);
+    return 0;
+}

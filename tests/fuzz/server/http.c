@@ -1,0 +1,63 @@
+/* Bytes sent to the service as they are: the whole stack in one process, over the loopback. It ends
+ * the connection, with an answer that is none of its own failures, or without one. */
+#include "server/http/http.h"
+#include "server/http/checker.h"
+#include "tests/support/fuzz/fuzz.h"
+#include <arpa/inet.h>
+#include <errno.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+static struct service service;
+static struct http *http;
+
+static void start(void) {
+    struct error err = {0};
+    struct http_options options = {.address = "127.0.0.1", .connections = 16, .deadline_s = 5};
+    /* In the folder of the run, which is the caller's to clear. */
+    unlink("fuzz.db");
+    unlink("fuzz.db-wal");
+    unlink("fuzz.db-shm");
+    if (service_open(&service, "fuzz.db", 60000, &err) != 0 ||
+        http_start(&http, &service, &options, &err) != 0) {
+        fprintf(stderr, "%s\n", err.text);
+        abort();
+    }
+}
+
+static int connect_to(uint16_t port) {
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons(port)};
+    struct timeval patience = {.tv_sec = 10};
+    int peer = socket(AF_INET, SOCK_STREAM, 0);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    MUST(peer >= 0);
+    MUST(connect(peer, (struct sockaddr *)&address, sizeof address) == 0);
+    setsockopt(peer, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    return peer;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    char answer[4096];
+    size_t length = 0;
+    ssize_t got = 0;
+    if (http == NULL)
+        start();
+    int peer = connect_to(http_port(http));
+    if (size > 0)
+        (void)!send(peer, data, size, MSG_NOSIGNAL);
+    shutdown(peer, SHUT_WR);
+    while ((got = recv(peer, answer + length, sizeof answer - 1 - length, 0)) > 0)
+        if ((length += (size_t)got) == sizeof answer - 1)
+            length = 32; /* its beginning is enough */
+    MUST(got == 0 || errno == ECONNRESET);
+    answer[length] = 0;
+    close(peer);
+    if (length == 0)
+        return 0;
+    MUST(strncmp(answer, "HTTP/1.1 ", 9) == 0 || strncmp(answer, "HTTP/1.0 ", 9) == 0);
+    long status = strtol(answer + 9, NULL, 10);
+    /* 501, 505: a method or a version that there is not. */
+    MUST((status >= 100 && status < 500) || status == 501 || status == 505);
+    return 0;
+}
