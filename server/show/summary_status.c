@@ -1,36 +1,48 @@
 #include "server/show/summary_status.h"
-#include "server/show/document.h"
+#include "schema/json/wire_field.h"
 #include "server/show/summary_cells.h"
+#include <math.h>
+
+static const char *text_of(const cJSON *object, const char *key) {
+    const char *text = cJSON_GetStringValue(field_at(object, key));
+    return text != NULL ? text : "-";
+}
+
+/* NaN for what is absent or no number. */
+static double number_of(const cJSON *object, const char *key) {
+    const cJSON *number = field_at(object, key);
+    return cJSON_IsNumber(number) ? number->valuedouble : (double)NAN;
+}
 
 /* Of a job; without one, of a case whose curves could not be published. */
 static void print_failure(const cJSON *failure, FILE *file) {
-    double first = number_of(failure, "first");
-    if (!cJSON_IsNumber(member(failure, "job")))
-        fprintf(file, "  not published: case %.0f: %s\n", number_of(failure, "case"),
-                text_of(failure, "reason", "-"));
-    else
-        fprintf(file,
-                "  failed: case %.0f, realisations %.0f to %.0f, %.0f attempts, worker %s: %s\n",
-                number_of(failure, "case"), first, first + number_of(failure, "count") - 1,
-                number_of(failure, "attempts"), text_of(failure, "worker", "-"),
-                text_of(failure, "reason", "-"));
+    const char *reason = text_of(failure, "reason");
+    double one = number_of(failure, "case"), first = number_of(failure, "first");
+    if (!cJSON_IsNumber(field_at(failure, "job"))) {
+        fprintf(file, "  not published: case %.0f: %s\n", one, reason);
+        return;
+    }
+    fprintf(file, "  failed: case %.0f, realisations %.0f to %.0f, %.0f attempts, worker %s: %s\n",
+            one, first, first + number_of(failure, "count") - 1, number_of(failure, "attempts"),
+            text_of(failure, "worker"), reason);
 }
 
 void summary_of_status(const cJSON *status, FILE *file) {
-    const cJSON *jobs = member(status, "jobs"), *realisations = member(status, "realisations");
+    const cJSON *jobs = field_at(status, "jobs"), *realisations = field_at(status, "realisations");
     char left[48], spent[48];
     duration_text(number_of(status, "seconds_left"), left, sizeof left);
     duration_text(number_of(status, "seconds"), spent, sizeof spent);
-    fprintf(file, "%s  %s  %s  %s\n", text_of(status, "id", "-"), text_of(status, "name", "-"),
-            text_of(status, "kind", "-"), text_of(status, "state", "-"));
+    fprintf(file, "%s  %s  %s  %s\n", text_of(status, "id"), text_of(status, "name"),
+            text_of(status, "kind"), text_of(status, "state"));
     fprintf(file, "  realisations %.0f of %.0f, jobs %.0f of %.0f (%.0f running, %.0f failed)\n",
             number_of(realisations, "done"), number_of(realisations, "total"),
             number_of(jobs, "done"), number_of(jobs, "total"), number_of(jobs, "running"),
             number_of(jobs, "failed"));
     fprintf(file, "  workers %.0f, spent %s, left %s\n", number_of(status, "workers"), spent, left);
-    for (const cJSON *failure = first_of(status, "failures"); failure != NULL;
-         failure = failure->next)
+    const cJSON *failure;
+    cJSON_ArrayForEach(failure, field_at(status, "failures")) {
         print_failure(failure, file);
+    }
 }
 
 void summary_of_list(const cJSON *studies, FILE *file) {
@@ -38,15 +50,15 @@ void summary_of_list(const cJSON *studies, FILE *file) {
     static const char *const HEADINGS[] = {"id", "name", "kind", "state", "done %", "created"};
     for (size_t h = 0; h < 6; h++)
         table_cell(&table, "%s", HEADINGS[h]);
-    for (const cJSON *s = first_of(studies, "studies"); s != NULL; s = s->next) {
-        const cJSON *realisations = member(s, "realisations");
-        table_cell(&table, "%s", text_of(s, "id", "-"));
-        table_cell(&table, "%s", text_of(s, "name", "-"));
-        table_cell(&table, "%s", text_of(s, "kind", "-"));
-        table_cell(&table, "%s", text_of(s, "state", "-"));
+    const cJSON *study;
+    cJSON_ArrayForEach(study, field_at(studies, "studies")) {
+        static const char *const TEXTS[] = {"id", "name", "kind", "state"};
+        const cJSON *realisations = field_at(study, "realisations");
+        for (size_t n = 0; n < sizeof TEXTS / sizeof *TEXTS; n++)
+            table_cell(&table, "%s", text_of(study, TEXTS[n]));
         table_cell(&table, "%.1f",
                    100 * number_of(realisations, "done") / number_of(realisations, "total"));
-        table_cell(&table, "%s", text_of(s, "created", "-"));
+        table_cell(&table, "%s", text_of(study, "created"));
     }
     table_print(&table, file);
     table_clear(&table);

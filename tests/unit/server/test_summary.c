@@ -3,6 +3,7 @@
 #include "schema/result/report.h"
 #include "server/show/summary.h"
 #include "server/show/summary_cells.h"
+#include "server/show/summary_status.h"
 #include "tests/support/check.h"
 #include "tests/support/result_builder.h"
 #include <stdio.h>
@@ -179,12 +180,41 @@ static void numbers_have_the_digits_of_their_error(void **state) {
     }
 }
 
+/* Failed jobs and cases that could not be published; what is missing is no fault. */
+static void failures_are_told(void **state) {
+    (void)state;
+    static const char DOCUMENT[] =
+        "{\"id\":\"12\",\"name\":\"pressed\",\"kind\":\"contact\",\"state\":\"done\",\"jobs\":{"
+        "\"done\":3,\"total\":5,\"running\":0,\"failed\":1},\"realisations\":{\"done\":30,"
+        "\"total\":50},\"workers\":0,\"seconds\":12,\"seconds_left\":null,\"failures\":[{\"job\":4,"
+        "\"case\":1,\"first\":10,\"count\":10,\"attempts\":3,\"worker\":\"w\",\"reason\":\"lost\"},"
+        "{\"case\":2,\"reason\":\"of another program\"}]}";
+    cJSON *document = cJSON_Parse(DOCUMENT), *empty = cJSON_Parse("{}");
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_true(file != NULL && document != NULL && empty != NULL);
+    summary_of_status(document, file);
+    summary_of_status(empty, file);
+    fclose(file);
+    check_shown(text, (const char *[]){
+                          "12  pressed  contact  done\n  realisations 30 of 50, jobs 3 "
+                          "of 5 (0 running, 1 failed)\n  workers 0, spent 12 s, left -",
+                          "  failed: case 1, realisations 10 to 19, 3 attempts, "
+                          "worker w: lost\n",
+                          "  not published: case 2: of another program\n", "\n-  -  -  -\n", NULL});
+    free(text);
+    cJSON_Delete(document);
+    cJSON_Delete(empty);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scalars_are_those_of_the_view),
         cmocka_unit_test(few_cases_have_a_table_each),
         cmocka_unit_test(many_cases_have_a_row_each),
         cmocka_unit_test(a_report_tells_errors_by_source),
+        cmocka_unit_test(failures_are_told),
         cmocka_unit_test(numbers_have_the_digits_of_their_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
