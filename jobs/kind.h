@@ -14,6 +14,7 @@
 #include "core/surface/surface.h"
 #include "schema/result/block_result.h"
 #include "schema/result/bytes.h"
+#include "schema/result/result.h"
 #include "schema/study/fault.h"
 #include "schema/study/parameter.h"
 #include "schema/study/study.h"
@@ -92,9 +93,14 @@ struct job_kind {
     bool (*adds_up)(const void *tally);
     bool (*belongs)(const void *tally, const struct block_result *result);
 
-    /* {"realisations": n, "scalars": {...}, "curves": [...]}; caller deletes. */
-    int (*curves)(const void *study, const struct surface_basis *basis, const void *tally,
-                  const struct realisations *realisations, cJSON **out, struct error *err);
+    /* Appends scalars, curves and notes to a result. */
+    int (*result)(const void *study, const struct surface_basis *basis, const void *tally,
+                  const struct realisations *realisations, struct case_result *out,
+                  struct error *err);
+    /* Makes the theories that curves of such a case name without holding them. NULL: there are
+     * none. */
+    int (*complete)(const void *study, const struct surface_basis *basis,
+                    struct case_result *result, struct error *err);
     /* Writes what the case is solved on, for the surface z of its own grid, pressed to p/(E* h')
      * where that is above 0, as a VTU file. Lengths in lambda_s, pressures and stresses in E* h'.
      * Nothing is written on failure. NULL for kinds without meshes. */

@@ -115,7 +115,31 @@ int merger_add(struct job_merger *merger, const struct block_result *result, str
     return status;
 }
 
-int merger_curves(const struct job_merger *merger, cJSON **out, struct error *err) {
-    return merger->kind->curves(merger->study, &merger->basis, merger->tally, &merger->realisations,
-                                out, err);
+int merger_result(const struct job_merger *merger, struct case_result *out, struct error *err) {
+    out->realisations = merger->realisations.count;
+    int status = merger->kind->result(merger->study, &merger->basis, merger->tally,
+                                      &merger->realisations, out, err);
+    if (status != 0)
+        result_clear(out);
+    return status;
+}
+
+static bool is_complete(const struct case_result *result) {
+    for (size_t a = 0; a < result->curve_count; a++)
+        for (size_t t = 0; t < result->curves[a].theory_count; t++)
+            if (result->curves[a].theories[t].y == NULL)
+                return false;
+    return true;
+}
+
+int merger_complete(const struct job_kind *kind, const cJSON *parameters,
+                    struct case_result *result, struct error *err) {
+    struct job_merger *merger = NULL;
+    if (kind->complete == NULL || is_complete(result))
+        return 0;
+    int status = merger_create(&merger, kind, parameters, err);
+    if (status == 0)
+        status = kind->complete(merger->study, &merger->basis, result, err);
+    merger_destroy(&merger);
+    return status;
 }

@@ -1,6 +1,6 @@
 /* Merges blocks of a case, whatever the kind: in any order, to the same bits.
  *
- * Life: merger_create -> merger_add (each block once) -> merger_curves -> merger_destroy. */
+ * Life: merger_create -> merger_add (each block once) -> merger_result -> merger_destroy. */
 #ifndef RUGO_JOBS_MERGER_H
 #define RUGO_JOBS_MERGER_H
 
@@ -16,7 +16,11 @@ int merger_fits(const struct job_merger *merger, const struct block_result *resu
                 struct error *err);
 /* Decodes and adds one block; ERROR_INPUT for data that is not this case's (nothing added). */
 int merger_add(struct job_merger *merger, const struct block_result *result, struct error *err);
-/* Of all that was added (job_kind.curves); caller deletes *out. */
-int merger_curves(const struct job_merger *merger, cJSON **out, struct error *err);
+/* Fills an empty result with all that was added: count of realisations, scalars, curves, notes. On
+ * failure it is cleared. */
+int merger_result(const struct job_merger *merger, struct case_result *out, struct error *err);
+/* Makes the theories that the curves of such a case name without holding them. */
+int merger_complete(const struct job_kind *kind, const cJSON *parameters,
+                    struct case_result *result, struct error *err);
 
 #endif

@@ -1,5 +1,4 @@
 #include "jobs/notes.h"
-#include "jobs/value.h"
 
 static bool is_printable(uint64_t character) {
     return character >= ' ' && character <= '~';
@@ -65,22 +64,18 @@ void notes_get(struct byte_reader *reader, struct notes *notes) {
     }
 }
 
-static cJSON *note_json(const struct note *note) {
-    cJSON *object = cJSON_CreateObject();
-    if (value_put(object, "realisation", value_number((double)note->realisation)) &&
-        value_put(object, "text", cJSON_CreateString(note->text)))
-        return object;
-    cJSON_Delete(object);
-    return NULL;
-}
-
-cJSON *notes_json(const struct notes *notes) {
-    cJSON *object = cJSON_CreateObject(), *kept = cJSON_CreateArray();
-    bool done = value_put(object, "count", value_number((double)notes->count));
-    for (size_t n = 0; n < notes_kept(notes) && done; n++)
-        done = value_append(kept, note_json(&notes->kept[n]));
-    if (value_put(object, "kept", kept) && done) /* takes kept in any case */
-        return object;
-    cJSON_Delete(object);
-    return NULL;
+int notes_result(const struct notes *notes, struct case_result *out, struct error *err) {
+    size_t count = notes_kept(notes);
+    out->notes = result_room(out, count + 1, sizeof *out->notes);
+    bool done = out->notes != NULL;
+    for (size_t n = 0; n < count && done; n++) {
+        out->notes[n].realisation = notes->kept[n].realisation;
+        out->notes[n].text = result_text(out, notes->kept[n].text);
+        done = out->notes[n].text != NULL;
+    }
+    if (!done)
+        return error_set(err, ERROR_MEMORY, "no memory left for notes");
+    out->note_count = count;
+    out->notes_all = notes->count;
+    return 0;
 }

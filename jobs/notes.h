@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "schema/result/bytes.h"
-#include <cjson/cJSON.h>
+#include "schema/result/result.h"
 
 enum { NOTES_MOST = 20, NOTE_SIZE = sizeof((struct error *)0)->text };
 struct note {
@@ -29,7 +29,7 @@ void notes_merge(struct notes *into, const struct notes *from);
 void notes_put(struct bytes *bytes, const struct notes *notes);
 /* Fails the reader where they are not what notes_put makes. */
 void notes_get(struct byte_reader *reader, struct notes *notes);
-/* {"count": n, "kept": [{"realisation", "text"}, ...]}; caller deletes. NULL: out of memory. */
-cJSON *notes_json(const struct notes *notes);
+/* Copies them into the result. */
+int notes_result(const struct notes *notes, struct case_result *out, struct error *err);
 
 #endif

@@ -1,69 +1,47 @@
 #include "worker/aggregate.h"
-#include "jobs/kind.h"
 #include "jobs/merger.h"
-#include "schema/json/flat.h"
-#include "schema/json/wire_field.h"
-
+#include "schema/result/result_json.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-static int no_memory(struct error *err) {
-    return error_set(err, ERROR_MEMORY, "no memory left for curves");
-}
-
-/* --- one case --- */
+/* --- merging --- */
 
 struct merge {
     const struct job_kind *kind;
     struct job_merger *merger;
 };
 
-/* The names tell data of an older program, whose scalars were others. */
 static int merge_block(void *context, const struct block_result *block, struct error *err) {
-    struct merge *merge = context;
-    struct error names;
-    if (kind_check_names(merge->kind, block, &names) != 0) {
-        return error_set(err, ERROR_INPUT,
-                         "realisations %llu to %llu hold other scalars than kind %s has",
-                         (unsigned long long)block->first,
-                         (unsigned long long)(block->first + block->count - 1), merge->kind->name);
-    }
-    return merger_add(merge->merger, block, err);
+    const struct merge *merge = context;
+    int status = kind_check_names(merge->kind, block, err); /* of an older program: others */
+    return status != 0 ? status : merger_add(merge->merger, block, err);
 }
 
-static int case_merge(struct store *store, const char *study, uint64_t case_number,
-                      const struct job_kind *kind, const cJSON *parameters, cJSON **out,
-                      struct error *err) {
-    struct merge merge = {.kind = kind};
-    int status = merger_create(&merge.merger, kind, parameters, err);
-    if (status) {
+/* All stored blocks of a case, in the order of their realisations. */
+static int merge_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                      const cJSON *parameters, struct case_result *out, struct error *err) {
+    struct merge merge = {.kind = aggregate->kind};
+    int status = merger_create(&merge.merger, merge.kind, parameters, err);
+    if (status != 0)
         return status;
-    }
-    status = store_results(store, study, case_number, merge_block, &merge, err);
-    status = status ? status : merger_curves(merge.merger, out, err);
+    status = store_results(store, aggregate->about.id, case_number, merge_block, &merge, err);
+    if (status == 0)
+        status = merger_result(merge.merger, out, err);
     merger_destroy(&merge.merger);
-    return status ? error_context(err, "case %llu", (unsigned long long)case_number) : 0;
+    return status != 0 ? error_context(err, "case %llu", (unsigned long long)case_number) : 0;
 }
 
-/* A case that has not begun: without a merger, since a study may have ten thousand of them. */
-static int empty_curves(cJSON **out, struct error *err) {
-    cJSON *curves = cJSON_CreateObject();
-    bool complete = curves && field_put_count(curves, "realisations", 0) &&
-                    field_put(curves, "scalars", cJSON_CreateObject()) &&
-                    field_put(curves, "curves", cJSON_CreateArray());
-    *out = fields_finish(curves, complete);
-    return *out ? 0 : no_memory(err);
-}
+/* --- a study --- */
 
 int aggregate_begin(struct store *store, const char *study, struct aggregate *out,
                     struct error *err) {
     struct aggregate found = {0};
     int status = store_status(store, study, &found.about, err);
-    if (status) {
+    if (status != 0)
         return status;
-    }
     found.kind = kind_find(found.about.kind);
-    if (!found.kind) {
+    if (found.kind == NULL) {
         status =
             error_set(err, ERROR_INPUT, "this program knows no kind '%.64s'", found.about.kind);
         aggregate_end(&found);
@@ -78,46 +56,106 @@ void aggregate_end(struct aggregate *aggregate) {
     aggregate->kind = NULL;
 }
 
+struct study_result aggregate_head(const struct aggregate *aggregate) {
+    const struct study_status *about = &aggregate->about;
+    /* the struct owns its texts elsewhere: here they are lent, and never freed through it */
+    return (struct study_result){.id = (char *)about->id,
+                                 .name = about->name,
+                                 .kind = about->kind,
+                                 .state = (char *)about->state};
+}
+
+/* --- a case --- */
+
 /* Merges what is not published at this revision. */
-static int fresh_curves(struct store *store, const struct aggregate *aggregate,
-                        uint64_t case_number, const struct case_info *info, cJSON **out,
+static int fresh_result(struct store *store, const struct aggregate *aggregate,
+                        uint64_t case_number, const struct case_info *info,
+                        const struct published_part *part, struct case_result *out,
                         struct error *err) {
-    const char *study = aggregate->about.id;
+    bool found = false;
     if (info->realisations_done == 0)
-        return empty_curves(out, err);
-    int status = store_published(store, study, case_number, info->revision, out, err);
-    if (status != 0 || *out != NULL)
+        return 0; /* without a merger, since a study may have ten thousand such cases */
+    int status = store_published(store, aggregate->about.id, case_number, info->revision, part, out,
+                                 &found, err);
+    if (status != 0 || found)
         return status;
-    return case_merge(store, study, case_number, aggregate->kind, info->parameters, out, err);
+    return merge_case(store, aggregate, case_number, info->parameters, out, err);
 }
 
-int aggregate_open(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
-                   struct case_info *info, cJSON **out, struct error *err) {
-    struct case_info found = {0};
-    cJSON *curves = NULL;
-    int status = store_case(store, aggregate->about.id, case_number, &found, err);
-    if (status != 0)
-        return status;
-    status = fresh_curves(store, aggregate, case_number, &found, &curves, err);
-    if (status != 0) {
-        case_info_clear(&found);
-        return status;
+static bool has_quantity(const struct case_result *result, const char *quantity) {
+    return result_curve(result, quantity) != NULL;
+}
+
+/* Leaves the curves that were asked for. */
+static void keep_part(struct case_result *result, const struct published_part *part) {
+    size_t kept = 0;
+    for (size_t a = 0; a < result->curve_count; a++)
+        if (!part->scalars_only &&
+            (part->quantity == NULL || strcmp(result->curves[a].quantity, part->quantity) == 0))
+            result->curves[kept++] = result->curves[a];
+    result->curve_count = kept;
+}
+
+/* Names what there is; several curves of one quantity follow each other. */
+static int quantity_absent(const struct case_result *result, const char *quantity,
+                           struct error *err) {
+    char names[256] = "";
+    const char *last = "";
+    for (size_t a = 0; a < result->curve_count; a++) {
+        const char *name = result->curves[a].quantity;
+        size_t length = strlen(names);
+        if (strcmp(name, last) != 0)
+            snprintf(names + length, sizeof names - length, "%s%s", length > 0 ? ", " : "", name);
+        last = name;
     }
-    *info = found;
-    *out = curves;
-    return 0;
+    return error_set(err, ERROR_INPUT, "no quantity '%.64s' in this study; it has %s", quantity,
+                     names[0] != '\0' ? names : "none");
 }
 
-int aggregate_case(struct store *store, const char *study, uint64_t case_number, cJSON **out,
-                   struct error *err) {
-    struct aggregate aggregate;
+/* A quantity that is not there: reads all curves, to tell which there are. */
+static int tell_absent(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                       const struct case_info *info, const char *quantity, struct error *err) {
+    const struct published_part all = {0};
+    struct case_result result = {0};
+    int status = fresh_result(store, aggregate, case_number, info, &all, &result, err);
+    if (status == 0)
+        status = quantity_absent(&result, quantity, err);
+    result_clear(&result);
+    return status;
+}
+
+/* Puts the parameters beside what was published or merged, and what was asked for besides. */
+static int finish_result(struct store *store, const struct aggregate *aggregate,
+                         uint64_t case_number, const struct result_filter *filter,
+                         const struct case_info *info, struct case_result *result,
+                         struct error *err) {
+    const char *quantity = filter->part.quantity;
+    result->case_number = case_number;
+    keep_part(result, &filter->part);
+    int status = result_set_parameters(result, info->parameters, err);
+    bool begun = info->realisations_done > 0;
+    if (status == 0 && begun && quantity != NULL && !has_quantity(result, quantity))
+        status = tell_absent(store, aggregate, case_number, info, quantity, err);
+    if (status == 0 && filter->complete)
+        status = merger_complete(aggregate->kind, info->parameters, result, err);
+    return status;
+}
+
+int aggregate_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                   const struct result_filter *filter, struct case_result *out, struct error *err) {
     struct case_info info = {0};
-    int status = aggregate_begin(store, study, &aggregate, err);
+    struct case_result result = {0};
+    int status = store_case(store, aggregate->about.id, case_number, &info, err);
     if (status != 0)
         return status;
-    status = aggregate_open(store, &aggregate, case_number, &info, out, err);
+    status = fresh_result(store, aggregate, case_number, &info, &filter->part, &result, err);
+    if (status == 0)
+        status = finish_result(store, aggregate, case_number, filter, &info, &result, err);
     case_info_clear(&info);
-    aggregate_end(&aggregate);
+    if (status != 0)
+        result_clear(&result);
+    else
+        *out = result;
     return status;
 }
 
@@ -125,142 +163,141 @@ int aggregate_publish(struct store *store, const char *study, uint64_t case_numb
                       struct error *err) {
     struct aggregate aggregate;
     struct case_info info = {0};
-    cJSON *curves = NULL;
+    struct case_result result = {0};
     int status = aggregate_begin(store, study, &aggregate, err);
     if (status != 0) /* an unknown kind is no fault of the case: another program knows it */
         return status == ERROR_INPUT ? (err->code = ERROR_STATE) : status;
     status = store_case(store, study, case_number, &info, err);
     if (status == 0)
-        status =
-            case_merge(store, study, case_number, aggregate.kind, info.parameters, &curves, err);
+        status = merge_case(store, &aggregate, case_number, info.parameters, &result, err);
     if (status == 0)
-        status = store_publish(store, study, case_number, info.revision, curves, err);
-    cJSON_Delete(curves);
+        status = store_publish(store, study, case_number, info.revision, &result, err);
+    result_clear(&result);
     case_info_clear(&info);
     aggregate_end(&aggregate);
     return status;
 }
 
-/* --- the document of curves --- */
+/* --- reports --- */
 
-static bool is_quantity(const cJSON *curve, const char *quantity) {
-    const char *name = cJSON_GetStringValue(field_at(curve, "quantity"));
-    return name && strcmp(name, quantity) == 0;
+/* Shares of the case's time become seconds. */
+static void spend(struct case_report *report, const struct case_cost *cost) {
+    report->seconds = cost->seconds;
+    for (size_t a = 0; a < report->curve_count; a++)
+        report->curves[a].seconds *= cost->seconds;
+    report->about.case_number = cost->case_number;
+    report->about.realisations = cost->realisations_done;
+    report->realisations_total = cost->realisations;
+    report->jobs = cost->jobs;
+    report->attempts = cost->attempts;
 }
 
-static bool has_quantity(const cJSON *curves, const char *quantity) {
-    const cJSON *curve;
-    cJSON_ArrayForEach(curve, curves) {
-        if (is_quantity(curve, quantity)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static void keep_quantity(cJSON *curves, const char *quantity) {
-    cJSON *curve = curves ? curves->child : NULL;
-    while (curve) {
-        cJSON *next = curve->next;
-        if (!is_quantity(curve, quantity)) {
-            cJSON_Delete(cJSON_DetachItemViaPointer(curves, curve));
-        }
-        curve = next;
-    }
-}
-
-/* Names what there is; several curves of one quantity follow each other. */
-static int quantity_absent(const cJSON *curves, const char *quantity, struct error *err) {
-    char names[256] = "";
-    const char *last = "";
-    const cJSON *curve;
-    cJSON_ArrayForEach(curve, curves) {
-        const char *name = cJSON_GetStringValue(field_at(curve, "quantity"));
-        size_t length = strlen(names);
-        if (name && strcmp(name, last) != 0) {
-            snprintf(names + length, sizeof names - length, "%s%s", length ? ", " : "", name);
-            last = name;
-        }
-    }
-    return error_set(err, ERROR_INPUT, "no quantity '%.64s' in this study; it has %s", quantity,
-                     names[0] ? names : "none");
-}
-
-/* {"case", "parameters", "realisations", "scalars", "curves"}; takes curves. */
-static cJSON *case_document(uint64_t case_number, const cJSON *parameters, cJSON *curves) {
-    cJSON *document = cJSON_CreateObject();
-    bool complete = document && field_put_count(document, "case", case_number) &&
-                    field_put(document, "parameters", flat_parameters(parameters));
-    while (complete && curves->child) {
-        cJSON *item = cJSON_DetachItemViaPointer(curves, curves->child);
-        complete = field_put(document, item->string, item); /* copies the key first */
-    }
-    cJSON_Delete(curves);
-    return fields_finish(document, complete);
-}
-
-int aggregate_curves_case(struct store *store, const struct aggregate *aggregate,
-                          uint64_t case_number, const char *quantity, cJSON **out,
-                          struct error *err) {
-    struct case_info info = {0};
-    cJSON *curves = NULL;
-    int status = aggregate_open(store, aggregate, case_number, &info, &curves, err);
-    if (status) {
+/* Published as such, or measured now. */
+static int read_report(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                       const struct case_info *info, struct case_report *out, struct error *err) {
+    const struct published_part all = {0};
+    struct case_result result = {0};
+    bool found = false;
+    int status = store_published_report(store, aggregate->about.id, case_number, info->revision,
+                                        out, &found, err);
+    if (status != 0 || found)
         return status;
-    }
-    bool begun = info.realisations_done > 0;
-    cJSON *list = cJSON_GetObjectItemCaseSensitive(curves, "curves");
-    if (quantity && begun && !has_quantity(list, quantity)) {
-        status = quantity_absent(list, quantity, err);
-        cJSON_Delete(curves);
-    } else {
-        if (quantity) {
-            keep_quantity(list, quantity);
-        }
-        *out = case_document(case_number, info.parameters, curves);
-        status = *out ? 0 : no_memory(err);
-    }
-    case_info_clear(&info);
+    status = fresh_result(store, aggregate, case_number, info, &all, &result, err);
+    if (status == 0)
+        status = case_report_make(out, &result, 1, err);
+    result_clear(&result);
     return status;
 }
 
-cJSON *aggregate_head(const struct aggregate *aggregate, bool seconds, cJSON **cases) {
-    const struct study_status *about = &aggregate->about;
-    cJSON *document = cJSON_CreateObject();
-    bool complete = document && field_put_text(document, "study", about->id) &&
-                    field_put_text(document, "name", about->name) &&
-                    field_put_text(document, "kind", about->kind) &&
-                    field_put_text(document, "state", about->state) &&
-                    (!seconds || field_put(document, "seconds", json_number(about->seconds)));
-    *cases = complete ? cJSON_AddArrayToObject(document, "cases") : NULL;
-    return fields_finish(document, *cases != NULL);
-}
-
-int aggregate_curves(struct store *store, const char *study, const struct curve_filter *filter,
-                     cJSON **out, struct error *err) {
-    struct aggregate aggregate;
-    int status = aggregate_begin(store, study, &aggregate, err);
-    if (status) {
+int aggregate_case_report(struct store *store, const struct aggregate *aggregate,
+                          uint64_t case_number, struct case_report *out, struct error *err) {
+    struct case_info info = {0};
+    struct case_cost cost;
+    struct case_report report = {0};
+    int status = store_cost(store, aggregate->about.id, case_number, &cost, err);
+    if (status == 0)
+        status = store_case(store, aggregate->about.id, case_number, &info, err);
+    if (status != 0)
+        return status;
+    status = read_report(store, aggregate, case_number, &info, &report, err);
+    if (status == 0)
+        status = result_set_parameters(&report.about, info.parameters, err);
+    case_info_clear(&info);
+    if (status != 0) {
+        case_report_clear(&report);
         return status;
     }
+    spend(&report, &cost);
+    *out = report;
+    return 0;
+}
+
+/* --- whole studies --- */
+
+/* Copies what an aggregate tells of its study; the caller clears it. */
+static int copy_head(const struct aggregate *aggregate, char **id, char **name, char **kind,
+                     char **state, struct error *err) {
+    *id = strdup(aggregate->about.id);
+    *name = strdup(aggregate->about.name);
+    *kind = strdup(aggregate->about.kind);
+    *state = strdup(aggregate->about.state);
+    bool done = *id != NULL && *name != NULL && *kind != NULL && *state != NULL;
+    return done ? 0 : error_memory(err, STUDY_ID_SIZE, "the head of a study");
+}
+
+static int read_cases(struct store *store, const struct aggregate *aggregate,
+                      const struct result_filter *filter, struct study_result *study,
+                      struct error *err) {
     bool one = filter->case_number >= 0;
     uint64_t first = one ? (uint64_t)filter->case_number : 0;
-    uint64_t end = one ? first + 1 : aggregate.about.cases;
-    cJSON *cases = NULL, *document = aggregate_head(&aggregate, false, &cases);
-    status = document ? 0 : no_memory(err);
-    for (uint64_t c = first; c < end && !status; c++) {
-        cJSON *item = NULL;
-        status = aggregate_curves_case(store, &aggregate, c, filter->quantity, &item, err);
-        if (!status && !cJSON_AddItemToArray(cases, item)) {
-            cJSON_Delete(item);
-            status = no_memory(err);
-        }
+    uint64_t end = one ? first + 1 : aggregate->about.cases;
+    study->cases = array_create((size_t)(end - first), sizeof *study->cases);
+    int status = copy_head(aggregate, &study->id, &study->name, &study->kind, &study->state, err);
+    if (status == 0 && study->cases == NULL)
+        status = error_memory(err, (size_t)(end - first) * sizeof *study->cases, "results");
+    for (uint64_t c = first; c < end && status == 0; c++) {
+        status = aggregate_case(store, aggregate, c, filter, &study->cases[study->case_count], err);
+        study->case_count += status == 0;
+    }
+    return status;
+}
+
+int aggregate_study(struct store *store, const char *study, const struct result_filter *filter,
+                    struct study_result *out, struct error *err) {
+    struct aggregate aggregate;
+    struct study_result result = {0};
+    int status = aggregate_begin(store, study, &aggregate, err);
+    if (status != 0)
+        return status;
+    status = read_cases(store, &aggregate, filter, &result, err);
+    aggregate_end(&aggregate);
+    if (status != 0)
+        study_result_clear(&result);
+    else
+        *out = result;
+    return status;
+}
+
+int aggregate_report(struct store *store, const char *study, struct study_report *out,
+                     struct error *err) {
+    struct aggregate aggregate;
+    struct study_report report = {0};
+    int status = aggregate_begin(store, study, &aggregate, err);
+    if (status != 0)
+        return status;
+    report.seconds = aggregate.about.seconds;
+    report.cases = array_create((size_t)aggregate.about.cases, sizeof *report.cases);
+    status = copy_head(&aggregate, &report.id, &report.name, &report.kind, &report.state, err);
+    if (status == 0 && report.cases == NULL)
+        status = error_memory(err, (size_t)aggregate.about.cases * sizeof *report.cases, "reports");
+    for (uint64_t c = 0; c < aggregate.about.cases && status == 0; c++) {
+        status = aggregate_case_report(store, &aggregate, c, &report.cases[report.case_count], err);
+        report.case_count += status == 0;
     }
     aggregate_end(&aggregate);
-    if (status) {
-        cJSON_Delete(document);
-        return status;
-    }
-    *out = document;
-    return 0;
+    if (status != 0)
+        study_report_clear(&report);
+    else
+        *out = report;
+    return status;
 }

@@ -1,6 +1,5 @@
 /* The kind "contact": rough elastic blocks pressed on a rigid flat, a scene over models (model.h).
  */
-#include "jobs/case_document.h"
 #include "jobs/contact/contact_curves.h"
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
@@ -112,18 +111,14 @@ static bool belongs(const void *tally, const struct block_result *result) {
 
 /* --- what comes out --- */
 
-static int curves(const void *study, const struct surface_basis *basis, const void *tally,
-                  const struct realisations *realisations, cJSON **out, struct error *err) {
+static int result(const void *study, const struct surface_basis *basis, const void *tally,
+                  const struct realisations *realisations, struct case_result *out,
+                  struct error *err) {
     const struct contact_tally *contact = tally;
-    cJSON *scalars = NULL, *list = NULL;
-    int status = contact_scalars_json(study, &basis->moments, realisations, &scalars, err);
+    int status = contact_scalars(study, &basis->moments, realisations, out, err);
     if (status == 0)
-        status = contact_curves(study, basis->modes, &basis->moments, contact, &list, err);
-    if (status != 0) {
-        cJSON_Delete(scalars);
-        return status;
-    }
-    return case_document(realisations->count, scalars, list, &contact->notes, out, err);
+        status = contact_curves(study, basis->modes, &basis->moments, contact, out, err);
+    return status != 0 ? status : notes_result(&contact->notes, out, err);
 }
 
 /* The first model that has a mesh writes it. */
@@ -168,6 +163,6 @@ const struct job_kind CONTACT_KIND = {
     .get = get,
     .adds_up = adds_up,
     .belongs = belongs,
-    .curves = curves,
+    .result = result,
     .write_mesh = write_mesh,
 };

@@ -2,60 +2,19 @@
 #include "jobs/contact/contact_errors.h"
 #include "jobs/contact/contact_theory.h"
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
-/* What all curves of a case are made from, and room for one at a time. */
-struct workshop {
+/* What all curves of a case are made from. */
+struct curve_maker {
     const struct contact_case *study;
     const struct modes *modes;
     const struct contact_tally *tally;
     struct contact_theories theories;
-    cJSON *curves;
-    double *x, *y, *standard_error; /* owned: the larger of loads and bins, as all below */
-    double *discretisation, *discretisation_error, *model, *model_error;
-    double *valueless, *pdf;
+    struct case_result *result; /* its arena owns all arrays */
 };
-enum { COLUMNS = 9 };
 
-static void columns_of(struct workshop *shop, double **columns[COLUMNS]) {
-    double **const all[COLUMNS] = {&shop->x,
-                                   &shop->y,
-                                   &shop->standard_error,
-                                   &shop->discretisation,
-                                   &shop->discretisation_error,
-                                   &shop->model,
-                                   &shop->model_error,
-                                   &shop->valueless,
-                                   &shop->pdf};
-    for (size_t a = 0; a < COLUMNS; a++)
-        columns[a] = all[a];
-}
-
-static int workshop_create(struct workshop *shop, const struct moments *moments,
-                           struct error *err) {
-    const struct contact_case *study = shop->study;
-    size_t loads = study->load_count, bins = study->pressure.count;
-    size_t rows = loads > bins ? loads : bins;
-    double **columns[COLUMNS];
-    columns_of(shop, columns);
-    for (size_t a = 0; a < COLUMNS; a++) {
-        *columns[a] = array_create(rows, sizeof(double));
-        if (*columns[a] == NULL)
-            return error_memory(err, rows * sizeof(double), "curves");
-    }
-    shop->curves = cJSON_CreateArray();
-    if (shop->curves == NULL)
-        return error_memory(err, sizeof(cJSON), "curves");
-    return contact_theories_create(&shop->theories, study, shop->modes, moments, err);
-}
-
-static void workshop_clear(struct workshop *shop) {
-    double **columns[COLUMNS];
-    columns_of(shop, columns);
-    for (size_t a = 0; a < COLUMNS; a++)
-        free(*columns[a]);
-    cJSON_Delete(shop->curves);
-    contact_theories_clear(&shop->theories);
+static int no_room(struct error *err) {
+    return error_set(err, ERROR_MEMORY, "no memory left for curves");
 }
 
 /* A curve over the loads. */
@@ -65,59 +24,81 @@ struct row {
     double factor; /* y is so many times the measure */
 };
 
+/* Room for one source's errors at each load. */
+static int error_create(struct curve_maker *maker, double **value, double **standard_error,
+                        struct curve_error *out, struct error *err) {
+    size_t n = maker->study->load_count;
+    *value = result_numbers(maker->result, 2 * n);
+    if (*value == NULL)
+        return no_room(err);
+    *standard_error = *value + n;
+    *out = (struct curve_error){.value = *value, .standard_error = *standard_error, .order = NAN};
+    return 0;
+}
+
 /* Finest minus limit. */
-static void put_discretisation(struct workshop *shop, const struct row *row, size_t model,
-                               struct curve_errors *errors) {
-    struct contact_extrapolation rule = contact_extrapolate(shop->tally, row->measure, model);
-    double factor = rule.factor * row->factor;
-    for (size_t k = 0; k < shop->study->load_count; k++) {
-        struct estimate change = contact_tally_level(shop->tally, row->measure, model, k);
-        shop->discretisation[k] = -factor * change.value;
-        shop->discretisation_error[k] = factor * change.standard_error;
+static int put_discretisation(struct curve_maker *maker, const struct row *row, size_t model,
+                              struct curve_error *out, struct error *err) {
+    struct contact_extrapolation rule = contact_extrapolate(maker->tally, row->measure, model);
+    double factor = rule.factor * row->factor, *value, *standard_error;
+    int status = error_create(maker, &value, &standard_error, out, err);
+    if (status != 0)
+        return status;
+    for (size_t k = 0; k < maker->study->load_count; k++) {
+        struct estimate change = contact_tally_level(maker->tally, row->measure, model, k);
+        value[k] = -factor * change.value;
+        standard_error[k] = factor * change.standard_error;
     }
-    errors->discretisation = shop->discretisation;
-    errors->discretisation_standard_error = shop->discretisation_error;
-    errors->order = rule.order;
-    errors->order_known = rule.observed;
+    out->order = rule.order;
+    out->order_observed = rule.observed;
+    return 0;
 }
 
 /* Of a model against the most complete one, on the same realisations: of the limits where levels
  * tell them, or else of the finest level, whose own error is then in it. */
-static void put_model(struct workshop *shop, const struct row *row, size_t model,
-                      struct curve_errors *errors) {
-    size_t complete = contact_case_complete(shop->study);
-    bool limits = shop->study->level_count > 1;
-    double factor = 0, best = 0;
+static int put_model(struct curve_maker *maker, const struct row *row, size_t model,
+                     struct curve_error *out, struct error *err) {
+    size_t complete = contact_case_complete(maker->study);
+    bool limits = maker->study->level_count > 1;
+    double factor = 0, best = 0, *value, *standard_error;
+    int status = error_create(maker, &value, &standard_error, out, err);
+    if (status != 0)
+        return status;
     if (limits) {
-        factor = contact_extrapolate(shop->tally, row->measure, model).factor;
-        best = contact_extrapolate(shop->tally, row->measure, complete).factor;
+        factor = contact_extrapolate(maker->tally, row->measure, model).factor;
+        best = contact_extrapolate(maker->tally, row->measure, complete).factor;
     }
-    for (size_t k = 0; k < shop->study->load_count; k++) {
-        struct estimate difference = contact_tally_model(shop->tally, row->measure, model, k);
+    for (size_t k = 0; k < maker->study->load_count; k++) {
+        struct estimate difference = contact_tally_model(maker->tally, row->measure, model, k);
         double own = 0, other = 0;
         if (limits) {
-            own = factor * contact_tally_level(shop->tally, row->measure, model, k).value;
-            other = best * contact_tally_level(shop->tally, row->measure, complete, k).value;
+            own = factor * contact_tally_level(maker->tally, row->measure, model, k).value;
+            other = best * contact_tally_level(maker->tally, row->measure, complete, k).value;
         }
-        shop->model[k] = row->factor * (difference.value + own - other);
-        shop->model_error[k] = row->factor * difference.standard_error;
+        value[k] = row->factor * (difference.value + own - other);
+        standard_error[k] = row->factor * difference.standard_error;
     }
-    errors->model = shop->model;
-    errors->model_standard_error = shop->model_error;
+    return 0;
 }
 
-static const struct curve_theory *theories_of(const struct workshop *shop, const struct row *row) {
+static void add_theories(const struct curve_maker *maker, const struct row *row,
+                         struct curve *curve) {
+    const struct contact_theories *theories = &maker->theories;
     switch (row->measure) {
     case MEASURE_NODES:
     case MEASURE_NODES_LOWER:
     case MEASURE_NODES_UPPER:
     case MEASURE_EDGES:
     case MEASURE_PERIMETER:
-        return shop->theories.area;
+        curve->theory_count = theories->area_count;
+        memcpy(curve->theories, theories->area, sizeof theories->area);
+        break;
     case MEASURE_GAP:
-        return shop->theories.gap;
+        curve->theory_count = theories->gap_count;
+        memcpy(curve->theories, theories->gap, sizeof theories->gap);
+        break;
     default:
-        return NULL;
+        break;
     }
 }
 
@@ -127,76 +108,95 @@ static const char *kinematics_of(const struct contact_case *study, size_t model)
     return of->kinematics != NULL ? of->kinematics(study) : NULL;
 }
 
-static bool append(struct workshop *shop, const struct row *row, size_t model, size_t level) {
-    const struct contact_case *study = shop->study;
-    struct curve curve = {.quantity = row->quantity,
-                          .series = row->series,
-                          .model = study->models[model]->name,
-                          .kinematics = kinematics_of(study, model),
-                          .level = study->levels[level].points,
-                          .points = (double)grid_points(&study->levels[level].grid),
-                          .x_label = "p/(E* h'_rms)",
-                          .y_label = row->y_label,
-                          .n = study->load_count,
-                          .x = study->loads,
-                          .y = shop->y,
-                          .standard_error = shop->standard_error};
-    double factor = row->factor;
+/* What tells the curves of a model and level apart. */
+static struct curve curve_of(const struct contact_case *study, size_t model, size_t level,
+                             const char *quantity, const char *x_label, const char *y_label) {
+    struct curve curve = curve_named(quantity, x_label, y_label);
+    curve.model = study->models[model]->name;
+    curve.kinematics = kinematics_of(study, model);
+    curve.level = study->levels[level].points;
+    curve.points = (double)grid_points(&study->levels[level].grid);
+    return curve;
+}
+
+static int add_errors(struct curve_maker *maker, const struct row *row, size_t model,
+                      struct curve *curve, struct error *err) {
+    const struct contact_case *study = maker->study;
+    int status = 0;
+    if (study->level_count > 1)
+        status = put_discretisation(maker, row, model, &curve->errors[ERROR_DISCRETISATION], err);
+    if (status == 0 && study->model_count > 1 && model != contact_case_complete(study))
+        status = put_model(maker, row, model, &curve->errors[ERROR_MODEL], err);
+    return status;
+}
+
+static int append(struct curve_maker *maker, const struct row *row, size_t model, size_t level,
+                  struct error *err) {
+    const struct contact_case *study = maker->study;
+    struct curve curve =
+        curve_of(study, model, level, row->quantity, "p/(E* h'_rms)", row->y_label);
+    size_t n = study->load_count;
+    double *x = result_numbers(maker->result, 4 * n), factor = row->factor;
+    if (x == NULL)
+        return no_room(err);
+    double *y = x + n, *standard_error = y + n, *valueless = standard_error + n;
     if (row->measure == MEASURE_WORK)
         factor *= curve.points;
-    for (size_t k = 0; k < study->load_count; k++) {
+    for (size_t k = 0; k < n; k++) {
         size_t cell = contact_case_cell(study, model, level, k);
-        struct estimate mean = contact_tally_mean(shop->tally, row->measure, cell);
-        shop->y[k] = factor * mean.value;
-        shop->standard_error[k] = factor * mean.standard_error;
-        shop->valueless[k] = (double)contact_tally_valueless(shop->tally, row->measure, cell);
+        struct estimate mean = contact_tally_mean(maker->tally, row->measure, cell);
+        x[k] = study->loads[k];
+        y[k] = factor * mean.value;
+        standard_error[k] = factor * mean.standard_error;
+        valueless[k] = (double)contact_tally_valueless(maker->tally, row->measure, cell);
     }
+    curve.series = row->series != NULL ? row->series : "";
+    curve_set_points(&curve, n, x, y, standard_error);
     if (row->measure == MEASURE_STIFFNESS || study->models[model]->may_fail)
-        curve.valueless = shop->valueless;
-    const struct curve_theory *theories = theories_of(shop, row);
-    for (size_t a = 0; theories != NULL && a < CURVE_THEORIES_MOST; a++)
-        curve.theories[a] = theories[a];
-    if (level + 1 == study->level_count && row->measure < MEASURE_PAIRED) {
-        if (study->level_count > 1)
-            put_discretisation(shop, row, model, &curve.errors);
-        if (study->model_count > 1 && model != contact_case_complete(study))
-            put_model(shop, row, model, &curve.errors);
-    }
-    return curve_append(shop->curves, &curve);
+        curve.valueless = valueless;
+    add_theories(maker, row, &curve);
+    bool finest = level + 1 == study->level_count;
+    int status = 0;
+    if (finest && row->measure < MEASURE_PAIRED)
+        status = add_errors(maker, row, model, &curve, err);
+    return status != 0 ? status : result_add_curve(maker->result, &curve, err);
 }
 
 /* Every level of a model, the finest first. */
-static bool append_model(struct workshop *shop, const struct row *row, size_t model) {
-    bool done = true;
-    for (size_t l = shop->study->level_count; l > 0 && done; l--)
-        done = append(shop, row, model, l - 1);
-    return done;
+static int append_model(struct curve_maker *maker, const struct row *row, size_t model,
+                        struct error *err) {
+    int status = 0;
+    for (size_t l = maker->study->level_count; l > 0 && status == 0; l--)
+        status = append(maker, row, model, l - 1, err);
+    return status;
 }
 
-static bool append_row(struct workshop *shop, const struct row *row) {
-    bool done = true;
-    for (size_t m = 0; m < shop->study->model_count && done; m++)
-        done = append_model(shop, row, m);
-    return done;
+static int append_rows(struct curve_maker *maker, size_t count, const struct row *rows,
+                       struct error *err) {
+    int status = 0;
+    for (size_t a = 0; a < count && status == 0; a++)
+        for (size_t m = 0; m < maker->study->model_count && status == 0; m++)
+            status = append_model(maker, &rows[a], m, err);
+    return status;
 }
 
-static bool append_areas(struct workshop *shop) {
+static int append_areas(struct curve_maker *maker, struct error *err) {
     static const struct row EDGES = {"contact_area", "edges", "A/A0", MEASURE_EDGES, 1};
     static const struct row NODES[] = {
         {"contact_area", "nodes", "A/A0", MEASURE_NODES, 1},
         {"contact_area", "nodes_lower", "A/A0", MEASURE_NODES_LOWER, 1},
         {"contact_area", "nodes_upper", "A/A0", MEASURE_NODES_UPPER, 1}};
     static const struct row PERIMETER = {"contact_area", "perimeter", "A/A0", MEASURE_PERIMETER, 1};
-    const struct contact_case *study = shop->study;
-    bool done = !study->edges || append_row(shop, &EDGES);
-    for (size_t a = 0; a < sizeof NODES / sizeof *NODES && study->nodes && done; a++)
-        done = append_row(shop, &NODES[a]);
-    return done && (!study->perimeter || append_row(shop, &PERIMETER));
+    const struct contact_case *study = maker->study;
+    int status = append_rows(maker, study->edges ? 1 : 0, &EDGES, err);
+    if (status == 0)
+        status = append_rows(maker, study->nodes ? sizeof NODES / sizeof *NODES : 0, NODES, err);
+    return status != 0 ? status : append_rows(maker, study->perimeter ? 1 : 0, &PERIMETER, err);
 }
 
-static bool append_others(struct workshop *shop) {
-    bool surface = shop->study->surface.dimension == 2;
-    double waves = pow(shop->study->surface.length_ratio, shop->study->surface.dimension);
+static int append_others(struct curve_maker *maker, struct error *err) {
+    bool surface = maker->study->surface.dimension == 2;
+    double waves = pow(maker->study->surface.length_ratio, maker->study->surface.dimension);
     const struct row rows[] = {
         {"mean_gap", NULL, "mean gap/sqrt(m0)", MEASURE_GAP, 1},
         {"stiffness", NULL, "K sqrt(m0)/(E* h'_rms)", MEASURE_STIFFNESS, 1},
@@ -207,86 +207,72 @@ static bool append_others(struct workshop *shop) {
         {"patch_largest_area", NULL, "largest patch/cell", MEASURE_PATCH_LARGEST, 1},
         {"iterations", NULL, "iterations", MEASURE_ITERATIONS, 1},
         {"work", NULL, "points x transforms", MEASURE_WORK, 1}};
-    bool done = true;
-    for (size_t a = 0; a < sizeof rows / sizeof *rows && done; a++)
-        done = append_row(shop, &rows[a]);
-    return done;
+    return append_rows(maker, sizeof rows / sizeof *rows, rows, err);
 }
 
 /* Curves that a model alone has. */
-static bool append_own(struct workshop *shop, size_t m) {
-    const struct contact_model *model = shop->study->models[m];
-    bool done = true;
-    for (size_t a = 0; a < model->curve_count && done; a++) {
+static int append_own(struct curve_maker *maker, size_t m, struct error *err) {
+    const struct contact_model *model = maker->study->models[m];
+    int status = 0;
+    for (size_t a = 0; a < model->curve_count && status == 0; a++) {
         const struct model_curve *own = &model->curves[a];
         enum contact_measure measure = (enum contact_measure)(MEASURE_OWN + own->measure);
         const struct row row = {own->quantity, NULL, own->y_label, measure, 1};
-        done = append_model(shop, &row, m);
+        status = append_model(maker, &row, m, err);
     }
-    return done;
+    return status;
 }
 
 /* Density over the nominal area: its integral is the fraction in contact, its first moment the
  * load. Under- and overflow in undeformed areas of nodes. */
-static bool append_pressures(struct workshop *shop, size_t model, size_t at) {
-    const struct contact_case *study = shop->study;
+static int append_pressures(struct curve_maker *maker, size_t model, size_t at, struct error *err) {
+    const struct contact_case *study = maker->study;
     const struct bins *bins = &study->pressure;
+    size_t n = bins->count, finest = study->level_count - 1;
     double load = study->loads[study->pdf_loads[at]], width = bins_width(bins);
     double units = (double)contact_tally_units(study, model);
-    size_t cell = contact_case_cell(study, model, study->level_count - 1, study->pdf_loads[at]);
+    size_t cell = contact_case_cell(study, model, finest, study->pdf_loads[at]);
     const uint64_t *count =
-        shop->tally->pressures.count + contact_tally_pressure_cell(shop->tally, model, at);
-    for (size_t b = 0; b < bins->count; b++) {
-        struct estimate share = contact_tally_pressure(shop->tally, model, at, b + 1);
-        shop->x[b] = bins_centre(bins, b);
-        shop->y[b] = share.value / width;
-        shop->standard_error[b] = share.standard_error / width;
-        shop->valueless[b] = (double)contact_tally_valueless(shop->tally, MEASURE_NODES, cell);
+        maker->tally->pressures.count + contact_tally_pressure_cell(maker->tally, model, at);
+    double *x = result_numbers(maker->result, 5 * n);
+    if (x == NULL)
+        return no_room(err);
+    double *y = x + n, *standard_error = y + n, *valueless = standard_error + n;
+    double *pdf = valueless + n;
+    for (size_t b = 0; b < n; b++) {
+        struct estimate share = contact_tally_pressure(maker->tally, model, at, b + 1);
+        x[b] = bins_centre(bins, b);
+        y[b] = share.value / width;
+        standard_error[b] = share.standard_error / width;
+        valueless[b] = (double)contact_tally_valueless(maker->tally, MEASURE_NODES, cell);
     }
-    bool theory = contact_theory_pressures(study, shop->modes, load, shop->pdf);
-    return curve_append(
-        shop->curves,
-        &(struct curve){.quantity = "contact_pressure_pdf",
-                        .model = study->models[model]->name,
-                        .kinematics = kinematics_of(study, model),
-                        .level = contact_case_finest(study)->points,
-                        .points = (double)grid_points(&contact_case_finest(study)->grid),
-                        .pressure = load,
-                        .x_label = "local p/(E* h'_rms)",
-                        .y_label = "probability density",
-                        .n = bins->count,
-                        .x = shop->x,
-                        .y = shop->y,
-                        .standard_error = shop->standard_error,
-                        .theories = {{theory ? "persson" : NULL, shop->pdf}},
-                        .valueless = study->models[model]->may_fail ? shop->valueless : NULL,
-                        .counted = true,
-                        .underflow = (double)count[0] / units,
-                        .overflow = (double)count[bins->count + 1] / units});
-}
-
-static bool append_all(struct workshop *shop) {
-    const struct contact_case *study = shop->study;
-    bool done = append_areas(shop) && append_others(shop);
-    for (size_t m = 0; m < study->model_count && done; m++)
-        done = append_own(shop, m);
-    for (size_t m = 0; m < study->model_count; m++)
-        for (size_t a = 0; a < study->pdf_count && done; a++)
-            done = append_pressures(shop, m, a);
-    return done;
+    struct curve curve = curve_of(study, model, finest, "contact_pressure_pdf",
+                                  "local p/(E* h'_rms)", "probability density");
+    curve.pressure = load;
+    curve_set_points(&curve, n, x, y, standard_error);
+    if (contact_theory_pressures(study, maker->modes, load, pdf))
+        curve.theories[curve.theory_count++] = (struct theory){"persson", pdf};
+    if (study->models[model]->may_fail)
+        curve.valueless = valueless;
+    curve.counted = true;
+    curve.underflow = (double)count[0] / units;
+    curve.overflow = (double)count[n + 1] / units;
+    return result_add_curve(maker->result, &curve, err);
 }
 
 int contact_curves(const struct contact_case *study, const struct modes *modes,
-                   const struct moments *moments, const struct contact_tally *tally, cJSON **out,
-                   struct error *err) {
-    struct workshop shop = {.study = study, .modes = modes, .tally = tally};
-    int status = workshop_create(&shop, moments, err);
-    if (status == 0 && !append_all(&shop))
-        status = error_memory(err, contact_case_cells(study) * 10 * sizeof(cJSON), "curves");
-    if (status == 0) {
-        *out = shop.curves;
-        shop.curves = NULL;
-    }
-    workshop_clear(&shop);
+                   const struct moments *moments, const struct contact_tally *tally,
+                   struct case_result *out, struct error *err) {
+    struct curve_maker maker = {.study = study, .modes = modes, .tally = tally, .result = out};
+    int status = contact_theories_make(&maker.theories, study, modes, moments, out, err);
+    if (status == 0)
+        status = append_areas(&maker, err);
+    if (status == 0)
+        status = append_others(&maker, err);
+    for (size_t m = 0; m < study->model_count && status == 0; m++)
+        status = append_own(&maker, m, err);
+    for (size_t m = 0; m < study->model_count; m++)
+        for (size_t a = 0; a < study->pdf_count && status == 0; a++)
+            status = append_pressures(&maker, m, a, err);
     return status;
 }

@@ -3,13 +3,13 @@
 #define RUGO_JOBS_CONTACT_CONTACT_CURVES_H
 
 #include "jobs/contact/contact_tally.h"
-#include <cjson/cJSON.h>
+#include "schema/result/result.h"
 
-/* An array of curves, those of one quantity together: the first is the contact area
- * of the first model on the finest level. modes, moments: of the prescribed spectrum. Caller
- * deletes. */
+/* Appends all curves to the result, whose arena owns them, those of one quantity together: the
+ * first is the contact area of the first model on the finest level. modes, moments: of the
+ * prescribed spectrum. */
 int contact_curves(const struct contact_case *study, const struct modes *modes,
-                   const struct moments *moments, const struct contact_tally *tally, cJSON **out,
-                   struct error *err);
+                   const struct moments *moments, const struct contact_tally *tally,
+                   struct case_result *out, struct error *err);
 
 #endif

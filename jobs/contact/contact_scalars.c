@@ -2,7 +2,6 @@
 #include "core/statistics/fit.h"
 #include "core/theory/contact.h"
 #include "jobs/estimate.h"
-#include "jobs/scalar.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -163,33 +162,43 @@ static void theories(const struct contact_case *study, const struct moments *mom
     }
 }
 
-int contact_scalars_json(const struct contact_case *study, const struct moments *moments,
-                         const struct realisations *realisations, cJSON **out, struct error *err) {
+static int add_scalars(const struct contact_case *study, const struct moments *moments,
+                       const struct realisations *realisations, double *column,
+                       struct case_result *out, struct error *err) {
     double theory[CONTACT_SCALAR_COUNT];
-    size_t n = (size_t)realisations->count, count = contact_scalar_count();
-    double *column = array_create(n, sizeof *column);
-    cJSON *scalars = cJSON_CreateObject();
-    bool done = column != NULL && scalars != NULL;
+    size_t count = contact_scalar_count();
+    int status = 0;
     theories(study, moments, theory);
-    for (size_t a = 0; a < count && done; a++) {
+    for (size_t a = 0; a < count && status == 0; a++) {
         struct place place = place_of(a);
-        if (place.model != NULL && position_of(study, place.model) == study->model_count)
+        bool own = place.model != NULL;
+        if (own && position_of(study, place.model) == study->model_count)
             continue;
         realisations_column(realisations, a, column);
-        struct estimate estimate = estimate_mean(n, column);
-        bool own = place.model != NULL;
+        struct estimate mean = estimate_mean((size_t)realisations->count, column);
         if (!own && place.at == CONTACT_SCALAR_NAYAK_ALPHA && surface_case_exact(&study->surface))
-            estimate = (struct estimate){moments->nayak_alpha, 0};
-        done = scalar_put(scalars, contact_scalar_name(a), estimate, own ? NAN : theory[place.at]);
+            mean = (struct estimate){moments->nayak_alpha, 0};
+        status = result_add_scalar(out,
+                                   &(struct scalar){contact_scalar_name(a), mean.value,
+                                                    mean.standard_error,
+                                                    own ? (double)NAN : theory[place.at]},
+                                   err);
     }
+    if (status != 0)
+        return status;
     /* as given, or as solved for nayak_alpha */
-    done = done && scalar_put(scalars, "wavelength_ratio",
-                              (struct estimate){study->surface.wavelength_ratio, 0}, NAN);
-    free(column);
-    if (!done) {
-        cJSON_Delete(scalars);
+    return result_add_scalar(
+        out, &(struct scalar){"wavelength_ratio", study->surface.wavelength_ratio, 0, NAN}, err);
+}
+
+int contact_scalars(const struct contact_case *study, const struct moments *moments,
+                    const struct realisations *realisations, struct case_result *out,
+                    struct error *err) {
+    size_t n = (size_t)realisations->count;
+    double *column = array_create(n, sizeof *column);
+    if (column == NULL)
         return error_memory(err, n * sizeof *column, "scalars");
-    }
-    *out = scalars;
-    return 0;
+    int status = add_scalars(study, moments, realisations, column, out, err);
+    free(column);
+    return status;
 }

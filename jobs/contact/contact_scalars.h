@@ -6,6 +6,7 @@
 #include "core/statistics/roughness.h"
 #include "jobs/contact/contact_tally.h"
 #include "jobs/realisations.h"
+#include "schema/result/result.h"
 
 enum contact_scalar {
     CONTACT_SCALAR_KAPPA, /* slope of the light-load line */
@@ -38,8 +39,9 @@ int contact_scalars_measure(struct contact_tally *tally, const struct roughness 
                             double nayak_alpha, const struct surface_report *report, double *out,
                             struct error *err);
 
-/* {name: {"value", "standard_error", "theory"?}} over the realisations; caller deletes. */
-int contact_scalars_json(const struct contact_case *study, const struct moments *moments,
-                         const struct realisations *realisations, cJSON **out, struct error *err);
+/* Appends the scalars over the realisations to the result. */
+int contact_scalars(const struct contact_case *study, const struct moments *moments,
+                    const struct realisations *realisations, struct case_result *out,
+                    struct error *err);
 
 #endif

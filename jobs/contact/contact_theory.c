@@ -24,10 +24,10 @@ static double westergaard_ratio(double load) {
     return fmin(sqrt(2) * load, 1);
 }
 
-/* Rows of theories: their values are put one behind the other. */
+/* Where the next theory's values go: room for THEORIES_MOST of them. */
 struct theory_list {
     const struct contact_case *study;
-    struct curve_theory *rows;
+    struct contact_theories *out;
     double *values;
 };
 
@@ -39,7 +39,7 @@ static void put_area(struct theory_list *list, const char *name,
         double fraction = area(list->study->loads[k], alpha);
         list->values[k] = fraction <= 1 ? fraction : NAN;
     }
-    *list->rows++ = (struct curve_theory){name, list->values};
+    list->out->area[list->out->area_count++] = (struct theory){name, list->values};
     list->values += n;
 }
 
@@ -57,44 +57,38 @@ static double westergaard_at(double load, double alpha) {
     return westergaard_area(westergaard_ratio(load));
 }
 
-static void put_wave(struct contact_theories *out, const struct contact_case *study) {
-    struct theory_list list = {study, out->area, out->values};
-    put_area(&list, "westergaard", westergaard_at, 0);
+static void put_wave(struct theory_list *list) {
+    const struct contact_case *study = list->study;
+    put_area(list, "westergaard", westergaard_at, 0);
     for (size_t k = 0; k < study->load_count; k++) /* the amplitude is sqrt(2 m0) */
-        list.values[k] = sqrt(2) * westergaard_gap(westergaard_ratio(study->loads[k]));
-    out->gap[0] = (struct curve_theory){"westergaard", list.values};
+        list->values[k] = sqrt(2) * westergaard_gap(westergaard_ratio(study->loads[k]));
+    list->out->gap[list->out->gap_count++] = (struct theory){"westergaard", list->values};
 }
 
-static void put_rough(struct contact_theories *out, const struct contact_case *study,
-                      const struct moments *moments) {
-    struct theory_list list = {study, out->area, out->values};
-    put_area(&list, "persson", persson_at, 0);
-    put_area(&list, "persson_light_load", line_at, persson_light_load());
-    if (study->surface.dimension == 2)
-        put_area(&list, "bgt_light_load", line_at, bgt_light_load());
-    if (has_asperities(study, moments)) {
-        put_area(&list, "gw_mccool", gw_mccool_area, moments->nayak_alpha);
-        put_area(&list, "bgt", bgt_area, moments->nayak_alpha);
+static void put_rough(struct theory_list *list, const struct moments *moments) {
+    put_area(list, "persson", persson_at, 0);
+    put_area(list, "persson_light_load", line_at, persson_light_load());
+    if (list->study->surface.dimension == 2)
+        put_area(list, "bgt_light_load", line_at, bgt_light_load());
+    if (has_asperities(list->study, moments)) {
+        put_area(list, "gw_mccool", gw_mccool_area, moments->nayak_alpha);
+        put_area(list, "bgt", bgt_area, moments->nayak_alpha);
     }
 }
 
-int contact_theories_create(struct contact_theories *out, const struct contact_case *study,
-                            const struct modes *modes, const struct moments *moments,
-                            struct error *err) {
-    size_t bytes = CURVE_THEORIES_MOST * sizeof(double);
-    *out = (struct contact_theories){.values = array_create(study->load_count, bytes)};
-    if (out->values == NULL)
-        return error_memory(err, study->load_count * bytes, "theories");
+int contact_theories_make(struct contact_theories *out, const struct contact_case *study,
+                          const struct modes *modes, const struct moments *moments,
+                          struct case_result *result, struct error *err) {
+    *out = (struct contact_theories){0};
+    struct theory_list list = {study, out,
+                               result_numbers(result, THEORIES_MOST * study->load_count)};
+    if (list.values == NULL)
+        return error_memory(err, THEORIES_MOST * study->load_count * sizeof(double), "theories");
     if (is_one_wave(study, modes))
-        put_wave(out, study);
+        put_wave(&list);
     else
-        put_rough(out, study, moments);
+        put_rough(&list, moments);
     return 0;
-}
-
-void contact_theories_clear(struct contact_theories *theories) {
-    free(theories->values);
-    *theories = (struct contact_theories){0};
 }
 
 bool contact_theory_pressures(const struct contact_case *study, const struct modes *modes,

@@ -3,20 +3,19 @@
 #define RUGO_JOBS_CONTACT_CONTACT_THEORY_H
 
 #include "jobs/contact/contact_case.h"
-#include "jobs/curve.h"
+#include "schema/result/result.h"
 
-/* Values at the loads of the case. Fractions above 1, which light-load theories reach, are left out
- * (NaN). Unused entries have no name. */
+/* Values at the loads of the case, in a result's arena. Fractions above 1, which light-load
+ * theories reach, are left out (NaN). */
 struct contact_theories {
-    struct curve_theory area[CURVE_THEORIES_MOST], gap[CURVE_THEORIES_MOST];
-    double *values; /* owned: behind them */
+    size_t area_count, gap_count;
+    struct theory area[THEORIES_MOST], gap[THEORIES_MOST];
 };
 /* modes, moments: of the prescribed spectrum. A profile of one wave has Westergaard's solution,
  * everything else Persson's theory and those of asperities that apply. */
-int contact_theories_create(struct contact_theories *out, const struct contact_case *study,
-                            const struct modes *modes, const struct moments *moments,
-                            struct error *err);
-void contact_theories_clear(struct contact_theories *theories);
+int contact_theories_make(struct contact_theories *out, const struct contact_case *study,
+                          const struct modes *modes, const struct moments *moments,
+                          struct case_result *result, struct error *err);
 
 /* Mean density of the pressures in each bin; false where there is no theory. */
 bool contact_theory_pressures(const struct contact_case *study, const struct modes *modes,

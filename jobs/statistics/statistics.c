@@ -1,5 +1,4 @@
 /* The kind "statistics": summit statistics, spectra and roughness of random surfaces. */
-#include "jobs/case_document.h"
 #include "jobs/statistics/statistics_curves.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
@@ -113,17 +112,17 @@ static bool belongs(const void *tally, const struct block_result *result) {
            summits == (double)statistics->summits.sum;
 }
 
-static int curves(const void *study, const struct surface_basis *basis, const void *tally,
-                  const struct realisations *realisations, cJSON **out, struct error *err) {
-    cJSON *scalars = NULL, *list = NULL;
-    int status = statistics_scalars_json(study, &basis->moments, realisations, &scalars, err);
-    if (status == 0)
-        status = statistics_curves(study, basis->modes, &basis->moments, tally, &list, err);
-    if (status != 0) {
-        cJSON_Delete(scalars);
-        return status;
-    }
-    return case_document(realisations->count, scalars, list, NULL, out, err);
+static int result(const void *study, const struct surface_basis *basis, const void *tally,
+                  const struct realisations *realisations, struct case_result *out,
+                  struct error *err) {
+    int status = statistics_scalars(study, &basis->moments, realisations, out, err);
+    return status != 0 ? status
+                       : statistics_curves(study, basis->modes, &basis->moments, tally, out, err);
+}
+
+static int complete(const void *study, const struct surface_basis *basis, struct case_result *out,
+                    struct error *err) {
+    return statistics_curves_complete(study, basis->moments.nayak_alpha, out, err);
 }
 
 const struct job_kind STATISTICS_KIND = {
@@ -151,5 +150,6 @@ const struct job_kind STATISTICS_KIND = {
     .get = get,
     .adds_up = adds_up,
     .belongs = belongs,
-    .curves = curves,
+    .result = result,
+    .complete = complete,
 };

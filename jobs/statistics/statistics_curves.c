@@ -1,208 +1,278 @@
 #include "jobs/statistics/statistics_curves.h"
-#include "jobs/curve.h"
 #include "jobs/statistics/statistics_spectra.h"
 #include "jobs/statistics/statistics_theory.h"
-#include <stdlib.h>
+#include <math.h>
+#include <string.h>
 
-/* What all curves of a case are made from, and room for one at a time. */
-struct workshop {
+/* What all curves of a case are made from. */
+struct curve_maker {
     const struct statistics_case *study;
     const struct statistics_tally *tally;
-    const char *theory_name; /* of summits; NULL: does not apply */
-    cJSON *curves;
-    double *x, *x2, *y, *standard_error; /* owned; x2 equivalent.count, others the largest curve */
-    double *pdf, *cdf, *curvature;       /* theory, likewise */
+    const char *theory_name;       /* of summits; NULL: does not apply */
+    struct case_result *result;    /* its arena owns all arrays */
+    double *pdf, *cdf, *curvature; /* theories of heights by bin, of the curves under way */
 };
 
-static int workshop_create(struct workshop *shop, struct error *err) {
-    size_t heights = shop->study->height.count, columns = shop->study->equivalent.count;
-    size_t cells = heights * columns; /* at least as many as either */
-    double **const arrays[] = {&shop->x,   &shop->x2,  &shop->y,        &shop->standard_error,
-                               &shop->pdf, &shop->cdf, &shop->curvature};
-    for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++) {
-        *arrays[a] = array_create(cells, sizeof(double));
-        if (*arrays[a] == NULL) {
-            error_memory(err, cells * sizeof(double), "curves");
-            return ERROR_MEMORY;
-        }
-    }
-    shop->curves = cJSON_CreateArray();
-    return shop->curves != NULL ? 0 : error_memory(err, sizeof(cJSON), "curves");
+static int no_room(struct error *err) {
+    return error_set(err, ERROR_MEMORY, "no memory left for curves");
 }
 
-static void workshop_clear(struct workshop *shop) {
-    double *const arrays[] = {shop->x,   shop->x2,  shop->y,        shop->standard_error,
-                              shop->pdf, shop->cdf, shop->curvature};
-    for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
-        free(arrays[a]);
-    cJSON_Delete(shop->curves);
+/* A curve over n points with room for its numbers; NULL in y when out of memory. */
+struct columns {
+    double *x, *y, *standard_error;
+};
+static int columns_create(struct curve_maker *maker, size_t n, struct columns *out,
+                          struct error *err) {
+    double *x = result_numbers(maker->result, 3 * n);
+    if (x == NULL)
+        return no_room(err);
+    *out = (struct columns){x, x + n, x + 2 * n};
+    return 0;
 }
 
-static void centres(const struct bins *bins, double *x) {
-    for (size_t b = 0; b < bins->count; b++)
-        x[b] = bins_centre(bins, b);
+/* Room for theories of the heights of the next curves. */
+static int theories_create(struct curve_maker *maker, struct error *err) {
+    size_t n = maker->study->height.count;
+    maker->pdf = result_numbers(maker->result, 3 * n);
+    if (maker->pdf == NULL)
+        return no_room(err);
+    maker->cdf = maker->pdf + n;
+    maker->curvature = maker->pdf + 2 * n;
+    return 0;
+}
+
+static void add_theory(struct curve *curve, const char *name, const double *y) {
+    if (name != NULL)
+        curve->theories[curve->theory_count++] = (struct theory){name, y};
 }
 
 static const char *height_label(void) {
     return "z/sqrt(m0)";
 }
 
-static const char *equivalent_label(const struct workshop *shop) {
-    return shop->study->surface.dimension == 2 ? "-sqrt(3/m4) kappa_m" : "z''/sqrt(m4)";
+static const char *equivalent_label(const struct curve_maker *maker) {
+    return maker->study->surface.dimension == 2 ? "-sqrt(3/m4) kappa_m" : "z''/sqrt(m4)";
 }
 
 /* A histogram as a density over its bins. */
-static bool density(struct workshop *shop, const char *quantity, const char *x_label,
-                    const struct bins *bins, const struct tally *cells,
-                    const struct tally_total *total, const char *theory_name) {
+struct histogram {
+    const char *quantity, *x_label;
+    const struct bins *bins;
+    const struct tally *cells;
+    const struct tally_total *total;
+    const char *theory_name; /* NULL: none */
+    const double *theory;
+};
+
+static int add_density(struct curve_maker *maker, const struct histogram *histogram,
+                       struct error *err) {
+    const struct bins *bins = histogram->bins;
     double width = bins_width(bins);
-    centres(bins, shop->x);
+    struct curve curve =
+        curve_named(histogram->quantity, histogram->x_label, "probability density");
+    struct columns columns;
+    int status = columns_create(maker, bins->count, &columns, err);
+    if (status != 0)
+        return status;
     for (size_t b = 0; b < bins->count; b++) {
-        struct estimate share = tally_share(cells, b + 1, total);
-        shop->y[b] = share.value / width;
-        shop->standard_error[b] = share.standard_error / width;
+        struct estimate share = tally_share(histogram->cells, b + 1, histogram->total);
+        columns.x[b] = bins_centre(bins, b);
+        columns.y[b] = share.value / width;
+        columns.standard_error[b] = share.standard_error / width;
     }
-    return curve_append(shop->curves,
-                        &(struct curve){.quantity = quantity,
-                                        .x_label = x_label,
-                                        .y_label = "probability density",
-                                        .n = bins->count,
-                                        .x = shop->x,
-                                        .y = shop->y,
-                                        .standard_error = shop->standard_error,
-                                        .theories = {{theory_name, shop->pdf}},
-                                        .counted = true,
-                                        .underflow = (double)cells->count[0],
-                                        .overflow = (double)cells->count[bins->count + 1]});
+    curve_set_points(&curve, bins->count, columns.x, columns.y, columns.standard_error);
+    add_theory(&curve, histogram->theory_name, histogram->theory);
+    curve.counted = true;
+    curve.underflow = (double)histogram->cells->count[0];
+    curve.overflow = (double)histogram->cells->count[bins->count + 1];
+    return result_add_curve(maker->result, &curve, err);
 }
 
 /* Cumulative probability at the upper edges of the bins. */
-static bool cumulative(struct workshop *shop, const char *quantity, const struct tally *below,
-                       const struct tally_total *total, const char *theory_name) {
-    const struct bins *bins = &shop->study->height;
+static int add_cumulative(struct curve_maker *maker, const char *quantity,
+                          const struct tally *below, const struct tally_total *total,
+                          const char *theory_name, struct error *err) {
+    const struct bins *bins = &maker->study->height;
+    struct curve curve = curve_named(quantity, height_label(), "cumulative probability");
+    struct columns columns;
+    int status = columns_create(maker, bins->count, &columns, err);
+    if (status != 0)
+        return status;
     for (size_t b = 0; b < bins->count; b++) {
         struct estimate share = tally_share(below, b + 1, total);
-        shop->x[b] = bins->low + (double)(b + 1) * bins_width(bins);
-        shop->y[b] = share.value;
-        shop->standard_error[b] = share.standard_error;
+        columns.x[b] = bins->low + (double)(b + 1) * bins_width(bins);
+        columns.y[b] = share.value;
+        columns.standard_error[b] = share.standard_error;
     }
-    return curve_append(shop->curves, &(struct curve){.quantity = quantity,
-                                                      .x_label = height_label(),
-                                                      .y_label = "cumulative probability",
-                                                      .n = bins->count,
-                                                      .x = shop->x,
-                                                      .y = shop->y,
-                                                      .standard_error = shop->standard_error,
-                                                      .theories = {{theory_name, shop->cdf}}});
+    curve_set_points(&curve, bins->count, columns.x, columns.y, columns.standard_error);
+    add_theory(&curve, theory_name, maker->cdf);
+    return result_add_curve(maker->result, &curve, err);
 }
 
-static bool curvature(struct workshop *shop) {
-    const struct bins *bins = &shop->study->height;
-    const struct statistics_tally *tally = shop->tally;
-    centres(bins, shop->x);
+static int add_curvature(struct curve_maker *maker, struct error *err) {
+    const struct bins *bins = &maker->study->height;
+    const struct statistics_tally *tally = maker->tally;
+    bool surface = maker->study->surface.dimension == 2;
+    struct curve curve = curve_named("summit_mean_curvature", height_label(),
+                                     surface ? "kappa_m/sqrt(m4)" : "-z''/sqrt(m4)");
+    struct columns columns;
+    int status = columns_create(maker, bins->count, &columns, err);
+    if (status != 0)
+        return status;
     for (size_t b = 0; b < bins->count; b++) {
         struct estimate mean =
             tally_sums_ratio(&tally->curvature, &tally->summit, b + 1, tally->summits.realisations);
-        shop->y[b] = mean.value;
-        shop->standard_error[b] = mean.standard_error;
+        columns.x[b] = bins_centre(bins, b);
+        columns.y[b] = mean.value;
+        columns.standard_error[b] = mean.standard_error;
     }
-    return curve_append(shop->curves,
-                        &(struct curve){.quantity = "summit_mean_curvature",
-                                        .x_label = height_label(),
-                                        .y_label = shop->study->surface.dimension == 2
-                                                       ? "kappa_m/sqrt(m4)"
-                                                       : "-z''/sqrt(m4)",
-                                        .n = bins->count,
-                                        .x = shop->x,
-                                        .y = shop->y,
-                                        .standard_error = shop->standard_error,
-                                        .theories = {{shop->theory_name, shop->curvature}}});
+    curve_set_points(&curve, bins->count, columns.x, columns.y, columns.standard_error);
+    add_theory(&curve, maker->theory_name, maker->curvature);
+    return result_add_curve(maker->result, &curve, err);
 }
 
-static bool joint(struct workshop *shop) {
-    const struct bins *height = &shop->study->height, *equivalent = &shop->study->equivalent;
-    const struct tally *cells = &shop->tally->joint;
+/* --- the joint density of summit heights and curvatures --- */
+
+/* Cell of the tally, which has cells for under- and overflow around the bins. */
+static size_t joint_cell(const struct statistics_case *study, size_t cell) {
+    size_t columns = study->equivalent.count;
+    return (cell / columns + 1) * (columns + 2) + cell % columns + 1;
+}
+
+/* Only the cells that summits fell into; their theory is made where it is asked for. */
+static int add_joint(struct curve_maker *maker, struct error *err) {
+    const struct statistics_case *study = maker->study;
+    const struct bins *height = &study->height, *equivalent = &study->equivalent;
+    const struct tally *tally = &maker->tally->joint;
+    const struct tally_total *total = &maker->tally->summits;
     double area = bins_width(height) * bins_width(equivalent), inside = 0;
-    centres(height, shop->x);
-    centres(equivalent, shop->x2);
-    for (size_t zb = 0; zb < height->count; zb++) {
-        for (size_t tb = 0; tb < equivalent->count; tb++) {
-            size_t cell = (zb + 1) * (equivalent->count + 2) + tb + 1;
-            size_t at = zb * equivalent->count + tb;
-            struct estimate share = tally_share(cells, cell, &shop->tally->summits);
-            shop->y[at] = share.value / area;
-            shop->standard_error[at] = share.standard_error / area;
-            inside += (double)cells->count[cell];
+    size_t all = height->count * equivalent->count, count = 0;
+    for (size_t cell = 0; cell < all; cell++)
+        count += tally->count[joint_cell(study, cell)] > 0;
+    uint32_t *cells = result_room(maker->result, count + 1, sizeof *cells);
+    double *axes = result_numbers(maker->result, height->count + equivalent->count);
+    double *y = result_numbers(maker->result, 2 * count), *standard_error = y + count;
+    if (cells == NULL || axes == NULL || y == NULL)
+        return no_room(err);
+    for (size_t b = 0; b < height->count; b++)
+        axes[b] = bins_centre(height, b);
+    for (size_t b = 0; b < equivalent->count; b++)
+        axes[height->count + b] = bins_centre(equivalent, b);
+    count = 0;
+    for (size_t cell = 0; cell < all; cell++) {
+        uint64_t n = tally->count[joint_cell(study, cell)];
+        if (n == 0)
+            continue;
+        struct estimate share = tally_share(tally, joint_cell(study, cell), total);
+        y[count] = share.value / area;
+        standard_error[count] = share.standard_error / area;
+        cells[count++] = (uint32_t)cell;
+        inside += (double)n;
+    }
+    struct curve curve = curve_named("summit_joint_pdf", height_label(), "probability density");
+    curve_set_points(&curve, height->count, axes, y, standard_error);
+    curve.columns = equivalent->count;
+    curve.x2 = axes + height->count;
+    curve.x2_label = equivalent_label(maker);
+    curve.cells = cells;
+    curve.cell_count = count;
+    curve.empty_y = total->sum == 0 ? (double)NAN : 0;
+    curve.empty_standard_error = total->sum == 0 || total->realisations < 2 ? (double)NAN : 0;
+    add_theory(&curve, maker->theory_name, NULL);
+    curve.counted = true;
+    curve.underflow = 0;
+    curve.overflow = (double)total->sum - inside;
+    return result_add_curve(maker->result, &curve, err);
+}
+
+int statistics_curves_complete(const struct statistics_case *study, double alpha,
+                               struct case_result *result, struct error *err) {
+    for (size_t a = 0; a < result->curve_count; a++) {
+        struct curve *curve = &result->curves[a];
+        for (size_t t = 0; t < curve->theory_count; t++) {
+            if (curve->theories[t].y != NULL || curve->columns != study->equivalent.count ||
+                curve->n != study->height.count)
+                continue;
+            double *pdf = result_numbers(result, curve->n * curve->columns);
+            if (pdf == NULL)
+                return no_room(err);
+            statistics_theory_joint(study, alpha, pdf);
+            curve->theories[t].y = pdf;
         }
     }
-    return curve_append(shop->curves,
-                        &(struct curve){.quantity = "summit_joint_pdf",
-                                        .x_label = height_label(),
-                                        .y_label = "probability density",
-                                        .n = height->count,
-                                        .x = shop->x,
-                                        .columns = equivalent->count,
-                                        .x2 = shop->x2,
-                                        .x2_label = equivalent_label(shop),
-                                        .y = shop->y,
-                                        .standard_error = shop->standard_error,
-                                        .theories = {{shop->theory_name, shop->pdf}},
-                                        .counted = true,
-                                        .underflow = 0,
-                                        .overflow = (double)shop->tally->summits.sum - inside});
+    return 0;
 }
 
-static bool append_summits(struct workshop *shop, double alpha) {
-    const struct statistics_case *study = shop->study;
-    const struct statistics_tally *tally = shop->tally;
-    if (shop->theory_name != NULL)
-        statistics_theory_summits(study, alpha, shop->pdf, shop->cdf, shop->curvature);
-    if (!density(shop, "summit_height_pdf", height_label(), &study->height, &tally->summit,
-                 &tally->summits, shop->theory_name) ||
-        !cumulative(shop, "summit_height_cdf", &tally->summit_below, &tally->summits,
-                    shop->theory_name) ||
-        !curvature(shop))
-        return false;
-    if (shop->theory_name != NULL)
-        statistics_theory_equivalent(study, shop->pdf);
-    if (!density(shop, "summit_curvature_pdf", equivalent_label(shop), &study->equivalent,
-                 &tally->equivalent, &tally->summits, shop->theory_name))
-        return false;
-    if (shop->theory_name != NULL)
-        statistics_theory_joint(study, alpha, shop->pdf);
-    return joint(shop);
-}
+/* --- all curves --- */
 
-static int append_all(struct workshop *shop, const struct modes *modes,
-                      const struct moments *moments, struct error *err) {
-    const struct statistics_tally *tally = shop->tally;
+static int add_heights(struct curve_maker *maker, struct error *err) {
+    const struct statistics_case *study = maker->study;
+    const struct statistics_tally *tally = maker->tally;
     const char *name =
-        shop->study->surface.options.heights.type == HEIGHTS_GAUSSIAN ? "gaussian" : "weibull";
-    int status = statistics_theory_heights(shop->study, shop->pdf, shop->cdf, err);
+        study->surface.options.heights.type == HEIGHTS_GAUSSIAN ? "gaussian" : "weibull";
+    int status = theories_create(maker, err);
+    if (status == 0)
+        status = statistics_theory_heights(study, maker->pdf, maker->cdf, err);
+    const struct histogram heights = {"height_pdf",   height_label(), &study->height,
+                                      &tally->height, &tally->points, name,
+                                      maker->pdf};
+    if (status == 0)
+        status = add_density(maker, &heights, err);
+    if (status == 0)
+        status =
+            add_cumulative(maker, "height_cdf", &tally->height_below, &tally->points, name, err);
+    return status;
+}
+
+static int add_summit_heights(struct curve_maker *maker, double alpha, struct error *err) {
+    const struct statistics_case *study = maker->study;
+    const struct statistics_tally *tally = maker->tally;
+    int status = theories_create(maker, err);
     if (status != 0)
         return status;
-    if (!density(shop, "height_pdf", height_label(), &shop->study->height, &tally->height,
-                 &tally->points, name) ||
-        !cumulative(shop, "height_cdf", &tally->height_below, &tally->points, name) ||
-        !append_summits(shop, moments->nayak_alpha))
-        return error_memory(err, tally->joint.size * 3 * sizeof(cJSON), "curves");
-    return spectra_curves(shop->study, modes, tally, shop->curves, err);
+    if (maker->theory_name != NULL)
+        statistics_theory_summits(study, alpha, maker->pdf, maker->cdf, maker->curvature);
+    const struct histogram heights = {"summit_height_pdf", height_label(),  &study->height,
+                                      &tally->summit,      &tally->summits, maker->theory_name,
+                                      maker->pdf};
+    status = add_density(maker, &heights, err);
+    if (status == 0)
+        status = add_cumulative(maker, "summit_height_cdf", &tally->summit_below, &tally->summits,
+                                maker->theory_name, err);
+    return status != 0 ? status : add_curvature(maker, err);
+}
+
+static int add_summit_curvatures(struct curve_maker *maker, struct error *err) {
+    const struct statistics_case *study = maker->study;
+    double *theory = result_numbers(maker->result, study->equivalent.count);
+    if (theory == NULL)
+        return no_room(err);
+    if (maker->theory_name != NULL)
+        statistics_theory_equivalent(study, theory);
+    const struct histogram curvatures = {"summit_curvature_pdf",
+                                         equivalent_label(maker),
+                                         &study->equivalent,
+                                         &maker->tally->equivalent,
+                                         &maker->tally->summits,
+                                         maker->theory_name,
+                                         theory};
+    return add_density(maker, &curvatures, err);
 }
 
 int statistics_curves(const struct statistics_case *study, const struct modes *modes,
                       const struct moments *moments, const struct statistics_tally *tally,
-                      cJSON **out, struct error *err) {
+                      struct case_result *out, struct error *err) {
     bool applies = statistics_theory_applies(study, moments);
-    struct workshop shop = {.study = study,
-                            .tally = tally,
-                            .theory_name = applies ? statistics_theory_name(study) : NULL};
-    int status = workshop_create(&shop, err);
+    struct curve_maker maker = {.study = study,
+                                .tally = tally,
+                                .result = out,
+                                .theory_name = applies ? statistics_theory_name(study) : NULL};
+    int status = add_heights(&maker, err);
     if (status == 0)
-        status = append_all(&shop, modes, moments, err);
-    if (status == 0) {
-        *out = shop.curves;
-        shop.curves = NULL;
-    }
-    workshop_clear(&shop);
-    return status;
+        status = add_summit_heights(&maker, moments->nayak_alpha, err);
+    if (status == 0)
+        status = add_summit_curvatures(&maker, err);
+    if (status == 0)
+        status = add_joint(&maker, err);
+    return status != 0 ? status : spectra_curves(study, modes, tally, out, err);
 }

@@ -3,10 +3,15 @@
 #define RUGO_JOBS_STATISTICS_STATISTICS_CURVES_H
 
 #include "jobs/statistics/statistics_tally.h"
+#include "schema/result/result.h"
 
-/* An array of curves; caller deletes. moments are those of modes. */
+/* Appends all curves to the result, whose arena owns them. moments are those of modes. */
 int statistics_curves(const struct statistics_case *study, const struct modes *modes,
                       const struct moments *moments, const struct statistics_tally *tally,
-                      cJSON **out, struct error *err);
+                      struct case_result *out, struct error *err);
+/* Makes the theories that the curves name without holding them (the joint density's): alpha is that
+ * of the prescribed spectrum. */
+int statistics_curves_complete(const struct statistics_case *study, double alpha,
+                               struct case_result *result, struct error *err);
 
 #endif

@@ -2,7 +2,6 @@
 #include "core/sum.h"
 #include "core/theory/nayak.h"
 #include "jobs/estimate.h"
-#include "jobs/scalar.h"
 #include "jobs/statistics/statistics_theory.h"
 #include <math.h>
 #include <stdlib.h>
@@ -120,13 +119,21 @@ static struct estimate summit_estimate(const struct columns *columns,
     return estimate_weighted(columns->n, variance, number);
 }
 
-static bool put_scalars(cJSON *scalars, const struct statistics_case *study,
-                        const struct moments *moments, struct columns *columns) {
+/* A scalar with a fixed name. */
+static int add_scalar(struct case_result *out, const char *name, struct estimate estimate,
+                      double theory, struct error *err) {
+    const struct scalar scalar = {name, estimate.value, estimate.standard_error, theory};
+    return result_add_scalar(out, &scalar, err);
+}
+
+static int add_scalars(struct case_result *out, const struct statistics_case *study,
+                       const struct moments *moments, struct columns *columns, struct error *err) {
     double theory[SCALAR_COUNT];
     statistics_theory_scalars(study, moments, theory);
-    bool exact = surface_case_exact(&study->surface), done = true;
+    bool exact = surface_case_exact(&study->surface);
     const double prescribed[] = {moments->m0, moments->m2, moments->m4, moments->nayak_alpha};
-    for (enum statistics_scalar a = 0; a < SCALAR_COUNT && done; a++) {
+    int status = 0;
+    for (enum statistics_scalar a = 0; a < SCALAR_COUNT && status == 0; a++) {
         struct estimate estimate;
         if (exact && a >= SCALAR_M0 && a <= SCALAR_NAYAK_ALPHA)
             estimate = (struct estimate){prescribed[a - SCALAR_M0], 0};
@@ -134,29 +141,25 @@ static bool put_scalars(cJSON *scalars, const struct statistics_case *study,
             estimate = summit_estimate(columns, a);
         else
             estimate = estimate_mean(columns->n, column(columns, a));
-        done = scalar_put(scalars, NAMES[a], estimate, theory[a]);
+        status = add_scalar(out, NAMES[a], estimate, theory[a], err);
     }
+    if (status != 0)
+        return status;
     /* as given, or as solved for nayak_alpha */
-    return done && scalar_put(scalars, "wavelength_ratio",
-                              (struct estimate){study->surface.wavelength_ratio, 0}, NAN);
+    return add_scalar(out, "wavelength_ratio",
+                      (struct estimate){study->surface.wavelength_ratio, 0}, NAN, err);
 }
 
-int statistics_scalars_json(const struct statistics_case *study, const struct moments *moments,
-                            const struct realisations *realisations, cJSON **out,
-                            struct error *err) {
+int statistics_scalars(const struct statistics_case *study, const struct moments *moments,
+                       const struct realisations *realisations, struct case_result *out,
+                       struct error *err) {
     struct columns columns = {.n = (size_t)realisations->count};
-    size_t bytes = columns.n * SCALAR_COUNT * sizeof(double);
     columns.values = array_create(columns.n + 1, SCALAR_COUNT * sizeof(double));
-    cJSON *scalars = cJSON_CreateObject();
-    bool done = columns.values != NULL && scalars != NULL;
-    for (size_t a = 0; a < SCALAR_COUNT && done; a++)
+    if (columns.values == NULL)
+        return error_memory(err, columns.n * SCALAR_COUNT * sizeof(double), "scalars");
+    for (size_t a = 0; a < SCALAR_COUNT; a++)
         realisations_column(realisations, a, columns.values + a * columns.n);
-    done = done && put_scalars(scalars, study, moments, &columns);
+    int status = add_scalars(out, study, moments, &columns, err);
     free(columns.values);
-    if (!done) {
-        cJSON_Delete(scalars);
-        return error_memory(err, bytes, "scalars");
-    }
-    *out = scalars;
-    return 0;
+    return status;
 }

@@ -5,6 +5,7 @@
 #include "core/statistics/roughness.h"
 #include "jobs/realisations.h"
 #include "jobs/statistics/statistics_case.h"
+#include "schema/result/result.h"
 
 /* Lengths in lambda_s. Finite-difference values say so; m0 to nayak_alpha are spectral. */
 enum statistics_scalar {
@@ -51,9 +52,9 @@ void statistics_scalars_measure(const struct statistics_case *study, const struc
                                 const struct realisation_measures *measures,
                                 double out[SCALAR_COUNT]);
 
-/* {name: {"value", "standard_error", "theory"?}} over the realisations; caller deletes. */
-int statistics_scalars_json(const struct statistics_case *study, const struct moments *moments,
-                            const struct realisations *realisations, cJSON **out,
-                            struct error *err);
+/* Appends the scalars over the realisations to the result. */
+int statistics_scalars(const struct statistics_case *study, const struct moments *moments,
+                       const struct realisations *realisations, struct case_result *out,
+                       struct error *err);
 
 #endif

@@ -1,6 +1,5 @@
 #include "jobs/statistics/statistics_spectra.h"
 #include "core/statistics/roughness.h"
-#include "jobs/curve.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -72,67 +71,56 @@ int spectra_measure(struct spectra *spectra, const struct grid *grid, const doub
     return status;
 }
 
-/* Four columns of a curve in one allocation. */
-struct series {
+/* Four columns of a curve, in the result's arena. */
+struct spectrum_columns {
     double *x, *y, *standard_error, *theory;
 };
-static int series_create(struct series *out, size_t n, struct error *err) {
-    double *x = array_create(n, 4 * sizeof *x);
-    *out = (struct series){0};
-    if (x == NULL) {
-        error_memory(err, n * 4 * sizeof *x, "a curve");
-        return ERROR_MEMORY;
-    }
-    *out = (struct series){x, x + n, x + 2 * n, x + 3 * n};
+static int columns_create(struct case_result *result, struct spectrum_columns *out, size_t n,
+                          struct error *err) {
+    double *x = result_numbers(result, 4 * n);
+    if (x == NULL)
+        return error_memory(err, n * 4 * sizeof *x, "a curve");
+    *out = (struct spectrum_columns){x, x + n, x + 2 * n, x + 3 * n};
     return 0;
 }
 
-static int append(cJSON *curves, const struct curve *curve, struct error *err) {
-    return curve_append(curves, curve) ? 0 : error_memory(err, curve->n * 64, curve->quantity);
+static int add_curve(struct case_result *result, struct curve *curve, bool exact,
+                     const double *theory, struct error *err) {
+    if (!exact)
+        curve->theories[curve->theory_count++] = (struct theory){"prescribed", theory};
+    return result_add_curve(result, curve, err);
 }
 
 static int density_curve(const struct statistics_case *study, const struct modes *modes,
-                         const struct statistics_tally *tally, cJSON *curves, struct error *err) {
+                         const struct statistics_tally *tally, struct case_result *result,
+                         struct error *err) {
     size_t n = radial_bins(&modes->grid), last = n - 1;
     bool exact = surface_case_exact(&study->surface);
-    struct series series = {0}, reference = {0};
-    int status = series_create(&series, n, err);
+    struct curve curve = curve_named("psd", "k lambda_s", "power spectral density");
+    struct spectrum_columns columns, reference;
+    int status = columns_create(result, &columns, n, err);
+    if (status == 0)
+        status = columns_create(result, &reference, n, err);
     if (status != 0)
         return status;
-    status = series_create(&reference, n, err);
-    if (status != 0) {
-        free(series.x);
-        return status;
-    }
-    psd_of_modes(modes, series.x, series.theory);
+    psd_of_modes(modes, columns.x, columns.theory);
     psd_of_modes(modes, reference.x, reference.y);
     reference_of(n, reference.y);
     for (size_t a = 0; a < n; a++) {
-        struct estimate estimate = {series.theory[a], 0};
+        struct estimate estimate = {columns.theory[a], 0};
         if (!exact) {
             estimate = tally_sums_mean(&tally->density, a, tally->points.realisations);
             estimate.value *= reference.y[a];
             estimate.standard_error *= reference.y[a];
         }
-        series.y[a] = estimate.value;
-        series.standard_error[a] = estimate.standard_error;
+        columns.y[a] = estimate.value;
+        columns.standard_error[a] = estimate.standard_error;
     }
-    while (exact && last > 1 && !(series.y[last] > 0))
+    while (exact && last > 1 && !(columns.y[last] > 0))
         last--;
     /* ring 0 is the mean height */
-    status = append(curves,
-                    &(struct curve){.quantity = "psd",
-                                    .x_label = "k lambda_s",
-                                    .y_label = "power spectral density",
-                                    .n = last,
-                                    .x = series.x + 1,
-                                    .y = series.y + 1,
-                                    .standard_error = series.standard_error + 1,
-                                    .theories = {{exact ? NULL : "prescribed", series.theory + 1}}},
-                    err);
-    free(reference.x);
-    free(series.x);
-    return status;
+    curve_set_points(&curve, last, columns.x + 1, columns.y + 1, columns.standard_error + 1);
+    return add_curve(result, &curve, exact, columns.theory + 1, err);
 }
 
 static size_t correlation_side(const struct statistics_case *study) {
@@ -144,7 +132,8 @@ static size_t correlation_side(const struct statistics_case *study) {
 
 /* The prescribed autocorrelation; *n lags. */
 static int prescribed_correlation(const struct statistics_case *study, const struct modes *modes,
-                                  struct series *out, size_t *n, struct error *err) {
+                                  struct case_result *result, struct spectrum_columns *out,
+                                  size_t *n, struct error *err) {
     struct modes *coarse = NULL;
     struct grid grid = study->surface.grid;
     int status = 0;
@@ -156,48 +145,37 @@ static int prescribed_correlation(const struct statistics_case *study, const str
         modes = coarse;
     }
     if (status == 0)
-        status = series_create(out, *n, err);
-    if (status == 0) {
+        status = columns_create(result, out, *n, err);
+    if (status == 0)
         status = acf_of_modes(modes, out->x, out->theory, err);
-        if (status != 0)
-            free(out->x);
-    }
     modes_destroy(&coarse);
     return status;
 }
 
 static int correlation_curve(const struct statistics_case *study, const struct modes *modes,
-                             const struct statistics_tally *tally, cJSON *curves,
+                             const struct statistics_tally *tally, struct case_result *result,
                              struct error *err) {
     bool exact = surface_case_exact(&study->surface);
-    struct series series = {0};
+    struct curve curve = curve_named("acf", "lag/lambda_s", "autocorrelation");
+    struct spectrum_columns columns;
     size_t n;
-    int status = prescribed_correlation(study, modes, &series, &n, err);
+    int status = prescribed_correlation(study, modes, result, &columns, &n, err);
     if (status != 0)
         return status;
     for (size_t a = 0; a < n; a++) {
-        struct estimate estimate = {series.theory[a], 0};
+        struct estimate estimate = {columns.theory[a], 0};
         if (!exact)
             estimate = tally_sums_mean(&tally->correlation, a, tally->points.realisations);
-        series.y[a] = estimate.value;
-        series.standard_error[a] = estimate.standard_error;
+        columns.y[a] = estimate.value;
+        columns.standard_error[a] = estimate.standard_error;
     }
-    status = append(curves,
-                    &(struct curve){.quantity = "acf",
-                                    .x_label = "lag/lambda_s",
-                                    .y_label = "autocorrelation",
-                                    .n = n,
-                                    .x = series.x,
-                                    .y = series.y,
-                                    .standard_error = series.standard_error,
-                                    .theories = {{exact ? NULL : "prescribed", series.theory}}},
-                    err);
-    free(series.x);
-    return status;
+    curve_set_points(&curve, n, columns.x, columns.y, columns.standard_error);
+    return add_curve(result, &curve, exact, columns.theory, err);
 }
 
 int spectra_curves(const struct statistics_case *study, const struct modes *modes,
-                   const struct statistics_tally *tally, cJSON *curves, struct error *err) {
-    int status = density_curve(study, modes, tally, curves, err);
-    return status != 0 ? status : correlation_curve(study, modes, tally, curves, err);
+                   const struct statistics_tally *tally, struct case_result *result,
+                   struct error *err) {
+    int status = density_curve(study, modes, tally, result, err);
+    return status != 0 ? status : correlation_curve(study, modes, tally, result, err);
 }

@@ -4,6 +4,7 @@
 #define RUGO_JOBS_STATISTICS_STATISTICS_SPECTRA_H
 
 #include "jobs/statistics/statistics_tally.h"
+#include "schema/result/result.h"
 
 /* Entries of the two tallies: 0 where nothing is measured. */
 size_t spectra_densities(const struct statistics_case *study);
@@ -23,6 +24,7 @@ int spectra_measure(struct spectra *spectra, const struct grid *grid, const doub
 
 /* Appends the curves "psd" and "acf". */
 int spectra_curves(const struct statistics_case *study, const struct modes *modes,
-                   const struct statistics_tally *tally, cJSON *curves, struct error *err);
+                   const struct statistics_tally *tally, struct case_result *result,
+                   struct error *err);
 
 #endif

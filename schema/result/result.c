@@ -32,6 +32,27 @@ const struct curve_attribute *curve_column(size_t n) {
     return NULL;
 }
 
+struct curve curve_named(const char *quantity, const char *x_label, const char *y_label) {
+    struct curve curve = {.quantity = quantity,
+                          .x_label = x_label,
+                          .y_label = y_label,
+                          .series = "",
+                          .level = NAN,
+                          .points = NAN,
+                          .pressure = NAN};
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        curve.errors[s].order = NAN;
+    return curve;
+}
+
+void curve_set_points(struct curve *curve, size_t n, const double *x, const double *y,
+                      const double *standard_error) {
+    curve->n = n;
+    curve->x = x;
+    curve->y = y;
+    curve->standard_error = standard_error;
+}
+
 const char *curve_attribute_text(const struct curve *curve, const struct curve_attribute *row) {
     if (row->type != ATTRIBUTE_TEXT)
         return NULL;

@@ -78,6 +78,12 @@ struct curve {
     double underflow, overflow; /* counts */
 };
 
+/* A curve without points, attributes and errors. */
+struct curve curve_named(const char *quantity, const char *x_label, const char *y_label);
+/* n points; of a matrix n rows, whose values are those of its cells. */
+void curve_set_points(struct curve *curve, size_t n, const double *x, const double *y,
+                      const double *standard_error);
+
 enum attribute_type { ATTRIBUTE_TEXT, ATTRIBUTE_NUMBER };
 struct curve_attribute {
     const char *key; /* in JSON, CSV and views */

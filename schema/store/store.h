@@ -11,6 +11,7 @@
 #define RUGO_SCHEMA_STORE_STORE_H
 
 #include "schema/result/block_result.h"
+#include "schema/result/report.h"
 #include "schema/study/study.h"
 #include <stdbool.h>
 
@@ -141,14 +142,24 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
 typedef int result_visit(void *context, const struct block_result *result, struct error *err);
 int store_results(struct store *store, const char *study, uint64_t case_number, result_visit *visit,
                   void *context, struct error *err);
-/* Replaces the published curves and scalars of a case ({"scalars", "curves"} as in openapi.yaml)
- * for the views curve_points and case_scalars; keeps the document too. revision: of case_info when
- * it was read; an older one than published is ignored. */
+/* Replaces what is published of a case, for the views and for store_published. revision: of
+ * case_info when it was read; an older one than published is ignored. */
 int store_publish(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
-                  const cJSON *curves, struct error *err);
-/* The published document of a case, or NULL in *out when there is none of this revision. */
+                  const struct case_result *result, struct error *err);
+/* What is published of a case at this revision, without its parameters. *found: whether anything
+ * is; *out is untouched where nothing is, and on failure. */
+struct published_part {
+    const char *quantity; /* curves of this quantity alone; NULL: of all */
+    bool scalars_only;    /* no curves at all */
+};
 int store_published(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
-                    cJSON **out, struct error *err);
+                    const struct published_part *part, struct case_result *out, bool *found,
+                    struct error *err);
+/* Its report, without parameters, costs and counts of realisations: seconds are shares of the
+ * case's. Not found where an older program published the case. */
+int store_published_report(struct store *store, const char *study, uint64_t case_number,
+                           uint64_t revision, struct case_report *out, bool *found,
+                           struct error *err);
 
 /* --- what is due --- */
 /* A case is due when nothing of it is left to run (its jobs are done, failed or cancelled), it has

@@ -1,4 +1,5 @@
 #include "server/command/access.h"
+#include "schema/result/result_json.h"
 #include "schema/study/override.h"
 #include "server/command/api.h"
 #include "server/command/command.h"
@@ -168,31 +169,48 @@ int access_list(struct access *access, cJSON **out, struct error *err) {
     return status;
 }
 
-int access_curves(struct access *access, const char *id, const struct curve_filter *filter,
-                  cJSON **out, struct error *err) {
-    char rest[200] = "/curves", separator = '?';
-    size_t used = strlen(rest);
-    if (!access->client)
-        return aggregate_curves(access->store, id, filter, out, err);
-    if (filter->case_number >= 0) {
-        used += (size_t)snprintf(rest + used, sizeof rest - used, "?case=%lld",
+static int results_path(char *rest, size_t size, const struct result_filter *filter,
+                        struct error *err) {
+    const char *quantity = filter->part.quantity;
+    size_t used = (size_t)snprintf(rest, size, "/curves");
+    if (filter->case_number >= 0)
+        used += (size_t)snprintf(rest + used, size - used, "?case=%lld",
                                  (long long)filter->case_number);
-        separator = '&';
-    }
-    if (filter->quantity) {
-        size_t length = strlen(filter->quantity);
-        if (length > 64 ||
-            strspn(filter->quantity, "abcdefghijklmnopqrstuvwxyz0123456789_") != length)
-            return error_set(err, ERROR_INPUT, "the study has no quantity \"%.64s\"",
-                             filter->quantity);
-        snprintf(rest + used, sizeof rest - used, "%cquantity=%s", separator, filter->quantity);
-    }
-    return ask_study(access, "GET", id, rest, out, err);
+    if (quantity == NULL)
+        return 0;
+    size_t length = strlen(quantity);
+    if (length > 64 || strspn(quantity, "abcdefghijklmnopqrstuvwxyz0123456789_") != length)
+        return error_set(err, ERROR_INPUT, "the study has no quantity \"%.64s\"", quantity);
+    snprintf(rest + used, size - used, "%cquantity=%s", filter->case_number >= 0 ? '&' : '?',
+             quantity);
+    return 0;
 }
 
-int access_report(struct access *access, const char *id, cJSON **out, struct error *err) {
-    return access->client ? ask_study(access, "GET", id, "/report", out, err)
-                          : aggregate_report(access->store, id, out, err);
+int access_results(struct access *access, const char *id, const struct result_filter *filter,
+                   struct study_result *out, struct error *err) {
+    char rest[200];
+    cJSON *document = NULL;
+    if (access->client == NULL)
+        return aggregate_study(access->store, id, filter, out, err);
+    int status = results_path(rest, sizeof rest, filter, err);
+    if (status == 0)
+        status = ask_study(access, "GET", id, rest, &document, err);
+    if (status == 0)
+        status = study_result_read(document, out, err);
+    cJSON_Delete(document);
+    return status;
+}
+
+int access_report(struct access *access, const char *id, struct study_report *out,
+                  struct error *err) {
+    cJSON *document = NULL;
+    if (access->client == NULL)
+        return aggregate_report(access->store, id, out, err);
+    int status = ask_study(access, "GET", id, "/report", &document, err);
+    if (status == 0)
+        status = study_report_read(document, out, err);
+    cJSON_Delete(document);
+    return status;
 }
 
 int access_cancel(struct access *access, const char *id, cJSON **out, struct error *err) {

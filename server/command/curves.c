@@ -1,8 +1,9 @@
 /* `rugo curves`: the aggregated curves of a study, as they are now. */
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
-#include "server/command/question.h"
+#include "server/command/access.h"
 #include <stdio.h>
+#include <stdlib.h>
 
 struct options {
     struct access_options place;
@@ -18,33 +19,33 @@ static const struct option_row OPTIONS[] = {
     {"format", 0, OPTION_CHOICE, 0, 0, AT(csv), "json|csv", "json", "what to print"},
     {0}};
 
-static int ask(struct access *access, const char *id, const void *values, cJSON **out,
-               struct error *err) {
-    const struct options *options = values;
-    const struct curve_filter filter = {.case_number = options->case_number,
-                                        .quantity = options->quantity};
-    return access_curves(access, id, &filter, out, err);
-}
-
-static int show(const cJSON *document, const char *id, const void *values, struct error *err) {
-    (void)id;
-    const struct options *options = values;
-    struct study_result study = {0};
-    if (!options->csv)
-        return output_document(document, err);
-    int status = study_result_read(document, &study, err);
-    if (status == 0) {
-        csv_print(stdout, study.case_count, study.cases, NULL);
-        status = output_flush(err);
-    }
-    study_result_clear(&study);
-    return status;
+static int show(const struct study_result *study, bool csv, struct error *err) {
+    bool done = true;
+    if (csv)
+        csv_print(stdout, study->case_count, study->cases, NULL);
+    else
+        done = study_print(stdout, study) && putchar('\n') != EOF;
+    return done ? output_flush(err) : error_memory(err, 0, "a document");
 }
 
 static int run(const void *values, const char *const *arguments) {
-    static const struct question QUESTION = {"curves", ACCESS_READ, ask, show};
     const struct options *options = values;
-    return question_answer(&QUESTION, &options->place, arguments[0], options);
+    const struct result_filter filter = {.case_number = options->case_number,
+                                         .part = {.quantity = options->quantity},
+                                         .complete = true};
+    struct error err = {0};
+    struct access *access = NULL;
+    struct study_result study = {0};
+    if (access_options_check("curves", &options->place) != 0)
+        return EXIT_USAGE;
+    int status = access_open(&access, &options->place, ACCESS_READ, &err);
+    if (status == 0)
+        status = access_results(access, arguments[0], &filter, &study, &err);
+    if (status == 0)
+        status = show(&study, options->csv, &err);
+    study_result_clear(&study);
+    access_close(&access);
+    return status != 0 ? command_fail("curves", &err) : EXIT_DONE;
 }
 
 const struct command COMMAND_CURVES = {

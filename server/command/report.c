@@ -1,6 +1,5 @@
 /* `rugo report`: what each case cost and how exact it is. */
-#include "schema/result/result_json.h"
-#include "server/command/question.h"
+#include "server/command/access.h"
 #include "server/show/summary.h"
 #include <stdio.h>
 
@@ -14,31 +13,30 @@ static const struct option_row OPTIONS[] = {ACCESS_ROWS(struct options),
                                              "what to print"},
                                             {0}};
 
-static int ask(struct access *access, const char *id, const void *options, cJSON **out,
-               struct error *err) {
-    (void)options;
-    return access_report(access, id, out, err);
-}
-
-static int show(const cJSON *document, const char *id, const void *values, struct error *err) {
-    (void)id;
-    const struct options *options = values;
-    if (options->json)
-        return output_document(document, err);
-    struct study_report report = {0};
-    int status = study_report_read(document, &report, err);
-    if (status == 0) {
-        summary_of_report(&report, stdout);
-        status = output_flush(err);
-    }
-    study_report_clear(&report);
-    return status;
+static int show(const struct study_report *report, bool json, struct error *err) {
+    bool done = true;
+    if (json)
+        done = study_report_print(stdout, report) && putchar('\n') != EOF;
+    else
+        summary_of_report(report, stdout);
+    return done ? output_flush(err) : error_memory(err, 0, "a document");
 }
 
 static int run(const void *values, const char *const *arguments) {
-    static const struct question QUESTION = {"report", ACCESS_READ, ask, show};
     const struct options *options = values;
-    return question_answer(&QUESTION, &options->place, arguments[0], options);
+    struct error err = {0};
+    struct access *access = NULL;
+    struct study_report report = {0};
+    if (access_options_check("report", &options->place) != 0)
+        return EXIT_USAGE;
+    int status = access_open(&access, &options->place, ACCESS_READ, &err);
+    if (status == 0)
+        status = access_report(access, arguments[0], &report, &err);
+    if (status == 0)
+        status = show(&report, options->json, &err);
+    study_report_clear(&report);
+    access_close(&access);
+    return status != 0 ? command_fail("report", &err) : EXIT_DONE;
 }
 
 const struct command COMMAND_REPORT = {

@@ -1,6 +1,7 @@
 /* `rugo run`: a study from submission to table in one process; goes on where an earlier run of the
  * same study stopped. */
-#include "schema/result/result_json.h"
+#include "jobs/kind.h"
+#include "schema/result/view.h"
 #include "server/command/access.h"
 #include "server/command/command.h"
 #include "server/show/output.h"
@@ -101,34 +102,31 @@ static int check_end(struct run *run, const struct study_status *now, struct err
     return status;
 }
 
-/* Of all cases, as they stand. Both are cleared by the caller, also after a failure. */
-static int read_results(struct run *run, struct study_result *results, struct study_report *report,
-                        struct error *err) {
-    cJSON *curves = NULL, *costs = NULL;
-    struct curve_filter all = {.case_number = -1};
-    int status = aggregate_curves(run->store, run->id, &all, &curves, err);
-    if (status == 0)
-        status = aggregate_report(run->store, run->id, &costs, err);
-    if (status == 0)
-        status = study_result_read(curves, results, err);
-    if (status == 0)
-        status = study_report_read(costs, report, err);
-    cJSON_Delete(curves);
-    cJSON_Delete(costs);
-    return status;
+/* What the table needs: all curves only where files are written. */
+static struct result_filter filter_of(const struct run *run, const char *kind) {
+    const struct job_kind *found = kind_find(kind);
+    const struct result_view *view = found != NULL ? found->view : NULL;
+    const char *quantity = view != NULL && view->table != NULL ? view->table->quantity : NULL;
+    if (run->folder != NULL)
+        return (struct result_filter){.case_number = -1, .complete = true};
+    return (struct result_filter){.case_number = -1,
+                                  .part = {.quantity = quantity, .scalars_only = quantity == NULL}};
 }
 
-static int present(struct run *run, struct error *err) {
-    struct study_result results = {0};
+static int present(struct run *run, const char *kind, struct error *err) {
+    const struct result_filter filter = filter_of(run, kind);
+    struct study_result study = {0};
     struct study_report report = {0};
-    int status = read_results(run, &results, &report, err);
+    int status = aggregate_study(run->store, run->id, &filter, &study, err);
+    if (status == 0)
+        status = aggregate_report(run->store, run->id, &report, err);
     if (status == 0 && run->folder != NULL)
-        status = output_write(&results, run->folder, err);
+        status = output_write(&study, run->folder, err);
     if (status == 0) {
-        summary_of_curves(&results, &report, stdout);
+        summary_of_curves(&study, &report, stdout);
         status = output_flush(err);
     }
-    study_result_clear(&results);
+    study_result_clear(&study);
     study_report_clear(&report);
     return status;
 }
@@ -147,7 +145,7 @@ static int perform(struct run *run, struct error *err) {
         status = store_status(run->store, run->id, &now, err);
     if (status != 0)
         return status;
-    status = present(run, err);
+    status = present(run, now.kind, err);
     if (status == 0 || now.cases_failed > 0) /* these are why it cannot be presented */
         status = check_end(run, &now, err);
     study_status_clear(&now);

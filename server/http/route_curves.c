@@ -1,9 +1,12 @@
 /* Curves and reports over HTTP. A study of ten thousand cases has gigabytes of them: as JSON they
  * are read and sent case by case, and end early when the server does. */
+#include "schema/result/csv.h"
+#include "schema/result/result_json.h"
 #include "server/http/accept.h"
 #include "server/http/route.h"
 #include "worker/aggregate.h"
 #include "worker/log.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,45 +32,75 @@ static void stream_free(void *context) {
     free(stream);
 }
 
-/* {..., "cases":[ of the document, without its end. */
-static char *print_head(const struct stream *stream) {
-    cJSON *cases, *document = aggregate_head(&stream->study, stream->report, &cases);
-    char *text = document ? json_print(document) : NULL;
-    cJSON_Delete(document);
-    if (text)
-        text[strlen(text) - strlen("]}")] = 0;
-    return text;
+/* What print writes to a file, as text behind what waits already; NULL there when out of memory. */
+struct printing {
+    struct stream *stream;
+    char *text;
+    size_t size;
+    FILE *file;
+};
+static bool printing_begin(struct printing *printing, struct stream *stream) {
+    *printing = (struct printing){.stream = stream};
+    printing->file = open_memstream(&printing->text, &printing->size);
+    if (printing->file != NULL && stream->text != NULL)
+        fputs(stream->text, printing->file);
+    return printing->file != NULL;
+}
+
+static int printing_end(struct printing *printing, bool done, struct error *err) {
+    struct stream *stream = printing->stream;
+    done = printing->file != NULL && fclose(printing->file) == 0 && done;
+    free(stream->text);
+    stream->text = done ? printing->text : NULL;
+    stream->sent = 0;
+    if (done)
+        return 0;
+    free(printing->text);
+    return error_set(err, ERROR_MEMORY, "no memory left for an answer");
+}
+
+static int print_head(struct stream *stream, struct error *err) {
+    const struct study_result head = aggregate_head(&stream->study);
+    double seconds = stream->report ? stream->study.about.seconds : (double)NAN;
+    struct printing printing;
+    bool done =
+        printing_begin(&printing, stream) && study_print_head(printing.file, &head, seconds);
+    return printing_end(&printing, done, err);
 }
 
 /* The next case behind what waits, with the end of the document behind the last one. */
-static int append_case(struct stream *stream, const cJSON *item, struct error *err) {
-    bool closes = stream->next + 1 == stream->end;
-    char *all = NULL, *text = json_print(item);
-    if (!text ||
-        asprintf(&all, "%s%s%s", stream->text ? stream->text : ",", text, closes ? "]}" : "") < 0)
-        all = NULL;
-    free(text);
-    free(stream->text);
-    stream->text = all;
-    stream->sent = 0;
+static int append_case(struct stream *stream, const struct case_result *result,
+                       const struct case_report *report, struct error *err) {
+    struct printing printing;
+    bool follows = stream->text == NULL;
+    bool done = printing_begin(&printing, stream);
+    if (done && follows)
+        fputc(',', printing.file);
+    if (done)
+        done = stream->report ? case_report_print(printing.file, report)
+                              : result_print(printing.file, result);
+    if (done && stream->next + 1 == stream->end)
+        fputs("]}", printing.file);
     stream->next++;
-    return all ? 0 : error_memory(err, 0, "an answer");
+    return printing_end(&printing, done, err);
 }
 
 static int read_case(struct stream *stream, struct error *err) {
     struct service *service = stream->exchange->service;
+    const struct result_filter filter = {.part = {.quantity = stream->quantity}, .complete = true};
     struct store *reader;
-    cJSON *item = NULL;
+    struct case_result result = {0};
+    struct case_report report = {0};
     int status = service_reader(service, &reader, err);
-    if (!status)
+    if (status == 0)
         status = stream->report
-                     ? aggregate_report_case(reader, &stream->study, stream->next, &item, err)
-                     : aggregate_curves_case(reader, &stream->study, stream->next, stream->quantity,
-                                             &item, err);
+                     ? aggregate_case_report(reader, &stream->study, stream->next, &report, err)
+                     : aggregate_case(reader, &stream->study, stream->next, &filter, &result, err);
     service_give_back(service, reader);
-    if (!status)
-        status = append_case(stream, item, err);
-    cJSON_Delete(item);
+    if (status == 0)
+        status = append_case(stream, &result, &report, err);
+    result_clear(&result);
+    case_report_clear(&report);
     return status;
 }
 
@@ -96,35 +129,36 @@ static ssize_t next_part(void *context, uint64_t position, char *buffer, size_t 
 }
 
 /* The first case is read before the answer begins: what is wrong is mostly wrong with it. */
-static int open_stream(struct stream *stream, const char *id, const struct curve_filter *filter,
+static int open_stream(struct stream *stream, const char *id, const struct result_filter *filter,
                        struct error *err) {
     struct service *service = stream->exchange->service;
+    const char *quantity = filter->part.quantity;
     struct store *reader;
     int status = service_reader(service, &reader, err);
-    if (!status)
+    if (status == 0)
         status = aggregate_begin(reader, id, &stream->study, err);
     service_give_back(service, reader);
-    if (status)
+    if (status != 0)
         return status;
     bool one = filter->case_number >= 0;
     stream->next = one ? (uint64_t)filter->case_number : 0;
     stream->end = one ? stream->next + 1 : stream->study.about.cases;
-    stream->quantity = filter->quantity ? strdup(filter->quantity) : NULL;
-    stream->text = print_head(stream);
-    if (!stream->text || (filter->quantity && !stream->quantity))
-        return error_memory(err, 0, "an answer");
-    return read_case(stream, err);
+    stream->quantity = quantity != NULL ? strdup(quantity) : NULL;
+    if (quantity != NULL && stream->quantity == NULL)
+        return error_memory(err, strlen(quantity), "an answer");
+    status = print_head(stream, err);
+    return status != 0 ? status : read_case(stream, err);
 }
 
-static int send_json(struct exchange *exchange, const char *id, const struct curve_filter *filter,
+static int send_json(struct exchange *exchange, const char *id, const struct result_filter *filter,
                      bool report, struct error *err) {
     struct stream *stream = array_create(1, sizeof *stream);
-    if (!stream)
+    if (stream == NULL)
         return error_memory(err, sizeof *stream, "an answer");
     stream->exchange = exchange;
     stream->report = report;
     int status = open_stream(stream, id, filter, err);
-    if (status)
+    if (status != 0)
         stream_free(stream);
     else
         answer_stream(exchange, "application/json", MHD_SIZE_UNKNOWN, next_part, stream,
@@ -132,24 +166,34 @@ static int send_json(struct exchange *exchange, const char *id, const struct cur
     return status;
 }
 
-static int send_csv(struct exchange *exchange, const char *id, const struct curve_filter *filter,
+static int send_csv(struct exchange *exchange, const char *id, const struct result_filter *filter,
                     uint64_t cases, struct error *err) {
     struct store *reader;
-    cJSON *document = NULL;
-    char *csv = NULL;
+    struct study_result study = {0};
+    char *text = NULL;
+    size_t size = 0;
     if (filter->case_number < 0 && cases > CSV_CASES_MOST)
         return error_set(err, ERROR_INPUT,
                          "%llu cases are too many for one table; ask for each with ?case=",
                          (unsigned long long)cases);
     int status = service_reader(exchange->service, &reader, err);
-    if (!status)
-        status = aggregate_curves(reader, id, filter, &document, err);
+    if (status == 0)
+        status = aggregate_study(reader, id, filter, &study, err);
     service_give_back(exchange->service, reader);
-    if (!status)
-        status = aggregate_csv(document, &csv, err);
-    cJSON_Delete(document);
-    if (!status)
-        answer_text(exchange, 200, "text/csv; charset=utf-8", csv);
+    FILE *file = status == 0 ? open_memstream(&text, &size) : NULL;
+    if (file != NULL) {
+        csv_print(file, study.case_count, study.cases, NULL);
+        bool failed = ferror(file) != 0;
+        if (fclose(file) != 0 || failed)
+            status = error_memory(err, size, "a table");
+    } else if (status == 0) {
+        status = error_memory(err, size, "a table");
+    }
+    study_result_clear(&study);
+    if (status == 0)
+        answer_text(exchange, 200, "text/csv; charset=utf-8", text);
+    else
+        free(text);
     return status;
 }
 
@@ -176,8 +220,9 @@ static int find_study(struct exchange *exchange, const char *id, struct study_st
 void handle_curves(struct exchange *exchange, const char *id) {
     struct error err = {0};
     struct study_status study = {0};
-    struct curve_filter filter = {.case_number = -1,
-                                  .quantity = exchange_query(exchange, "quantity")};
+    struct result_filter filter = {.case_number = -1,
+                                   .part = {.quantity = exchange_query(exchange, "quantity")},
+                                   .complete = true};
     char etag[80] = "";
     if (!query_number(exchange, "case", 0, INT64_MAX - 1, &filter.case_number))
         return;
@@ -203,7 +248,7 @@ void handle_curves(struct exchange *exchange, const char *id) {
 
 void handle_report(struct exchange *exchange, const char *id) {
     struct error err = {0};
-    struct curve_filter all = {.case_number = -1};
+    struct result_filter all = {.case_number = -1};
     if (send_json(exchange, id, &all, true, &err))
         answer_error(exchange, &err);
 }

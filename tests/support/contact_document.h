@@ -6,6 +6,7 @@
 #include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "jobs/value.h"
+#include "tests/support/result_tree.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,7 +30,8 @@ static inline cJSON *solve(const char *study, uint64_t count) {
     if (runner_create(&runner, kind, parameters, NULL, CONTACT_SEED, 0, &err) != 0 ||
         merger_create(&merger, kind, parameters, &err) != 0 ||
         runner_run(runner, 0, count, NULL, &result, &err) != 0 ||
-        merger_add(merger, &result, &err) != 0 || merger_curves(merger, &document, &err) != 0)
+        merger_add(merger, &result, &err) != 0 ||
+        merger_tree(merger, NULL, NULL, &document, &err) != 0)
         fail_msg("%s: %s", study, err.text);
     block_result_clear(&result);
     runner_destroy(&runner);

@@ -3,11 +3,8 @@
 #ifndef RUGO_TESTS_SUPPORT_THIRD_KIND_H
 #define RUGO_TESTS_SUPPORT_THIRD_KIND_H
 
-#include "jobs/case_document.h"
-#include "jobs/curve.h"
 #include "jobs/kind.h"
 #include "jobs/realisations.h"
-#include "jobs/scalar.h"
 #include "jobs/tally.h"
 #include "schema/study/values.h"
 #include <math.h>
@@ -77,24 +74,27 @@ static void needle_get(struct byte_reader *reader, void *tally) {
 static bool needle_belongs(const void *tally, const struct block_result *result) {
     return ((const struct tally *)tally)->count[LENGTHS] == result->count;
 }
-static int needle_curves(const void *study, const struct surface_basis *basis, const void *tally,
-                         const struct realisations *realisations, cJSON **out, struct error *err) {
+static int needle_result(const void *study, const struct surface_basis *basis, const void *tally,
+                         const struct realisations *realisations, struct case_result *out,
+                         struct error *err) {
     uint64_t n = realisations->count, throws = (uint64_t) * (const double *)study;
     const struct tally_total total = {n, n * throws, (fixed_point)n * throws * throws};
-    double x[LENGTHS], y[LENGTHS], error[LENGTHS], theory[LENGTHS], pi[100];
-    cJSON *scalars = cJSON_CreateObject(), *curves = cJSON_CreateArray();
-    struct curve curve = {.quantity = "crossings", .x_label = "length", .y_label = "share"};
-    for (int k = 0; k < LENGTHS; k++) {
+    struct curve curve = curve_named("crossings", "length", "share");
+    double *x = result_numbers(out, 4 * LENGTHS), pi[100];
+    double *y = x + LENGTHS, *error = y + LENGTHS, *theory = error + LENGTHS;
+    for (int k = 0; x != NULL && k < LENGTHS; k++) {
         struct estimate share = tally_share(tally, (size_t)k, &total);
         x[k] = 0.1 * (k + 1), theory[k] = 2 * x[k] / M_PI;
         y[k] = share.value, error[k] = share.standard_error;
     }
-    curve.n = LENGTHS, curve.x = x, curve.y = y, curve.standard_error = error;
-    curve.theories[0] = (struct curve_theory){"buffon", theory};
+    curve_set_points(&curve, LENGTHS, x, y, error);
+    curve.theories[curve.theory_count++] = (struct theory){"buffon", theory};
     realisations_column(realisations, 0, pi);
-    (void)basis, (void)scalar_put(scalars, "pi", estimate_mean(n, pi), M_PI);
-    (void)curve_append(curves, &curve);
-    return case_document(n, scalars, curves, NULL, out, err);
+    struct estimate mean = estimate_mean(n, pi);
+    (void)basis;
+    int status =
+        result_add_scalar(out, &(struct scalar){"pi", mean.value, mean.standard_error, M_PI}, err);
+    return status != 0 ? status : result_add_curve(out, &curve, err);
 }
 static const struct job_kind NEEDLE_KIND = {
     .name = "needle",
@@ -113,7 +113,7 @@ static const struct job_kind NEEDLE_KIND = {
     .put = needle_put,
     .get = needle_get,
     .belongs = needle_belongs,
-    .curves = needle_curves,
+    .result = needle_result,
 };
 
 #endif

@@ -1,7 +1,7 @@
 /* Partial results of both kinds, as someone might send them on purpose: the first byte chooses the
  * case, the second the number of realisations, the rest is the data, under a seal made for it. What
  * fits is merged and makes curves, what does not is refused by both. */
-#include "jobs/kind.h"
+#include "jobs/merger.h"
 #include "schema/result/bytes.h"
 #include "tests/support/fuzz/fuzz.h"
 
@@ -23,14 +23,6 @@ static const struct {
 static cJSON *parameters[CASES];
 static double scalars[REALISATIONS_MOST * SCALARS_MOST];
 
-static size_t scalar_count(const struct job_kind *kind) {
-    size_t count = 0;
-    while (kind->scalars[count] != NULL)
-        count++;
-    MUST(count <= SCALARS_MOST);
-    return count;
-}
-
 static void seal(unsigned char *data, size_t size) {
     uint64_t hash = hash_bytes(HASH_START, size, data);
     for (size_t a = 0; a < 8; a++)
@@ -49,22 +41,22 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     memcpy(sealed, data + 2, size - 2);
     seal(sealed, size - 2);
     struct block_result result = {.count = 1 + data[1] % REALISATIONS_MOST,
-                                  .scalar_count = scalar_count(kind),
-                                  .names = kind->scalars,
+                                  .scalar_count = kind_scalar_count(kind),
                                   .scalars = scalars,
                                   .data = sealed,
                                   .size = size - 2 + 8,
                                   .seconds = 1};
     struct job_merger *merger = NULL;
     struct error err = {0};
-    MUST(kind->merger_create(&merger, parameters[which], &err) == 0);
-    int fits = kind->fits(merger, &result, &err);
-    MUST(kind->merge(merger, &result, &err) == fits);
+    MUST(result.scalar_count <= SCALARS_MOST);
+    MUST(merger_create(&merger, kind, parameters[which], &err) == 0);
+    int fits = merger_fits(merger, &result, &err);
+    MUST(merger_add(merger, &result, &err) == fits);
     MUST(fits == 0 || (fits == ERROR_INPUT && *err.text != 0));
-    cJSON *document = NULL;
-    MUST(kind->curves(merger, &document, &err) == 0);
-    cJSON_Delete(document);
-    kind->merger_destroy(&merger);
+    struct case_result out = {0};
+    MUST(merger_result(merger, &out, &err) == 0);
+    result_clear(&out);
+    merger_destroy(&merger);
     free(sealed);
     return 0;
 }

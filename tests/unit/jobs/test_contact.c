@@ -6,6 +6,7 @@
 #include "jobs/runner.h"
 #include "jobs/value.h"
 #include "schema/result/bytes.h"
+#include "tests/support/result_tree.h"
 #include "tests/support/seed.h"
 #include <math.h>
 #include <setjmp.h>
@@ -101,7 +102,7 @@ static void merge(struct job_merger *merger, const struct block_result *result) 
 static cJSON *curves_of(struct job_merger *merger) {
     cJSON *document = NULL;
     struct error err = {0};
-    if (merger_curves(merger, &document, &err) != 0)
+    if (merger_tree(merger, NULL, NULL, &document, &err) != 0)
         fail_msg("%s", err.text);
     return document;
 }

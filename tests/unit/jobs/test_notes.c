@@ -3,6 +3,7 @@
 #include "jobs/notes.h"
 #include "jobs/value.h"
 #include "tests/support/check.h"
+#include "tests/support/result_tree.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -124,13 +125,17 @@ static void the_document_tells_them(void **state) {
     (void)state;
     struct notes notes = {0};
     add_notes(&notes, 0, 3);
-    cJSON *json = notes_json(&notes);
+    struct case_result result = {0};
+    struct error err = {0};
+    assert_int_equal(notes_result(&notes, &result, &err), 0);
+    cJSON *tree = result_tree(&result), *json = cJSON_GetObjectItem(tree, "notes");
     char *text = cJSON_PrintUnformatted(json);
     assert_string_equal(text, "{\"count\":3,\"kept\":[{\"realisation\":1,\"text\":\"note 0 of 1\"},"
                               "{\"realisation\":2,\"text\":\"note 0 of 2\"},"
                               "{\"realisation\":2,\"text\":\"note 1 of 2\"}]}");
     cJSON_free(text);
-    cJSON_Delete(json);
+    cJSON_Delete(tree);
+    result_clear(&result);
 }
 
 int main(void) {

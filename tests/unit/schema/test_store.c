@@ -4,6 +4,7 @@
 #include "schema/study/fault.h"
 #include "tests/support/check.h"
 #include "tests/support/fake_kind.h"
+#include "tests/support/sample_result.h"
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -342,26 +343,24 @@ static void results_and_views(void **state) {
     assert_int_equal(due_cases(store), 3);
     struct case_info info;
     assert_int_equal(store_case(store, id, 0, &info, NULL), 0);
-    cJSON *curves = cJSON_Parse(
-        "{\"notes\":{\"count\":1,\"kept\":[{\"realisation\":7,\"text\":\"why\"}]},"
-        "\"scalars\":{\"m0\":{\"value\":1,\"standard_error\":0.5}},\"curves\":[{\"quantity\":"
-        "\"q\",\"series\":\"\",\"x\":[1,2],\"y\":[3,null],\"standard_error\":[0.1,null]},"
-        "{\"quantity\":\"joint\",\"series\":\"s\",\"x\":[1,2],\"x2\":[8,9],\"y\":[[0,5],[0,0]],"
-        "\"standard_error\":[[0,1],[0,0]]},{\"quantity\":\"area\",\"series\":\"edges\",\"model\":"
-        "\"full\",\"kinematics\":\"hencky\",\"level\":8,\"pressure\":0.5,\"x\":[1,2],\"y\":[3,4],"
-        "\"standard_error\":[0,0],"
-        "\"discretisation_error\":[0.25,null],\"model_error\":[null,-2],\"valueless\":[0,3]}]}");
-    assert_int_equal(store_publish(store, id, 0, info.revision, curves, NULL), 0);
-    assert_int_equal(store_publish(store, id, 0, info.revision - 1, curves, NULL),
+    struct case_result sample, again = {0};
+    const struct published_part all = {0}, areas = {.quantity = "area"};
+    bool found = false;
+    sample_result(&sample);
+    assert_int_equal(store_publish(store, id, 0, info.revision, &sample, NULL), 0);
+    assert_int_equal(store_publish(store, id, 0, info.revision - 1, &sample, NULL),
                      0); /* an older one: ignored */
-    cJSON *again = NULL;
-    assert_int_equal(store_published(store, id, 0, info.revision, &again, NULL), 0);
-    assert_true(cJSON_Compare(again, curves, true));
-    cJSON_Delete(again);
-    assert_int_equal(store_published(store, id, 0, info.revision + 1, &again, NULL), 0);
-    assert_null(again);
+    assert_int_equal(store_published(store, id, 0, info.revision, &all, &again, &found, NULL), 0);
+    assert_true(found && again.curve_count == 3 && again.scalar_count == 2);
+    result_clear(&again);
+    assert_int_equal(store_published(store, id, 0, info.revision, &areas, &again, &found, NULL), 0);
+    assert_true(found && again.curve_count == 1 && again.curves[0].level == 8);
+    result_clear(&again);
+    assert_int_equal(store_published(store, id, 0, info.revision + 1, &all, &again, &found, NULL),
+                     0);
+    assert_false(found);
     assert_int_equal(due_cases(store), 2);
-    cJSON_Delete(curves);
+    result_clear(&sample);
     case_info_clear(&info);
     assert_int_equal(store_snapshot(store, "copy.db", NULL), 0);
     struct error err = {0};
@@ -375,11 +374,12 @@ static void results_and_views(void **state) {
                "{\"a\":0.6666666666666666,\"b\":null}");
     check_text("copy.db",
                "SELECT group_concat(x || ':' || y) FROM curve_points WHERE quantity = 'q'",
-               "1.0:3.0");
-    check_text("copy.db",
-               "SELECT x || ':' || x2 || ':' || y || ':' || standard_error FROM curve_points WHERE "
-               "quantity = 'joint'",
-               "1.0:9.0:5.0:1.0");
+               "0.1:3.0");
+    check_text(
+        "copy.db",
+        "SELECT min(x) || ':' || min(x2) || ':' || min(y) || ':' || min(standard_error) FROM "
+        "curve_points WHERE quantity = 'joint'",
+        "0.1:8.0:2.0:0.25");
     check_text(
         "copy.db",
         "SELECT group_concat(model || kinematics || level || '@' || pressure "
@@ -389,7 +389,10 @@ static void results_and_views(void **state) {
         "FROM curve_points WHERE quantity = 'area'",
         "fullhencky8.0@0.5:0.25:none:0,fullhencky8.0@0.5:none:-2.0:3");
     check_text("copy.db", "SELECT \"case\" || realisation || note FROM case_notes", "07why");
-    check_text("copy.db", "SELECT name || value || standard_error FROM case_scalars", "m01.00.5");
+    check_text(
+        "copy.db",
+        "SELECT group_concat(name || value || coalesce(standard_error, 'none')) FROM case_scalars",
+        "alpha5.0none,m01.00.5");
     check_text("copy.db",
                "SELECT count(*) || group_concat(DISTINCT worker || host || attempts) FROM job_log",
                "4where1");

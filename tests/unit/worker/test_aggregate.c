@@ -1,19 +1,40 @@
-/* Curves, CSV and report of a study: complete, partial, filtered, empty. */
+/* Curves and report of a study: complete, partial, filtered, empty. */
 #include "jobs/runner.h"
+#include "tests/support/result_tree.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/aggregate.h"
 #include "worker/worker.h"
 
 #include <math.h>
 
+static int read_curves(struct fixture *fixture, const char *study, int64_t case_number,
+                       const char *quantity, cJSON **out, struct error *err) {
+    const struct result_filter filter = {
+        .case_number = case_number, .part = {.quantity = quantity}, .complete = true};
+    struct study_result result = {0};
+    int status = aggregate_study(fixture->store, study, &filter, &result, err);
+    if (status == 0)
+        *out = study_tree(&result);
+    study_result_clear(&result);
+    return status;
+}
+
 static cJSON *curves(struct fixture *fixture, int64_t case_number, const char *quantity) {
-    struct curve_filter filter = {.case_number = case_number, .quantity = quantity};
     struct error err = {0};
     cJSON *document = NULL;
-    if (aggregate_curves(fixture->store, fixture->study, &filter, &document, &err) != 0) {
+    if (read_curves(fixture, fixture->study, case_number, quantity, &document, &err) != 0)
         fail_msg("%s", err.text);
-    }
     return document;
+}
+
+static cJSON *report_of(struct fixture *fixture) {
+    struct error err = {0};
+    struct study_report report = {0};
+    if (aggregate_report(fixture->store, fixture->study, &report, &err) != 0)
+        fail_msg("%s", err.text);
+    cJSON *tree = report_tree(&report);
+    study_report_clear(&report);
+    return tree;
 }
 
 static double number_at(const cJSON *document, const char *pointer) {
@@ -92,23 +113,32 @@ static void published_equals_merged(void **state) {
     run_all(&fixture);
     struct case_info info = {0};
     struct error err = {0};
-    cJSON *published = NULL;
     assert_int_equal(store_case(fixture.store, fixture.study, 0, &info, &err), 0);
-    assert_int_equal(
-        store_published(fixture.store, fixture.study, 0, info.revision, &published, &err), 0);
-    assert_non_null(published);
-    cJSON *merged = NULL;
+    const struct published_part all = {0};
+    struct case_result published = {0};
+    bool found = false;
+    assert_int_equal(store_published(fixture.store, fixture.study, 0, info.revision, &all,
+                                     &published, &found, &err),
+                     0);
+    assert_true(found);
     struct fixture fresh;
     fixture_open(&fresh);
     fixture_submit(&fresh, SMALL_STUDY, 24, NULL, 0);
     run_one(&fresh); /* all of case 0 */
-    assert_int_equal(aggregate_case(fresh.store, fresh.study, 0, &merged, &err), 0);
-    char *text = json_print(merged), *cached = json_print(published);
+    assert_int_equal(result_set_parameters(&published, info.parameters, &err), 0);
+    cJSON *merged = curves(&fresh, 0, NULL);
+    struct aggregate aggregate;
+    assert_int_equal(aggregate_begin(fixture.store, fixture.study, &aggregate, &err), 0);
+    assert_int_equal(merger_complete(aggregate.kind, info.parameters, &published, &err), 0);
+    cJSON *tree = result_tree(&published);
+    char *text = json_print(json_at(merged, "/cases/0")), *cached = json_print(tree);
     assert_string_equal(text, cached);
     free(text);
     free(cached);
+    cJSON_Delete(tree);
     cJSON_Delete(merged);
-    cJSON_Delete(published);
+    result_clear(&published);
+    aggregate_end(&aggregate);
     case_info_clear(&info);
     fixture_close(&fresh);
     fixture_close(&fixture);
@@ -151,64 +181,25 @@ static void filters_choose(void **state) {
     }
     cJSON_Delete(document);
     document = NULL;
-    struct curve_filter filter = {.case_number = -1, .quantity = "contact_area"};
-    assert_int_equal(aggregate_curves(fixture.store, fixture.study, &filter, &document, &err),
+    assert_int_equal(read_curves(&fixture, fixture.study, -1, "contact_area", &document, &err),
                      ERROR_INPUT);
     assert_non_null(strstr(err.text, "contact_area"));
     assert_non_null(strstr(err.text, "summit_height_pdf")); /* says what there is */
-    filter = (struct curve_filter){.case_number = 2};
-    assert_int_equal(aggregate_curves(fixture.store, fixture.study, &filter, &document, &err),
-                     ERROR_ABSENT);
-    filter.case_number = -1;
-    assert_int_equal(aggregate_curves(fixture.store, "0000000000000000", &filter, &document, &err),
+    assert_int_equal(read_curves(&fixture, fixture.study, 2, NULL, &document, &err), ERROR_ABSENT);
+    assert_int_equal(read_curves(&fixture, "0000000000000000", -1, NULL, &document, &err),
                      ERROR_ABSENT);
     assert_null(document);
     fixture_close(&fixture);
-}
-
-/* Quoting, nulls, matrices and theories, on a document made for it. */
-static void csv_is_one_table(void **state) {
-    (void)state;
-    static const char text[] =
-        "{\"cases\":[{\"case\":3,\"curves\":["
-        "{\"quantity\":\"a\",\"series\":\"x, \\\"y\\\"\",\"x\":[0.1,2],\"y\":[1,null],"
-        "\"standard_error\":[0.5,null],\"discretisation_error\":null,"
-        "\"theory\":{\"nayak\":[1.5,2.5]}},"
-        "{\"quantity\":\"m\",\"series\":\"\",\"x\":[1,2],\"x2\":[7,8,9],"
-        "\"y\":[[1,2,3],[4,5,6]],\"standard_error\":[[0,0,0],[0,0,1]],\"theory\":{}},"
-        "{\"quantity\":\"c\",\"series\":\"edges\",\"model\":\"full\",\"kinematics\":\"hencky\","
-        "\"level\":8,\"pressure\":0.5,"
-        "\"x\":[1],\"y\":[1e-300],\"standard_error\":null,\"discretisation_error\":[0.25],"
-        "\"model_error\":[-2],\"valueless\":[4],\"theory\":{\"persson\":[3]}}]}]}";
-    static const char expected[] =
-        "case,quantity,series,model,kinematics,level,pressure,x,x2,y,standard_error,discretisation_"
-        "error,"
-        "model_error,valueless,theory_nayak,theory_persson\r\n"
-        "3,a,\"x, \"\"y\"\"\",,,,,0.1,,1,0.5,,,,1.5,\r\n"
-        "3,a,\"x, \"\"y\"\"\",,,,,2,,,,,,,2.5,\r\n"
-        "3,m,,,,,,1,7,1,0,,,,,\r\n3,m,,,,,,1,8,2,0,,,,,\r\n3,m,,,,,,1,9,3,0,,,,,\r\n"
-        "3,m,,,,,,2,7,4,0,,,,,\r\n3,m,,,,,,2,8,5,0,,,,,\r\n3,m,,,,,,2,9,6,1,,,,,\r\n"
-        "3,c,edges,full,hencky,8,0.5,1,,1e-300,,0.25,-2,4,,3\r\n";
-    struct error err = {0};
-    char *table = NULL;
-    cJSON *document = cJSON_Parse(text);
-    assert_non_null(document);
-    assert_int_equal(aggregate_csv(document, &table, &err), 0);
-    assert_string_equal(table, expected);
-    free(table);
-    cJSON_Delete(document);
 }
 
 /* Every error the report states is the one that the curves beside it give. */
 static void report_agrees_with_the_curves(void **state) {
     (void)state;
     struct fixture fixture;
-    struct error err = {0};
     fixture_open(&fixture);
     fixture_submit(&fixture, SMALL_STUDY, 6, NULL, 0);
     run_all(&fixture);
-    cJSON *report = NULL;
-    assert_int_equal(aggregate_report(fixture.store, fixture.study, &report, &err), 0);
+    cJSON *report = report_of(&fixture);
     cJSON *document = curves(&fixture, 0, NULL);
     const char *name = cJSON_GetStringValue(json_at(report, "/cases/0/main_curve"));
     assert_non_null(name);
@@ -248,11 +239,9 @@ static void report_agrees_with_the_curves(void **state) {
 static void report_of_an_empty_study_is_null(void **state) {
     (void)state;
     struct fixture fixture;
-    struct error err = {0};
     fixture_open(&fixture);
     fixture_submit(&fixture, SMALL_STUDY, 6, NULL, 0);
-    cJSON *report = NULL;
-    assert_int_equal(aggregate_report(fixture.store, fixture.study, &report, &err), 0);
+    cJSON *report = report_of(&fixture);
     assert_true(number_at(report, "/cases/0/realisations") == 0);
     assert_true(cJSON_IsNull(json_at(report, "/cases/0/statistical_error")));
     assert_true(cJSON_IsNull(json_at(report, "/cases/0/seconds_per_realisation")));
@@ -332,12 +321,10 @@ static double model_deviation(const cJSON *finest, const cJSON *complete) {
 static void report_tells_levels_and_models_apart(void **state) {
     (void)state;
     struct fixture fixture;
-    struct error err = {0};
-    cJSON *report = NULL;
     fixture_open(&fixture);
     fixture_submit(&fixture, CONTACT_STUDY, 3, NULL, 0);
     run_one(&fixture);
-    assert_int_equal(aggregate_report(fixture.store, fixture.study, &report, &err), 0);
+    cJSON *report = report_of(&fixture);
     cJSON *document = curves(&fixture, 0, NULL);
     static const char *const MODELS[] = {"halfspace", "layered"};
     static const double LEVELS[] = {4, 8, 16};
@@ -380,8 +367,6 @@ static void report_tells_levels_and_models_apart(void **state) {
 static void cases_not_begun_are_empty(void **state) {
     (void)state;
     struct fixture fixture;
-    struct error err = {0};
-    cJSON *report = NULL;
     fixture_open(&fixture);
     fixture_submit(&fixture, CONTACT_STUDY, 3, NULL, 0);
     run_one(&fixture);
@@ -391,7 +376,7 @@ static void cases_not_begun_are_empty(void **state) {
     assert_int_equal(cJSON_GetArraySize(json_at(document, "/cases/1/scalars")), 0);
     assert_true(number_at(document, "/cases/1/realisations") == 0);
     assert_true(number_at(document, "/cases/1/parameters/~1surface~1hurst") == 0.5);
-    assert_int_equal(aggregate_report(fixture.store, fixture.study, &report, &err), 0);
+    cJSON *report = report_of(&fixture);
     assert_int_equal(cJSON_GetArraySize(json_at(report, "/cases/1/curves")), 0);
     assert_true(cJSON_IsNull(json_at(report, "/cases/1/main_curve")));
     assert_true(cJSON_IsNull(json_at(report, "/cases/1/model_error")));
@@ -406,7 +391,6 @@ int main(void) {
         cmocka_unit_test(published_equals_merged),
         cmocka_unit_test(partial_curves_say_how_far),
         cmocka_unit_test(filters_choose),
-        cmocka_unit_test(csv_is_one_table),
         cmocka_unit_test(report_agrees_with_the_curves),
         cmocka_unit_test(report_of_an_empty_study_is_null),
         cmocka_unit_test(report_tells_levels_and_models_apart),

@@ -1,5 +1,6 @@
 /* Contact studies through the queue: threads that share a case's compliance, blocks and their order
  * leave the bits of the curves alone (run under ThreadSanitizer too). */
+#include "tests/support/result_tree.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/aggregate.h"
 #include "worker/worker.h"
@@ -19,12 +20,13 @@ static const char STEEP_STUDY[] =
 
 /* The study's curves without its id, as text. */
 static char *curves_text(struct fixture *fixture) {
-    struct curve_filter filter = {.case_number = -1};
+    const struct result_filter filter = {.case_number = -1, .complete = true};
     struct error err = {0};
-    cJSON *curves = NULL;
-    if (aggregate_curves(fixture->store, fixture->study, &filter, &curves, &err) != 0) {
+    struct study_result study = {0};
+    if (aggregate_study(fixture->store, fixture->study, &filter, &study, &err) != 0)
         fail_msg("%s", err.text);
-    }
+    cJSON *curves = study_tree(&study);
+    study_result_clear(&study);
     cJSON_DeleteItemFromObject(curves, "study");
     char *text = json_print(curves);
     assert_non_null(text);

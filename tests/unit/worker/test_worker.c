@@ -1,4 +1,5 @@
 /* Workers on a local store: every realisation once, whatever happens to leases and workers. */
+#include "tests/support/result_tree.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/aggregate.h"
 #include "worker/client.h"
@@ -29,12 +30,13 @@ static void work(const struct worker_options *options, int expected) {
 
 /* The study's curves without its id, as text. */
 static char *curves_text(struct fixture *fixture) {
-    struct curve_filter filter = {.case_number = -1};
+    const struct result_filter filter = {.case_number = -1, .complete = true};
     struct error err = {0};
-    cJSON *curves = NULL;
-    if (aggregate_curves(fixture->store, fixture->study, &filter, &curves, &err) != 0) {
+    struct study_result study = {0};
+    if (aggregate_study(fixture->store, fixture->study, &filter, &study, &err) != 0)
         fail_msg("%s", err.text);
-    }
+    cJSON *curves = study_tree(&study);
+    study_result_clear(&study);
     cJSON_DeleteItemFromObject(curves, "study");
     char *text = json_print(curves);
     assert_non_null(text);
@@ -57,12 +59,15 @@ static void queue_is_drained(void **state) {
     study_status_clear(&status);
     struct case_info info = {0};
     struct error err = {0};
-    cJSON *published = NULL;
+    const struct published_part all = {0};
+    struct case_result published = {0};
+    bool found = false;
     assert_int_equal(store_case(fixture.store, fixture.study, 1, &info, &err), 0);
-    assert_int_equal(
-        store_published(fixture.store, fixture.study, 1, info.revision, &published, &err), 0);
-    assert_non_null(published); /* by the worker that took the case's last block */
-    cJSON_Delete(published);
+    assert_int_equal(store_published(fixture.store, fixture.study, 1, info.revision, &all,
+                                     &published, &found, &err),
+                     0);
+    assert_true(found); /* by the worker that took the case's last block */
+    result_clear(&published);
     case_info_clear(&info);
     fixture_close(&fixture);
 }

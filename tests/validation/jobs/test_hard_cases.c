@@ -5,6 +5,7 @@
 #include "jobs/runner.h"
 #include "jobs/value.h"
 #include "schema/study/fault.h"
+#include "tests/support/result_tree.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -150,7 +151,8 @@ static void run_case(const struct hard_case *hard) {
     if (runner_create(&runner, kind, parameters, NULL, 7, 0, &err) != 0 ||
         runner_run(runner, 0, 3, NULL, &result, &err) != 0 ||
         merger_create(&merger, kind, parameters, &err) != 0 ||
-        merger_add(merger, &result, &err) != 0 || merger_curves(merger, &document, &err) != 0)
+        merger_add(merger, &result, &err) != 0 ||
+        merger_tree(merger, kind, parameters, &document, &err) != 0)
         fail_msg("%s: %s", hard->name, err.text);
     assert_finite(hard, document, "/scalars/rms_height/value");
     assert_finite(hard, document, "/scalars/nayak_alpha/value");

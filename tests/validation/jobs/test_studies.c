@@ -6,6 +6,7 @@
 #include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "jobs/value.h"
+#include "tests/support/result_tree.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -36,7 +37,8 @@ __attribute__((format(printf, 2, 3))) static cJSON *study(uint64_t count, const 
     if (runner_create(&runner, kind, parameters, NULL, 31, 0, &err) != 0 ||
         runner_run(runner, 0, count, NULL, &result, &err) != 0 ||
         merger_create(&merger, kind, parameters, &err) != 0 ||
-        merger_add(merger, &result, &err) != 0 || merger_curves(merger, &curves, &err) != 0)
+        merger_add(merger, &result, &err) != 0 ||
+        merger_tree(merger, kind, parameters, &curves, &err) != 0)
         fail_msg("%s: %s", text, err.text);
     runner_destroy(&runner);
     merger_destroy(&merger);

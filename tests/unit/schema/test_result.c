@@ -1,0 +1,248 @@
+/* A result comes back from each of its formats as it went in: JSON, bytes; and its table and report
+ * say what it holds. */
+#include "schema/result/csv.h"
+#include "schema/result/curve_bytes.h"
+#include "schema/result/report.h"
+#include "schema/result/result.h"
+#include "schema/result/result_json.h"
+#include "tests/support/sample_result.h"
+#include <stdlib.h>
+
+static char *print(const struct case_result *result) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    assert_true(result_print(file, result));
+    assert_int_equal(fclose(file), 0);
+    return text;
+}
+
+static const char PRINTED[] =
+    "{\"case\":3,\"parameters\":{},\"realisations\":24,\"scalars\":{\"m0\":{\"value\":1,"
+    "\"standard_error\":0.5},\"alpha\":{\"value\":5,\"standard_error\":null,\"theory\":6}},"
+    "\"curves\":[{\"quantity\":\"q\",\"series\":\"x, \\\"y\\\"\",\"x\":[0.1,2],\"y\":[3,null],"
+    "\"standard_error\":[0.1,null],\"discretisation_error\":null,\"theory\":{\"nayak\":[1.5,2.5]},"
+    "\"x_label\":\"z\",\"underflow\":4,\"overflow\":0,\"y_label\":\"density\"},"
+    "{\"quantity\":\"joint\",\"series\":\"\",\"x\":[0.1,2],\"x2\":[7,8,9],"
+    "\"y\":[[0,2,0],[0,0,6]],\"standard_error\":[[0,0.25,0],[0,0,1]],"
+    "\"discretisation_error\":null,\"theory\":{},\"x_label\":\"z\",\"x2_label\":\"t\","
+    "\"y_label\":\"density\"},"
+    "{\"quantity\":\"area\",\"series\":\"edges\",\"model\":\"full\",\"level\":8,\"points\":64,"
+    "\"kinematics\":\"hencky\",\"pressure\":0.5,\"x\":[0.1,2],\"y\":[1e-300,0.5],"
+    "\"standard_error\":[0,0],\"discretisation_error\":[0.25,null],"
+    "\"discretisation_standard_error\":[0.01,0.02],\"discretisation_order\":1.5,"
+    "\"discretisation_order_from\":\"levels\",\"model_error\":[null,-2],"
+    "\"model_error_standard_error\":[0.03,0.04],\"theory\":{\"persson\":[3,4]},"
+    "\"x_label\":\"load\",\"valueless\":[0,3],\"y_label\":\"A/A0\"}],"
+    "\"notes\":{\"count\":2,\"kept\":[{\"realisation\":7,\"text\":\"why\"}]}}";
+
+static void json_comes_back(void **state) {
+    (void)state;
+    struct case_result sample, again = {0};
+    struct error err = {0};
+    sample_result(&sample);
+    char *text = print(&sample);
+    assert_string_equal(text, PRINTED);
+    cJSON *document = cJSON_Parse(text);
+    assert_int_equal(result_read(document, &again, &err), 0);
+    char *second = print(&again);
+    assert_string_equal(second, text);
+    assert_int_equal(again.curves[1].cell_count, 2);
+    assert_true(again.curves[2].errors[ERROR_DISCRETISATION].order_observed);
+    assert_true(isnan(again.curves[0].level));
+    free(text);
+    free(second);
+    cJSON_Delete(document);
+    result_clear(&sample);
+    result_clear(&again);
+}
+
+/* Each field that is missing or of another type is named; nothing is left behind. */
+static void json_that_is_none_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *from, *to, *named;
+    } faults[] = {{"\"case\":3", "\"case\":-1", "case"},
+                  {"\"realisations\":24", "\"realisations\":\"24\"", "realisations"},
+                  {"\"quantity\":\"q\"", "\"quantity\":1", "quantity"},
+                  {"\"series\":\"edges\"", "\"series\":null", "series"},
+                  {"\"x\":[0.1,2],\"y\":[3,null]", "\"x\":[0.1],\"y\":[3,null]", "y"},
+                  {"[[0,2,0],[0,0,6]]", "[[0,2,0],[0,0]]", "y"},
+                  {"\"nayak\":[1.5,2.5]", "\"nayak\":[1.5]", "nayak"},
+                  {"\"model_error\":[null,-2]", "\"model_error\":[null]", "model_error"},
+                  {"\"text\":\"why\"", "\"text\":7", "text"}};
+    for (size_t f = 0; f < sizeof faults / sizeof *faults; f++) {
+        const char *at = strstr(PRINTED, faults[f].from);
+        char text[sizeof PRINTED + 64];
+        struct case_result result = {.case_number = 77};
+        struct error err = {0};
+        assert_non_null(at);
+        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - PRINTED), PRINTED, faults[f].to,
+                 at + strlen(faults[f].from));
+        cJSON *document = cJSON_Parse(text);
+        assert_non_null(document);
+        assert_int_equal(result_read(document, &result, &err), ERROR_INPUT);
+        if (strstr(err.text, faults[f].named) == NULL)
+            fail_msg("\"%s\" does not name %s", err.text, faults[f].named);
+        assert_int_equal(result.case_number, 77);
+        cJSON_Delete(document);
+    }
+}
+
+static void bytes_come_back(void **state) {
+    (void)state;
+    struct case_result sample, again = {0};
+    sample_result(&sample);
+    for (size_t a = 0; a < sample.curve_count; a++) {
+        unsigned char *data = NULL;
+        size_t size = 0;
+        assert_int_equal(curve_encode(&sample.curves[a], &data, &size, NULL), 0);
+        assert_int_equal(curve_decode(&again, data, size, NULL), 0);
+        free(data);
+    }
+    assert_string_equal(again.curves[1].theories[0].name, "nayak");
+    assert_null(again.curves[1].theories[0].y); /* named, and made on demand */
+    again.case_number = sample.case_number;
+    again.realisations = sample.realisations;
+    again.notes = sample.notes;
+    again.note_count = sample.note_count;
+    again.notes_all = sample.notes_all;
+    for (size_t s = 0; s < sample.scalar_count; s++)
+        assert_int_equal(result_add_scalar(&again, &sample.scalars[s], NULL), 0);
+    char *first = print(&sample), *second = print(&again);
+    assert_string_equal(second, first);
+    free(first);
+    free(second);
+    result_clear(&sample);
+    result_clear(&again);
+}
+
+/* Whatever byte is changed, and wherever the bytes end: an error, and no curve. */
+static void damaged_bytes_are_refused(void **state) {
+    (void)state;
+    struct case_result sample, again = {0};
+    unsigned char *data = NULL;
+    size_t size = 0;
+    sample_result(&sample);
+    assert_int_equal(curve_encode(&sample.curves[2], &data, &size, NULL), 0);
+    for (size_t a = 0; a < size; a++) {
+        data[a] ^= 0x10;
+        assert_int_equal(curve_decode(&again, data, size, NULL), ERROR_INPUT);
+        data[a] ^= 0x10;
+        assert_int_equal(curve_decode(&again, data, a, NULL), ERROR_INPUT);
+    }
+    assert_int_equal(again.curve_count, 0);
+    free(data);
+    result_clear(&sample);
+    result_clear(&again);
+}
+
+static char *table_of(const struct case_result *result, const struct curve *only) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    csv_print(file, 1, result, only);
+    assert_int_equal(fclose(file), 0);
+    return text;
+}
+
+/* Quoting, gaps, matrices by their occupied cells, a column a source and a theory. */
+static void csv_is_one_table(void **state) {
+    (void)state;
+    static const char HEADING[] = "case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
+                                  "standard_error,discretisation_error,model_error,valueless";
+    static const char POINTS[] = "3,q,\"x, \"\"y\"\"\",,,,,0.1,,3,0.1,,,,1.5,\n"
+                                 "3,q,\"x, \"\"y\"\"\",,,,,2,,,,,,,2.5,\n"
+                                 "3,joint,,,,,,0.1,8,2,0.25,,,,,\n"
+                                 "3,joint,,,,,,2,9,6,1,,,,,\n"
+                                 "3,area,edges,full,hencky,8,0.5,0.1,,1e-300,0,0.25,,0,,3\n"
+                                 "3,area,edges,full,hencky,8,0.5,2,,0.5,0,,-2,3,,4\n";
+    struct case_result sample;
+    char expected[1024];
+    sample_result(&sample);
+    char *all = table_of(&sample, NULL), *one = table_of(&sample, &sample.curves[1]);
+    snprintf(expected, sizeof expected, "%s,theory_nayak,theory_persson\n%s", HEADING, POINTS);
+    assert_string_equal(all, expected);
+    snprintf(expected, sizeof expected,
+             "%s,theory_nayak\n3,joint,,,,,,0.1,8,2,0.25,,,,\n3,joint,,,,,,2,9,6,1,,,,\n", HEADING);
+    assert_string_equal(one, expected);
+    free(all);
+    free(one);
+    result_clear(&sample);
+}
+
+static char *print_report(const struct case_report *report) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    assert_true(case_report_print(file, report));
+    assert_int_equal(fclose(file), 0);
+    return text;
+}
+
+static void report_measures_and_comes_back(void **state) {
+    (void)state;
+    struct case_result sample;
+    struct case_report report, again;
+    struct error err = {0};
+    sample_result(&sample);
+    assert_int_equal(case_report_make(&report, &sample, 10, &err), 0);
+    assert_int_equal(report.curve_count, 3);
+    assert_ptr_equal(report.main, &report.curves[0]);
+    /* one point is known: 0.1/3, |3 - 1.5|/1.5 */
+    assert_true(fabs(report.curves[0].statistical - 0.1 / 3) <= 1e-15);
+    assert_true(fabs(report.curves[0].theories[0].deviation - 1) <= 1e-15);
+    /* cells 2 +- 0.25 and 6 +- 1 */
+    assert_true(fabs(report.curves[1].statistical - sqrt((0.0625 + 1) / 40)) <= 1e-15);
+    /* y = 1e-300 less 0.25 is the limit at the one point where both are known */
+    assert_true(fabs(report.curves[2].errors[ERROR_DISCRETISATION] - 1) <= 1e-12);
+    assert_true(report.curves[2].valueless == 3);
+    assert_true(isnan(report.curves[0].valueless));
+    assert_true(report.scalars[0].statistical == 0.5);
+    assert_false(report.scalars[0].has_theory);
+    assert_true(fabs(report.scalars[1].deviation - 1.0 / 6) <= 1e-15);
+    assert_true(case_report_seconds_to_halve(&report) == 30);
+    char *first = print_report(&report);
+    cJSON *document = cJSON_Parse(first);
+    assert_int_equal(case_report_read(document, &again, &err), 0);
+    assert_ptr_equal(again.main, &again.curves[0]);
+    char *second = print_report(&again);
+    assert_string_equal(second, first);
+    free(first);
+    free(second);
+    cJSON_Delete(document);
+    case_report_clear(&report);
+    case_report_clear(&again);
+    result_clear(&sample);
+}
+
+static void parameters_are_told_by_pointer(void **state) {
+    (void)state;
+    cJSON *parameters =
+        cJSON_Parse("{\"a\":{\"b/c\":1,\"d~\":\"x\"},\"list\":[1],\"e\":{\"f\":{\"g\":-2.5}}}");
+    struct case_result result = {0};
+    assert_int_equal(result_set_parameters(&result, parameters, NULL), 0);
+    assert_int_equal(result.parameter_count, 3);
+    assert_true(result_parameter(&result, "/a/b~1c")->number == 1);
+    assert_string_equal(result_parameter(&result, "/a/d~0")->text, "x");
+    assert_true(result_parameter(&result, "/e/f/g")->number == -2.5);
+    assert_null(result_parameter(&result, "/list"));
+    result_clear(&result);
+    cJSON_Delete(parameters);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(json_comes_back),
+        cmocka_unit_test(json_that_is_none_is_refused),
+        cmocka_unit_test(bytes_come_back),
+        cmocka_unit_test(damaged_bytes_are_refused),
+        cmocka_unit_test(csv_is_one_table),
+        cmocka_unit_test(report_measures_and_comes_back),
+        cmocka_unit_test(parameters_are_told_by_pointer),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
