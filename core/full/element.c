@@ -8,9 +8,8 @@
 
 /* --- shape --- */
 
-/* At the points (+-reach, ...): parent[a][k] = dN_a/dxi_k and jacobian[k][l] = dX_l/dxi_k. */
-INLINE void jacobians(int d, double reach, double position[8][3], pointwise parent[8][3],
-                      pointwise jacobian[3][3]) {
+/* At the points (+-reach, ...): parent[a][k] = dN_a/dxi_k. */
+INLINE void parent_gradients(int d, double reach, pointwise parent[8][3]) {
     for (int a = 0; a < 1 << d; a++)
         for (int k = 0; k < d; k++)
             for (int q = 0; q < 1 << d; q++) {
@@ -20,6 +19,12 @@ INLINE void jacobians(int d, double reach, double position[8][3], pointwise pare
                         product *= ((a ^ q) >> l & 1 ? 1 - reach : 1 + reach) / 2;
                 parent[a][k][q] = product;
             }
+}
+
+/* There, the same and jacobian[k][l] = dX_l/dxi_k. */
+INLINE void jacobians(int d, double reach, double position[8][3], pointwise parent[8][3],
+                      pointwise jacobian[3][3]) {
+    parent_gradients(d, reach, parent);
     for (int k = 0; k < d; k++)
         for (int l = 0; l < d; l++)
             for (int q = 0; q < 1 << d; q++) {
@@ -132,9 +137,9 @@ INLINE void divergence(int d, const pointwise weight, pointwise tensor[3][3], no
     }
 }
 
-INLINE bool field_make(int d, const struct material *material, const struct element_shape *shape,
-                       double u[8][3], struct field *f) {
-    pointwise h[3][3];
+/* h[i][k] = du_i/dX_k. */
+INLINE void displacement_gradient(int d, const struct element_shape *shape, double u[8][3],
+                                  pointwise h[3][3]) {
     for (int i = 0; i < d; i++)
         for (int k = 0; k < d; k++)
             for (int q = 0; q < 1 << d; q++) {
@@ -143,6 +148,12 @@ INLINE bool field_make(int d, const struct material *material, const struct elem
                     sum += u[a][i] * shape->gradient[a][k][q];
                 h[i][k][q] = sum;
             }
+}
+
+INLINE bool field_make(int d, const struct material *material, const struct element_shape *shape,
+                       double u[8][3], struct field *f) {
+    pointwise h[3][3];
+    displacement_gradient(d, shape, u, h);
     if (!material_strain(d, material, h, &f->point))
         return false;
     double growth = 0;

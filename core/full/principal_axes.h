@@ -164,12 +164,11 @@ struct principal_moduli {
     pointwise normal[3][3], shear[3][3];
 };
 
-/* From principal axes, times the weight. */
-INLINE void turn_moduli(int d, const struct principal_moduli *m, const struct strained *point,
-                        const pointwise weight, pointwise out[SYMMETRIC_MOST][9]) {
-    /* By symmetric_index(p, r): the dyad of axes p and r, and what it is multiplied with. */
-    pointwise dyad[SYMMETRIC_MOST][SYMMETRIC_MOST], factor[SYMMETRIC_MOST][SYMMETRIC_MOST];
-    int components = d * (d + 1) / 2;
+/* A value by symmetric_index(p, r) of two principal axes and symmetric_index(i, k) in space. */
+typedef pointwise by_pairs[SYMMETRIC_MOST][SYMMETRIC_MOST];
+
+/* The dyads of axes p and r, symmetric. */
+INLINE void turn_dyads(int d, const struct strained *point, by_pairs dyad) {
     for (int p = 0; p < d; p++)
         for (int r = 0; r <= p; r++)
             for (int i = 0; i < d; i++)
@@ -180,6 +179,12 @@ INLINE void turn_moduli(int d, const struct principal_moduli *m, const struct st
                         dyad[symmetric_index(d, p, r)][symmetric_index(d, i, k)][q] =
                             p == r ? pr : pr + rp;
                     }
+}
+
+/* What each dyad is multiplied with, times the weight. */
+INLINE void turn_factors(int d, const struct principal_moduli *m, const pointwise weight,
+                         by_pairs dyad, by_pairs factor) {
+    int components = d * (d + 1) / 2;
     for (int p = 0; p < d; p++)
         for (int r = 0; r <= p; r++)
             for (int n = 0; n < components; n++)
@@ -192,6 +197,15 @@ INLINE void turn_moduli(int d, const struct principal_moduli *m, const struct st
                         sum = m->shear[p][r][q] * dyad[symmetric_index(d, p, r)][n][q];
                     factor[symmetric_index(d, p, r)][n][q] = weight[q] * sum;
                 }
+}
+
+/* From principal axes, times the weight. */
+INLINE void turn_moduli(int d, const struct principal_moduli *m, const struct strained *point,
+                        const pointwise weight, pointwise out[SYMMETRIC_MOST][9]) {
+    by_pairs dyad, factor;
+    int components = d * (d + 1) / 2;
+    turn_dyads(d, point, dyad);
+    turn_factors(d, m, weight, dyad, factor);
     for (int n = 0; n < components; n++)
         for (int j = 0; j < d; j++)
             for (int l = j; l < d; l++)

@@ -194,25 +194,35 @@ struct layer_pressures {
     double *force;
 };
 
+/* One element at the displacements u; e counts it within own. Its energy is that of c only where
+ * energy is asked, likewise its stiffness. False where it is turned inside out. */
+INLINE bool evaluate_element(int d, const struct mesh *mesh, const struct material *material,
+                             const struct mesh_element *element, const double *u,
+                             const struct layer_pressures *own, size_t e, bool energy,
+                             bool stiffness, struct contribution *c) {
+    struct element_shape shape;
+    double position[8][3], moved[8][3];
+    mesh_position(mesh, element, position);
+    mesh_corners(mesh, element, u, (size_t)d, moved);
+    return element_shape_make(d, position, &shape) &&
+           element_evaluate(d, material, &shape, moved,
+                            own && !own->bound ? &own->pressure[e] : NULL,
+                            energy ? &c->energy : NULL, c->force, stiffness ? c->stiffness : NULL,
+                            own ? &own->volumetric[e] : NULL);
+}
+
 INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct material *material,
                            size_t layer, const double *u, struct sum *energy, double *force,
                            struct tangent *tangent, const struct layer_pressures *own) {
     struct mesh_element element;
-    struct element_shape shape;
     struct contribution c;
-    double position[8][3], moved[8][3];
     bool widens = mesh_widens(mesh, layer);
     size_t e = 0;
     for (size_t j = 0; j < mesh->level[layer].ny; j++)
         for (size_t i = 0; i < mesh->level[layer].nx; i++, e++) {
             mesh_element(mesh, layer, j, i, &element);
-            mesh_position(mesh, &element, position);
-            mesh_corners(mesh, &element, u, (size_t)d, moved);
-            if (!element_shape_make(d, position, &shape) ||
-                !element_evaluate(d, material, &shape, moved,
-                                  own && !own->bound ? &own->pressure[e] : NULL,
-                                  energy ? &c.energy : NULL, c.force, tangent ? c.stiffness : NULL,
-                                  own ? &own->volumetric[e] : NULL))
+            if (!evaluate_element(d, mesh, material, &element, u, own, e, energy != NULL,
+                                  tangent != NULL, &c))
                 return false;
             if (energy != NULL)
                 sum_add(energy, c.energy);
