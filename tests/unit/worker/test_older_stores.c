@@ -1,0 +1,166 @@
+/* Protects: stores that people have. One that an earlier program left in the midst of its work
+ * opens with this one, which goes on where it was, and ends with the curves of a fresh run, bit for
+ * bit; or it is refused with a word. tests/fixtures/stores/README.md says how the fixtures were
+ * made. */
+#include "tests/unit/worker/small_study.h"
+#include "worker/aggregate.h"
+#include "worker/worker.h"
+#include <sqlite3.h>
+
+enum { STUDIES = 5, ROWS_MOST = 1 << 20 };
+
+static char *read_file(const char *name) {
+    char path[512];
+    const char *source = getenv("RUGO_SOURCE");
+    snprintf(path, sizeof path, "%s/tests/fixtures/stores/%s", source != NULL ? source : ".", name);
+    FILE *file = fopen(path, "rb");
+    if (file == NULL)
+        fail_msg("no fixture %s", path);
+    char *text = calloc(1, ROWS_MOST);
+    assert_non_null(text);
+    assert_true(fread(text, 1, ROWS_MOST - 1, file) < ROWS_MOST - 1);
+    fclose(file);
+    return text;
+}
+
+/* Makes a database out of the text of one. */
+static void load(const char *fixture, const char *path) {
+    sqlite3 *db = NULL;
+    char *text = read_file(fixture);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    if (sqlite3_exec(db, text, NULL, NULL, NULL) != SQLITE_OK)
+        fail_msg("%s: %s", fixture, sqlite3_errmsg(db));
+    sqlite3_close(db);
+    free(text);
+}
+
+/* The rows of one text column, a line each; the caller frees. */
+static char *rows_of(const char *path, const char *sql, const char *study) {
+    sqlite3 *db = NULL;
+    sqlite3_stmt *row = NULL;
+    char *text = calloc(1, ROWS_MOST);
+    size_t used = 0;
+    assert_non_null(text);
+    assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
+    if (sqlite3_prepare_v2(db, sql, -1, &row, NULL) != SQLITE_OK)
+        fail_msg("%s: %s", sql, sqlite3_errmsg(db));
+    sqlite3_bind_text(row, 1, study, -1, SQLITE_STATIC);
+    while (sqlite3_step(row) == SQLITE_ROW && used < ROWS_MOST)
+        used += (size_t)snprintf(text + used, ROWS_MOST - used, "%s\n",
+                                 (const char *)sqlite3_column_text(row, 0));
+    sqlite3_finalize(row);
+    sqlite3_close(db);
+    assert_true(used < ROWS_MOST);
+    return text;
+}
+
+static void work_off(const char *database) {
+    struct worker_options options = {
+        .source = {.database = database, .worker = "new"}, .threads = 1, .drain = 1, .quiet = 1};
+    struct error err = {0};
+    if (workers_run(&options, &err) != 0)
+        fail_msg("%s", err.text);
+}
+
+/* Runs the study in a store of its own. */
+static void run_fresh(struct fixture *fresh, const char *source) {
+    fixture_open(fresh);
+    fixture_submit(fresh, source, 100, NULL, 0);
+    work_off(fresh->database);
+}
+
+static void check_same_rows(const char *path, const char *study, const struct fixture *fresh,
+                            const char *sql) {
+    char *old = rows_of(path, sql, study), *new = rows_of(fresh->database, sql, fresh->study);
+    assert_true(*new != 0);
+    assert_string_equal(old, new);
+    free(old);
+    free(new);
+}
+
+static void check_study(const char *path, const struct study_status *about) {
+    struct fixture fresh;
+    char *source = rows_of(path,
+                           "SELECT source FROM study_source JOIN study ON study.id = study_id "
+                           "WHERE public = ?",
+                           about->id);
+    assert_string_equal(about->state, "done");
+    assert_int_equal(about->cases_failed, 0);
+    run_fresh(&fresh, source);
+    check_same_rows(path, about->id, &fresh,
+                    "SELECT json_array(\"case\", quantity, series, x, y, standard_error, x2, "
+                    "model, kinematics, level, pressure, discretisation_error, model_error, "
+                    "valueless) FROM curve_points WHERE study = ? ORDER BY 1");
+    check_same_rows(path, about->id, &fresh,
+                    "SELECT json_array(\"case\", name, value, standard_error, theory) FROM "
+                    "case_scalars WHERE study = ? ORDER BY 1");
+    check_same_rows(path, about->id, &fresh,
+                    "SELECT json_array(\"case\", state, realisations_done) FROM case_progress "
+                    "WHERE study = ? ORDER BY 1");
+    fixture_close(&fresh);
+    free(source);
+}
+
+static void a_store_of_version_1_goes_on(void **state) {
+    (void)state;
+    static const char *const STATES[STUDIES] = {"done", "done", "running", "cancelled", "failed"};
+    struct store *store = NULL;
+    struct study_status *list = NULL;
+    struct error err = {0};
+    size_t count = 0;
+    uint64_t retried = 0;
+    load("version-1.sql", "old.db");
+    if (store_open(&store, "old.db", NULL, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
+    assert_int_equal(count, STUDIES);
+    for (size_t s = 0; s < count; s++) {
+        assert_string_equal(list[s].state, STATES[s]);
+        if (s >= 3)
+            assert_int_equal(store_retry(store, list[s].id, &retried, &err), 0);
+        study_status_clear(&list[s]);
+    }
+    free(list);
+    work_off("old.db");
+    assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
+    for (size_t s = 0; s < count; s++) {
+        check_study("old.db", &list[s]);
+        study_status_clear(&list[s]);
+    }
+    free(list);
+    store_close(&store);
+}
+
+/* What reads only has an older store brought up to date as well. */
+static void a_reader_reads_it(void **state) {
+    (void)state;
+    struct store *store = NULL;
+    struct store_options options = {.read_only = true};
+    struct error err = {0};
+    load("version-1.sql", "read.db");
+    if (store_open(&store, "read.db", &options, &err) != 0)
+        fail_msg("%s", err.text);
+    store_close(&store);
+}
+
+static void the_first_layout_is_refused(void **state) {
+    (void)state;
+    struct store *store = NULL;
+    struct error err = {0};
+    load("first-layout.sql", "first.db");
+    assert_int_equal(store_open(&store, "first.db", NULL, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "database first.db has the first layout"));
+    assert_null(store);
+    char *source = rows_of("first.db", "SELECT source FROM study WHERE ?1 IS NULL", NULL);
+    assert_non_null(strstr(source, "\"name\":\"first\"")); /* where the message says it is */
+    free(source);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_store_of_version_1_goes_on),
+        cmocka_unit_test(a_reader_reads_it),
+        cmocka_unit_test(the_first_layout_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
