@@ -1,0 +1,209 @@
+/* Protects: publishing that ends. Whatever becomes of a study under a server (cancelled within a
+ * case, a block failed for good, results that no program can merge), every other case is published,
+ * what cannot be says why, and a server with nothing to do uses no processor. */
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include "tests/support/small_studies.h"
+#include <cjson/cJSON.h>
+#include <signal.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PATIENCE_S = 60 };
+#define JSON "Content-Type: application/json\r\n"
+
+/* The first column of the first row as a text; the caller frees. "" when there is none. */
+static char *ask(const char *database, const char *sql, const char *study) {
+    sqlite3 *db = NULL;
+    sqlite3_stmt *row = NULL;
+    assert_int_equal(sqlite3_open_v2(database, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
+    sqlite3_busy_timeout(db, 5000);
+    if (sqlite3_prepare_v2(db, sql, -1, &row, NULL) != SQLITE_OK)
+        fail_msg("%s: %s", sql, sqlite3_errmsg(db));
+    sqlite3_bind_text(row, 1, study, -1, SQLITE_STATIC);
+    bool found = sqlite3_step(row) == SQLITE_ROW && sqlite3_column_type(row, 0) != SQLITE_NULL;
+    char *text = strdup(found ? (const char *)sqlite3_column_text(row, 0) : "");
+    assert_non_null(text);
+    sqlite3_finalize(row);
+    sqlite3_close(db);
+    return text;
+}
+
+static void expect(const char *database, const char *sql, const char *study, const char *expected) {
+    char *text = ask(database, sql, study);
+    if (strcmp(text, expected) != 0)
+        fail_msg("%s: \"%s\" instead of \"%s\"", sql, text, expected);
+    free(text);
+}
+
+/* Waits until the query answers with the text. */
+static void wait_for(const char *database, const char *sql, const char *study, const char *text) {
+    for (int waited = 0; waited < PATIENCE_S * 100; waited++) {
+        char *found = ask(database, sql, study);
+        bool there = strcmp(found, text) == 0;
+        free(found);
+        if (there)
+            return;
+        sleep_ms(10);
+    }
+    expect(database, sql, study, text);
+}
+
+static void change(const char *database, const char *sql) {
+    sqlite3 *db = NULL;
+    assert_int_equal(sqlite3_open(database, &db), SQLITE_OK);
+    if (sqlite3_exec(db, sql, NULL, NULL, NULL) != SQLITE_OK)
+        fail_msg("%s: %s", sql, sqlite3_errmsg(db));
+    sqlite3_close(db);
+}
+
+static void submit(const char *url, const char *file, char id[32]) {
+    assert_int_equal(run_rugo("submit", (const char *[]){"submit", "--server", url, file, NULL}),
+                     0);
+    char *text = slurp("submit.out");
+    snprintf(id, 32, "%.16s", text);
+    free(text);
+}
+
+/* Claims the first job that waits and fails it for good. */
+static void fail_one_job(unsigned port) {
+    char path[64], body[128], *answer = NULL;
+    assert_int_equal(
+        http_exchange(port, "POST", "/v1/jobs/claim", JSON, "{\"worker\":\"w\"}", &answer), 200);
+    cJSON *document = cJSON_Parse(answer);
+    const cJSON *job = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "jobs"), 0);
+    assert_non_null(job);
+    snprintf(path, sizeof path, "/v1/jobs/%.0f/fail", cJSON_GetObjectItem(job, "id")->valuedouble);
+    snprintf(body, sizeof body, "{\"token\":\"%s\",\"reason\":\"hopeless\",\"permanent\":true}",
+             cJSON_GetObjectItem(job, "token")->valuestring);
+    assert_int_equal(http_exchange(port, "POST", path, JSON, body, NULL), 200);
+    cJSON_Delete(document);
+    free(answer);
+}
+
+/* Clock ticks of processor time that a process has used. */
+static long ticks_of(pid_t pid) {
+    char path[64];
+    unsigned long user = 0, kernel = 0;
+    snprintf(path, sizeof path, "/proc/%ld/stat", (long)pid);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    /* 14 and 15 of the fields, of which the second, the name, is in parentheses */
+    int read = fscanf(file, "%*d (%*[^)]) %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu",
+                      &user, &kernel);
+    fclose(file);
+    assert_int_equal(read, 2);
+    return (long)(user + kernel);
+}
+
+/* The publisher that tried for ever took a whole processor: 300 ticks here. */
+static void check_idle(const struct process *server) {
+    long before = ticks_of(server->pid);
+    sleep_ms(3000);
+    long used = ticks_of(server->pid) - before;
+    if (used > sysconf(_SC_CLK_TCK) / 10)
+        fail_msg("an idle server used %ld ticks of %ld a second in 3 s", used,
+                 sysconf(_SC_CLK_TCK));
+}
+
+static void a_server_publishes_what_there_is(void **state) {
+    (void)state;
+    struct process server, worker;
+    char url[64], cut[32], failed[32], whole[32];
+    spit("blocks.json", SEVERAL_BLOCKS);
+    spit("one.json", ONE_CASE);
+    unsigned port = serve_start(&server, (const char *[]){"--db", "serve.db", NULL});
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    submit(url, "blocks.json", cut);
+    /* one of three blocks of its first case comes in, then it is cancelled */
+    process_start(&worker, "worker",
+                  (const char *[]){"work", "--server", url, "--workers", "1", NULL});
+    wait_for("serve.db", "SELECT min(1, realisations_done) FROM study_progress WHERE study = ?",
+             cut, "1");
+    assert_int_equal(run_rugo("cancel", (const char *[]){"cancel", "--server", url, cut, NULL}), 0);
+    process_kill(&worker, SIGTERM);
+    process_wait(&worker, PATIENCE_S);
+    submit(url, "blocks.json", failed);
+    submit(url, "one.json", whole);
+    fail_one_job(port);
+    assert_int_equal(run_rugo("drain", (const char *[]){"work", "--server", url, "--drain", NULL}),
+                     0);
+    wait_for("serve.db", "SELECT count(*) FROM case_progress WHERE state IN ('open', 'due')", NULL,
+             "0");
+    expect("serve.db",
+           "SELECT state || (0 < realisations_done AND realisations_done < realisations) FROM "
+           "case_progress WHERE study = ? AND \"case\" = 0",
+           cut, "published1");
+    expect("serve.db", "SELECT state FROM study_progress WHERE study = ?", cut, "cancelled");
+    expect("serve.db",
+           "SELECT group_concat(state || (realisations_done < realisations), ' ') FROM "
+           "case_progress WHERE study = ?",
+           failed, "published1 published0");
+    expect("serve.db", "SELECT state FROM study_progress WHERE study = ?", failed, "failed");
+    expect("serve.db", "SELECT state FROM study_progress WHERE study = ?", whole, "done");
+    for (int s = 0; s < 3; s++)
+        expect("serve.db", "SELECT count(*) > 10 FROM curve_points WHERE study = ?",
+               s == 0   ? cut
+               : s == 1 ? failed
+                        : whole,
+               "1");
+    check_idle(&server);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, PATIENCE_S), 0);
+}
+
+/* As an older program would leave it, whose scalars were others: the case is due, cannot be merged,
+ * and stands before another that can. */
+static void what_cannot_be_merged_is_marked(void **state) {
+    (void)state;
+    struct process server;
+    char *older = NULL, *other = NULL;
+    spit("one.json", ONE_CASE);
+    assert_int_equal(run_rugo("older", (const char *[]){"run", "--db", "old.db", "one.json", NULL}),
+                     0);
+    change("old.db", "UPDATE scalar_names SET names = json_array('colour')");
+    assert_int_equal(run_rugo("other", (const char *[]){"run", "--db", "old.db", "--set", "seed=4",
+                                                        "one.json", NULL}),
+                     0);
+    change("old.db", "DELETE FROM point; DELETE FROM curve; DELETE FROM scalar; DELETE FROM "
+                     "published; UPDATE study_case SET settled = 0");
+    older = ask("old.db", "SELECT public FROM study WHERE id = 1", NULL);
+    other = ask("old.db", "SELECT public FROM study WHERE id = 2", NULL);
+    serve_start(&server, (const char *[]){"--db", "old.db", NULL});
+    wait_for("old.db", "SELECT state FROM case_progress WHERE study = ?", other, "published");
+    wait_for("old.db", "SELECT state FROM case_progress WHERE study = ?", older, "failed");
+    expect("old.db",
+           "SELECT error LIKE '%hold other scalars than kind%' FROM case_progress WHERE "
+           "study = ?",
+           older, "1");
+    expect("old.db", "SELECT state FROM study_progress WHERE study = ?", older, "failed");
+    check_idle(&server);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, PATIENCE_S), 0);
+    assert_int_equal(run_rugo("again", (const char *[]){"run", "--db", "old.db", "one.json", NULL}),
+                     1);
+    assert_true(contains("again.err", "cases that cannot be published: 1"));
+    assert_int_equal(run_rugo("status", (const char *[]){"status", "--db", "old.db", older, NULL}),
+                     0);
+    assert_true(contains("status.out", "not published: case 0:"));
+    /* tried again, it is marked again, by whoever opens the store to write next */
+    assert_int_equal(run_rugo("retry", (const char *[]){"retry", "--db", "old.db", older, NULL}),
+                     0);
+    expect("old.db", "SELECT state FROM case_progress WHERE study = ?", older, "due");
+    assert_int_equal(run_rugo("work", (const char *[]){"work", "--db", "old.db", "--drain", NULL}),
+                     0);
+    expect("old.db", "SELECT state FROM case_progress WHERE study = ?", older, "failed");
+    free(older);
+    free(other);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_server_publishes_what_there_is),
+        cmocka_unit_test(what_cannot_be_merged_is_marked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
