@@ -31,7 +31,7 @@ int access_open(struct access **out, const struct access_options *options, enum 
                 struct error *err);
 void access_close(struct access **access);
 
-/* Documents of interface.md; the caller deletes them. */
+/* Documents as in openapi.yaml; the caller deletes them. */
 int access_submit(struct access *access, const char *text, size_t size,
                   const char *const *overrides, cJSON **out, struct fault_list *faults,
                   struct error *err);
