@@ -3,41 +3,45 @@
 #ifndef RUGO_TESTS_UNIT_SCHEMA_LIFE_MERGE_H
 #define RUGO_TESTS_UNIT_SCHEMA_LIFE_MERGE_H
 
+#include "schema/result/result.h"
 #include "schema/store/store.h"
 #include "tests/support/check.h"
+#include "tests/support/life_model.h"
 
-struct sum {
-    double value;
-    int64_t realisations;
-    cJSON *first, *count;
+struct life_sum {
+    double value, *first, *count; /* LIFE_BLOCKS each */
+    size_t blocks;
+    uint64_t realisations;
 };
 
 static inline int add_block(void *context, const struct block_result *block, struct error *err) {
-    struct sum *sum = context;
+    struct life_sum *sum = context;
     (void)err;
+    assert_true(sum->blocks < LIFE_BLOCKS);
     for (uint64_t r = 0; r < block->count; r++)
         sum->value += block->scalars[2 * r];
-    sum->realisations += (int64_t)block->count;
-    cJSON_AddItemToArray(sum->first, cJSON_CreateNumber((double)block->first));
-    cJSON_AddItemToArray(sum->count, cJSON_CreateNumber((double)block->count));
+    sum->realisations += block->count;
+    sum->first[sum->blocks] = (double)block->first;
+    sum->count[sum->blocks++] = (double)block->count;
     return 0;
 }
 
 /* The merged results of a case, as its kind would make them: one scalar, one curve. */
-static inline cJSON *merge(struct store *store, const struct due_case *due) {
-    struct sum sum = {.first = cJSON_CreateArray(), .count = cJSON_CreateArray()};
-    cJSON *document = cJSON_CreateObject(), *curve = cJSON_CreateObject();
+static inline void merge(struct store *store, const struct due_case *due, struct case_result *out) {
+    struct life_sum sum = {.first = result_numbers(out, LIFE_BLOCKS),
+                           .count = result_numbers(out, LIFE_BLOCKS)};
+    double *errors = result_numbers(out, LIFE_BLOCKS);
+    assert_true(sum.first != NULL && sum.count != NULL && errors != NULL);
     assert_int_equal(store_results(store, due->study, due->case_number, add_block, &sum, NULL), 0);
-    cJSON *scalar = cJSON_AddObjectToObject(cJSON_AddObjectToObject(document, "scalars"), "sum");
-    cJSON_AddNumberToObject(scalar, "value", sum.value);
-    cJSON_AddNumberToObject(scalar, "standard_error", (double)sum.realisations);
-    cJSON_AddStringToObject(curve, "quantity", "blocks");
-    cJSON_AddStringToObject(curve, "series", "");
-    cJSON_AddItemToObject(curve, "x", sum.first);
-    cJSON_AddItemToObject(curve, "y", sum.count);
-    cJSON_AddItemToArray(cJSON_AddArrayToObject(document, "curves"), curve);
-    cJSON_AddNumberToObject(document, "realisations", (double)sum.realisations);
-    return document;
+    struct scalar scalar = {.name = "sum",
+                            .value = sum.value,
+                            .standard_error = (double)sum.realisations,
+                            .theory = NAN};
+    struct curve curve = curve_named("blocks", "first", "count");
+    curve_set_points(&curve, sum.blocks, sum.first, sum.count, errors);
+    assert_int_equal(result_add_scalar(out, &scalar, NULL), 0);
+    assert_int_equal(result_add_curve(out, &curve, NULL), 0);
+    out->realisations = sum.realisations;
 }
 
 #endif

@@ -242,10 +242,11 @@ static int publish(void *context, struct store *store, const struct due_case *du
         race(world, study);
         return error_set(err, ERROR_INPUT, "poisoned");
     }
-    cJSON *document = merge(store, due);
+    struct case_result merged = {0};
+    merge(store, due, &merged);
     race(world, study);
-    int status = store_publish(store, due->study, due->case_number, due->revision, document, err);
-    cJSON_Delete(document);
+    int status = store_publish(store, due->study, due->case_number, due->revision, &merged, err);
+    result_clear(&merged);
     if (status == 0)
         life_publish(&world->life, study, c, revision, jobs);
     return status;
@@ -351,7 +352,7 @@ static void step(struct world *world) {
 static void run_sequence(struct world *world) {
     bool due = true;
     copy_file(empty_path, path);
-    for (int n = 10 + below(world, 60); n > 0; n--)
+    for (int n = 10 + below(world, 45); n > 0; n--)
         step(world);
     if (below(world, 2) == 0)
         close_handles(world); /* as after the death of all processes */

@@ -54,7 +54,8 @@ static void released_migrations_are_frozen(void **state) {
         const char *name;
         uint64_t hash;
     } FROZEN[] = {{"schema/store/migrations/001.sql", 0xcf5a6eed7acfb57au},
-                  {"schema/store/migrations/002.sql", 0xd8f023bf731441d3u}};
+                  {"schema/store/migrations/002.sql", 0xd8f023bf731441d3u},
+                  {"schema/store/migrations/003.sql", 0xd3606d69b5e99841u}};
     for (size_t f = 0; f < sizeof FROZEN / sizeof *FROZEN; f++) {
         size_t size = 0;
         char *text = read_source(FROZEN[f].name, &size);
