@@ -29,9 +29,9 @@ static int check_file_system(const char *path, struct error *err) {
     char folder[4096];
     snprintf(folder, sizeof folder, "%s", path);
     char *slash = strrchr(folder, '/');
-    if (slash)
+    if (slash != NULL)
         slash[slash == folder] = 0;
-    if (statfs(slash ? folder : ".", &info))
+    if (statfs(slash != NULL ? folder : ".", &info))
         return error_set(err, ERROR_SYSTEM, "database %s: %s", path, strerror(errno));
     static const long NETWORK[] = {NFS_SUPER_MAGIC,
                                    SMB_SUPER_MAGIC,
@@ -65,16 +65,16 @@ static int void_old_leases(struct store *store, struct error *err) {
     if (status || known)
         return status;
     status = change_begin(store, err);
-    if (status)
+    if (status != 0)
         return status;
     /* another process may have come first, and given leases of this boot */
     status = store_run(store, err,
                        "UPDATE job SET lease_until = 0 WHERE state = 'running' AND NOT EXISTS "
                        "(SELECT 1 FROM boot WHERE id = ?)",
                        "t", store->boot);
-    if (!status)
+    if (status == 0)
         status = store_run(store, err, "DELETE FROM boot", "");
-    if (!status)
+    if (status == 0)
         status = store_run(store, err, "INSERT INTO boot (id) VALUES (?)", "t", store->boot);
     return change_end(store, status, err);
 }
@@ -82,17 +82,17 @@ static int void_old_leases(struct store *store, struct error *err) {
 static int configure(struct store *store, struct error *err) {
     set_limits(store->db);
     int status = version_bring_up(store, err);
-    if (!status && !store->options.read_only)
+    if (status == 0 && !store->options.read_only)
         status = store_execute(store,
                                "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
                                "PRAGMA journal_size_limit = 67108864",
                                err);
-    if (!status)
+    if (status == 0)
         status = store_execute(store,
                                "PRAGMA foreign_keys = ON; PRAGMA cache_size = -16384;"
                                "PRAGMA temp_store = MEMORY",
                                err);
-    if (!status && !store->options.read_only)
+    if (status == 0 && !store->options.read_only)
         status = void_old_leases(store, err);
     return status;
 }
@@ -120,7 +120,7 @@ static int open_file(struct store *store, struct error *err) {
     if (!exists)
         flags |= SQLITE_OPEN_CREATE;
     int status = check_file_system(store->path, err);
-    if (status)
+    if (status != 0)
         return status;
     int code = sqlite3_open_v2(store->path, &store->db, flags, NULL);
     if (code != SQLITE_OK)
@@ -132,16 +132,17 @@ static int open_file(struct store *store, struct error *err) {
 int store_open(struct store **out, const char *path, const struct store_options *options,
                struct error *err) {
     struct store *store = array_create(1, sizeof *store);
-    if (!store)
+    if (store == NULL)
         return error_memory(err, sizeof *store, "a store");
-    if (options)
+    if (options != NULL)
         store->options = *options;
     if (store->options.lease_ms <= 0)
         store->options.lease_ms = 60000;
     read_boot(store->boot);
     store->path = strdup(path);
-    int status = store->path ? open_file(store, err) : error_memory(err, strlen(path), "a path");
-    if (status) {
+    int status =
+        store->path != NULL ? open_file(store, err) : error_memory(err, strlen(path), "a path");
+    if (status != 0) {
         store_close(&store);
         return status;
     }
@@ -151,7 +152,7 @@ int store_open(struct store **out, const char *path, const struct store_options 
 
 void store_close(struct store **store) {
     struct store *s = *store;
-    if (!s)
+    if (s == NULL)
         return;
     for (size_t i = 0; i < s->statement_count; i++)
         sqlite3_finalize(s->statements[i].statement);

@@ -11,7 +11,7 @@ static int expire_one(struct store *store, struct error *err) {
                              "SELECT id, coalesce(worker, '?') FROM job WHERE state = 'running' "
                              "AND lease_until <= ? ORDER BY lease_until LIMIT 1",
                              "i", store_now(store));
-    if (!status)
+    if (status == 0)
         status = store_step(store, row, err);
     if (status <= 0)
         return status;
@@ -25,7 +25,7 @@ static int expire_one(struct store *store, struct error *err) {
     if (status == 0)
         status = job_give_up(store, &job, reason, false, err);
     store->claim_failed_jobs |= status == 0 && job.attempts >= ATTEMPTS_MOST;
-    return status ? status : 1;
+    return status != 0 ? status : 1;
 }
 
 static bool is_wanted(const char *const *kinds, const char *kind) {
@@ -46,7 +46,7 @@ static int find_study(struct store *store, const struct claim *claim, int64_t on
                     "('queued', 'running') AND jobs_waiting > 0 AND (?1 = 0 OR id = ?1) "
                     "ORDER BY id",
                     "i", only);
-    while (!status && (status = store_step(store, row, err)) == 1) {
+    while (status == 0 && (status = store_step(store, row, err)) == 1) {
         const char *kind = (const char *)sqlite3_column_text(row, 2);
         status = 0;
         if (!is_wanted(claim->kinds, kind))
@@ -56,7 +56,7 @@ static int find_study(struct store *store, const struct claim *claim, int64_t on
         snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 1));
         job->seed = strtoull((const char *)sqlite3_column_text(row, 3), NULL, 10);
         job->kind = strdup(kind);
-        status = job->kind ? 1 : error_memory(err, 0, "a kind");
+        status = job->kind != NULL ? 1 : error_memory(err, 0, "a kind");
         sqlite3_reset(row);
         break;
     }
@@ -72,7 +72,7 @@ static int lease_job(struct store *store, const struct claim *claim, int64_t stu
                     "SELECT id, case_number, first, count, attempts + 1 FROM job WHERE state = "
                     "'waiting' AND study_id = ? ORDER BY id LIMIT 1",
                     "i", study);
-    if (!status)
+    if (status == 0)
         status = store_step(store, row, err);
     if (status == 0)
         return error_set(err, ERROR_SYSTEM, "study %s counts waiting jobs that are not there",
@@ -87,7 +87,7 @@ static int lease_job(struct store *store, const struct claim *claim, int64_t stu
     job->lease_ms = store->options.lease_ms;
     sqlite3_reset(row);
     status = random_text(job->token, TOKEN_SIZE - 1, err);
-    if (status)
+    if (status != 0)
         return status;
     return store_run(
         store, err,
@@ -103,11 +103,12 @@ static int copy_parameters(struct store *store, int64_t study, struct claimed_jo
     int status = store_query(store, &row, err,
                              "SELECT parameters FROM study_case WHERE study_id = ? AND number = ?",
                              "ii", study, (int64_t)job->case_number);
-    if (!status)
+    if (status == 0)
         status = store_step(store, row, err);
     if (status <= 0)
-        return status ? status
-                      : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
+        return status != 0
+                   ? status
+                   : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
     status = column_json(row, 0, &job->parameters, err);
     sqlite3_reset(row);
     return status;
@@ -119,7 +120,7 @@ static int count_claim(struct store *store, int64_t study, bool queued, struct e
                            "UPDATE study SET jobs_waiting = jobs_waiting - 1, jobs_running = "
                            "jobs_running + 1, revision = revision + 1 WHERE id = ?",
                            "i", study);
-    if (!status && queued)
+    if (status == 0 && queued)
         status =
             store_run(store, err, "UPDATE study SET state = 'running' WHERE id = ?", "i", study);
     return status;
@@ -134,11 +135,11 @@ static int claim_one(struct store *store, const struct claim *claim, int64_t onl
     if (status <= 0)
         return status;
     status = lease_job(store, claim, study, job, err);
-    if (!status)
+    if (status == 0)
         status = count_claim(store, study, queued, err);
-    if (!status)
+    if (status == 0)
         status = copy_parameters(store, study, job, err);
-    return status ? status : 1;
+    return status != 0 ? status : 1;
 }
 
 int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs,
@@ -148,13 +149,13 @@ int store_claim(struct store *store, const struct claim *claim, struct claimed_j
     *count = 0;
     store->claim_failed_jobs = false;
     int status = change_begin(store, err);
-    if (status)
+    if (status != 0)
         return status;
-    if (claim->study)
+    if (claim->study != NULL)
         status = study_row(store, claim->study, &only, err);
-    while (!status && (status = expire_one(store, err)) == 1)
+    while (status == 0 && (status = expire_one(store, err)) == 1)
         status = 0;
-    while (!status && n < claim->count) {
+    while (status == 0 && n < claim->count) {
         jobs[n] = (struct claimed_job){0};
         status = claim_one(store, claim, only, &jobs[n], err);
         if (status == 0)
@@ -163,9 +164,9 @@ int store_claim(struct store *store, const struct claim *claim, struct claimed_j
         status = status == 1 ? 0 : status;
     }
     status = change_end(store, status, err);
-    for (size_t i = 0; status && i < n; i++)
+    for (size_t i = 0; status != 0 && i < n; i++)
         claimed_job_clear(&jobs[i]);
-    *count = status ? 0 : n;
+    *count = status != 0 ? 0 : n;
     return status;
 }
 

@@ -26,7 +26,7 @@ static char *scalars_text(const struct block_result *result) {
     if (width > SIZE_MAX / NUMBER_MOST - 1)
         return NULL;
     char *text = array_create((size_t)result->count + 1, width * NUMBER_MOST + 4), *at = text;
-    if (!text)
+    if (text == NULL)
         return NULL;
     *at++ = '[';
     for (uint64_t r = 0; r < result->count; r++) {
@@ -47,7 +47,7 @@ static char *scalars_text(const struct block_result *result) {
 
 static char *names_text(const struct block_result *result) {
     cJSON *names = cJSON_CreateStringArray(result->names, (int)result->scalar_count);
-    char *text = names ? json_print(names) : NULL;
+    char *text = names != NULL ? json_print(names) : NULL;
     cJSON_Delete(names);
     return text;
 }
@@ -55,7 +55,7 @@ static char *names_text(const struct block_result *result) {
 int block_text_create(struct block_text *out, const struct block_result *result,
                       struct error *err) {
     struct block_text text = {names_text(result), scalars_text(result)};
-    if (!text.names || !text.scalars) {
+    if (text.names == NULL || text.scalars == NULL) {
         block_text_clear(&text);
         return error_memory(err, result->size, "a result");
     }
@@ -87,7 +87,7 @@ static int insert_result(struct store *store, const struct job_row *job,
                          struct error *err) {
     int64_t names = 0;
     int status = names_row(store, text->names, &names, err);
-    if (!status)
+    if (status == 0)
         status = store_run(
             store, err, "INSERT INTO result (job_id, names_id, scalars, data) VALUES (?, ?, ?, ?)",
             "iitb", job->id, names, text->scalars, (const void *)result->data, result->size);
@@ -114,32 +114,32 @@ static int count_completion(struct store *store, const struct job_row *job, doub
         "UPDATE study_case SET jobs_left = jobs_left - 1, realisations_done = realisations_done "
         "+ ?, seconds = seconds + ?, revision = revision + 1 WHERE study_id = ? AND number = ?",
         "idii", job->count, seconds, job->study, job->case_number);
-    if (!status)
+    if (status == 0)
         status = store_run(
             store, err,
             "UPDATE study SET jobs_running = jobs_running - 1, jobs_done = jobs_done + 1, "
             "realisations_done = realisations_done + ?, seconds = seconds + ?, revision = "
             "revision + 1 WHERE id = ?",
             "idi", job->count, seconds, job->study);
-    if (!status)
+    if (status == 0)
         status = store_integer(store, &undone, err,
                                "SELECT jobs_waiting + jobs_running FROM study WHERE id = ?", "i",
                                job->study);
-    if (!status && !undone)
+    if (status == 0 && !undone)
         status = study_settle(store, job->study, err);
-    return status ? status : read_left(store, job, left, err);
+    return status != 0 ? status : read_left(store, job, left, err);
 }
 
 static int job_complete(struct store *store, const struct job_row *job,
                         const struct block_result *result, const struct block_text *text,
                         int64_t *left, struct error *err) {
     int status = insert_result(store, job, result, text, err);
-    if (!status)
+    if (status == 0)
         status = store_run(
             store, err,
             "UPDATE job SET state = 'done', reported = 0, seconds = ?, ended = ? WHERE id = ?",
             "dti", result->seconds, store_time(store), job->id);
-    return status ? status : count_completion(store, job, result->seconds, left, err);
+    return status != 0 ? status : count_completion(store, job, result->seconds, left, err);
 }
 
 static int check_block(const struct job_row *job, const struct block_result *result,
@@ -158,14 +158,14 @@ static int complete(struct store *store, int64_t id, const char *token,
                     int64_t *left, struct error *err) {
     struct job_row job;
     int status = job_read(store, id, token, &job, err);
-    if (status)
+    if (status != 0)
         return status;
     *again = job.done && job.owned;
     if (!*again)
         status = job_check_lease(&job, err);
-    if (!status)
+    if (status == 0)
         status = check_block(&job, result, err);
-    if (status)
+    if (status != 0)
         return status;
     if (!*again)
         return job_complete(store, &job, result, text, left, err);
@@ -176,16 +176,16 @@ int store_complete(struct store *store, int64_t job, const char *token,
                    const struct block_result *result, bool *first_time, bool *case_done,
                    struct error *err) {
     struct block_text made = {0};
-    const struct block_text *text = result->text ? result->text : &made;
+    const struct block_text *text = result->text != NULL ? result->text : &made;
     int64_t left = 0;
     bool again = false;
-    int status = result->text ? 0 : block_text_create(&made, result, err);
-    if (!status && !(status = change_begin(store, err))) {
+    int status = result->text != NULL ? 0 : block_text_create(&made, result, err);
+    if (status == 0 && !(status = change_begin(store, err))) {
         status = complete(store, job, token, result, text, &again, &left, err);
         status = change_end(store, status, err);
     }
     block_text_clear(&made);
-    if (!status) {
+    if (status == 0) {
         *first_time = !again;
         *case_done = left == 0;
     }

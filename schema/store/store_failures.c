@@ -13,7 +13,7 @@ void failures_free(struct failure *failures, size_t count) {
 static int append_failure(sqlite3_stmt *row, struct failure **list, size_t count,
                           struct error *err) {
     struct failure *larger = realloc(*list, (count + 1) * sizeof *larger);
-    if (!larger)
+    if (larger == NULL)
         return error_memory(err, (count + 1) * sizeof *larger, "failures");
     *list = larger;
     larger[count] = (struct failure){sqlite3_column_int64(row, 0),
@@ -23,7 +23,7 @@ static int append_failure(sqlite3_stmt *row, struct failure **list, size_t count
                                      (uint64_t)sqlite3_column_int64(row, 4),
                                      column_copy(row, 5),
                                      column_copy(row, 6)};
-    if (!larger[count].worker || !larger[count].reason)
+    if (larger[count].worker == NULL || larger[count].reason == NULL)
         return error_memory(err, 0, "a failure's reason");
     return 0;
 }
@@ -35,7 +35,7 @@ int store_failures(struct store *store, const char *id, struct failure **out, si
     struct failure *list = NULL;
     size_t n = 0;
     int status = study_row(store, id, &row, err);
-    if (!status)
+    if (status == 0)
         status =
             store_query(store, &statement, err,
                         "SELECT id, case_number, first, count, attempts, worker, error FROM job "
@@ -43,7 +43,7 @@ int store_failures(struct store *store, const char *id, struct failure **out, si
                         "realisations_done, 0, NULL, publish_error FROM study_case WHERE study_id "
                         "= ?1 AND publish_error IS NOT NULL ORDER BY 1, 2 LIMIT 1000",
                         "i", row);
-    while (!status && (status = store_step(store, statement, err)) == 1)
+    while (status == 0 && (status = store_step(store, statement, err)) == 1)
         status = append_failure(statement, &list, n++, err);
     if (status < 0) {
         failures_free(list, n);

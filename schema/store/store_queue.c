@@ -18,7 +18,7 @@ int job_read(struct store *store, int64_t id, const char *token, struct job_row 
                     "SELECT study_id, case_number, first, count, attempts, state = 'running', "
                     "state = 'done', state = 'cancelled', token IS ? FROM job WHERE id = ?",
                     "ti", token, id);
-    if (!status)
+    if (status == 0)
         status = store_step(store, row, err);
     if (status == 0)
         return error_set(err, ERROR_ABSENT, "there is no job %lld", (long long)id);
@@ -51,7 +51,7 @@ int job_check_lease(const struct job_row *job, struct error *err) {
 static int read_leased(struct store *store, int64_t id, const char *token, struct job_row *job,
                        struct error *err) {
     int status = job_read(store, id, token, job, err);
-    return status ? status : job_check_lease(job, err);
+    return status != 0 ? status : job_check_lease(job, err);
 }
 
 /* --- the end of an attempt that gave no result --- */
@@ -63,7 +63,7 @@ static int job_requeue(struct store *store, const struct job_row *job, const cha
                   "UPDATE job SET state = 'waiting', token = NULL, reported = 0, attempts = "
                   "attempts - ?, error = coalesce(?, error) WHERE id = ?",
                   "iti", (int64_t)!counts, reason, job->id);
-    if (!status)
+    if (status == 0)
         status = store_run(store, err,
                            "UPDATE study SET jobs_running = jobs_running - 1, jobs_waiting = "
                            "jobs_waiting + 1, revision = revision + 1 WHERE id = ?",
@@ -78,18 +78,18 @@ static int job_fail(struct store *store, const struct job_row *job, const char *
                   "UPDATE job SET state = 'failed', reported = 0, error = ?, ended = ? WHERE id = "
                   "?",
                   "tti", reason, store_time(store), job->id);
-    if (!status)
+    if (status == 0)
         status =
             store_run(store, err,
                       "UPDATE study SET jobs_running = jobs_running - 1, jobs_failed = "
                       "jobs_failed + 1, realisations_failed = realisations_failed + ? WHERE id = ?",
                       "ii", job->count, job->study);
-    if (!status)
+    if (status == 0)
         status = store_run(store, err,
                            "UPDATE study_case SET jobs_left = jobs_left - 1 WHERE study_id = ? AND "
                            "number = ?",
                            "ii", job->study, job->case_number);
-    return status ? status : study_settle(store, job->study, err);
+    return status != 0 ? status : study_settle(store, job->study, err);
 }
 
 int job_give_up(struct store *store, const struct job_row *job, const char *reason, bool permanent,
@@ -105,10 +105,10 @@ int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_
                     struct error *err) {
     struct job_row row;
     int status = change_begin(store, err);
-    if (status)
+    if (status != 0)
         return status;
     status = read_leased(store, job, token, &row, err);
-    if (!status) {
+    if (status == 0) {
         int64_t reported = done < (uint64_t)row.count ? (int64_t)done : row.count;
         status = store_run(store, err, "UPDATE job SET lease_until = ?, reported = ? WHERE id = ?",
                            "iii", store_now(store) + store->options.lease_ms, reported, job);
@@ -120,10 +120,10 @@ int store_fail(struct store *store, int64_t job, const char *token, const char *
                bool permanent, struct error *err) {
     struct job_row row;
     int status = change_begin(store, err);
-    if (status)
+    if (status != 0)
         return status;
     status = read_leased(store, job, token, &row, err);
-    if (!status)
+    if (status == 0)
         status = job_give_up(store, &row, reason, permanent, err);
     return change_end(store, status, err);
 }
@@ -131,10 +131,10 @@ int store_fail(struct store *store, int64_t job, const char *token, const char *
 int store_release(struct store *store, int64_t job, const char *token, struct error *err) {
     struct job_row row;
     int status = change_begin(store, err);
-    if (status)
+    if (status != 0)
         return status;
     status = read_leased(store, job, token, &row, err);
-    if (!status)
+    if (status == 0)
         status = job_requeue(store, &row, NULL, false, err);
     return change_end(store, status, err);
 }
@@ -146,11 +146,12 @@ static int copy_study(struct store *store, int64_t study, struct claimed_job *jo
                              "SELECT s.public, s.kind, s.seed, c.parameters FROM study s JOIN "
                              "study_case c ON c.study_id = s.id WHERE s.id = ? AND c.number = ?",
                              "ii", study, (int64_t)job->case_number);
-    if (!status)
+    if (status == 0)
         status = store_step(store, row, err);
     if (status <= 0)
-        return status ? status
-                      : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
+        return status != 0
+                   ? status
+                   : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
     snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 0));
     job->kind = column_copy(row, 1);
     job->seed = strtoull((const char *)sqlite3_column_text(row, 2), NULL, 10);
@@ -163,9 +164,9 @@ int store_job(struct store *store, int64_t job, const char *token, struct claime
               struct error *err) {
     struct job_row row;
     int status = job_read(store, job, token, &row, err);
-    if (!status && !(row.owned && (row.running || row.done)))
+    if (status == 0 && !(row.owned && (row.running || row.done)))
         status = error_set(err, ERROR_STATE, "the lease of job %lld is lost", (long long)job);
-    if (status)
+    if (status != 0)
         return status;
     *out = (struct claimed_job){.id = job,
                                 .case_number = (uint64_t)row.case_number,
@@ -175,7 +176,7 @@ int store_job(struct store *store, int64_t job, const char *token, struct claime
                                 .lease_ms = store->options.lease_ms};
     snprintf(out->token, sizeof out->token, "%s", token);
     status = copy_study(store, row.study, out, err);
-    if (status)
+    if (status != 0)
         claimed_job_clear(out);
     return status;
 }

@@ -16,13 +16,13 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
     int64_t row = 0;
     sqlite3_stmt *found = NULL;
     int status = study_row(store, study, &row, err);
-    if (!status)
+    if (status == 0)
         status = store_query(store, &found, err,
                              "SELECT c.parameters, s.seed, s.realisations, c.realisations_done, "
                              "c.revision FROM study_case c JOIN study s ON s.id = c.study_id WHERE "
                              "s.id = ? AND c.number = ?",
                              "ii", row, (int64_t)case_number);
-    if (!status)
+    if (status == 0)
         status = store_step(store, found, err);
     if (status == 0)
         return error_set(err, ERROR_ABSENT, "study %s has no case %llu", study,
@@ -37,7 +37,7 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
     };
     status = column_json(found, 0, &info.parameters, err);
     sqlite3_reset(found);
-    if (!status)
+    if (status == 0)
         *out = info;
     return status;
 }
@@ -77,16 +77,16 @@ static int fill_scalars(const struct stored_block *block, struct block_result *o
 static int read_block(sqlite3_stmt *row, struct stored_block *block, struct block_result *result,
                       struct error *err) {
     int status = column_json(row, 2, &block->names, err);
-    if (!status)
+    if (status == 0)
         status = column_json(row, 3, &block->rows, err);
-    size_t count = status ? 0 : (size_t)cJSON_GetArraySize(block->names);
+    size_t count = status != 0 ? 0 : (size_t)cJSON_GetArraySize(block->names);
     *result = (struct block_result){.first = (uint64_t)sqlite3_column_int64(row, 0),
                                     .count = (uint64_t)sqlite3_column_int64(row, 1),
                                     .scalar_count = count,
                                     .data = sqlite3_column_blob(row, 4),
                                     .size = (size_t)sqlite3_column_bytes(row, 4),
                                     .seconds = sqlite3_column_double(row, 5)};
-    if (!status)
+    if (status == 0)
         status = fill_scalars(block, result, err);
     return status;
 }
@@ -96,25 +96,25 @@ int store_results(struct store *store, const char *study, uint64_t case_number, 
     int64_t id = 0;
     sqlite3_stmt *row = NULL;
     int status = study_row(store, study, &id, err);
-    if (!status)
+    if (status == 0)
         status = store_query(store, &row, err,
                              "SELECT job.first, job.count, scalar_names.names, result.scalars, "
                              "result.data, job.seconds FROM job JOIN result ON result.job_id = "
                              "job.id JOIN scalar_names ON scalar_names.id = result.names_id "
                              "WHERE job.study_id = ? AND job.case_number = ? ORDER BY job.first",
                              "ii", id, (int64_t)case_number);
-    if (status)
+    if (status != 0)
         return status;
     while ((status = store_step(store, row, err)) == 1) {
         struct stored_block block = {0};
         struct block_result result;
         status = read_block(row, &block, &result, err);
-        if (!status)
+        if (status == 0)
             status = visit(context, &result, err);
         result.data = NULL; /* the row's */
         block_result_clear(&result);
         stored_block_clear(&block);
-        if (status)
+        if (status != 0)
             break;
     }
     sqlite3_reset(row);
@@ -128,14 +128,14 @@ int store_cost(struct store *store, const char *study, uint64_t case_number, str
     int64_t id = 0;
     sqlite3_stmt *row = NULL;
     int status = study_row(store, study, &id, err);
-    if (!status)
+    if (status == 0)
         status = store_query(store, &row, err,
                              "SELECT realisations_done, (SELECT realisations FROM study WHERE id = "
                              "study_id), jobs, (SELECT sum(attempts) FROM job WHERE job.study_id "
                              "= study_case.study_id AND job.case_number = number), seconds FROM "
                              "study_case WHERE study_id = ? AND number = ?",
                              "ii", id, (int64_t)case_number);
-    if (!status)
+    if (status == 0)
         status = store_step(store, row, err);
     if (status == 0)
         return error_set(err, ERROR_ABSENT, "study %s has no case %llu", study,

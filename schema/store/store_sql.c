@@ -34,7 +34,7 @@ int store_error(struct store *store, struct error *err) {
 }
 
 int64_t store_now(const struct store *store) {
-    if (store->options.now_ms)
+    if (store->options.now_ms != NULL)
         return store->options.now_ms(store->options.context);
     struct timespec now;
     clock_gettime(CLOCK_BOOTTIME, &now);
@@ -64,7 +64,7 @@ int random_text(char *text, size_t digits, struct error *err) {
 
 char *column_copy(sqlite3_stmt *statement, int column) {
     const unsigned char *text = sqlite3_column_text(statement, column);
-    return strdup(text ? (const char *)text : "");
+    return strdup(text != NULL ? (const char *)text : "");
 }
 
 int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err) {
@@ -108,8 +108,8 @@ static int bind(sqlite3_stmt *statement, sqlite3_destructor_type life, const cha
         } else {
             const void *data = va_arg(arguments, const void *);
             size_t size = va_arg(arguments, size_t);
-            code = size ? sqlite3_bind_blob64(statement, column, data, size, life)
-                        : sqlite3_bind_zeroblob(statement, column, 0);
+            code = size > 0 ? sqlite3_bind_blob64(statement, column, data, size, life)
+                            : sqlite3_bind_zeroblob(statement, column, 0);
         }
     }
     return code;
@@ -119,7 +119,7 @@ static int bind(sqlite3_stmt *statement, sqlite3_destructor_type life, const cha
 static int query(struct store *store, sqlite3_stmt **out, sqlite3_destructor_type life,
                  struct error *err, const char *sql, const char *format, va_list arguments) {
     int status = find_statement(store, sql, out, err);
-    if (!status && bind(*out, life, format, arguments))
+    if (status == 0 && bind(*out, life, format, arguments))
         status = store_error(store, err);
     return status;
 }
@@ -148,7 +148,7 @@ int store_run(struct store *store, struct error *err, const char *sql, const cha
     va_start(arguments, format);
     int status = query(store, &statement, SQLITE_STATIC, err, sql, format, arguments);
     va_end(arguments);
-    if (!status)
+    if (status == 0)
         status = store_step(store, statement, err);
     if (status > 0) {
         sqlite3_reset(statement);
@@ -164,7 +164,7 @@ int store_integer(struct store *store, int64_t *out, struct error *err, const ch
     va_start(arguments, format);
     int status = query(store, &statement, SQLITE_STATIC, err, sql, format, arguments);
     va_end(arguments);
-    if (!status)
+    if (status == 0)
         status = store_step(store, statement, err);
     if (status == 0)
         return ERROR_ABSENT;
@@ -188,11 +188,11 @@ int change_begin(struct store *store, struct error *err) {
 }
 
 int change_end(struct store *store, int status, struct error *err) {
-    if (!status)
+    if (status == 0)
         status = store_run(store, err, store->batch ? "RELEASE change" : "COMMIT", "");
     /* After a full disk SQLite may have rolled back by itself: then there is nothing left to undo.
      */
-    if (status && !sqlite3_get_autocommit(store->db)) {
+    if (status != 0 && !sqlite3_get_autocommit(store->db)) {
         if (store->batch)
             store_run(store, NULL, "ROLLBACK TO change", "");
         store_run(store, NULL, store->batch ? "RELEASE change" : "ROLLBACK", "");
@@ -202,7 +202,7 @@ int change_end(struct store *store, int status, struct error *err) {
 
 int store_begin(struct store *store, struct error *err) {
     int status = change_begin(store, err);
-    store->batch = !status;
+    store->batch = status == 0;
     return status;
 }
 

@@ -35,7 +35,7 @@ static int insert_case(struct store *store, const struct study *study, int64_t r
     const struct study_case *one = &study->cases[number];
     int64_t blocks = (int64_t)blocks_of(study, one);
     char *parameters = json_print(one->parameters);
-    if (!parameters)
+    if (parameters == NULL)
         return error_memory(err, 0, "the parameters of a case");
     int status =
         store_run(store, err,
@@ -43,7 +43,7 @@ static int insert_case(struct store *store, const struct study *study, int64_t r
                   "jobs_left) VALUES (?, ?, ?, ?, ?, ?)",
                   "iitdii", row, (int64_t)number, parameters, one->cost.seconds, blocks, blocks);
     free(parameters);
-    for (uint64_t first = 0; !status && first < study->realisations; first += one->block) {
+    for (uint64_t first = 0; status == 0 && first < study->realisations; first += one->block) {
         uint64_t left = study->realisations - first;
         uint64_t count = left < one->block ? left : one->block;
         status = store_run(
@@ -68,10 +68,10 @@ static int insert_study(struct store *store, const struct study *study, const ch
                            (int64_t)study->realisations, key, (int64_t)study->case_count,
                            (int64_t)jobs, (int64_t)jobs, store_time(store));
     int64_t row = sqlite3_last_insert_rowid(store->db);
-    if (!status)
+    if (status == 0)
         status = store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",
                            "it", row, study->source);
-    for (size_t c = 0; !status && c < study->case_count; c++)
+    for (size_t c = 0; status == 0 && c < study->case_count; c++)
         status = insert_case(store, study, row, c, err);
     return status;
 }
@@ -79,14 +79,14 @@ static int insert_study(struct store *store, const struct study *study, const ch
 /* 1 and the id when the key was used for this very study, 0 when it was not used. */
 static int find_key(struct store *store, const struct study *study, const char *key,
                     char id[STUDY_ID_SIZE], struct error *err) {
-    if (!key)
+    if (key == NULL)
         return 0;
     sqlite3_stmt *statement = NULL;
     int status = store_query(store, &statement, err,
                              "SELECT public, source = ? FROM study JOIN study_source ON "
                              "study_id = study.id WHERE submit_key = ?",
                              "tt", study->source, key);
-    if (!status)
+    if (status == 0)
         status = store_step(store, statement, err);
     if (status <= 0)
         return status;
@@ -101,16 +101,16 @@ static int find_key(struct store *store, const struct study *study, const char *
 int store_submit(struct store *store, const struct study *study, const char *key,
                  char id[STUDY_ID_SIZE], bool *existing, struct error *err) {
     int status = change_begin(store, err);
-    if (status)
+    if (status != 0)
         return status;
     status = find_key(store, study, key, id, err);
     bool found = status == 1;
-    if (!status)
+    if (status == 0)
         status = random_text(id, STUDY_ID_SIZE - 1, err);
-    if (!status)
+    if (status == 0)
         status = insert_study(store, study, key, id, err);
     status = change_end(store, found ? 0 : status, err);
-    if (!status && existing)
+    if (status == 0 && existing != NULL)
         *existing = found;
     return status;
 }
@@ -141,7 +141,7 @@ static uint64_t column_count(sqlite3_stmt *row, int column) {
 
 static void column_time(sqlite3_stmt *row, int column, char text[32]) {
     const unsigned char *time = sqlite3_column_text(row, column);
-    snprintf(text, 32, "%s", time ? (const char *)time : "");
+    snprintf(text, 32, "%s", time != NULL ? (const char *)time : "");
 }
 
 static int read_status(sqlite3_stmt *row, struct study_status *out, struct error *err) {
@@ -167,7 +167,7 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     column_time(row, 18, out->finished);
     out->workers = column_count(row, 21);
     out->cases_failed = column_count(row, 22);
-    if (!out->name || !out->kind)
+    if (out->name == NULL || out->kind == NULL)
         return error_memory(err, 0, "a study's name");
     return 0;
 }
@@ -186,7 +186,7 @@ static int time_left(struct store *store, int64_t row, struct study_status *out,
                     "SELECT sum(estimate * realisations_done), sum(estimate * (?2 - "
                     "realisations_done)), sum(seconds) FROM study_case WHERE study_id = ?1",
                     "ii", row, (int64_t)out->realisations);
-    if (!status)
+    if (status == 0)
         status = store_step(store, statement, err);
     if (status <= 0)
         return status;
@@ -208,7 +208,7 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
     struct study_status read = {0};
     int status = store_query(store, &statement, err,
                              "SELECT " STATUS_COLUMNS " FROM study WHERE public = ?", "t", id);
-    if (!status)
+    if (status == 0)
         status = store_step(store, statement, err);
     if (status == 0)
         return error_set(err, ERROR_ABSENT, "there is no study \"%.40s\"", id);
@@ -217,9 +217,9 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
     int64_t row = sqlite3_column_int64(statement, 19);
     status = read_status(statement, &read, err);
     sqlite3_reset(statement);
-    if (!status)
+    if (status == 0)
         status = time_left(store, row, &read, err);
-    if (status)
+    if (status != 0)
         study_status_clear(&read);
     else
         *out = read;
@@ -235,21 +235,21 @@ static void free_list(struct study_status *list, size_t count) {
 int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
                size_t *count, struct error *err) {
     int64_t row = 0;
-    int status = after && *after ? study_row(store, after, &row, err) : 0;
-    if (status)
+    int status = after != NULL && *after ? study_row(store, after, &row, err) : 0;
+    if (status != 0)
         return status;
     struct study_status *list = array_create(limit, sizeof *list);
     int64_t *rows = array_create(limit, sizeof *rows);
     size_t n = 0;
     sqlite3_stmt *statement = NULL;
-    if (!list || !rows)
+    if (list == NULL || rows == NULL)
         status = error_memory(err, limit * sizeof *list, "a list of studies");
-    if (!status)
+    if (status == 0)
         status =
             store_query(store, &statement, err,
                         "SELECT " STATUS_COLUMNS " FROM study WHERE id > ? ORDER BY id LIMIT ?",
                         "ii", row, (int64_t)limit);
-    while (!status && n < limit && (status = store_step(store, statement, err)) == 1) {
+    while (status == 0 && n < limit && (status = store_step(store, statement, err)) == 1) {
         rows[n] = sqlite3_column_int64(statement, 19);
         status = read_status(statement, &list[n++], err);
     }
@@ -274,31 +274,31 @@ static int cancel_jobs(struct store *store, int64_t row, struct error *err) {
                            "UPDATE job SET state = 'cancelled', ended = ? WHERE study_id = ? AND "
                            "state IN ('waiting', 'running')",
                            "ti", store_time(store), row);
-    if (!status)
+    if (status == 0)
         status = store_run(
             store, err,
             "UPDATE study SET state = 'cancelled', jobs_cancelled = jobs_cancelled + "
             "jobs_waiting + jobs_running, jobs_waiting = 0, jobs_running = 0 WHERE id = ?",
             "i", row);
-    if (!status)
+    if (status == 0)
         status = store_run(store, err, "UPDATE study_case SET jobs_left = 0 WHERE study_id = ?",
                            "i", row);
-    return status ? status : study_settle(store, row, err);
+    return status != 0 ? status : study_settle(store, row, err);
 }
 
 int store_cancel(struct store *store, const char *id, struct error *err) {
     int64_t row = 0, ended = 0;
     int status = change_begin(store, err);
-    if (status)
+    if (status != 0)
         return status;
     status = study_row(store, id, &row, err);
-    if (!status)
+    if (status == 0)
         status = store_integer(
             store, &ended, err,
             "SELECT state IN ('done', 'failed', 'cancelled') FROM study WHERE id = ?", "i", row);
-    if (!status && ended)
+    if (status == 0 && ended)
         status = error_set(err, ERROR_STATE, "study %s has already ended", id);
-    if (!status)
+    if (status == 0)
         status = cancel_jobs(store, row, err);
     return change_end(store, status, err);
 }
@@ -312,39 +312,39 @@ static int retry_jobs(struct store *store, int64_t row, struct error *err) {
                       "WHERE j.study_id = study_case.study_id AND j.case_number = number AND "
                       "j.state IN ('failed', 'cancelled')) WHERE study_id = ?",
                       "i", row);
-    if (!status)
+    if (status == 0)
         status =
             store_run(store, err,
                       "UPDATE job SET state = 'waiting', attempts = 0, token = NULL, ended = NULL "
                       "WHERE study_id = ? AND state IN ('failed', 'cancelled')",
                       "i", row);
-    if (!status)
+    if (status == 0)
         status = store_run(
             store, err,
             "UPDATE study SET jobs_waiting = jobs_waiting + jobs_failed + jobs_cancelled, "
             "jobs_failed = 0, jobs_cancelled = 0, realisations_failed = 0, state = "
             "CASE WHEN jobs_done + jobs_running > 0 THEN 'running' ELSE 'queued' END WHERE id = ?",
             "i", row);
-    return status ? status : study_settle(store, row, err);
+    return status != 0 ? status : study_settle(store, row, err);
 }
 
 int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err) {
     int64_t row = 0, jobs = 0, marks = 0;
     int status = change_begin(store, err);
-    if (status)
+    if (status != 0)
         return status;
     status = study_row(store, id, &row, err);
-    if (!status)
+    if (status == 0)
         status =
             store_integer(store, &jobs, err,
                           "SELECT jobs_failed + jobs_cancelled FROM study WHERE id = ?", "i", row);
-    if (!status)
+    if (status == 0)
         status = store_integer(store, &marks, err, "SELECT cases_failed FROM study WHERE id = ?",
                                "i", row);
-    if (!status && jobs + marks > 0)
+    if (status == 0 && jobs + marks > 0)
         status = retry_jobs(store, row, err);
     status = change_end(store, status, err);
-    if (!status)
+    if (status == 0)
         *count = (uint64_t)jobs;
     return status;
 }

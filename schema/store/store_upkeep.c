@@ -9,9 +9,9 @@ int store_snapshot(struct store *store, const char *path, struct error *err) {
     if (lstat(path, &info) == 0)
         return error_set(err, ERROR_INPUT, "%s exists; a snapshot needs a new file", path);
     int status = store_run(store, err, "VACUUM INTO ?", "t", path);
-    if (status)
+    if (status != 0)
         remove(path); /* a copy cut short by a full disk */
-    return status ? error_context(err, "snapshot to %s", path) : 0;
+    return status != 0 ? error_context(err, "snapshot to %s", path) : 0;
 }
 
 static uint64_t file_bytes(const char *path, const char *suffix) {
@@ -28,7 +28,7 @@ int store_metrics(struct store *store, struct store_metrics *out, struct error *
                     "SELECT count(*), total(jobs_waiting), total(jobs_running), "
                     "total(jobs_done), total(jobs_failed), total(jobs_cancelled) FROM study",
                     "");
-    if (!status)
+    if (status == 0)
         status = store_step(store, row, err);
     if (status < 0)
         return status;
