@@ -16,11 +16,14 @@ static void read_heights(struct surface_case *out, struct values *values) {
     options->heights.type =
         (enum heights_type)values_choice(values, "/surface/heights/distribution");
     double shape = values_number(values, "/surface/heights/shape");
-    if (options->heights.type != HEIGHTS_GAUSSIAN) {
-        if (isnan(shape))
-            values_fault(values, "/surface/heights/shape",
-                         "a Weibull distribution needs its shape, a number in [0.5, 20]");
+    const struct distribution *distribution = heights_distribution(options->heights.type);
+    if (distribution->shape_means != NULL) {
         options->heights.shape = shape;
+        if (!(shape >= distribution->shape_low && shape <= distribution->shape_high))
+            values_fault(values, "/surface/heights/shape",
+                         "the distribution needs its shape (%s), a number in [%g, %g]",
+                         distribution->shape_means, distribution->shape_low,
+                         distribution->shape_high);
     }
     options->tolerance = values_number(values, "/surface/heights/tolerance");
     options->keep = (enum surface_keep)values_choice(values, "/surface/heights/keep");

@@ -8,10 +8,9 @@ static const struct choice SPECTRA[] = {{"self_affine", SPECTRUM_SELF_AFFINE},
                                         {"exponential_acf", SPECTRUM_EXPONENTIAL_ACF},
                                         {"table", SPECTRUM_TABLE},
                                         {0}};
-static const struct choice DISTRIBUTIONS[] = {{"gaussian", HEIGHTS_GAUSSIAN},
-                                              {"weibull_min", HEIGHTS_WEIBULL_MIN},
-                                              {"weibull_max", HEIGHTS_WEIBULL_MAX},
-                                              {0}};
+#define CHOICE(type, name) {name, HEIGHTS_##type},
+static const struct choice DISTRIBUTIONS[] = {HEIGHT_DISTRIBUTIONS(CHOICE){0}};
+
 static const struct choice KEPT[] = {{"spectrum", KEEP_SPECTRUM}, {"heights", KEEP_HEIGHTS}, {0}};
 static const struct choice ITERATIONS[] = {
     {"relaxed", ITERATION_RELAXED}, {"plain", ITERATION_PLAIN}, {0}};
@@ -147,11 +146,12 @@ static const struct parameter ROWS[] = {
      .help = "height distribution; all have mean 0 and the standard deviation of the spectrum"},
     {.path = "/surface/heights/shape",
      .type = PARAMETER_NUMBER,
-     .minimum = 0.5,
+     .minimum = 0.01,
      .maximum = 20,
      .sweep = true,
      .example_json = "1.5",
-     .help = "shape C of a Weibull distribution"},
+     .help = "shape of the distribution: Weibull: C, in [0.5, 20]; lognormal: standard deviation "
+             "of the logarithm, in [0.01, 1]"},
     {.path = "/surface/heights/tolerance",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

@@ -3,16 +3,38 @@
 #include <math.h>
 #include <stddef.h>
 
-static const double SHAPE_LOW = 0.5;
-static const double SHAPE_HIGH = 20;
 /* Tails of less probability than this should hold next to nothing of any moment. */
 static const double TAIL_PROBABILITY = 1e-12;
 static const double TAIL_SHARE = 1e-3;
 
+/* --- Gaussian --- */
+
+static void gaussian_moments(double shape, struct height_moments *out) {
+    (void)shape;
+    *out = (struct height_moments){0, 1, 0, 3, -INFINITY, INFINITY};
+}
+
+static double gaussian_quantile(double shape, double probability) {
+    (void)shape;
+    return gsl_cdf_ugaussian_Pinv(probability);
+}
+
+static double gaussian_cdf(double shape, double raw) {
+    (void)shape;
+    return erfc(-raw / M_SQRT2) / 2;
+}
+
+static double gaussian_pdf(double shape, double raw, double factor) {
+    (void)shape;
+    return factor * exp(-raw * raw / 2) / sqrt(2 * M_PI);
+}
+
+/* --- Weibull, scale 1: a minimum lies above 0, a maximum is its mirror image below 0 --- */
+
 /* Central moments of a Weibull minimum of scale 1 in units of its mean, theory.md 3.26-3.28. With
  * e_k = Gamma(1 + k/C)/Gamma(1 + 1/C)^k - 1 the large equal terms cancel on paper, not in digits.
  */
-static void weibull_moments(double shape, struct height_moments *out) {
+static void weibull_min_moments(double shape, struct height_moments *out) {
     int sign; /* lgamma() would write a global */
     double log1 = lgamma_r(1 + 1 / shape, &sign);
     double e2 = expm1(lgamma_r(1 + 2 / shape, &sign) - 2 * log1);
@@ -27,13 +49,90 @@ static void weibull_moments(double shape, struct height_moments *out) {
     out->highest = INFINITY;
 }
 
-static void moments_mirror(struct height_moments *moments) {
-    double highest = -moments->lowest;
-    moments->mean = -moments->mean;
-    moments->skewness = -moments->skewness;
-    moments->lowest = -moments->highest;
-    moments->highest = highest;
+static double weibull_min_quantile(double shape, double probability) {
+    return pow(-log1p(-probability), 1 / shape);
 }
+
+static double weibull_min_cdf(double shape, double raw) {
+    return -expm1(-(raw > 0 ? pow(raw, shape) : 0));
+}
+
+static double weibull_min_pdf(double shape, double raw, double factor) {
+    if (raw < 0)
+        return 0;
+    return factor * shape * pow(raw, shape - 1) * exp(-pow(raw, shape));
+}
+
+static void weibull_max_moments(double shape, struct height_moments *out) {
+    weibull_min_moments(shape, out);
+    out->mean = -out->mean;
+    out->skewness = -out->skewness;
+    out->highest = -out->lowest;
+    out->lowest = -INFINITY;
+}
+
+static double weibull_max_quantile(double shape, double probability) {
+    return -pow(-log(probability), 1 / shape);
+}
+
+static double weibull_max_cdf(double shape, double raw) {
+    return exp(-(raw < 0 ? pow(-raw, shape) : 0));
+}
+
+static double weibull_max_pdf(double shape, double raw, double factor) {
+    return weibull_min_pdf(shape, -raw, factor);
+}
+
+/* --- log-normal: exp(s x) of a Gaussian x, median 1 (Johnson, Kotz & Balakrishnan 1994, chapter
+ * 14); the shape is s, the standard deviation of the logarithm --- */
+
+static void lognormal_moments(double shape, struct height_moments *out) {
+    double square = shape * shape, spread = sqrt(expm1(square)); /* deviation over mean */
+    out->mean = exp(square / 2);
+    out->deviation = out->mean * spread;
+    out->skewness = (exp(square) + 2) * spread;
+    out->kurtosis = exp(4 * square) + 2 * exp(3 * square) + 3 * exp(2 * square) - 3;
+    out->lowest = -1 / spread;
+    out->highest = INFINITY;
+}
+
+static double lognormal_quantile(double shape, double probability) {
+    return exp(shape * gsl_cdf_ugaussian_Pinv(probability));
+}
+
+static double lognormal_cdf(double shape, double raw) {
+    return raw > 0 ? gaussian_cdf(0, log(raw) / shape) : 0;
+}
+
+static double lognormal_pdf(double shape, double raw, double factor) {
+    return raw > 0 ? gaussian_pdf(0, log(raw) / shape, factor / (shape * raw)) : 0;
+}
+
+/* The functions of a distribution, whose names begin with its own. */
+#define FUNCTIONS(name)                                                                            \
+    .moments = name##_moments, .quantile = name##_quantile, .cdf = name##_cdf, .pdf = name##_pdf
+#define WEIBULL                                                                                    \
+    .family = "weibull", .shape_means = "shape C of a Weibull distribution", .shape_low = 0.5,     \
+    .shape_high = 20
+
+static const struct distribution DISTRIBUTIONS[] = {
+    [HEIGHTS_GAUSSIAN] = {.family = "gaussian", FUNCTIONS(gaussian)},
+    [HEIGHTS_WEIBULL_MIN] = {WEIBULL, FUNCTIONS(weibull_min)},
+    [HEIGHTS_WEIBULL_MAX] = {WEIBULL, FUNCTIONS(weibull_max)},
+    [HEIGHTS_LOGNORMAL] = {.family = "lognormal",
+                           .shape_means = "standard deviation of the logarithm",
+                           .shape_low = 0.01,
+                           .shape_high = 1,
+                           FUNCTIONS(lognormal)},
+};
+_Static_assert(sizeof DISTRIBUTIONS / sizeof *DISTRIBUTIONS == HEIGHTS_QUANTILE,
+               "every distribution with a name has its row");
+
+const struct distribution *heights_distribution(enum heights_type type) {
+    return type < HEIGHTS_QUANTILE ? &DISTRIBUTIONS[type] : NULL;
+}
+
+/* --- any quantile function --- */
 
 /* Nodes and weights of the double exponential rule on (0, 1) (Takahasi and Mori 1974):
  * p = 1/(1 + exp(-pi sinh t)), |t| <= 3.1 where p reaches the last digit of 1. Smooth quantile
@@ -97,70 +196,38 @@ static int quantile_moments(const struct heights *heights, struct height_moments
     return 0;
 }
 
+/* --- of any of them --- */
+
 int heights_moments(const struct heights *heights, struct height_moments *out, struct error *err) {
-    switch (heights->type) {
-    case HEIGHTS_GAUSSIAN:
-        *out = (struct height_moments){0, 1, 0, 3, -INFINITY, INFINITY};
-        return 0;
-    case HEIGHTS_WEIBULL_MIN:
-    case HEIGHTS_WEIBULL_MAX:
-        if (!(heights->shape >= SHAPE_LOW && heights->shape <= SHAPE_HIGH))
-            return error_set(err, ERROR_INPUT, "Weibull shape %g is not in [%g, %g]",
-                             heights->shape, SHAPE_LOW, SHAPE_HIGH);
-        weibull_moments(heights->shape, out);
-        if (heights->type == HEIGHTS_WEIBULL_MAX)
-            moments_mirror(out);
-        return 0;
-    case HEIGHTS_QUANTILE:
+    if (heights->type == HEIGHTS_QUANTILE)
         return quantile_moments(heights, out, err);
-    }
-    return error_set(err, ERROR_INPUT, "unknown height distribution %d", (int)heights->type);
+    const struct distribution *row = heights_distribution(heights->type);
+    if (row == NULL)
+        return error_set(err, ERROR_INPUT, "unknown height distribution %d", (int)heights->type);
+    if (row->shape_means != NULL &&
+        !(heights->shape >= row->shape_low && heights->shape <= row->shape_high))
+        return error_set(err, ERROR_INPUT, "%s: %g is not in [%g, %g]", row->shape_means,
+                         heights->shape, row->shape_low, row->shape_high);
+    row->moments(heights->shape, out);
+    return 0;
 }
 
 double heights_quantile(const struct heights *heights, const struct height_moments *moments,
                         double probability) {
-    double raw = 0;
-    switch (heights->type) {
-    case HEIGHTS_GAUSSIAN:
-        return gsl_cdf_ugaussian_Pinv(probability);
-    case HEIGHTS_WEIBULL_MIN:
-        raw = pow(-log1p(-probability), 1 / heights->shape);
-        break;
-    case HEIGHTS_WEIBULL_MAX:
-        raw = -pow(-log(probability), 1 / heights->shape);
-        break;
-    case HEIGHTS_QUANTILE:
-        raw = heights->quantile(probability, heights->context);
-        break;
-    }
+    const struct distribution *row = heights_distribution(heights->type);
+    double raw = row != NULL ? row->quantile(heights->shape, probability)
+                             : heights->quantile(probability, heights->context);
     return (raw - moments->mean) / moments->deviation;
 }
 
-/* The distance from the bound of a Weibull variable in its own scale; negative beyond the bound. */
-static double weibull_depth(const struct heights *heights, const struct height_moments *moments,
-                            double z) {
-    double raw = moments->mean + moments->deviation * z;
-    return heights->type == HEIGHTS_WEIBULL_MAX ? -raw : raw;
-}
-
 double heights_pdf(const struct heights *heights, const struct height_moments *moments, double z) {
-    if (heights->type == HEIGHTS_QUANTILE)
+    const struct distribution *row = heights_distribution(heights->type);
+    if (row == NULL)
         return NAN;
-    if (heights->type == HEIGHTS_GAUSSIAN)
-        return exp(-z * z / 2) / sqrt(2 * M_PI);
-    double x = weibull_depth(heights, moments, z);
-    double c = heights->shape;
-    if (x < 0)
-        return 0;
-    return moments->deviation * c * pow(x, c - 1) * exp(-pow(x, c));
+    return row->pdf(heights->shape, moments->mean + moments->deviation * z, moments->deviation);
 }
 
 double heights_cdf(const struct heights *heights, const struct height_moments *moments, double z) {
-    if (heights->type == HEIGHTS_QUANTILE)
-        return NAN;
-    if (heights->type == HEIGHTS_GAUSSIAN)
-        return erfc(-z / M_SQRT2) / 2;
-    double x = weibull_depth(heights, moments, z);
-    double exponent = x > 0 ? pow(x, heights->shape) : 0;
-    return heights->type == HEIGHTS_WEIBULL_MAX ? exp(-exponent) : -expm1(-exponent);
+    const struct distribution *row = heights_distribution(heights->type);
+    return row != NULL ? row->cdf(heights->shape, moments->mean + moments->deviation * z) : NAN;
 }

@@ -1,15 +1,25 @@
-/* Height distributions: Gaussian, Weibull minimum and maximum, or any monotone quantile function.
+/* Height distributions: those of the table below, or any monotone quantile function.
  * All are centred (mean 0) and scaled to standard deviation 1 here; callers scale. */
 #ifndef RUGO_CORE_SURFACE_HEIGHTS_H
 #define RUGO_CORE_SURFACE_HEIGHTS_H
 
 #include "core/error.h"
 
-enum heights_type { HEIGHTS_GAUSSIAN, HEIGHTS_WEIBULL_MIN, HEIGHTS_WEIBULL_MAX, HEIGHTS_QUANTILE };
+/* Distributions, and their names in studies: ENTRY(type, name). A new one is an entry here and its
+ * row with its functions in heights.c. */
+#define HEIGHT_DISTRIBUTIONS(ENTRY)                                                                \
+    ENTRY(GAUSSIAN, "gaussian")                                                                    \
+    ENTRY(WEIBULL_MIN, "weibull_min")                                                              \
+    ENTRY(WEIBULL_MAX, "weibull_max")                                                              \
+    ENTRY(LOGNORMAL, "lognormal")
+
+#define HEIGHTS_TYPE(type, name) HEIGHTS_##type,
+enum heights_type { HEIGHT_DISTRIBUTIONS(HEIGHTS_TYPE) HEIGHTS_QUANTILE };
+#undef HEIGHTS_TYPE
 
 struct heights {
     enum heights_type type;
-    double shape; /* Weibull C, [0.5, 20] */
+    double shape; /* of distributions that take one: distribution.shape_means */
     /* HEIGHTS_QUANTILE: rising on (0, 1), any finite mean and deviation (standardised by
      * quadrature); must be safe to call from many threads. context is borrowed. */
     double (*quantile)(double probability, const void *context);
@@ -17,11 +27,28 @@ struct heights {
 };
 
 struct height_moments {
-    double mean, deviation;    /* of the raw distribution (Weibull scale 1), before standardising */
+    double mean, deviation;    /* of the raw distribution, before standardising */
     double skewness, kurtosis; /* theory.md 3.26-3.30; kurtosis 3 for a Gaussian */
     double lowest, highest;    /* bounds in standard deviations about the mean; +-INFINITY if none,
                                   or unknown as for HEIGHTS_QUANTILE */
 };
+
+/* What is known of a distribution. Its raw variable has whatever scale is handiest: standardising
+ * takes that out. Weibull: scale 1; log-normal: median 1. */
+struct distribution {
+    const char *family; /* names its theory curves */
+    /* What the shape is, NULL without one, and its range. Generation meets spectrum and heights in
+     * most of it; at the most skewed end (Weibull 0.5, log-normal 1) tenths remain between them,
+     * which the report of a generation tells. */
+    const char *shape_means;
+    double shape_low, shape_high;
+    void (*moments)(double shape, struct height_moments *out);
+    double (*quantile)(double shape, double probability); /* of the raw variable */
+    double (*cdf)(double shape, double raw);
+    double (*pdf)(double shape, double raw, double factor); /* times a factor */
+};
+/* NULL for HEIGHTS_QUANTILE, which has no row. */
+const struct distribution *heights_distribution(enum heights_type type);
 
 /* ERROR_INPUT: shape out of range, quantile function not rising or without finite moments. */
 int heights_moments(const struct heights *heights, struct height_moments *out, struct error *err);

@@ -208,8 +208,7 @@ int statistics_curves_complete(const struct statistics_case *study, double alpha
 static int add_heights(struct curve_maker *maker, struct error *err) {
     const struct statistics_case *study = maker->study;
     const struct statistics_tally *tally = maker->tally;
-    const char *name =
-        study->surface.options.heights.type == HEIGHTS_GAUSSIAN ? "gaussian" : "weibull";
+    const char *name = heights_distribution(study->surface.options.heights.type)->family;
     int status = theories_create(maker, err);
     if (status == 0)
         status = statistics_theory_heights(study, maker->pdf, maker->cdf, err);

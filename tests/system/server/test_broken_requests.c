@@ -117,10 +117,10 @@ static void broken_studies_are_told_what_is_wrong(void **state) {
         {"[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[", 400, NULL,
          "line 1, column 33: nesting deeper than is allowed"},
         {"\"study\"", 422, "", "a study is a JSON object"},
-        {"{}", 422, "/name", "missing; give the study a name"},
+        {"{}", 422, "/name", "missing: name of the study, shown with its results"},
         {"{\"name\":\"\",\"kind\":\"statistics\",\"surface\":{\"hurst\":0.8,\"wavelength_ratio\":8}"
          "}",
-         422, "/name", "not a text of 1 to 200 bytes"},
+         422, "/name", "\"\" is not a text of 1 to 200 characters"},
         {"{\"name\":\"n\",\"kind\":\"weather\"}", 422, "/kind",
          "\"weather\" is not one of \"statistics\""},
         {STUDY("\"surface\":{\"hurst\":[0.2,1.4],\"wavelength_ratio\":8}"), 422, "/surface/hurst/1",

@@ -56,20 +56,38 @@ static void extreme_shapes_keep_their_digits(void **state) {
 static void quantiles_invert_the_distribution(void **state) {
     (void)state;
     static const double PROBABILITIES[] = {1e-12, 1e-3, 0.2, 0.5, 0.9, 1 - 1e-9};
-    static const double SHAPES[] = {0.5, 1, 3.602, 20};
-    static const enum heights_type TYPES[] = {HEIGHTS_GAUSSIAN, HEIGHTS_WEIBULL_MIN,
-                                              HEIGHTS_WEIBULL_MAX};
-    for (size_t t = 0; t < 3; t++)
+    static const double PARTS[] = {0, 0.2, 0.5, 1}; /* of the range of the shape */
+    for (enum heights_type type = 0; type < HEIGHTS_QUANTILE; type++)
         for (size_t s = 0; s < 4; s++)
             for (size_t k = 0; k < sizeof PROBABILITIES / sizeof *PROBABILITIES; k++) {
-                struct heights heights = {.type = TYPES[t], .shape = SHAPES[s]};
-                struct height_moments moments = moments_of(TYPES[t], SHAPES[s]);
+                const struct distribution *row = heights_distribution(type);
+                double shape = row->shape_low + PARTS[s] * (row->shape_high - row->shape_low);
+                struct heights heights = {.type = type, .shape = shape};
+                struct height_moments moments = moments_of(type, shape);
                 double p = PROBABILITIES[k];
                 double z = heights_quantile(&heights, &moments, p);
                 /* z has lost digits near a bound: an error of 4e-16 there moves p by the density */
                 double lost = 4e-16 * heights_pdf(&heights, &moments, z) * fmax(1, fabs(z)) * 40;
                 check_close(heights_cdf(&heights, &moments, z), p, 1e-11 * p + fmin(lost, 1e-6));
             }
+}
+
+/* Of all that have one: five-point differences. */
+static void densities_are_slopes(void **state) {
+    (void)state;
+    for (enum heights_type type = 0; type < HEIGHTS_QUANTILE; type++) {
+        const struct distribution *row = heights_distribution(type);
+        struct heights heights = {.type = type,
+                                  .shape = (row->shape_low + 0.1 * row->shape_high) / 1.1};
+        struct height_moments moments = moments_of(type, heights.shape);
+        for (double z = -0.4; z < 3; z += 0.3) {
+            double step = 1e-3, slope = 0;
+            static const double WEIGHTS[] = {1, -8, 0, 8, -1};
+            for (int k = -2; k <= 2; k++)
+                slope += WEIGHTS[k + 2] * heights_cdf(&heights, &moments, z + k * step);
+            check_close(slope / (12 * step), heights_pdf(&heights, &moments, z), 1e-8);
+        }
+    }
 }
 
 /* The density is the slope of the distribution, and integrates to 1 with mean 0 and variance 1. */
@@ -170,6 +188,66 @@ static void quantile_functions_are_standardised(void **state) {
     check_close(moments.deviation, sqrt(0.75), 2e-3);
 }
 
+/* The moments of a log-normal variable by their closed forms (Johnson, Kotz & Balakrishnan 1994,
+ * 14.8), and those that any quantile function gets by quadrature. */
+static double lognormal_half(double probability, const void *context) {
+    const struct height_moments *unit = context; /* of a standard Gaussian */
+    struct heights gaussian = {.type = HEIGHTS_GAUSSIAN};
+    return exp(0.5 * heights_quantile(&gaussian, unit, probability));
+}
+
+static void lognormal_moments_are_the_closed_forms(void **state) {
+    (void)state;
+    static const double SHAPES[] = {0.01, 0.1, 0.5, 1};
+    for (size_t s = 0; s < 4; s++) {
+        struct height_moments moments = moments_of(HEIGHTS_LOGNORMAL, SHAPES[s]);
+        double square = SHAPES[s] * SHAPES[s];
+        check_relative(moments.skewness, (exp(square) + 2) * sqrt(exp(square) - 1), 1e-11);
+        check_relative(moments.kurtosis,
+                       exp(4 * square) + 2 * exp(3 * square) + 3 * exp(2 * square) - 3, 1e-14);
+        check_relative(moments.lowest, -1 / sqrt(exp(square) - 1), 1e-11);
+        assert_true(isinf(moments.highest));
+    }
+    struct height_moments unit = moments_of(HEIGHTS_GAUSSIAN, 0), measured;
+    struct height_moments half = moments_of(HEIGHTS_LOGNORMAL, 0.5);
+    struct heights heights = {
+        .type = HEIGHTS_QUANTILE, .quantile = lognormal_half, .context = &unit};
+    assert_int_equal(heights_moments(&heights, &measured, NULL), 0);
+    check_relative(half.mean, measured.mean, 1e-9);
+    check_relative(half.deviation, measured.deviation, 1e-9);
+    check_relative(half.skewness, measured.skewness, 1e-6); /* tails beyond the last node */
+    check_relative(half.kurtosis, measured.kurtosis, 1e-4);
+}
+
+static int rising(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Kolmogorov and Smirnov's distance of 20000 draws from the distribution: beyond 1.95/sqrt(n) with
+ * probability 1e-3; the draws are always the same. */
+static void draws_follow_the_distribution(void **state) {
+    (void)state;
+    enum { DRAWS = 20000 };
+    static double u[DRAWS];
+    for (enum heights_type type = 0; type < HEIGHTS_QUANTILE; type++) {
+        const struct distribution *row = heights_distribution(type);
+        struct heights heights = {.type = type,
+                                  .shape = (row->shape_low + 0.4 * row->shape_high) / 1.4};
+        struct height_moments moments = moments_of(type, heights.shape);
+        random_uniform((struct random_key){11, (uint64_t)type, 0}, STREAM_HEIGHTS, 0, DRAWS, u);
+        for (size_t i = 0; i < DRAWS; i++)
+            u[i] = heights_quantile(&heights, &moments, fmax(u[i], 0x1p-54));
+        qsort(u, DRAWS, sizeof *u, rising);
+        double distance = 0;
+        for (size_t i = 0; i < DRAWS; i++) {
+            double p = heights_cdf(&heights, &moments, u[i]);
+            distance = fmax(distance, fabs(p - ((double)i + 0.5) / DRAWS) + 0.5 / DRAWS);
+        }
+        check_close(distance, 0, 1.95 / sqrt(DRAWS));
+    }
+}
+
 static void nonsense_is_refused(void **state) {
     (void)state;
     static const double SHAPES[] = {0.4999, 20.001, -1, 0, NAN, INFINITY};
@@ -180,6 +258,9 @@ static void nonsense_is_refused(void **state) {
         assert_int_equal(heights_moments(&heights, &moments, &err), ERROR_INPUT);
         assert_non_null(strstr(err.text, "[0.5, 20]"));
     }
+    struct heights wide = {.type = HEIGHTS_LOGNORMAL, .shape = 1.001};
+    assert_int_equal(heights_moments(&wide, &moments, &err), ERROR_INPUT);
+    assert_string_equal(err.text, "standard deviation of the logarithm: 1.001 is not in [0.01, 1]");
     struct heights heights = {.type = HEIGHTS_QUANTILE};
     assert_int_equal(heights_moments(&heights, &moments, &err), ERROR_INPUT);
     heights.quantile = falling_quantile;
@@ -198,9 +279,12 @@ int main(void) {
         cmocka_unit_test(moments_are_those_of_the_table),
         cmocka_unit_test(extreme_shapes_keep_their_digits),
         cmocka_unit_test(quantiles_invert_the_distribution),
+        cmocka_unit_test(densities_are_slopes),
         cmocka_unit_test(densities_are_standardised),
         cmocka_unit_test(draws_have_the_moments),
         cmocka_unit_test(quantile_functions_are_standardised),
+        cmocka_unit_test(lognormal_moments_are_the_closed_forms),
+        cmocka_unit_test(draws_follow_the_distribution),
         cmocka_unit_test(nonsense_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

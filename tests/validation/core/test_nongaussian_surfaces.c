@@ -104,6 +104,13 @@ static void maxima_meet_their_targets(void **state) {
 }
 
 /* Too few modes for the heights asked: what is reached falls short, and the errors say so. */
+static void lognormal_heights_meet_their_targets(void **state) {
+    (void)state;
+    static const double DEVIATIONS[] = {0.05, 0.25, 0.4};
+    for (size_t s = 0; s < 3; s++)
+        surface_meets_its_targets(HEIGHTS_LOGNORMAL, DEVIATIONS[s]);
+}
+
 static void profiles_with_few_modes_say_so(void **state) {
     (void)state;
     struct surface_options options = SURFACE_DEFAULTS;
@@ -190,6 +197,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(minima_meet_their_targets),
         cmocka_unit_test(maxima_meet_their_targets),
+        cmocka_unit_test(lognormal_heights_meet_their_targets),
         cmocka_unit_test(profiles_with_few_modes_say_so),
         cmocka_unit_test(default_iteration_is_near_the_limit),
     };
