@@ -8,7 +8,6 @@ static const struct parameter ROWS[] = {
      .type = PARAMETER_TEXT,
      .minimum = 1,
      .maximum = 200,
-     .unit = "characters",
      .required = true,
      .example_json = "\"roughness and load\"",
      .help = "name of the study, shown with its results"},

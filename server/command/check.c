@@ -132,6 +132,18 @@ static int print_document(cJSON *document, struct error *err) {
     return status;
 }
 
+/* On many lines, for people; validators do not mind. */
+static int print_schema(struct error *err) {
+    cJSON *schema = study_schema(kinds_table(), kinds_count());
+    char *text = schema != NULL ? cJSON_Print(schema) : NULL;
+    cJSON_Delete(schema);
+    if (text == NULL)
+        return error_memory(err, 0, "the schema of studies");
+    puts(text);
+    cJSON_free(text);
+    return output_flush(err);
+}
+
 static int print_study_json(const struct study *study, struct error *err) {
     cJSON *document = cJSON_CreateObject();
     char seed[24];
@@ -192,7 +204,7 @@ static int run(const void *values, const char *const *arguments) {
     struct fault_list faults = {0};
     if (file == NULL && !options->schema)
         return usage_error("check", "an argument is missing");
-    int status = options->schema ? print_document(study_schema(kinds_table(), kinds_count()), &err)
+    int status = options->schema ? print_schema(&err)
                                  : check(file, options->sets, options->json, &faults, &err);
     int result = status == 0        ? EXIT_DONE
                  : faults.count > 0 ? command_fail_faults(file, &faults)

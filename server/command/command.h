@@ -15,7 +15,7 @@
 #define SET_HELP "change the study, e.g. --set realisations=100"
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
-enum { ARGUMENTS_MOST = 1, WORKERS_MOST = 4096, SECONDS_MOST = 31536000 };
+enum { ARGUMENTS_MOST = 2, WORKERS_MOST = 4096, SECONDS_MOST = 31536000 };
 
 struct command {
     const char *name, *arguments, *summary;

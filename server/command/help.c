@@ -1,12 +1,15 @@
 #include "server/command/help.h"
+#include "schema/study/reference.h"
+#include "worker/kinds.h"
 #include <string.h>
 
 /* What `rugo help` tells beside the commands. */
 struct topic {
     const char *name, *summary;
-    void (*print)(FILE *file);
+    void (*print)(FILE *file); /* NULL: help_study */
 };
 static const struct topic TOPICS[] = {
+    {"study", "the parameters of a study; with PATH, those below it", NULL},
     {"man", "the manual page rugo(1), as roff", help_man},
     {"bash", "completion for bash, to be sourced", help_bash},
 };
@@ -60,12 +63,29 @@ void help_command(const struct command *command, FILE *file) {
 
 /* --- the command --- */
 
-static const struct option_row OPTIONS[] = {{0}};
+struct options {
+    int markdown;
+};
+static const struct option_row OPTIONS[] = {{"format", 0, OPTION_CHOICE, 0, 0,
+                                             offsetof(struct options, markdown), "text|markdown",
+                                             "text", "how the topic study is written"},
+                                            {0}};
 
-static int run(const void *options, const char *const *arguments) {
-    (void)options;
-    const char *name = arguments[0];
+static int help_study(const char *path, bool markdown) {
+    struct error err = {0};
+    int status = markdown ? reference_markdown(stdout, kinds_table(), kinds_count(), &err)
+                          : reference_print(stdout, kinds_table(), kinds_count(), path, &err);
+    return status == 0 ? EXIT_DONE : command_fail("help", &err);
+}
+
+static int run(const void *values, const char *const *arguments) {
+    const struct options *options = values;
+    const char *name = arguments[0], *path = arguments[1];
     const struct command *command = name != NULL ? command_find(name) : NULL;
+    if (name != NULL && strcmp(name, "study") == 0)
+        return help_study(path, options->markdown != 0);
+    if (path != NULL)
+        return usage_error("help", "unexpected argument %.60s", path);
     if (name == NULL)
         help_commands(stdout);
     else if (command != NULL)
@@ -83,10 +103,10 @@ static int run(const void *options, const char *const *arguments) {
 
 const struct command COMMAND_HELP = {
     .name = "help",
-    .arguments = "[COMMAND|TOPIC]",
+    .arguments = "[COMMAND|TOPIC [PATH]]",
     .summary = "the commands, the options of one, or a topic",
-    .most = 1,
+    .most = 2,
     .options = OPTIONS,
-    .options_size = 1,
+    .options_size = sizeof(struct options),
     .run = run,
 };

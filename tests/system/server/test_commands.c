@@ -118,6 +118,18 @@ static void every_command_has_help(void **state) {
     assert_int_equal(shell("$RUGO --help && $RUGO --version"), 0);
 }
 
+static void help_tells_of_a_parameter(void **state) {
+    (void)state;
+    assert_int_equal(shell("$RUGO help study surface.heights"), 0);
+    assert_true(contains("shell.out", "/surface/heights/shape"));
+    assert_false(contains("shell.out", "/surface/hurst"));
+    assert_int_equal(shell("$RUGO help study weather"), 2);
+    assert_true(contains("shell.err", "a study has no parameter \"weather\""));
+    assert_int_equal(shell("$RUGO help run weather"), 2);
+    assert_int_equal(shell("$RUGO help study --format markdown"), 0);
+    assert_true(contains("shell.out", "| `/contact/model` | one name, or a list |"));
+}
+
 /* Its formatter, where there is one, finds nothing to warn of; a shell reads the completion. */
 static void the_manual_page_is_sound(void **state) {
     (void)state;
@@ -271,6 +283,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wrong_usage_and_input),
         cmocka_unit_test(every_command_has_help),
+        cmocka_unit_test(help_tells_of_a_parameter),
         cmocka_unit_test(the_manual_page_is_sound),
         cmocka_unit_test(a_run_goes_on_where_it_was),
         cmocka_unit_test(a_finished_run_only_prints),

@@ -1,0 +1,290 @@
+#include "schema/study/reference.h"
+#include "schema/study/common.h"
+#include "schema/study/value.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What the writers share: all kinds, and the choices that /kind has by them. */
+struct reference {
+    const struct study_kind *kinds;
+    size_t kind_count;
+    struct choice *names; /* owned */
+};
+
+enum { CELL_SIZE = 320 };
+
+static void describe_type(const struct parameter *row, char *text, size_t size) {
+    static const char *const WORDS[] = {
+        [PARAMETER_NUMBER] = "number",   [PARAMETER_INTEGER] = "integer",
+        [PARAMETER_TEXT] = "text",       [PARAMETER_SEED] = "integer, or a decimal string",
+        [PARAMETER_CHOICE] = "one name", [PARAMETER_CHOICES] = "one name, or a list",
+    };
+    if (row->type == PARAMETER_NUMBERS && row->items_low == row->items_high)
+        snprintf(text, size, "%zu numbers", row->items_low);
+    else if (row->type == PARAMETER_NUMBERS)
+        snprintf(text, size, "%zu to %zu numbers", row->items_low, row->items_high);
+    else if (row->type == PARAMETER_MEASURE)
+        snprintf(text, size, "a name, or a number with its unit");
+    else
+        snprintf(text, size, "%s", WORDS[row->type]);
+}
+
+/* What a value may be: names, a range, or both. */
+static void describe_range(const struct parameter *row, char *text, size_t size) {
+    char range[80], names[CELL_SIZE / 4], units[CELL_SIZE / 4];
+    value_range(row, range, sizeof range);
+    if (row->type == PARAMETER_MEASURE) {
+        value_choices(row->choices, names, sizeof names);
+        value_choices(row->units, units, sizeof units);
+        snprintf(text, size, "%s; %s of %s", names, range, units);
+    } else if (row->choices != NULL) {
+        value_choices(row->choices, text, size);
+    } else if (row->type == PARAMETER_TEXT) {
+        snprintf(text, size, "%.0f to %.0f characters", row->minimum, row->maximum);
+    } else if (row->type == PARAMETER_SEED) {
+        snprintf(text, size, "0 to 2^64 - 1");
+    } else {
+        snprintf(text, size, "%s", range);
+    }
+}
+
+static const char *or_dash(const char *text) {
+    return text != NULL ? text : "-";
+}
+
+/* The default of a row; that of /realisations is the kinds' own. */
+static void describe_default(const struct reference *reference, const struct parameter *row,
+                             char *text, size_t size) {
+    snprintf(text, size, "%s", or_dash(row->default_json));
+    if (row->required)
+        snprintf(text, size, "required");
+    if (strcmp(row->path, "/realisations") != 0)
+        return;
+    size_t used = 0;
+    for (size_t k = 0; k < reference->kind_count && used < size; k++)
+        used += (size_t)snprintf(text + used, size - used, "%s%llu (%s)", k > 0 ? ", " : "",
+                                 (unsigned long long)reference->kinds[k].default_realisations,
+                                 reference->kinds[k].name);
+}
+
+/* --- tables and their kinds --- */
+
+static bool has_table(const struct study_kind *kind, const struct parameter_table *table) {
+    for (const struct parameter_table *const *one = kind->tables; *one != NULL; one++)
+        if (*one == table)
+            return true;
+    return false;
+}
+
+/* Whether an earlier kind has the table, so that it was shown. */
+static bool was_shown(const struct reference *reference, size_t kind,
+                      const struct parameter_table *table) {
+    for (size_t k = 0; k < kind; k++)
+        if (has_table(&reference->kinds[k], table))
+            return true;
+    return false;
+}
+
+/* "statistics, contact" */
+static void kinds_of(const struct reference *reference, const struct parameter_table *table,
+                     char *text, size_t size) {
+    size_t used = 0;
+    *text = '\0';
+    for (size_t k = 0; k < reference->kind_count && used < size; k++)
+        if (has_table(&reference->kinds[k], table))
+            used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "",
+                                     reference->kinds[k].name);
+}
+
+typedef void table_writer(FILE *file, const struct reference *reference,
+                          const struct parameter_table *table, const char *path);
+
+/* Every table once: what all studies have, then those of the kinds. */
+static void write_tables(FILE *file, const struct reference *reference, const char *path,
+                         table_writer *write) {
+    write(file, reference, &COMMON_PARAMETERS, path);
+    for (size_t k = 0; k < reference->kind_count; k++)
+        for (const struct parameter_table *const *table = reference->kinds[k].tables;
+             *table != NULL; table++)
+            if (!was_shown(reference, k, *table))
+                write(file, reference, *table, path);
+}
+
+/* A row as it is told: /kind has its names. */
+static struct parameter told_row(const struct reference *reference,
+                                 const struct parameter_table *table, size_t index) {
+    struct parameter row = table->rows[index];
+    if (row.type == PARAMETER_CHOICE && row.choices == NULL)
+        row.choices = reference->names;
+    return row;
+}
+
+/* --- text --- */
+
+static bool is_below(const char *path, const char *row) {
+    size_t length = path != NULL ? strlen(path) : 0;
+    return length == 0 ||
+           (strncmp(row, path, length) == 0 && (row[length] == '\0' || row[length] == '/'));
+}
+
+static void print_row(FILE *file, const struct reference *reference, const struct parameter *row) {
+    char type[64], range[CELL_SIZE], usual[CELL_SIZE];
+    describe_type(row, type, sizeof type);
+    describe_range(row, range, sizeof range);
+    describe_default(reference, row, usual, sizeof usual);
+    fprintf(file, "  %s\n      %s\n      %s: %s%s%s%s\n      default: %s; example: %s%s\n",
+            row->path, row->help, type, range, row->unit != NULL ? " [" : "",
+            row->unit != NULL ? row->unit : "", row->unit != NULL ? "]" : "",
+            strcmp(usual, "-") == 0 ? "none" : usual, or_dash(row->example_json),
+            row->sweep ? "; a list of values makes cases" : "");
+}
+
+static void print_table(FILE *file, const struct reference *reference,
+                        const struct parameter_table *table, const char *path) {
+    bool headed = false;
+    for (size_t p = 0; p < table->count; p++) {
+        struct parameter row = told_row(reference, table, p);
+        if (!is_below(path, row.path))
+            continue;
+        char kinds[CELL_SIZE];
+        kinds_of(reference, table, kinds, sizeof kinds);
+        if (!headed)
+            fprintf(file, "%s (%s)\n", table->name, *kinds != '\0' ? kinds : "every kind");
+        headed = true;
+        print_row(file, reference, &row);
+    }
+    if (headed)
+        fputc('\n', file);
+}
+
+/* --- Markdown --- */
+
+/* A cell; '|' would end it. */
+static void print_cell(FILE *file, const char *text, bool code) {
+    fputs(code ? "| `" : "| ", file);
+    for (; *text != '\0'; text++) {
+        if (*text == '|')
+            fputc('\\', file);
+        fputc(*text, file);
+    }
+    fputs(code ? "` " : " ", file);
+}
+
+static void markdown_row(FILE *file, const struct reference *reference,
+                         const struct parameter *row) {
+    char text[CELL_SIZE];
+    print_cell(file, row->path, true);
+    describe_type(row, text, sizeof text);
+    print_cell(file, text, false);
+    print_cell(file, row->sweep ? "yes" : "-", false);
+    describe_range(row, text, sizeof text);
+    print_cell(file, text, false);
+    print_cell(file, or_dash(row->unit), false);
+    describe_default(reference, row, text, sizeof text);
+    print_cell(file, text, false);
+    print_cell(file, row->help, false);
+    print_cell(file, or_dash(row->example_json), true);
+    fputs("|\n", file);
+}
+
+static void markdown_table(FILE *file, const struct reference *reference,
+                           const struct parameter_table *table, const char *path) {
+    char kinds[CELL_SIZE];
+    (void)path;
+    kinds_of(reference, table, kinds, sizeof kinds);
+    fprintf(file, "\n## %s\n\nOf studies of %s%s.\n\n", table->name,
+            *kinds == '\0' ? "every kind" : "the kinds ", kinds);
+    fputs("| path | type | sweeps | range | unit | default | meaning | example |\n"
+          "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
+          file);
+    for (size_t p = 0; p < table->count; p++) {
+        struct parameter row = told_row(reference, table, p);
+        markdown_row(file, reference, &row);
+    }
+}
+
+static const char INTRODUCTION[] =
+    "# The study file\n\n"
+    "<!-- Written by `rugo help study --format markdown` from the tables that read a study. -->\n\n"
+    "A study is one JSON object. The parameters below are named by their path in it: "
+    "`/surface/hurst` is\n`{\"surface\": {\"hurst\": 0.8}}`. Names that are not here are faults, "
+    "and so are values out of their range; `rugo check`\ntells all of them at once, with the path "
+    "and what is allowed.\n\n"
+    "```json\n"
+    "{\n"
+    "  \"name\": \"roughness and load\",\n"
+    "  \"kind\": \"statistics\",\n"
+    "  \"seed\": 7,\n"
+    "  \"realisations\": 500,\n"
+    "  \"surface\": {\"hurst\": [0.2, 0.5, 0.8], \"wavelength_ratio\": 16}\n"
+    "}\n"
+    "```\n\n"
+    "**Sweeps.** Where the column \"sweeps\" says yes, a list of values in place of one makes "
+    "cases: one of each value, and with several\nlists one of each combination, up to %d. They "
+    "are numbered from 0 in the order of the file, the last list running fastest. A\nvalue that is "
+    "an array itself, such as bins, is swept by a list of arrays.\n\n"
+    "**Realisations.** Each case is computed on so many random surfaces; curves are their means, "
+    "with standard errors that fall with\nthe root of their number. Realisation r of a case is the "
+    "same surface whatever the number of realisations and workers.\n\n"
+    "**Seed.** All random numbers follow from the seed, the case and the realisation: the same "
+    "study gives the same results, to the bit.\n\n"
+    "Lengths are in units of lambda_s, the shortest wavelength. `-` as a unit: a pure number or "
+    "none; as a default: absent unless given.\n";
+
+/* --- together --- */
+
+static int reference_open(struct reference *out, const struct study_kind *kinds, size_t kind_count,
+                          struct error *err) {
+    *out = (struct reference){kinds, kind_count, kind_choices(kinds, kind_count)};
+    return out->names != NULL ? 0 : error_memory(err, kind_count * sizeof *out->names, "kinds");
+}
+
+/* "surface.hurst" and "surface/hurst" mean "/surface/hurst". */
+static void path_read(const char *given, char *path, size_t size) {
+    snprintf(path, size, "%s%s", *given == '/' ? "" : "/", given);
+    for (char *at = path; *given != '/' && *at != '\0'; at++)
+        if (*at == '.')
+            *at = '/';
+}
+
+static bool is_known(const struct reference *reference, const char *path) {
+    for (size_t p = 0; p < COMMON_PARAMETERS.count; p++)
+        if (is_below(path, COMMON_PARAMETERS.rows[p].path))
+            return true;
+    const struct parameter *row;
+    for (size_t k = 0; k < reference->kind_count; k++)
+        for (size_t p = 0; (row = parameter_row(reference->kinds[k].tables, p)) != NULL; p++)
+            if (is_below(path, row->path))
+                return true;
+    return false;
+}
+
+int reference_print(FILE *file, const struct study_kind *kinds, size_t kind_count, const char *path,
+                    struct error *err) {
+    struct reference reference;
+    char below[POINTER_SIZE] = "";
+    int status = reference_open(&reference, kinds, kind_count, err);
+    if (status != 0)
+        return status;
+    if (path != NULL)
+        path_read(path, below, sizeof below);
+    if (is_known(&reference, below))
+        write_tables(file, &reference, below, print_table);
+    else
+        status = error_set(err, ERROR_INPUT, "a study has no parameter \"%.100s\"", path);
+    free(reference.names);
+    return status;
+}
+
+int reference_markdown(FILE *file, const struct study_kind *kinds, size_t kind_count,
+                       struct error *err) {
+    struct reference reference;
+    int status = reference_open(&reference, kinds, kind_count, err);
+    if (status != 0)
+        return status;
+    fprintf(file, INTRODUCTION, STUDY_CASES_MOST);
+    write_tables(file, &reference, NULL, markdown_table);
+    free(reference.names);
+    return 0;
+}
