@@ -245,8 +245,6 @@ int surface_case_fill(struct surface_case *out, struct values *values, struct er
         status = read_table(out, values, points, err);
     if (status == 0)
         read_grid(out, values, points);
-    else
-        surface_case_clear(out);
     return status;
 }
 

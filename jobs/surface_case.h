@@ -21,7 +21,8 @@ int surface_case_read(struct surface_case *out, const cJSON *parameters, struct 
                       struct error *err);
 /* The same from values that a kind has checked by tables with SURFACE_PARAMETERS among them: what
  * does not fit together is told by values_status alone, and *out then lacks what depends on it (a
- * grid that cannot be made has nx = 0). Fails only with ERROR_MEMORY, *out cleared. */
+ * grid that cannot be made has nx = 0). Fails only with ERROR_MEMORY; *out is to be cleared either
+ * way. */
 int surface_case_fill(struct surface_case *out, struct values *values, struct error *err);
 void surface_case_clear(struct surface_case *surface);
 
