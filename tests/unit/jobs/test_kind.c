@@ -6,6 +6,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,6 +68,70 @@ static void rows(void **state) {
     }
 }
 
+/* Calls each for every path of a parameter that a source file has in quotes. */
+static void paths_each(const char *source, const char *file,
+                       void (*each)(const char *path, const char *file)) {
+    char name[4096], line[500];
+    snprintf(name, sizeof name, "%s/%s", source, file);
+    FILE *text = fopen(name, "r");
+    if (text == NULL)
+        fail_msg("cannot open %s", name);
+    while (fgets(line, sizeof line, text) != NULL)
+        for (char *at = line; (at = strstr(at, "\"/")) != NULL;) {
+            char *path = at + 1, *end = strchr(path, '"');
+            at = end != NULL ? end + 1 : path;
+            if (end != NULL) {
+                *end = '\0';
+                each(path, file);
+            }
+        }
+    fclose(text);
+}
+
+enum { ROWS_MOST = 256 };
+static bool read_rows[ROWS_MOST]; /* of all kinds, in their order */
+static size_t paths_found;
+
+/* Marks the rows of a path; a path that no kind has is a reader's mistake. */
+static void mark_read(const char *path, const char *file) {
+    size_t before = 0;
+    bool known = false;
+    for (size_t k = 0; k < JOB_KIND_COUNT; k++) {
+        size_t index;
+        if (parameter_find(JOB_KINDS[k]->tables, path, &index) != NULL) {
+            assert_true(before + index < ROWS_MOST);
+            read_rows[before + index] = known = true;
+        }
+        before += parameter_count(JOB_KINDS[k]->tables);
+    }
+    if (!known)
+        fail_msg("%s reads %s, which no table has", file, path);
+    paths_found++;
+}
+
+/* Both ways: readers ask for rows alone, and every row is read by one of them. */
+static void readers_and_rows_agree(void **state) {
+    (void)state;
+    static const char *const READERS[] = {"jobs/surface_case.c", "jobs/contact/contact_case.c",
+                                          "jobs/statistics/statistics_case.c"};
+    const char *source = getenv("RUGO_SOURCE");
+    if (source == NULL) { /* it is set by tests/run-tests */
+        print_message("SKIP: RUGO_SOURCE does not say where the tree is\n");
+        skip();
+    }
+    for (size_t r = 0; r < sizeof READERS / sizeof *READERS; r++)
+        paths_each(source, READERS[r], mark_read);
+    assert_true(paths_found >= 40);
+    const struct parameter *row;
+    size_t before = 0;
+    for (size_t k = 0; k < JOB_KIND_COUNT; k++) {
+        for (size_t p = 0; (row = parameter_row(JOB_KINDS[k]->tables, p)) != NULL; p++)
+            if (!read_rows[before + p] && strcmp(row->path, "/contact/young") != 0) /* no effect */
+                fail_msg("nobody reads %s", row->path);
+        before += parameter_count(JOB_KINDS[k]->tables);
+    }
+}
+
 static void kinds(void **state) {
     (void)state;
     assert_non_null(kind_find("statistics"));
@@ -80,6 +145,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values),
         cmocka_unit_test(rows),
+        cmocka_unit_test(readers_and_rows_agree),
         cmocka_unit_test(kinds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
