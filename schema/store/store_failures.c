@@ -10,12 +10,15 @@ void failures_free(struct failure *failures, size_t count) {
     free(failures);
 }
 
-static int append_failure(sqlite3_stmt *row, struct failure **list, size_t count,
+/* Counts a failure once it has a place in the list, complete or not. */
+static int append_failure(sqlite3_stmt *row, struct failure **list, size_t *number,
                           struct error *err) {
+    size_t count = *number;
     struct failure *larger = realloc(*list, (count + 1) * sizeof *larger);
     if (larger == NULL)
         return error_memory(err, (count + 1) * sizeof *larger, "failures");
     *list = larger;
+    *number = count + 1;
     larger[count] = (struct failure){sqlite3_column_int64(row, 0),
                                      (uint64_t)sqlite3_column_int64(row, 1),
                                      (uint64_t)sqlite3_column_int64(row, 2),
@@ -44,7 +47,7 @@ int store_failures(struct store *store, const char *id, struct failure **out, si
                         "= ?1 AND publish_error IS NOT NULL ORDER BY 1, 2 LIMIT 1000",
                         "i", row);
     while (status == 0 && (status = store_step(store, statement, err)) == 1)
-        status = append_failure(statement, &list, n++, err);
+        status = append_failure(statement, &list, &n, err);
     if (status < 0) {
         failures_free(list, n);
         return status;

@@ -38,6 +38,9 @@ static const char *name_of(const char *path) {
 
 int command_fail_faults(const char *file, const struct fault_list *faults) {
     size_t kept = faults->count < FAULTS_KEPT ? faults->count : FAULTS_KEPT;
+    if (faults->faults == NULL && faults->count > 0)
+        fprintf(stderr, "%s: %zu faults, and no memory to tell them\n", name_of(file),
+                faults->count);
     for (size_t i = 0; faults->faults && i < kept; i++) {
         const struct fault *fault = &faults->faults[i];
         const char *pointer = fault->pointer ? fault->pointer : "";

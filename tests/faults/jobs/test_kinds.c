@@ -2,7 +2,8 @@
  * says that memory is short; nothing leaks, and the next attempt gives the same partial result. */
 #include "tests/support/check.h"
 
-#include "jobs/kind.h"
+#include "jobs/merger.h"
+#include "jobs/runner.h"
 #include "tests/support/failing/each_allocation.h"
 #include <stdlib.h>
 #include <string.h>
@@ -35,14 +36,14 @@ static const char FULL[] =
 static int check_case(void *context, struct error *err) {
     const struct work *work = context;
     struct fault_list faults = {0};
-    struct job_estimate estimate = {0};
+    struct study_cost cost = {0};
     cJSON *parameters = cJSON_Parse(work->text);
     int status = parameters != NULL
-                     ? kind_find(work->kind)->check(parameters, &faults, &estimate, err)
+                     ? kind_check(kind_find(work->kind), parameters, &faults, &cost, err)
                      : error_memory(err, strlen(work->text), "parameters");
     assert_int_equal(faults.count, 0);
     if (status == 0)
-        assert_true(estimate.seconds > 0 && isfinite(estimate.memory_bytes));
+        assert_true(cost.seconds > 0 && isfinite(cost.memory_bytes));
     fault_list_clear(&faults);
     cJSON_Delete(parameters);
     return status;
@@ -53,14 +54,13 @@ static int run_block(const struct work *work, const cJSON *parameters, struct bl
     const struct job_kind *kind = kind_find(work->kind);
     struct job_shared *shared = NULL;
     struct job_runner *runner = NULL;
-    int status = kind->shared_create != NULL ? kind->shared_create(&shared, parameters, err) : 0;
+    int status = job_shared_create(&shared, kind, parameters, err);
     if (status == 0)
-        status = kind->runner_create(&runner, parameters, shared, 5, 2, err);
+        status = runner_create(&runner, kind, parameters, shared, 5, 2, err);
     if (status == 0)
-        status = kind->run(runner, 0, work->count, NULL, result, err);
-    kind->runner_destroy(&runner);
-    if (kind->shared_destroy != NULL)
-        kind->shared_destroy(&shared);
+        status = runner_run(runner, 0, work->count, NULL, result, err);
+    runner_destroy(&runner);
+    job_shared_destroy(&shared);
     return status;
 }
 
@@ -87,17 +87,20 @@ static int merge_case(void *context, struct error *err) {
     const struct work *work = context;
     const struct job_kind *kind = kind_find(work->kind);
     struct job_merger *merger = NULL;
-    cJSON *document = NULL, *parameters = cJSON_Parse(work->text);
-    int status = parameters != NULL ? kind->merger_create(&merger, parameters, err)
+    struct case_result result = {0};
+    cJSON *parameters = cJSON_Parse(work->text);
+    int status = parameters != NULL ? merger_create(&merger, kind, parameters, err)
                                     : error_memory(err, strlen(work->text), "parameters");
     if (status == 0)
-        status = kind->fits(merger, &work->expected, err);
+        status = merger_fits(merger, &work->expected, err);
     if (status == 0)
-        status = kind->merge(merger, &work->expected, err);
+        status = merger_add(merger, &work->expected, err);
     if (status == 0)
-        status = kind->curves(merger, &document, err);
-    cJSON_Delete(document);
-    kind->merger_destroy(&merger);
+        status = merger_result(merger, &result, err);
+    if (status == 0)
+        status = merger_complete(kind, parameters, &result, err);
+    result_clear(&result);
+    merger_destroy(&merger);
     cJSON_Delete(parameters);
     return status;
 }

@@ -108,10 +108,10 @@ static int live(void *context, struct error *err) {
 static int give_up(void *context, struct error *err) {
     struct life *life = context;
     char id[STUDY_ID_SIZE];
-    struct claimed_job job = {0};
-    struct claim claim = {.worker = "w", .host = "h", .study = id, .count = 1};
+    struct claimed_job jobs[3] = {0};
+    struct claim claim = {.worker = "w", .host = "h", .study = id, .count = 3};
     struct failure *failures = NULL;
-    size_t count = 0;
+    size_t count = 0, failed = 0;
     uint64_t again = 0;
     bool existing = false;
     int status = store_begin(life->store, err);
@@ -119,17 +119,18 @@ static int give_up(void *context, struct error *err) {
         return status;
     status = store_submit(life->store, life->study, NULL, id, &existing, err);
     if (status == 0)
-        status = store_claim(life->store, &claim, &job, &count, err);
+        status = store_claim(life->store, &claim, jobs, &count, err);
+    for (size_t n = 0; n < count && status == 0; n++)
+        status = store_fail(life->store, jobs[n].id, jobs[n].token, "no reason", true, err);
     if (status == 0)
-        status = store_fail(life->store, job.id, job.token, "no reason", true, err);
-    if (status == 0)
-        status = store_failures(life->store, id, &failures, &count, err);
+        status = store_failures(life->store, id, &failures, &failed, err);
     if (status == 0)
         status = store_retry(life->store, id, &again, err);
     if (status == 0)
         status = store_cancel(life->store, id, err);
-    claimed_job_clear(&job);
-    failures_free(failures, status == 0 ? count : 0);
+    for (size_t n = 0; n < count; n++)
+        claimed_job_clear(&jobs[n]);
+    failures_free(failures, failed);
     struct error late = {0};
     int committed = store_commit(life->store, &late);
     if (status == 0 && committed != 0)
