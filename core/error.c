@@ -6,7 +6,7 @@
 #include <string.h>
 
 void error_fill(struct error *err, int code, const char *format, ...) {
-    if (!err)
+    if (err == NULL)
         return;
     va_list arguments;
     va_start(arguments, format);
@@ -16,7 +16,7 @@ void error_fill(struct error *err, int code, const char *format, ...) {
 }
 
 int error_context(struct error *err, const char *format, ...) {
-    if (!err)
+    if (err == NULL)
         return ERROR_SYSTEM;
     char context[sizeof err->text];
     va_list arguments;

@@ -118,7 +118,8 @@ static int compliance_allocate(struct compliance *compliance, struct error *err)
     compliance->length = array_create(waves, sizeof *compliance->length);
     if (has_weight(&compliance->block))
         compliance->weight = array_create(waves, sizeof *compliance->weight);
-    if (!compliance->length || (has_weight(&compliance->block) && !compliance->weight))
+    if (compliance->length == NULL ||
+        (has_weight(&compliance->block) && compliance->weight == NULL))
         return error_memory(err, waves * sizeof *compliance->length, "the compliance");
     return 0;
 }
@@ -129,36 +130,36 @@ static int compliance_fill(struct compliance *compliance, struct error *err) {
         status = layered_lengths(compliance, err);
     else
         halfspace_lengths(compliance);
-    if (compliance->weight)
+    if (compliance->weight != NULL)
         weight_symbols(compliance);
-    return status ? status : lengths_check(compliance, err);
+    return status != 0 ? status : lengths_check(compliance, err);
 }
 
 int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,
                       struct error *err) {
     *out = NULL;
     int status = grid_check(grid, err);
-    if (!status)
+    if (status == 0)
         status = block_check(block, err);
-    if (status)
+    if (status != 0)
         return status;
     struct compliance *compliance = array_create(1, sizeof *compliance);
-    if (!compliance)
+    if (compliance == NULL)
         return error_memory(err, sizeof *compliance, "the compliance");
     compliance->grid = *grid;
     compliance->block = *block;
     compliance->waves = wave_count(grid);
     status = compliance_allocate(compliance, err);
-    if (!status)
+    if (status == 0)
         status = compliance_fill(compliance, err);
-    if (status)
+    if (status != 0)
         compliance_destroy(&compliance);
     *out = compliance;
     return status;
 }
 
 void compliance_destroy(struct compliance **compliance) {
-    if (!compliance || !*compliance)
+    if (compliance == NULL || *compliance == NULL)
         return;
     free((*compliance)->length);
     free((*compliance)->weight);

@@ -376,10 +376,9 @@ double conjugate_gradient_tangent(struct conjugate_gradient *d) {
         d->t[i] = d->old[i] = 0;
         sum += d->q[i];
     }
-    if (!(sum > 0)) {
+    if (!(sum > 0))
         for (size_t i = 0; i < d->padded; i++)
             sum += d->q[i] = d->p[i];
-    }
     scale(d->n, (double)d->n / sum, d->q);
     filter(d, d->soft, d->q, d->u);
     for (size_t iteration = 0;; iteration++) {

@@ -281,7 +281,7 @@ int layered_lengths(struct compliance *compliance, struct error *err) {
     double *thickness = array_create(LAYERS_MOST, sizeof *thickness);
     struct symbols *directions = array_create(symbols, sizeof *directions);
     int status = 0;
-    if (!mesh || !thickness || !directions) {
+    if (mesh == NULL || thickness == NULL || directions == NULL) {
         status = error_memory(err, symbols * sizeof *directions, "the mesh of the block");
     } else {
         *mesh = (struct layered_mesh){.compliance = compliance,
@@ -289,7 +289,7 @@ int layered_lengths(struct compliance *compliance, struct error *err) {
                                       .x = directions,
                                       .y = directions + grid->nx / 2 + 1};
         status = mesh_prepare(mesh, err);
-        if (!status)
+        if (status == 0)
             mesh_solve(mesh);
     }
     free(directions);

@@ -27,7 +27,7 @@ void aliasing_unfold(const struct level *above, size_t components, const double 
     }
 }
 
-/* A wave in the middle is an alias of one of either half plane. */
+/* A wave with 2 mx = level->nx has an alias in either half plane, and is added to both. */
 void aliasing_fold(const struct level *above, size_t components, const double *field,
                    double *below) {
     const struct level *level = above + 1;

@@ -1,11 +1,13 @@
-/* Waves of levels of unlike columns. Private to core/full (preconditioner.h).
+/* How waves on a level with narrow columns correspond to those on the next level, whose columns are
+ * twice as wide. Private to core/full (preconditioner.h).
  *
- * Half as many nodes tell only half (a quarter) of the waves apart: on the level below, wave k is
- * the same as its aliases. Corners between the nodes are means, so that a wave there moves its
- * aliases k above by (1 + cos k)/2 in each direction (wave_phases_hanging). A wave that is an alias
- * of one of the other half plane is that one's mirror image: complex conjugate, sideways with the
- * other sign. Fields are [component][real, imaginary][wave], waves in the layout of transform.h,
- * the last component the vertical one. */
+ * With half as many nodes along each axis the lower level represents a half (of profiles) or a
+ * quarter of the waves: there, wave k equals all its aliases. Corners between the lower nodes are
+ * means of these, so that a wave with unit amplitude at the lower nodes gives its alias k above the
+ * amplitude (1 + cos k)/2 along each axis (wave_phases_hanging). An alias in the half plane that is
+ * not stored is represented by its mirror image: the complex conjugate, with the opposite sign for
+ * sideways components. Fields are [component][real, imaginary][wave] with waves in the layout of
+ * transform.h; the vertical component is the last. */
 #ifndef RUGO_CORE_FULL_ALIASING_H
 #define RUGO_CORE_FULL_ALIASING_H
 
@@ -14,12 +16,13 @@
 static inline size_t level_waves(const struct level *level) {
     return (level->nx / 2 + 1) * level->ny;
 }
-/* The wave of the level below that a wave of the level above it is an alias of. */
+/* The wave of the level below that equals a wave of the level above; *mirrored: as its mirror
+ * image. */
 size_t aliasing_below(const struct level *above, size_t wave, bool *mirrored);
-/* A field of the level below, given to all aliases above. */
+/* Copies a field of the level below to all its aliases above. */
 void aliasing_unfold(const struct level *above, size_t components, const double *below,
                      double *out);
-/* The transpose: a field of the level above, summed over aliases below. */
+/* The transpose: sums a field of the level above over the aliases of each wave below. */
 void aliasing_fold(const struct level *above, size_t components, const double *field,
                    double *below);
 

@@ -35,7 +35,7 @@ INLINE void jacobians(int d, double reach, double position[8][3], pointwise pare
             }
 }
 
-/* adjoint[l][k] = determinant times the inverse. */
+/* adjoint[l][k] is the determinant times the inverse. */
 INLINE void invert(int d, pointwise m[3][3], pointwise determinant, pointwise adjoint[3][3]) {
     for (int q = 0; q < 1 << d; q++) {
         if (d == 2) {
@@ -110,15 +110,15 @@ double element_quality(int dimension, double position[8][3]) {
 
 /* --- energy, forces, stiffness --- */
 
-/* By node as the innermost index. */
+/* Values with the node as the innermost index. */
 typedef double nodes[ELEMENT_NODES];
 
 struct field {
     struct strained point;
-    pointwise gradient[8][3]; /* in space, [a][k][q] */
+    pointwise gradient[8][3]; /* by deformed positions, [a][k][q] */
     nodes across[8][3];       /* the same, [q][k][a] */
-    nodes growth_gradient[3]; /* [i][a]: V d growth/du */
-    double growth;            /* mean of the points' dilatation */
+    nodes growth_gradient[3]; /* [i][a]: V d growth/du of node a, component i */
+    double growth;            /* mean over the element of strained.dilatation */
 };
 
 /* out[i][a]: the integral of tensor_ik grad_k N_a. */
@@ -176,9 +176,9 @@ INLINE bool field_make(int d, const struct material *material, const struct elem
     return f->growth > material->law->growth_least;
 }
 
-/* Of the mean dilatation: its energy over V, the pull outward and what it adds to the stiffness,
- * times V, all by its growth; the slope of its strain e by growth, and the pressure that it
- * makes. */
+/* The mean dilatation's energy over V, the stress `pull` that it adds (positive outward) and its
+ * stiffness times V, as functions of its growth; the derivative `slope` of its strain e by growth,
+ * and the pressure mean e. */
 struct mean_dilatation {
     double energy, pull, stiffness, slope, bound;
 };
@@ -197,7 +197,8 @@ INLINE struct mean_dilatation mean_dilatation_of(const struct material *material
                                     .bound = bound};
 }
 
-/* Of one node: t[i*d + k][j], the first Piola-Kirchhoff stress (in space) by its displacement j. */
+/* For one node: t[i*d + k][j] is the derivative of the first Piola-Kirchhoff stress ik, in space,
+ * by the node's displacement j. */
 INLINE void stresses_by(int d, pointwise gradient[3], struct moduli *m, pointwise t[9][3]) {
     for (int i = 0; i < d; i++)
         for (int k = 0; k < d; k++)

@@ -8,7 +8,7 @@
 static const double PI = 3.14159265358979323846;
 enum { ITERATIONS_MOST = 200 };
 
-/* (1, 4, 1)/6 in one direction. */
+/* Symbol of the mean (1, 4, 1)/6 along one axis (F10.5). */
 static double weight_symbol(size_t mode, size_t n) {
     return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
 }
@@ -90,7 +90,7 @@ static double dot(size_t n, const double *a, const double *b) {
     return sum;
 }
 
-/* Out of what is left to move: r, mean 0 in the set. Returns that mean, the shift. */
+/* Subtracts from r its mean over the set, and sets r to 0 outside. Returns that mean, the shift. */
 static double settle_shift(struct face_solver *s, const bool *active) {
     double shift = mean_active(s->face, active, s->r);
     restrict_to(s->face, active, shift, s->r);

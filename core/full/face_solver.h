@@ -1,6 +1,6 @@
-/* Forces on the nodes in contact that keep a flat block's face in place there: the linear contact
- * problem of a given set of nodes, by conjugate gradients on the face alone (as the tangent in
- * core/contact/conjugate_gradient.c). Private to core/full. */
+/* The contact forces that move given nodes of a flat block's face to given heights: the linear
+ * contact problem of a known active set, solved by preconditioned conjugate gradients on the face
+ * alone (as in core/contact/conjugate_gradient.h). Private to core/full. */
 #ifndef RUGO_CORE_FULL_FACE_SOLVER_H
 #define RUGO_CORE_FULL_FACE_SOLVER_H
 
@@ -10,9 +10,9 @@
 struct face_solver {
     struct transform *transform; /* owned, as all below */
     size_t face;
-    double *weight;          /* by wave: of the gap's weighting; NULL: 1 */
-    double *soft, *stiff;    /* by wave: weighted compliance, and its inverse */
-    double *r, *old, *t, *w; /* face: scratch */
+    double *weight;          /* by wave: symbol of the gap weighting; NULL: 1 */
+    double *soft, *stiff;    /* by wave: the weighted compliance, and its inverse */
+    double *r, *old, *t, *w; /* by node of the face: scratch */
 };
 
 int face_solver_create(struct face_solver *out, const struct mesh *mesh,
@@ -20,11 +20,11 @@ int face_solver_create(struct face_solver *out, const struct mesh *mesh,
                        struct error *err);
 void face_solver_clear(struct face_solver *solver);
 
-/* The weighted values of the face's nodes; in and out may be the same. */
+/* Applies the gap weighting (F10.5) to values at the face's nodes; in and out may be the same. */
 void face_solver_weigh(const struct face_solver *solver, const double *in, double *out);
-/* Forces on the active nodes, of the sum given, 0 elsewhere, that together with a shift of the
- * whole block move the weighted face, which is at `face`, to `target` where active: to a part
- * `tolerance` of what there was to move. Returns the shift. */
+/* Computes forces on the active nodes (0 elsewhere) with the given sum. Together with a shift of
+ * the whole block, which is returned, they move the weighted face from `face` to `target` at the
+ * active nodes, to within `tolerance` of the distance they had to move. */
 double face_solver_solve(struct face_solver *solver, const bool *active, const double *face,
                          const double *target, double sum, double tolerance, double *forces);
 

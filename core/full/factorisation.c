@@ -7,8 +7,8 @@ enum { HELD = -1 };
 
 struct factorisation {
     const struct mesh *mesh; /* borrowed */
-    int *unknown;            /* mesh_degrees_of_freedom: number, or HELD */
-    bool *held;              /* unknowns held by contact */
+    int *unknown;            /* by degree of freedom: number of its unknown, or HELD */
+    bool *held;              /* by unknown: whether contact holds it */
     size_t unknowns;
     cholmod_common common;
     cholmod_triplet *triplet;
@@ -85,8 +85,9 @@ void factorisation_destroy(struct factorisation **factorisation) {
     *factorisation = NULL;
 }
 
-/* Entries of one block: of degrees_of_freedom r0.. by c0... The matrix takes the lower half; blocks
- * of a level with itself come both ways, those between levels once. */
+/* Appends the entries of one d x d block with first row r0 and first column c0; returns the new
+ * count. The matrix stores its lower half. twice: the tangent stores the block and its transpose,
+ * of which only one may be taken. */
 static size_t fill_block(struct factorisation *f, size_t r0, size_t c0, bool twice,
                          const double *value, size_t count) {
     size_t d = (size_t)f->mesh->dimension;
@@ -104,7 +105,7 @@ static size_t fill_block(struct factorisation *f, size_t r0, size_t c0, bool twi
     return count;
 }
 
-/* Entries of one place are summed. Zeros stay, so that the pattern does. */
+/* CHOLMOD adds entries of the same place. Zeros are kept, so that the pattern stays the same. */
 static void fill(struct factorisation *f, const struct tangent *tangent) {
     const struct mesh *mesh = f->mesh;
     size_t d = (size_t)mesh->dimension, count = 0, node = 0, neighbour[NEIGHBOURS_MOST];
@@ -148,7 +149,8 @@ int factorisation_run(struct factorisation *f, const struct tangent *tangent, co
     if (f->factor != NULL && f->beyond == NULL)
         f->beyond = vector(f, f->factor->maxesize > 0 ? f->factor->maxesize : 1);
     bool done = matrix != NULL && f->factor != NULL && f->beyond != NULL &&
-                cholmod_factorize(matrix, f->factor, &f->common) && f->common.status == CHOLMOD_OK;
+                cholmod_factorize(matrix, f->factor, &f->common) != 0 &&
+                f->common.status == CHOLMOD_OK;
     int status = done ? 0 : failure(f, err);
     cholmod_free_sparse(&matrix, &f->common);
     return status;
@@ -162,8 +164,8 @@ int factorisation_solve(struct factorisation *f, double *x, struct error *err) {
     for (size_t n = 0; n < degrees_of_freedom; n++)
         if (f->unknown[n] != HELD && !f->held[f->unknown[n]])
             load[f->unknown[n]] += x[n];
-    if (!cholmod_solve2(CHOLMOD_A, f->factor, f->load, NULL, &f->solution, NULL, &f->permuted,
-                        &f->beyond, &f->common))
+    if (cholmod_solve2(CHOLMOD_A, f->factor, f->load, NULL, &f->solution, NULL, &f->permuted,
+                       &f->beyond, &f->common) == 0)
         return failure(f, err);
     const double *displacement = f->solution->x;
     for (size_t n = 0; n < degrees_of_freedom; n++)

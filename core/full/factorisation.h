@@ -1,8 +1,9 @@
-/* Sparse Cholesky factorisation of a tangent (CHOLMOD, supernodal): the pattern is analysed once,
- * whatever is in contact.
+/* Sparse Cholesky factorisation of a tangent (CHOLMOD, supernodal). The pattern does not depend on
+ * the nodes in contact, so that it is analysed only once.
  *
- * The far side has one vertical displacement for all its nodes, and its first node is held
- * sideways. Nodes in contact are held vertically: their rows and columns become those of 1. */
+ * All nodes of the far side share one vertical displacement, and its first node does not move
+ * sideways. Rows and columns of vertical displacements in contact are replaced by those of the
+ * identity. */
 #ifndef RUGO_CORE_FULL_FACTORISATION_H
 #define RUGO_CORE_FULL_FACTORISATION_H
 
@@ -13,11 +14,12 @@ struct factorisation;
 int factorisation_create(struct factorisation **out, const struct mesh *mesh, struct error *err);
 void factorisation_destroy(struct factorisation **factorisation);
 
-/* active[face]. ERROR_NUMERIC when the matrix is not positive definite. */
+/* Factorises the tangent for an active set (a flag for each node of the face). ERROR_NUMERIC when
+ * the matrix is not positive definite. */
 int factorisation_run(struct factorisation *factorisation, const struct tangent *tangent,
                       const bool *active, struct error *err);
-/* x, mesh_degrees_of_freedom: from forces to displacements of the last factorisation; 0 where held.
- * Forces on the far side's vertical are summed. */
+/* Replaces the forces x (mesh_degrees_of_freedom values) by the displacements of the last
+ * factorisation, which are 0 where nodes are held. Vertical forces on the far side are summed. */
 int factorisation_solve(struct factorisation *factorisation, double *x, struct error *err);
 
 #endif

@@ -11,25 +11,26 @@ const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
                                            .max_iterations = 60,
                                            .least_step = 1.0 / 256};
 
-/* Change of a cell's stretch in a load step. */
+/* Largest change of the relative area of a cell of the face in one load step. */
 static const double STRETCH_MOST = 0.25;
 
-/* Within, lengths are in steps along x. */
+/* All lengths in this file are in units of dx, the mesh's unit. */
 struct full {
     struct grid grid;
     struct full_options options;
     struct mesh *mesh;
     struct newton newton;
     struct compliance *compliance;
-    struct contact *linear;           /* the guess of what touches */
-    double *z;                        /* heights, mean 0, in steps */
-    double *pressure, *gap, *opening; /* face: what is told */
-    double *kept;                     /* displacements of the last load that went well */
-    double *displacement;             /* displacements, in the user's unit */
-    bool *kept_active;                /* face: its active set */
-    bool *guess, *touches;            /* face: the linear model's, at that load and predicted */
-    double load;                      /* that load; 0: lifted off */
-    double rms;                       /* height, in steps */
+    struct contact *linear;           /* guesses which nodes touch */
+    double *z;                        /* heights of mean 0 */
+    double *pressure, *gap, *opening; /* by node of the face: results in the user's units */
+    double *kept;                     /* displacements of the last load that converged */
+    double *displacement;             /* displacements in the user's unit */
+    bool *kept_active;                /* by node of the face: the active set of that load */
+    bool *guess, *touches; /* by node of the face: contact by the linear model at that load, and at
+                              the load being tried */
+    double load;           /* that load; 0: no contact */
+    double rms;            /* RMS height */
 };
 
 static int options_check(const struct full_options *options, struct error *err) {
@@ -53,8 +54,9 @@ static int arrays_create(struct full *f, struct error *err) {
     f->touches = array_create(face, sizeof *f->touches);
     f->kept = array_create(newton_unknowns(&f->newton), sizeof *f->kept);
     f->displacement = array_create(degrees_of_freedom, sizeof *f->displacement);
-    if (!f->z || !f->pressure || !f->gap || !f->opening || !f->kept_active || !f->guess ||
-        !f->touches || !f->kept || !f->displacement)
+    if (f->z == NULL || f->pressure == NULL || f->gap == NULL || f->opening == NULL ||
+        f->kept_active == NULL || f->guess == NULL || f->touches == NULL || f->kept == NULL ||
+        f->displacement == NULL)
         return error_memory(err, 2 * degrees_of_freedom * sizeof(double), "finite elements");
     return 0;
 }
@@ -132,7 +134,10 @@ double full_bytes(const struct grid *grid, const struct block *block,
     struct mesh *mesh = NULL;
     if (mesh_create(&mesh, grid, block, options->transition, NULL) != 0)
         return NAN;
-    enum { VECTORS = 6, FACES = 7 }; /* newton.h and this file: unknowns, face */
+    enum {
+        VECTORS = 6,
+        FACES = 7
+    }; /* arrays of newton.h and this file by unknown and by node of the face */
     struct material material = material_of(block->poisson, options->kinematics);
     bool pressures = gmres_needs_pressures(&material);
     double unknowns = (double)mesh_unknowns(mesh, pressures);
@@ -149,7 +154,7 @@ void full_set_stop(struct full *f, int (*stop)(void *context), void *context) {
     f->newton.context = context;
 }
 
-/* Heights of mean 0, in steps. */
+/* Copies the heights in units of dx, with mean 0. */
 static int take_heights(struct full *f, const double *z, struct error *err) {
     size_t n = f->mesh->face;
     struct sum sum = {0}, square = {0};
@@ -192,8 +197,8 @@ int full_begin(struct full *f, const double *z, struct error *err) {
 
 /* --- load steps --- */
 
-/* The active set kept, with the change that the linear model sees from there to this load. Where it
- * finds no answer, the set kept. */
+/* Predicts the active set at a load: the set of the last load, changed where the linear model's
+ * contact changes between the two loads. Where the linear model fails, the last set is kept. */
 static void predict(struct full *f, double load) {
     struct contact_state state;
     struct error ignored;
@@ -219,7 +224,7 @@ static void restore(struct full *f) {
     memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
 }
 
-/* Of the cells of the face, since the state kept. */
+/* Largest change of the relative area of a cell of the face since the last load that converged. */
 static double stretch_change(const struct full *f) {
     const struct mesh *m = f->mesh;
     double most = 0;
@@ -230,8 +235,9 @@ static double stretch_change(const struct full *f) {
     return most;
 }
 
-/* One load step. An equilibrium further than STRETCH_MOST from the state kept may be one that the
- * face comes to by folding only. *change: how far it is. */
+/* Takes one load step; *change says how far the equilibrium is from the last one. An equilibrium
+ * that changed by more than STRETCH_MOST is refused, because the face may have reached it only by
+ * folding. */
 static int step_to(struct full *f, double load, double *change, struct newton_end *end,
                    struct full_report *report, struct error *err) {
     predict(f, load);
@@ -253,8 +259,8 @@ static int step_to(struct full *f, double load, double *change, struct newton_en
     return status;
 }
 
-/* From the load kept to another: in one step, or in smaller ones that grow again once two in a row
- * have gone well and not too far. */
+/* Goes from the last load to another: in one step, or in smaller ones that grow again once two in a
+ * row have converged with changes below half of STRETCH_MOST. */
 static int raise_load(struct full *f, double goal, struct newton_end *end,
                       struct full_report *report, struct error *err) {
     double whole = goal - f->load, step = whole, change;
@@ -284,9 +290,10 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
     return 0;
 }
 
-/* --- what is told --- */
+/* --- results --- */
 
-/* Each cell gives a node its share: the integral of N is the same for all its corners where the
+/* Mean relative area of the cells around the nodes in contact. Each cell counts once for each of
+ * its corners in contact: the integral of a shape function is the same for all corners where the
  * cell is a parallelogram, and nearly so elsewhere. */
 static double contact_stretch(const struct full *f) {
     const struct mesh *m = f->mesh;
@@ -312,7 +319,7 @@ static double deepest_node(const struct full *f) {
     return deepest;
 }
 
-/* What violations are told over. */
+/* The length over which violations are reported. */
 static double height_scale(const struct full *f) {
     return f->rms > 0 ? f->rms : 1;
 }
@@ -347,8 +354,8 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
         sum_add(&gap, n->gap[node]);
         f->gap[node] = n->gap[node] * f->mesh->unit;
         f->opening[node] = n->opening[node] * f->mesh->unit;
-        /* A node whose force is 0 within the tolerance stays in the contact, which callers know by
-         * p > 0. */
+        /* A node whose force is 0 within the tolerance is still in contact, which callers recognise
+         * by p > 0. */
         f->pressure[node] = n->active[node] ? fmax(DBL_MIN, force / newton_node_area(n)) : 0;
         out->nodes += n->active[node];
     }

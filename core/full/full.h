@@ -1,15 +1,16 @@
-/* Elastic, frictionless contact of a rough block on a rigid flat by finite elements on the rough
- * geometry itself: finite strain (material.h), dual mortar contact, Newton with an active set.
+/* Elastic, frictionless contact of a rough block on a rigid flat, by finite elements on the rough
+ * geometry itself: finite strain (material.h), dual mortar contact, Newton's method with an active
+ * set (newton.h).
  *
- * The scene and what is told are those of core/contact/contact.h. The linear layered model of the
- * same block guesses which nodes touch at each load; it has no part in the answer. Pressures p are
- * contact forces over the nodes' tributary areas on the undeformed grid, so that their mean is the
- * load, exactly; how much the contact has shrunk or stretched sideways is told beside
- * (full_report.stretch). The face does not touch itself: where it would fold over itself a load
- * finds no equilibrium. In a load step no cell of the face stretches by more than a quarter, so
- * that one load and many lead to the same answer, or fail at the same load within a few least
- * steps. A solver belongs to one thread; the elastic state has no history, but each load starts
- * from the one before. */
+ * The surface, the loads and the results are those of core/contact/contact.h. The linear layered
+ * model of the same block guesses which nodes touch at each load; the answer does not depend on it.
+ * Pressures are contact forces over the nodes' tributary areas on the undeformed grid, so that
+ * their mean equals the load exactly; full_report.stretch says how much the contact shrank or
+ * stretched sideways. Contact of the face with itself is not modelled: a load under which the face
+ * would fold has no equilibrium. No load step changes the area of a cell of the face by more than a
+ * quarter, so that one load and many lead to the same answer, or fail at the same load to within a
+ * few smallest steps. A solver belongs to one thread. The elastic state has no history, but the
+ * iteration for each load starts from the load before. */
 #ifndef RUGO_CORE_FULL_FULL_H
 #define RUGO_CORE_FULL_FULL_H
 
@@ -19,63 +20,66 @@
 struct full_options {
     enum kinematics kinematics;
     enum equation_solver solver;
-    double transition;     /* of the columns (mesh.h) */
+    double transition;     /* depth, in column widths, from which columns may widen (mesh.h) */
     double tolerance;      /* largest out-of-balance force over the largest contact force */
-    size_t max_iterations; /* Newton's, a load step */
-    double least_step;     /* of the pressure asked less that before: smaller ones are failure */
+    size_t max_iterations; /* iterations of Newton's method a load step */
+    double least_step;     /* smallest load step over the change of load asked; smaller ones fail */
 };
 extern const struct full_options FULL_DEFAULTS;
 
-/* How the last load was solved; sums over its steps. */
+/* How the last load was solved; counts are sums over its load steps. */
 struct full_report {
     enum kinematics kinematics;
     size_t newton;      /* iterations */
     size_t linear;      /* iterations of the linear equations */
     size_t factored;    /* factorisations */
-    size_t changes;     /* of single nodes of the active set */
-    size_t cycles;      /* active sets that came back */
-    size_t steps, cuts; /* load steps that went well, and that had to be made smaller */
-    double reached;     /* mean pressure of the last step that went well, E* */
+    size_t changes;     /* nodes that entered or left the active set */
+    size_t cycles;      /* active sets that were met before */
+    size_t steps, cuts; /* load steps that converged, and load steps that were halved */
+    double reached;     /* mean pressure of the last step that converged, E* */
     double balance;     /* (sum of contact forces over load) - 1 */
     double residual;    /* largest out-of-balance force, over the largest contact force */
-    /* Of the nodes through the flat, the deepest, and the largest of the weighted gap outside of
-     * the contact (contact_state.penetration), which alone the solver keeps at 0; they differ with
-     * GAP_STANDARD. Over the RMS height, >= 0. */
+    /* Depth of the deepest node beyond the flat, and the largest negative weighted gap outside of
+     * the contact (contact_state.penetration). The solver keeps only the latter at 0; with
+     * GAP_STANDARD they differ. Over the RMS height, >= 0. */
     double penetration, weighted_penetration;
-    double stretch; /* tributary area of nodes in contact now, over that undeformed; or NaN */
+    double stretch; /* deformed over undeformed tributary area of the nodes in contact; NaN without
+                       contact */
     double slope;   /* steepest edge of the face */
-    double quality; /* least Jacobian over edges' lengths of all elements: 1 for bricks */
-    double history[NEWTON_HISTORY]; /* of residuals, the latest last ... */
-    size_t unchanged;               /* ... and how many of them since the active set changed */
+    double quality; /* smallest quality of an element (element_quality); 1 for bricks */
+    double history[NEWTON_HISTORY]; /* residuals of Newton's method, the latest last */
+    size_t unchanged;               /* residuals in history since the active set last changed */
 };
 
 struct full;
 
-/* block->model is not looked at. ERROR_INPUT, ERROR_MEMORY. */
+/* Errors: ERROR_INPUT, ERROR_MEMORY. block->model is ignored. */
 int full_create(struct full **out, const struct grid *grid, const struct block *block,
                 const struct full_options *options, struct error *err);
 void full_destroy(struct full **full);
-/* Of the mesh; 0 where there is none for the block. */
+/* Degrees of freedom of the mesh; 0 where the block cannot be meshed. */
 size_t full_degrees_of_freedom(const struct grid *grid, const struct block *block,
                                const struct full_options *options);
-/* Memory of a solver that takes so many iterations of the linear equations in each of Newton's; NaN
- * where there is no mesh for the block. A factorisation, where one is needed, is not in it. */
+/* Bytes of a solver that takes this many iterations of the linear equations in each iteration of
+ * Newton's method, without a factorisation; NaN where the block cannot be meshed. */
 double full_bytes(const struct grid *grid, const struct block *block,
                   const struct full_options *options, double iterations);
 
-/* stop is asked before each iteration of Newton's from now on; non-zero ends full_press with
- * ERROR_STOPPED, which leaves the solver as a load not reached does. NULL, as it begins: not. */
+/* From now on stop is called before each iteration of Newton's method; when it returns non-zero,
+ * full_press ends with ERROR_STOPPED and leaves the solver as after a load that was not reached.
+ * NULL, the initial value, never stops. */
 void full_set_stop(struct full *full, int (*stop)(void *context), void *context);
 
-/* Meshes the block of a surface (copies; any height of its mean), lifted off. ERROR_INPUT for a
- * surface that is not finite or too steep. */
+/* Meshes the block below a surface (copied; the mean height does not matter), without contact.
+ * ERROR_INPUT for a surface that is not finite or too steep. */
 int full_begin(struct full *full, const double *z, struct error *err);
-/* Presses to a mean pressure >= 0, in steps where needed. ERROR_NUMERIC tells the load reached; the
- * solver keeps that state, and a later load may be tried from it. report: NULL where not wanted. */
+/* Presses to a mean pressure >= 0, in load steps where needed. ERROR_NUMERIC names the load that
+ * was reached; the solver keeps that state, and another load may be tried from there. report may be
+ * NULL. */
 int full_press(struct full *full, double pressure, struct contact_state *out,
                struct full_report *report, struct error *err);
-/* Displacements of the state pressed, in the grid's length, and the mesh they belong to: freedom
- * node*dimension + axis. Valid until the next call. */
+/* The mesh, and the displacements of the last state in the grid's unit of length: component k of a
+ * node is at node*dimension + k. Valid until the next call. */
 const struct mesh *full_mesh(const struct full *full);
 const double *full_displacement(struct full *full);
 

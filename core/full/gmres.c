@@ -6,24 +6,24 @@
 #include <string.h>
 
 enum { BASIS = 24, RESTARTS = 10, LANES = 8 };
-/* A restart that leaves more than this of the residual is the last one. */
+/* A restart that leaves more than this share of the residual is the last one. */
 static const double STALLED = 0.5;
-/* Bulk over shear modulus from which pressures are unknowns of their own. */
+/* Bulk over shear modulus above which pressures are unknowns of their own. */
 static const double BULK_RATIO_LEAST = 10;
-/* Of the contact forces within the preconditioner. */
+/* Residual of face_solver.h that is left inside the preconditioner. */
 static const double FACE_TOLERANCE = 1e-3;
 
 struct gmres {
     const struct mesh *mesh; /* borrowed */
     struct preconditioner *preconditioner;
     struct face_solver face_solver;
-    struct volumetric *volumetric; /* of the flat block; NULL where pressures are no unknowns */
+    struct volumetric *volumetric; /* of the flat block; NULL where pressures are not unknowns */
     size_t degrees_of_freedom, unknowns; /* the pressures of elements follow the displacements */
     double *basis[BASIS + 1];            /* orthonormal residuals */
     double *direction[BASIS];            /* preconditioned */
     double *load, *moved, *pressures;
-    double *face, *target, *forces;      /* of the face */
-    double hessenberg[BASIS + 1][BASIS]; /* turned to upper triangular */
+    double *face, *target, *forces;      /* by node of the face */
+    double hessenberg[BASIS + 1][BASIS]; /* made upper triangular by rotate() */
     double cosine[BASIS], sine[BASIS], right[BASIS + 1];
 };
 
@@ -127,13 +127,13 @@ static void scale(size_t n, double factor, double *x) {
 
 /* --- operator and preconditioner --- */
 
-/* A factorisation is of the displacements' equations alone. */
+/* The factorisation covers the equations of the displacements alone. */
 static size_t unknowns_of(const struct gmres *k, const struct linear_system *system) {
     return system->factorisation != NULL ? k->degrees_of_freedom : k->unknowns;
 }
 
-/* Rows: forces; the sum of the far side's vertical ones at its first node; in contact the weighted
- * face. */
+/* y = A x. Rows are forces; the far side's first node has the sum of its vertical ones; vertical
+ * rows of nodes in contact are the weighted displacements of the face. */
 static void operate(struct gmres *k, const struct linear_system *system, const double *x,
                     double *y) {
     const struct mesh *mesh = k->mesh;
@@ -158,7 +158,8 @@ static void operate(struct gmres *k, const struct linear_system *system, const d
             y[mesh_vertical(mesh, node)] = k->face[node];
 }
 
-/* x: displacements by the tangent's factorisation, nodes in contact going where they are told. */
+/* x: displacements from the factorised tangent, where nodes in contact move by what r prescribes.
+ */
 static int precondition_factored(struct gmres *k, const struct linear_system *system,
                                  const double *r, double *x, struct error *err) {
     const struct mesh *mesh = k->mesh;
@@ -177,7 +178,7 @@ static int precondition_factored(struct gmres *k, const struct linear_system *sy
     return status;
 }
 
-/* x: the flat block's displacements and pressures under r. */
+/* x: the displacements and pressures of the flat block under r. */
 static void precondition_flat(struct gmres *k, const bool *active, const double *r, double *x) {
     const struct mesh *mesh = k->mesh;
     double sum = 0;
@@ -207,7 +208,7 @@ static void precondition_flat(struct gmres *k, const bool *active, const double 
 
 /* --- minimal residuals --- */
 
-/* Givens' rotations bring column c to triangular form. Returns the residual's size. */
+/* Givens' rotations make column c upper triangular. Returns the size of the residual. */
 static double rotate(struct gmres *k, size_t c) {
     double(*h)[BASIS] = k->hessenberg;
     for (size_t a = 0; a < c; a++) {
@@ -236,7 +237,8 @@ static void combine(struct gmres *k, size_t n, size_t count, double *x) {
         add(n, factor[a], k->direction[a], x);
 }
 
-/* From the residual in basis 0, of size *left: adds to x, and tells the size left. */
+/* One restart from the residual in basis 0, whose size is *left: adds its solution to x and sets
+ * *left to the size that remains. */
 static int cycle(struct gmres *k, const struct linear_system *system, double goal, double *x,
                  double *left, size_t *iterations, struct error *err) {
     size_t n = unknowns_of(k, system), c = 0;
@@ -267,7 +269,7 @@ static int cycle(struct gmres *k, const struct linear_system *system, double goa
     return 0;
 }
 
-/* The block floats sideways: its far side's first node goes back to its place. */
+/* Moves the block sideways as a whole, so that the first node of its far side does not move. */
 static void hold(const struct gmres *k, double *x) {
     size_t d = (size_t)k->mesh->dimension, held = mesh_far_side(k->mesh) * d;
     for (size_t axis = 0; axis + 1 < d; axis++) {
@@ -277,7 +279,8 @@ static void hold(const struct gmres *k, double *x) {
     }
 }
 
-/* Takes the pressures out of the forces x, where the displacements are solved for alone. */
+/* Subtracts the forces of the pressures from x, where the equations are solved for displacements
+ * alone. */
 static void eliminate_pressures(struct gmres *k, const struct linear_system *system, double *x) {
     memcpy(k->pressures, x + k->degrees_of_freedom,
            (k->unknowns - k->degrees_of_freedom) * sizeof *x);

@@ -1,18 +1,19 @@
-/* One linear step of Newton's: generalised minimal residuals (Saad &
- * Schultz 1986; flexible, Saad 1993), preconditioned by the flat block standing on the same nodes:
- * its stiffness is inverted exactly by waves (preconditioner.h), its contact forces come from the
- * face alone (face_solver.h). What is left to iterate is how far the rough block differs from the
- * flat one: about four iterations at RMS slopes of 0.1, whatever the number of nodes.
+/* The linear equations of one step of Newton's method, solved by generalised minimal residuals
+ * (Saad & Schultz 1986; flexible, Saad 1993) and preconditioned by the flat block with the same
+ * nodes: preconditioner.h inverts its stiffness wave by wave, face_solver.h finds its contact
+ * forces on the face. The number of iterations depends on how far the rough block differs from the
+ * flat one: about four at RMS slopes of 0.1, whatever the number of nodes.
  *
- * Nearly incompressible blocks differ more: what keeps the volume of a flat element changes that of
- * a rough one, by as much as the bulk modulus is large. There the pressure of each element is an
- * unknown of its own, p - k v = 0 beside the forces (v the change of volume that displacements
- * make, k the bulk modulus over the volume; Brezzi & Fortin 1991), in the flat block as in the
- * rough one: they differ by their slopes again.
+ * Nearly incompressible blocks differ more: displacements that keep the volume of a flat element
+ * change that of a rough one, and the bulk modulus multiplies the change. For them the pressure p
+ * of each element is an unknown of its own, with the equation p - k v = 0 beside the forces, where
+ * v is the change of volume by the displacements and k the bulk modulus over the volume (Brezzi &
+ * Fortin 1991). The flat block has the same unknowns, so that the two blocks differ by their slopes
+ * alone.
  *
- * Where even that is too far, as it is for steep blocks, a factorisation of the tangent itself
- * (factorisation.h), of displacements alone, takes the flat block's place. With the dual weighting
- * it is exact. */
+ * Where this converges too slowly, as for steep blocks, a factorisation of the tangent in the
+ * displacements alone (factorisation.h) replaces the flat block as the preconditioner. With the
+ * dual weighting it is exact. */
 #ifndef RUGO_CORE_FULL_GMRES_H
 #define RUGO_CORE_FULL_GMRES_H
 
@@ -26,25 +27,28 @@ int gmres_create(struct gmres **out, const struct mesh *mesh, const struct mater
                  enum gap_weighting weighting, struct error *err);
 void gmres_destroy(struct gmres **gmres);
 
-/* Memory that is touched by so many iterations a linear step. */
+/* Bytes that this many iterations a linear step touch. */
 double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations);
 
-/* Whether the tangent has to tell its volumetric part apart. */
+/* Whether the pressures of elements must be unknowns of their own, so that the tangent needs its
+ * volumetric part: the bulk modulus is more than ten times the shear modulus. */
 bool gmres_needs_pressures(const struct material *material);
 
-/* The weighted values of the face's nodes. */
+/* Applies the gap weighting (F10.5) to values at the face's nodes; in and out may be the same. */
 void gmres_weigh(const struct gmres *gmres, const double *in, double *out);
-/* What is to be solved; borrows all. */
+/* The equations of one step; all fields are borrowed. */
 struct linear_system {
     const struct tangent *tangent;
-    const bool *active;                  /* face */
-    struct factorisation *factorisation; /* of that tangent and set; NULL: the flat block serves */
+    const bool *active; /* by node of the face: whether it is in contact */
+    struct factorisation
+        *factorisation; /* of that tangent and active set; NULL: the flat block preconditions */
 };
 
-/* x, tangent_unknowns: in, forces, with the far side's vertical ones at its first node, and on
- * vertical degrees_of_freedom in contact the change asked of the weighted gap, and the excess of
- * pressures; out, displacements and pressures. Ends when the residual is `tolerance` of what it
- * was; ERROR_NUMERIC when it does not get there. Adds to *iterations. */
+/* Solves for x, which has tangent_unknowns values. On entry x holds forces, the sum of the vertical
+ * ones on the far side at its first node, on vertical degrees of freedom in contact the wanted
+ * change of the weighted gap, and the excess of the pressures. On return it holds displacements and
+ * pressures. Ends when the residual is `tolerance` times that of x = 0; ERROR_NUMERIC when it stays
+ * larger. Adds to *iterations. */
 int gmres_solve(struct gmres *gmres, const struct linear_system *system, double tolerance,
                 double *x, size_t *iterations, struct error *err);
 

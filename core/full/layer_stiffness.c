@@ -18,7 +18,7 @@ void layer_stiffness_make(const struct mesh *mesh, const struct material *materi
         position[a][1] = (a >> 1 & 1) * width * mesh->across;
         position[a][d - 1] = (a >> (d - 1) & 1) * (level[1].depth - level->depth);
     }
-    /* A brick at rest: nothing to fail. */
+    /* A brick without displacements is never inverted. */
     (void)element_shape_make(d, position, &shape);
     (void)element_evaluate(d, material, &shape, u, NULL, NULL, NULL, stiffness, volumetric);
     for (int a = 0; a < 1 << d; a++)

@@ -1,14 +1,15 @@
-/* Isotropic elasticity at one point, in two or three dimensions (two: plane strain).
+/* Isotropic elasticity at one point, in two dimensions (plane strain) or three (F14.1).
  *
- * Energy per reference volume, with e_p the logarithms of the principal stretches and J = det F:
+ * Energy per undeformed volume, with e_p the logarithms of the principal stretches and J = det F:
  *
  *   hencky:    shear sum e_p^2 + (local/2) (ln J)^2
  *   st_venant: shear sum E_p^2 + (local/2) (sum E_p)^2,  E_p = (exp(2 e_p) - 1)/2
  *   small:     shear e:e + (local/2) (tr e)^2,  e the symmetric part of the displacement gradient
  *
- * and the part of lambda that sees the element's mean dilatation alone (element.h), which is that
- * of ln J, sum E_p or tr e where the strain is uniform. To first order in the gradient all are the
- * linear material of core/contact/layered.c. Moduli in E* = E/(1 - nu^2). */
+ * The rest of lambda acts on the element's mean dilatation (element.h), which is that of ln J, sum
+ * E_p or tr e where the strain is uniform. To first order in the gradient all three are the linear
+ * material of core/contact/layered.c. Moduli are in E* = E/(1 - nu^2). Each law is a file,
+ * material_NAME.c. */
 #ifndef RUGO_CORE_FULL_MATERIAL_H
 #define RUGO_CORE_FULL_MATERIAL_H
 
@@ -20,48 +21,52 @@ struct material_law;
 struct material {
     const struct material_law *law; /* belongs to kinematics */
     enum kinematics kinematics;
-    double shear;       /* Lame's mu, in E* as the next */
-    double local, mean; /* parts of Lame's lambda: of the dilatation here, of its element's mean */
-    bool convex;        /* moduli lack what stress adds to them: no tangent any more, but a step
-                           along them leads downhill */
+    double shear;       /* Lame's mu, in E* */
+    double local, mean; /* parts of Lame's lambda, in E*: of the local dilatation, and of the
+                           element's mean dilatation */
+    bool convex; /* moduli leave out what stress adds to them: they are no tangent any more, but
+                    positive definite, so that a step along them lowers the energy */
 };
-/* Split as the layered model's. */
+/* Lambda is split as in the layered model (F10.4). */
 struct material material_of(double poisson, enum kinematics kinematics);
 
-/* A value at each Gauss point of an element, 2^dimension of them: all are worked on at once. */
+/* A value at each of the 2^dimension Gauss points of an element, which are processed together. */
 enum { POINTS_MOST = 8 };
 typedef double pointwise[POINTS_MOST];
 
-/* Strained points; components from the dimension on are not set. */
+/* State of strained points. Components from `dimension` on are not set. */
 struct strained {
-    pointwise energy;     /* E*, per reference volume */
-    pointwise dilatation; /* whose mean the element takes: J - 1; st_venant: sum E_p; small: tr e */
-    pointwise spread[3][3];  /* its first variation is spread_ik G_ik, G as below */
-    pointwise inverse[3][3]; /* of F: gradients here are grad_X F^-1; small: 1 */
-    pointwise stress[3][3];  /* Kirchhoff's */
-    pointwise axis[3][3];    /* axis[p]: principal direction in space */
-    pointwise principal[3];  /* Kirchhoff's stress along it */
-    pointwise strain[3];     /* e_p; st_venant: E_p */
-    pointwise square[3];     /* of the stretch */
+    pointwise energy;       /* E*, per undeformed volume */
+    pointwise dilatation;   /* J - 1; st_venant: sum E_p; small: tr e. Its mean over the element is
+                               element.h's growth */
+    pointwise spread[3][3]; /* the first variation of dilatation is spread_ik G_ik, G as below */
+    pointwise
+        inverse[3][3]; /* inverse of F: gradients by deformed positions are grad_X F^-1; small: 1 */
+    pointwise stress[3][3]; /* Kirchhoff's */
+    pointwise axis[3][3];   /* axis[p]: principal direction in space */
+    pointwise principal[3]; /* Kirchhoff's stress along axis p */
+    pointwise strain[3];    /* e_p; st_venant: E_p */
+    pointwise square[3];    /* of the principal stretch */
 };
 
-/* h[i][k] = du_i/dX_k. False, with nothing else promised, when a point is turned inside out. */
+/* Fills out from the displacement gradient h[i][k] = du_i/dX_k. Returns false, with undefined
+ * results, when a point is inverted. */
 bool material_strain(int dimension, const struct material *material, pointwise h[3][3],
                      struct strained *out);
 
-/* Components of a symmetric tensor: xx, yy, (zz,) xy, (xz, yz). */
+/* Number of component ik of a symmetric tensor in the order xx, yy, (zz,) xy, (xz, yz); i <= k. */
 enum { SYMMETRIC_MOST = 6 };
 static inline int symmetric_index(int dimension, int i, int k) {
     return i == k ? i : dimension + i + k - 1;
 }
 
-/* The second variation of the energy and of pull times the dilatation is, with G = dH F^-1 the
- * gradient in space of the variation,
+/* Moduli at strained points. The second variation of the energy and of pull times the dilatation
+ * is, with G = dH F^-1 the gradient of the variation by deformed positions,
  *
  *   e_ik material[symmetric_index(d, i, k)][j*d + l] G_jl + G_ik stress[k][l] G_il
  *
- * the first sum over k >= i, where e_ik = G_ik + G_ki, e_ii = G_ii. Each times the point's
- * weight. stress is Kirchhoff's, with that of the pull. */
+ * where the first sum is over k >= i and e_ik = G_ik + G_ki, e_ii = G_ii. Both are multiplied by
+ * the point's weight. stress is Kirchhoff's, including that of the pull. */
 struct moduli {
     pointwise material[SYMMETRIC_MOST][9];
     pointwise stress[3][3];

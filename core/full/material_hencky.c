@@ -36,7 +36,7 @@ WIDE_VECTORS static bool hencky_strain(int dimension, const struct material *mat
     return dimension == 2 ? strain(2, material, h, out) : strain(3, material, h, out);
 }
 
-/* s/sinh s, by its series where that is exact to rounding: its terms fall as (s/pi)^2. */
+/* s/sinh s by its series where that is exact to rounding; the terms fall as (s/pi)^2. */
 INLINE void over_sinh(int d, const pointwise s, pointwise out) {
     static const double SERIES_MOST = 1.0 / 16;
     int beyond = 0;
@@ -54,9 +54,9 @@ INLINE void over_sinh(int d, const pointwise s, pointwise out) {
             out[q] = s[q] / sinh(s[q]);
 }
 
-/* Stretches enter the shear moduli by (stress_p - stress_r)/(square_p - square_r), which for
- * Hencky's stress is shear/(stretch_p stretch_r) s/sinh s, s the difference of the logarithms: so
- * nothing is lost where stretches are equal or nearly so. */
+/* The shear moduli contain (stress_p - stress_r)/(square_p - square_r), which for Hencky's stress
+ * is shear/(stretch_p stretch_r) s/sinh s with s the difference of the logarithms: no digits are
+ * lost where stretches are nearly equal. */
 INLINE void principal_moduli(int d, const struct material *material, const struct strained *point,
                              double pull, struct principal_moduli *out) {
     pointwise outward, apart, part;

@@ -7,10 +7,10 @@
 #include <string.h>
 
 enum { COLUMNS_LEAST = 4 };
-/* Steeper edges make elements sheared beyond 80 degrees. */
+/* Steepest slope of an edge of the face: steeper ones shear elements by more than 80 degrees. */
 static const double SLOPE_MOST = 6;
-/* Fine zone: in RMS heights, and at least so many largest heights, where the factor's slope
- * of 3/2 over the zone still leaves the columns upright. */
+/* Depth of the fine zone in RMS heights, and its least depth in largest heights: the factor of
+ * mesh.h falls by 3/2 over the zone at most, so that 4 heights keep elements upright. */
 static const double ZONE_RMS = 40, ZONE_HEIGHTS = 4;
 
 void mesh_destroy(struct mesh **mesh) {
@@ -39,7 +39,7 @@ static int block_refused(const struct block *block, double transition, struct er
     return 0;
 }
 
-/* Whether half as many columns do from this depth on. */
+/* Whether half as many columns suffice from this depth on. */
 static bool widens(const struct mesh *mesh, const struct level *above, double depth,
                    double transition) {
     bool profile = mesh->dimension == 2;
@@ -119,7 +119,8 @@ int mesh_create(struct mesh **out, const struct grid *grid, const struct block *
 
 /* --- elements --- */
 
-/* Corner at side s of a column of parity p lies at (p + s)/2 of the wide column. */
+/* Weight of a wide column's node in a corner: the corner at side s of the column of parity p lies
+ * at (p + s)/2 of the wide column. */
 static double hanging_weight(size_t parity, int corner, int node) {
     double at = (double)(parity + (size_t)corner) / 2;
     return node == 1 ? at : 1 - at;

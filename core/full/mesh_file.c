@@ -276,7 +276,7 @@ int mesh_file_write(FILE *file, const char *title, const struct mesh *mesh,
     write_elements(&w);
     write_element_data(&w);
     fputs("    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n", file);
-    if (fflush(file) != 0 || ferror(file))
+    if (fflush(file) != 0 || ferror(file) != 0)
         return error_set(err, ERROR_SYSTEM, "cannot write the mesh: %s", strerror(errno));
     return 0;
 }

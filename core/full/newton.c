@@ -6,17 +6,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Force per gap that weighs the two in the choice of the active set: E* over a step. */
+/* Stiffness c that weighs gaps against forces in the choice of the active set: E* over the mesh's
+ * unit. */
 static const double COMPLEMENTARITY = 1;
-/* Contact forces decide about the set once the residual, over the largest of them, is below this;
- * one node at a time below the second. */
+/* Contact forces may change the active set once the largest residual over the largest contact force
+ * is below TRUSTED; while nodes change one at a time, below SETTLED. */
 static const double TRUSTED = 0.1, SETTLED = 1e-4;
-/* Residual left of the linear equations, when iterated. */
+/* Residuals at which iterations of the linear equations end: LINEAR_PART times Newton's residual,
+ * at most LINEAR_MOST; LINEAR_EXACT with a factorisation; LINEAR_STIFFNESS for newton_compliance.
+ */
 static const double LINEAR_MOST = 1e-2, LINEAR_PART = 0.1, LINEAR_EXACT = 1e-10;
 static const double LINEAR_STIFFNESS = 1e-6;
-/* Of the highest height, that add up; of the load, at most, where the forces of these do. */
+/* Gaps are sums of heights and displacements, whose rounding errors are taken as ROUNDINGS units of
+ * the last place of the highest height. A load is refused when forces by strains of that size
+ * exceed ROUNDING_MOST times the load. */
 static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
-/* At most: halvings of a step; rounds with the same set since the best one; sets that come back. */
+/* HALVINGS: of a step that folds the face or inverts an element. PATIENCE: rounds with the same
+ * active set that do not improve on the best one. RETURNS: active sets met before, after which
+ * Newton's method gives up. */
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
@@ -79,8 +86,8 @@ static double contact_force(const struct newton *n, size_t node) {
     return n->force[mesh_vertical(n->mesh, node)];
 }
 
-/* What rounding makes of gaps, between heights and displacements as large as the highest of them,
- * and of forces, by strains of such displacements. */
+/* Rounding error of gaps, which are sums of heights and displacements as large as the highest
+ * height, and of the forces that strains of that size make. */
 static double gap_rounding(const struct newton *n) {
     return ROUNDINGS * DBL_EPSILON * fabs(n->flat);
 }
@@ -98,7 +105,8 @@ static double largest_force(const struct newton *n) {
     return most;
 }
 
-/* How much a node contradicts its being in contact or not; 0 where it agrees. */
+/* By how much force a node's state (active or not) contradicts its contact force and gap; 0 where
+ * it agrees or contradicts by less than `least`. */
 static double contradiction(const struct newton *n, size_t node, double least) {
     double gap = COMPLEMENTARITY * n->opening[node];
     double wrong = n->active[node] ? gap - contact_force(n, node) : -gap;
@@ -120,13 +128,14 @@ static size_t nearest_node(const struct newton *n) {
     return nearest;
 }
 
-/* Something must carry the load. */
+/* Makes the nearest node active when none is, because some node must carry the load. */
 static void active_fill(struct newton *n) {
     if (active_count(n) == 0)
         n->active[nearest_node(n)] = true;
 }
 
-/* Moves the nodes that contradict: all, or the worst alone. Returns how many. */
+/* Changes the state of the nodes that contradict it: of all, or of the worst one alone. Returns how
+ * many were changed. */
 static size_t active_update(struct newton *n, bool one) {
     double least = fmax(n->tolerance * largest_force(n), force_rounding(n)), worst = 0;
     size_t changes = 0, which = 0;
@@ -148,7 +157,8 @@ static size_t active_update(struct newton *n, bool one) {
     return changes;
 }
 
-/* A fingerprint (Fowler, Noll & Vo 1991) by which a set that comes back is known. */
+/* A hash of the active set (Fowler, Noll & Vo 1991), by which a set that was met before is
+ * recognised. */
 static uint64_t active_hash(const struct newton *n) {
     uint64_t hash = UINT64_C(14695981039346656037);
     for (size_t node = 0; node < n->mesh->face; node++)
@@ -162,7 +172,8 @@ struct set_history {
     size_t count;
 };
 
-/* Whether this set was met before; it is now. After a meeting memory is empty. */
+/* Returns whether this set was met before, and remembers it. A set that was met empties the memory.
+ */
 static bool set_history_meets(struct set_history *history, uint64_t hash) {
     for (size_t a = 0; a < history->count && a < REMEMBERED; a++)
         if (history->hash[a] == hash) {
@@ -175,8 +186,8 @@ static bool set_history_meets(struct set_history *history, uint64_t hash) {
 
 /* --- equilibrium --- */
 
-/* Out-of-balance forces, outer less inner; what the flat carries balances itself. Far side: the sum
- * at its first node. Returns the largest over all. */
+/* Computes out-of-balance forces, outer less inner, in the layout of gmres_solve; they are 0 at
+ * active nodes, where the flat carries what is left. Returns the largest. */
 static double residual(const struct newton *n, double pressure, double *out) {
     const struct mesh *mesh = n->mesh;
     size_t far_side = mesh_far_side(mesh);
@@ -209,8 +220,8 @@ static void measure(const struct newton *n, struct newton_end *end) {
     }
 }
 
-/* Forces and tangent at u. Factorisations are for the displacements alone: pressures follow
- * them there. */
+/* Computes forces and tangent at u. A factorisation covers the displacements alone, so that
+ * pressures are then set to those of the dilatation. */
 static bool evaluate(struct newton *n) {
     size_t degrees_of_freedom = mesh_degrees_of_freedom(n->mesh);
     n->tangent->bound = n->factored;
@@ -223,24 +234,26 @@ static bool evaluate(struct newton *n) {
     return n->evaluated;
 }
 
-/* Some ten seconds a factorisation with the reference BLAS, and a GB. */
+/* Whether a factorisation is affordable: with Netlib's BLAS it takes about ten seconds and a
+ * gigabyte at these sizes. */
 static bool factorable(const struct mesh *mesh) {
     return mesh_degrees_of_freedom(mesh) <= (mesh->dimension == 2 ? 500000 : 20000);
 }
 
-/* Displacements for the forces in change, which they replace. */
+/* Replaces the forces in change by displacements, using a factorisation. */
 static int solve_factored(struct newton *n, double tolerance, struct newton_end *end,
                           struct error *err) {
     int status =
         n->factorisation == NULL ? factorisation_create(&n->factorisation, n->mesh, err) : 0;
     if (status == 0)
         status = factorisation_run(n->factorisation, n->tangent, n->active, err);
-    if (status == ERROR_NUMERIC) { /* where stress outweighs stiffness, the guide does without it */
+    if (status == ERROR_NUMERIC) { /* stress makes the tangent indefinite: the factorised matrix
+                                      leaves stress out */
         n->material.convex = true;
         status =
             evaluate(n) ? factorisation_run(n->factorisation, n->tangent, n->active, err) : status;
         n->material.convex = false;
-        (void)evaluate(n); /* as it did before */
+        (void)evaluate(n); /* cannot fail where it succeeded before */
     }
     if (status != 0)
         return status;
@@ -255,21 +268,22 @@ static int solve_iterated(struct newton *n, double tolerance, struct newton_end 
     return gmres_solve(n->gmres, &system, tolerance, n->change, &end->linear, err);
 }
 
-/* Newton's change for the out-of-balance forces in change, which it replaces. off: how far off the
- * start is, as the tolerance counts; about its square is what the next iteration will find, and no
- * linear equations need be solved closer. */
+/* Replaces the out-of-balance forces in change by Newton's change of u. off: the present residual
+ * in the units of the tolerance. The next residual will be about its square, so that the linear
+ * equations need not be solved more accurately. */
 static int newton_change(struct newton *n, double off, struct newton_end *end, struct error *err) {
     for (size_t node = 0; node < n->mesh->face; node++)
         if (n->active[node])
             n->change[mesh_vertical(n->mesh, node)] = -n->opening[node];
-    /* Factored: exact, or so, that Newton's own convergence shows. */
+    /* With a factorisation the equations are solved to rounding, which shows Newton's own
+     * convergence. */
     double quadratic = n->solver == SOLVER_FACTORED ? LINEAR_EXACT : LINEAR_PART * off;
     double tolerance = fmin(fmax(quadratic, LINEAR_PART * n->tolerance / off), LINEAR_MOST);
     return (n->factored ? solve_factored : solve_iterated)(n, tolerance, end, err);
 }
 
-/* Whether a cell of the face is turned from the flat: contact, which knows nothing of what lies
- * sideways of a node, would let the face pass through itself there. */
+/* Whether a cell of the face is turned away from the flat. The contact condition compares heights
+ * alone, so that the face could pass through itself there. */
 static bool face_folds(const struct newton *n) {
     const struct level *face = &n->mesh->level[0];
     for (size_t j = 0; j < face->ny; j++)
@@ -279,8 +293,8 @@ static bool face_folds(const struct newton *n) {
     return false;
 }
 
-/* Takes the longest of the step and its halves that neither folds the face nor turns an element
- * inside out. */
+/* Advances u by the longest of the step and its halves that neither folds the face nor inverts an
+ * element. */
 static int advance(struct newton *n, struct error *err) {
     size_t unknowns = newton_unknowns(n);
     double length = 1;
@@ -306,17 +320,17 @@ static void remember_residual(struct newton_end *end, double value, bool changed
     end->unchanged++;
 }
 
-/* One go: what is known of u and the set, before a step from there. */
+/* One round of the loop: the state at u before a step from there. */
 struct round {
-    double largest; /* contact force, or the mean one */
+    double largest; /* largest contact force, at least the mean force of a node */
     double residual, inside;
-    double balanced, closed; /* residuals and gaps up to these are none */
-    size_t changes;          /* of the set, just made */
+    double balanced, closed; /* residuals and gaps below these count as 0 */
+    size_t changes;          /* changes of the active set that this round made */
 };
 
-/* Gaps and forces at u; from the second go on, what they say of the set. A set that was there
- * before would go on coming back: from then on it changes a node at a time, and only near balance.
- * One that comes back even so tells of no equilibrium. */
+/* Measures gaps and forces at u and, except in the first round, updates the active set from them.
+ * Once a set that was met before returns, the set changes one node at a time and only near balance;
+ * where sets still return, there is no equilibrium (RETURNS). */
 static struct round assess(struct newton *n, double pressure, bool first,
                            struct set_history *history, struct newton_end *end) {
     struct round round = {.largest = 0};
@@ -340,13 +354,13 @@ static struct round assess(struct newton *n, double pressure, bool first,
     return round;
 }
 
-/* The best round with the active set as it is. */
+/* The best round since the active set changed. */
 struct newton_progress {
-    double least;  /* off */
-    size_t rounds; /* since */
+    double least;  /* smallest residual, in the units of the tolerance */
+    size_t rounds; /* rounds since then */
 };
 
-/* Whether to go on from a round that is off by so much. */
+/* Returns 0 when the loop may go on from a round whose residual is `off`. */
 static int check_progress(const struct newton *n, struct newton_progress *progress, double off,
                           bool changed, const struct newton_end *end, struct error *err) {
     bool better = changed || off < progress->least;

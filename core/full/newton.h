@@ -1,10 +1,11 @@
-/* Equilibrium of a meshed block on a rigid flat under one load: Newton's method and the primal-dual
- * active set in one loop (Hueber & Wohlmuth 2005; Popp 2012). Private to core/full.
+/* Equilibrium of a meshed block on a rigid flat under one load, by Newton's method with a
+ * primal-dual active set updated in the same loop (F14.4; Hueber & Wohlmuth 2005; Popp 2012).
+ * Private to core/full.
  *
- * A node's multiplier is its contact force over D, its tributary area; the dual basis makes D
- * diagonal. A node is active where force - stiffness x gap > 0, and then its height is that of the
- * flat: what is left is symmetric and positive definite. Lengths are the mesh's, pressures in E*.
- */
+ * The multiplier of a node is its contact force over its tributary area D; the dual basis makes the
+ * matrix D diagonal. A node is active, that is in contact, where force - stiffness x gap > 0; its
+ * height is then prescribed as that of the flat, which leaves a symmetric positive definite system.
+ * Lengths are in the mesh's unit, pressures in E*. */
 #ifndef RUGO_CORE_FULL_NEWTON_H
 #define RUGO_CORE_FULL_NEWTON_H
 
@@ -13,9 +14,10 @@
 
 enum { NEWTON_HISTORY = 64 };
 
-/* How the linear equations of a step are solved: by iterations with the flat block, and where they
- * fail, on meshes of up to 500 000 degrees_of_freedom in profiles and 20 000 on surfaces, with a
- * factorisation for the rest of the load; or always with a factorisation. */
+/* How the linear equations of a step are solved. SOLVER_ITERATED: by gmres.h with the flat block;
+ * where that fails, with a factorisation for the rest of the load, on meshes of up to 500 000
+ * degrees of freedom in profiles and 20 000 on surfaces. SOLVER_FACTORED: always with a
+ * factorisation. */
 enum equation_solver { SOLVER_ITERATED, SOLVER_FACTORED };
 
 struct newton {
@@ -24,20 +26,21 @@ struct newton {
     struct tangent *tangent; /* owned, as all below */
     enum equation_solver solver;
     struct factorisation *factorisation; /* NULL until one is needed */
-    bool factored; /* factor is of the last tangent, and takes the rest of the load */
+    bool factored; /* the factorisation is that of the last tangent, and used for the rest of the
+                      load */
     struct gmres *gmres;
-    double *u;      /* newton_unknowns: displacements, and pressures of elements where these are
-                       unknowns of their own (tangent.h); who changes them clears evaluated */
-    double *force;  /* newton_unknowns: inner forces, those of the contact on the face, and what the
-                       pressures are beyond those of the dilatation */
-    bool evaluated; /* force and tangent are those of u */
+    double *u; /* newton_unknowns values: displacements and, where they are unknowns of their own
+                  (gmres.h), pressures of elements; whoever changes them sets evaluated to false */
+    double *force;  /* newton_unknowns values: inner forces, which at active nodes include the
+                       contact force, and the excess of the pressures over those of the dilatation */
+    bool evaluated; /* force and tangent belong to u */
     double *before, *change; /* newton_unknowns: scratch */
-    double *gap, *opening;   /* face, at u: at the nodes and weighted */
-    bool *active;            /* face */
+    double *gap, *opening;   /* by node of the face, at u: the gap, and the weighted gap */
+    bool *active;            /* by node of the face: whether it is in contact */
     double flat;             /* vertical position of the flat */
     double tolerance;        /* largest residual, over the largest contact force */
     size_t max_iterations;
-    int (*stop)(void *context); /* asked before each iteration; NULL: not */
+    int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */
     void *context;
 };
 
@@ -49,28 +52,30 @@ void newton_clear(struct newton *newton);
 
 /* How an equilibrium was reached. */
 struct newton_end {
-    size_t iterations;  /* Newton's */
-    size_t linear;      /* iterations of the linear equations */
-    size_t factored;    /* factorisations */
-    size_t changes;     /* of single nodes of the active set */
-    size_t cycles;      /* active sets that came back; from the first on nodes change one by one */
-    double residual;    /* largest, over the largest contact force */
-    double inside;      /* largest |weighted gap| in contact */
-    double penetration; /* largest -weighted gap elsewhere, >= 0 */
-    double history[NEWTON_HISTORY]; /* residuals before each iteration; the latest last ... */
-    size_t unchanged;               /* ... and how many of them since the active set changed */
+    size_t iterations; /* Newton's */
+    size_t linear;     /* iterations of the linear equations */
+    size_t factored;   /* factorisations */
+    size_t changes;    /* nodes that entered or left the active set */
+    size_t cycles;   /* active sets that were met before; after the first one, nodes change one at a
+                        time */
+    double residual; /* largest, over the largest contact force */
+    double inside;   /* largest |weighted gap| in contact */
+    double penetration;             /* largest -weighted gap elsewhere, >= 0 */
+    double history[NEWTON_HISTORY]; /* residuals before each iteration, the latest last */
+    size_t unchanged;               /* residuals in history since the active set last changed */
 };
 
-/* From u and the active set given, which should be a good guess; at least one node is taken as
- * active. ERROR_NUMERIC, and ERROR_STOPPED where stop gave non-zero, leave u and the set of no use.
- */
+/* Solves for u and the active set, starting from those given, which should be a good guess; where
+ * no node is active, the nearest one becomes so. After ERROR_NUMERIC, and ERROR_STOPPED when stop
+ * returned non-zero, u and the set are undefined. */
 int newton_settle(struct newton *newton, double pressure, struct newton_end *end,
                   struct error *err);
-/* Fills gap and opening. */
+/* Computes gap and opening from u. */
 void newton_measure_gaps(struct newton *newton);
-/* D of every node, and its sum. */
+/* Tributary area of a node in squares (profiles: steps) of the mesh's unit; all nodes have the
+ * same. */
 double newton_node_area(const struct newton *newton);
-/* -d(mean gap)/d(pressure) >= 0 by the tangent at u. */
+/* Computes -d(mean gap)/d(pressure) >= 0 from the tangent at u. */
 int newton_compliance(struct newton *newton, double *out, struct error *err);
 
 #endif

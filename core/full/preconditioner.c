@@ -194,8 +194,8 @@ static int arrays_create(struct preconditioner *f, struct error *err) {
     f->passed = array_create(one * d * 2, sizeof *f->passed);
     f->folded = array_create(one * d * 2, sizeof *f->folded);
     f->plane = array_create(mesh->face, sizeof *f->plane);
-    if (!f->before || !f->inverse || !f->coupling || !f->field || !f->passed || !f->folded ||
-        !f->plane)
+    if (f->before == NULL || f->inverse == NULL || f->coupling == NULL || f->field == NULL ||
+        f->passed == NULL || f->folded == NULL || f->plane == NULL)
         return error_memory(err, (size_t)preconditioner_bytes(mesh), "the flat block");
     for (size_t level = 0; level <= mesh->layers; level++)
         f->before[level + 1] = f->before[level] + waves_at(f, level);

@@ -1,12 +1,15 @@
-/* The flat block's stiffness, inverted: what preconditions the rough one's.
+/* The inverse stiffness of the block with a flat face, which preconditions that of the rough block.
  *
- * Equal columns make the stiffness fall apart into a block-tridiagonal system in depth a wave
- * vector (as in core/contact/layered.c, which keeps the face alone). With sideways displacements i
- * X and i Y it is real; it is eliminated from the far side up, once. Where columns widen, waves and
- * their aliases meet: there the inverse is approximate in what short waves do so deep, and exact to
- * exp(-pi depth) (depth in columns) for forces on the face. The far side has one vertical
- * displacement; sideways, and vertically where nothing is in contact, the block floats: the mean
- * of its far side, and of its face, is left 0. */
+ * Because its columns are equal, the flat block's stiffness separates into one block-tridiagonal
+ * system in depth for each wave vector (as in core/contact/layered.c, which keeps only the face).
+ * With sideways displacements written as i X and i Y the systems are real; they are eliminated once,
+ * from the far side up. Where columns widen, a wave and its aliases (aliasing.h) are coupled. The
+ * inverse neglects that coupling; for forces on the face its relative error is exp(-pi depth), with
+ * the depth of the wider columns in columns.
+ *
+ * All nodes of the far side have one vertical displacement. The block is free to move sideways, and
+ * vertically where nothing is in contact; the mean displacements of its far side and of its face
+ * are then set to 0. */
 #ifndef RUGO_CORE_FULL_PRECONDITIONER_H
 #define RUGO_CORE_FULL_PRECONDITIONER_H
 
@@ -14,24 +17,24 @@
 
 struct preconditioner;
 
-/* volumetric: filled, of the layers; may be NULL. */
+/* volumetric: gets the entries of the layers; may be NULL. */
 int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
                           const struct material *material, struct volumetric *volumetric,
                           struct error *err);
 void preconditioner_destroy(struct preconditioner **preconditioner);
 double preconditioner_bytes(const struct mesh *mesh);
 
-/* Vertical displacement of the face over force a node, a value a wave in the layout of transform.h;
- * 0 for the mean. Borrowed. */
+/* Vertical displacement of the face over the force on each node, one value a wave in the layout of
+ * transform.h; 0 for the mean. The caller borrows the array. */
 const double *preconditioner_compliance(const struct preconditioner *preconditioner);
 
-/* Takes forces (mesh_degrees_of_freedom; the far side's vertical ones count by their sum) and
- * eliminates them down to the face. */
+/* Stores forces (mesh_degrees_of_freedom values; only the sum of the vertical ones on the far side
+ * counts) and eliminates all levels but the face. */
 void preconditioner_load(struct preconditioner *preconditioner, const double *forces);
-/* The face's vertical displacements under the forces taken, mean 0. */
+/* Computes the face's vertical displacements under the forces stored; their mean is 0. */
 void preconditioner_face(struct preconditioner *preconditioner, double *vertical);
-/* Adds vertical forces on the face to those taken, and gives all displacements. May be called once
- * after preconditioner_load. */
+/* Adds vertical forces on the face to those stored, and computes all displacements. May be called
+ * once after each preconditioner_load. */
 void preconditioner_displace(struct preconditioner *preconditioner, const double *vertical,
                              double *displacements);
 

@@ -21,7 +21,7 @@ INLINE void principal_two(pointwise c[3][3], pointwise value[3], pointwise axis[
     for (int q = 0; q < 4; q++) {
         double mean = (c[0][0][q] + c[1][1][q]) / 2, half = (c[0][0][q] - c[1][1][q]) / 2;
         double off = c[0][1][q], radius = sqrt(half * half + off * off);
-        bool round = !(radius > STRAIN_LEAST); /* all axes are principal */
+        bool round = !(radius > STRAIN_LEAST); /* a multiple of 1: all axes are principal */
         double over = 1 / (round ? 1 : radius);
         double double_cosine = round ? 1 : half * over, double_sine = off * over;
         double large = sqrt((1 + fabs(double_cosine)) / 2), rest = double_sine / (2 * large);
@@ -35,8 +35,8 @@ INLINE void principal_two(pointwise c[3][3], pointwise value[3], pointwise axis[
     }
 }
 
-/* One rotation of Jacobi's (Golub & Van Loan, 8.5) in the plane of p and r; s is the third axis.
- * The tangent is off over (half the difference and its hypotenuse), which need no branch. */
+/* One of Jacobi's rotations (Golub & Van Loan 2013, section 8.5) in the plane of p and r; s is the
+ * third axis. Its tangent is off/(half + hypot(half, off)), which needs no branch. */
 INLINE void jacobi_rotate(pointwise a[3][3], pointwise axis[3][3], int p, int r, int s) {
     for (int q = 0; q < POINTS_MOST; q++) {
         double off = a[p][r][q], half = (a[r][r][q] - a[p][p][q]) / 2;
@@ -57,7 +57,7 @@ INLINE void jacobi_rotate(pointwise a[3][3], pointwise axis[3][3], int p, int r,
     }
 }
 
-/* Whether any point's matrix has more off its diagonal than rounding. */
+/* Whether the matrix of any point has off-diagonal entries larger than rounding. */
 INLINE bool off_diagonal(pointwise a[3][3]) {
     int any = 0;
     for (int q = 0; q < POINTS_MOST; q++) {
@@ -68,7 +68,7 @@ INLINE bool off_diagonal(pointwise a[3][3]) {
     return any;
 }
 
-/* Destroys a. */
+/* Principal values and axes of a, which is overwritten. */
 INLINE void principal_three(pointwise a[3][3], pointwise value[3], pointwise axis[3][3]) {
     enum { SWEEPS_MOST = 12 };
     for (int i = 0; i < 3; i++)
@@ -87,8 +87,9 @@ INLINE void principal_three(pointwise a[3][3], pointwise value[3], pointwise axi
 
 /* --- deformation --- */
 
-/* F = 1 + h: J - 1, without the difference of numbers near 1, F^-1 and F F^T - 1, which keeps the
- * digits of small strains. False where a point is turned inside out. */
+/* With F = 1 + h: out->dilatation = J - 1 without a difference of numbers near 1, out->inverse =
+ * F^-1 and c = F F^T - 1, which keeps the digits of small strains. Returns false where a point is
+ * inverted. */
 INLINE bool deform(int d, pointwise h[3][3], pointwise c[3][3], struct strained *out) {
     int folded = 0;
     for (int q = 0; q < 1 << d; q++) {
@@ -158,8 +159,9 @@ INLINE void turn_stress(int d, struct strained *out) {
 
 /* --- moduli --- */
 
-/* Of the material, along principal axes p, r (Ogden 1984, 6.1; here with gradients in space):
- * normal[p][r] of G_pp G_rr, and of p > r shear[p][r] of (G_pr + G_rp)^2. */
+/* Moduli of a law along principal axes p, r (Ogden 1984, section 6.1; here with gradients in
+ * space): normal[p][r] multiplies G_pp G_rr, and for p > r shear[p][r] multiplies (G_pr + G_rp)^2.
+ */
 struct principal_moduli {
     pointwise normal[3][3], shear[3][3];
 };

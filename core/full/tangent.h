@@ -1,6 +1,6 @@
-/* Forces and tangent stiffness of a whole mesh. A node has neighbours only one step away in each
- * direction, so that the matrix is a tangent: no indices are stored. It is symmetric; what a node
- * feels of the level above is kept there. */
+/* Forces and tangent stiffness of a whole mesh. A node is coupled only to nodes one step away in each
+ * direction, so that the matrix is stored as a stencil, without indices. It is symmetric: the blocks
+ * between a node and the level above it are stored with the nodes of that level. */
 #ifndef RUGO_CORE_FULL_TANGENT_H
 #define RUGO_CORE_FULL_TANGENT_H
 
@@ -9,35 +9,37 @@
 enum { NEIGHBOURS_MOST = 18 };
 
 /* values[((node*slots + slot)*d + i)*d + j]: force i of the node by displacement j of its
- * neighbour in the slot. Far side and held node are not treated yet (gmres.h, factorisation.h). */
+ * neighbour in the slot. The conditions on the far side are not applied here but in gmres.c and
+ * factorisation.c. */
 struct tangent {
     const struct mesh *mesh;       /* borrowed */
-    size_t slots;                  /* 2 * 3^(dimension - 1): of its own level, then of the next */
+    size_t slots;                  /* 2 * 3^(dimension - 1): neighbours on the own level, then below */
     double *values;                /* owned */
-    struct volumetric *volumetric; /* owned: part of the values; NULL: not told apart */
-    bool bound; /* pressures are taken to be those of the dilatation, whatever is given */
+    struct volumetric *volumetric; /* owned: the volumetric part apart, which values hold too; or NULL */
+    bool bound; /* pressures follow the dilatations, and those given are ignored */
 };
 
-/* volumetric: whether it is. */
+/* pressures: whether the tangent has a volumetric part (gmres.h). */
 int tangent_create(struct tangent **out, const struct mesh *mesh, bool pressures,
                    struct error *err);
 void tangent_destroy(struct tangent **tangent);
 double tangent_bytes(const struct mesh *mesh, bool pressures);
 
-/* Neighbours, by slot, of the node of a level in row j, column i; SIZE_MAX beyond the far side. */
+/* Neighbours, by slot, of a level's node in row j and column i; SIZE_MAX below the far side. */
 void tangent_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t i,
                         size_t neighbour[NEIGHBOURS_MOST]);
-/* y = K x, both mesh_degrees_of_freedom. */
+/* y = K x; x and y have mesh_degrees_of_freedom values. */
 void tangent_apply(const struct tangent *tangent, const double *x, double *y);
 
 /* Displacements and, where the tangent tells the volumetric apart, the pressures of the elements.
  */
 size_t tangent_unknowns(const struct tangent *tangent);
 
-/* Energy (NULL: not wanted) and inner forces at displacements u, both mesh_degrees_of_freedom, and
- * the tangent (NULL: not wanted; all forces of u alone). Where it tells the volumetric apart u and
- * force go on with tangent_unknowns: pressures of elements, and what they are beyond those of the
- * dilatation. False when an element is turned inside out; the outputs are void then. */
+/* Computes the energy (E* times the cube, of profiles the square, of the mesh's unit; may be NULL),
+ * the inner forces at displacements u, and the tangent (may be NULL), which contains all forces as
+ * functions of u alone. With a volumetric part, u and force have tangent_unknowns values: behind the
+ * displacements the elements' pressures, and behind the forces how far these exceed the pressures of
+ * the dilatations. Returns false, with undefined outputs, when an element is inverted. */
 bool tangent_evaluate(const struct mesh *mesh, const struct material *material, const double *u,
                       double *energy, double *force, struct tangent *tangent);
 

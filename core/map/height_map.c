@@ -232,7 +232,7 @@ int height_map_write(FILE *file, enum height_map_format format, const struct gri
         write_csv(file, grid, z);
     else
         write_xyz(file, grid, z);
-    if (fflush(file) != 0 || ferror(file))
+    if (fflush(file) != 0 || ferror(file) != 0)
         return error_set(err, ERROR_SYSTEM, "cannot write the surface: %s",
                          errno != 0 ? strerror(errno) : "the write failed");
     return 0;

@@ -14,7 +14,7 @@ struct points {
 static int points_create(size_t n, const double *load, const double *fraction, double highest,
                          struct points *out, struct error *err) {
     double *copy = array_create(n > 0 ? n : 1, 2 * sizeof *copy);
-    if (!copy)
+    if (copy == NULL)
         return error_memory(err, n * 2 * sizeof *copy, "the points of a fit");
     struct points points = {0, copy, copy + n};
     for (size_t i = 0; i < n; i++) {
@@ -36,7 +36,7 @@ int fit_light_load(size_t n, const double *load, const double *fraction, struct 
                    struct error *err) {
     struct points points;
     int status = points_create(n, load, fraction, 0.1, &points, err);
-    if (status)
+    if (status != 0)
         return status;
     struct fit fit = nothing(points.n);
     if (points.n >= 1) {
@@ -53,7 +53,7 @@ int fit_power_law(size_t n, const double *load, const double *fraction, struct f
                   struct error *err) {
     struct points points;
     int status = points_create(n, load, fraction, 0.5, &points, err);
-    if (status)
+    if (status != 0)
         return status;
     struct fit fit = nothing(points.n);
     for (size_t i = 0; i < points.n; i++) {
@@ -122,7 +122,7 @@ int fit_erf(size_t n, const double *load, const double *fraction, struct fit *ou
             struct error *err) {
     struct points points;
     int status = points_create(n, load, fraction, nextafter(1, 0), &points, err);
-    if (status)
+    if (status != 0)
         return status;
     struct fit fit = nothing(points.n);
     if (points.n >= 1) {

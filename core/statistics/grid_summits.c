@@ -11,10 +11,10 @@ WIDE_VECTORS static int64_t compare_block(const double *u, const double *m, cons
     int64_t any = 0;
     for (size_t i = 0; i < n; i++)
         above[i] = -(int64_t)(m[i] > m[i - 1]) & -(int64_t)(m[i] > m[i + 1]);
-    if (u && d)
+    if (u != NULL && d != NULL)
         for (size_t i = 0; i < n; i++)
             above[i] &= -(int64_t)(m[i] > u[i]) & -(int64_t)(m[i] > d[i]);
-    if (u && d && corners)
+    if (u != NULL && d != NULL && corners)
         for (size_t i = 0; i < n; i++)
             above[i] &= -(int64_t)(m[i] > u[i - 1]) & -(int64_t)(m[i] > u[i + 1]) &
                         -(int64_t)(m[i] > d[i - 1]) & -(int64_t)(m[i] > d[i + 1]);
@@ -30,7 +30,7 @@ static bool is_summit(const double *u, const double *m, const double *d, size_t 
     double z = m[i];
     if (!(z > m[left] && z > m[right]))
         return false;
-    if (!u)
+    if (u == NULL)
         return true;
     if (!(z > u[i] && z > d[i]))
         return false;
@@ -45,8 +45,8 @@ size_t row_summits(const double *up, const double *middle, const double *down, s
         columns[found++] = 0;
     for (size_t i = 1; i + 1 < nx; i += BLOCK) {
         size_t n = nx - 1 - i < BLOCK ? nx - 1 - i : BLOCK;
-        if (!compare_block(up ? up + i : NULL, middle + i, down ? down + i : NULL, corners, n,
-                           above))
+        if (!compare_block(up != NULL ? up + i : NULL, middle + i, down != NULL ? down + i : NULL,
+                           corners, n, above))
             continue;
         for (size_t k = 0; k < n; k++)
             if (above[k])

@@ -45,21 +45,21 @@ static struct grid fine_grid(const struct grid *grid, size_t mode_x, size_t mode
 int refined_create(struct refined **out, const struct grid *grid, size_t mode_x, size_t mode_y,
                    struct error *err) {
     struct refined *r = array_create(1, sizeof *r);
-    if (!r)
+    if (r == NULL)
         return error_memory(err, sizeof *r, "a summit search");
     r->grid = *grid;
     r->fine = fine_grid(grid, mode_x, mode_y);
     r->mode_x = mode_x;
     r->mode_y = mode_y;
     int status = transform_create(&r->coarse, grid, mode_x, mode_y, err);
-    if (!status)
+    if (status == 0)
         status = transform_create(&r->dense, &r->fine, mode_x, mode_y, err);
     size_t rows = grid_is_profile(grid) ? 1 : WINDOW;
     r->window = array_create(rows * r->fine.nx, sizeof *r->window);
     r->columns = array_create(r->fine.nx, sizeof *r->columns);
-    if (!status && (!r->window || !r->columns))
+    if (status == 0 && (r->window == NULL || r->columns == NULL))
         status = error_memory(err, rows * r->fine.nx * sizeof *r->window, "rows of a surface");
-    if (status) {
+    if (status != 0) {
         refined_destroy(&r);
         return status;
     }
@@ -69,7 +69,7 @@ int refined_create(struct refined **out, const struct grid *grid, size_t mode_x,
 
 void refined_destroy(struct refined **refined) {
     struct refined *r = *refined;
-    if (!r)
+    if (r == NULL)
         return;
     transform_destroy(&r->coarse);
     transform_destroy(&r->dense);
@@ -264,7 +264,7 @@ static int row_search(struct refined *r, double first, size_t row, struct summit
             .curvature = -r->unit * bend,
         };
         int status = summit_list_add(list, &summit, err);
-        if (status)
+        if (status != 0)
             return status;
     }
     return 0;
@@ -334,7 +334,7 @@ static int strips_search(struct refined *r, struct summit_list *list, struct err
         window_fill(r, (long)first + MARGIN, kept, STRIP);
         for (size_t row = 0; row < STRIP && first + row < ny; row++) {
             int status = row_search(r, (double)first - MARGIN, MARGIN + row, list, err);
-            if (status)
+            if (status != 0)
                 return status;
         }
     }
@@ -390,7 +390,7 @@ int refined_find(struct refined *r, const double *z, struct summit_list *list, s
     } else {
         status = strips_search(r, list, err);
     }
-    if (!status)
+    if (status == 0)
         merge_copies(&r->fine, list);
     return status;
 }

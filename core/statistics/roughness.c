@@ -109,10 +109,10 @@ static int power_measure(const struct grid *grid, const double *z, struct modes 
     *modes = (struct modes){.grid = *grid, .mode_x = grid->nx / 2, .mode_y = grid->ny / 2};
     size_t rows = 2 * modes->mode_y + 1;
     modes->power = array_create((modes->mode_x + 1) * rows, sizeof *modes->power);
-    if (!modes->power)
+    if (modes->power == NULL)
         return error_memory(err, (modes->mode_x + 1) * rows * sizeof *modes->power, "a spectrum");
     int status = transform_create(&transform, grid, modes->mode_x, modes->mode_y, err);
-    if (status) {
+    if (status != 0) {
         free(modes->power);
         return status;
     }
@@ -132,7 +132,7 @@ int roughness_spectral(const struct grid *grid, const double *z, struct moments 
                        struct error *err) {
     struct modes modes;
     int status = power_measure(grid, z, &modes, err);
-    if (status)
+    if (status != 0)
         return status;
     modes_moments(&modes, out);
     free(modes.power);
@@ -184,7 +184,7 @@ int psd_measure(const struct grid *grid, const double *z, double *wave_number, d
                 struct error *err) {
     struct modes modes;
     int status = power_measure(grid, z, &modes, err);
-    if (status)
+    if (status != 0)
         return status;
     psd_of_modes(&modes, wave_number, density);
     free(modes.power);
@@ -220,12 +220,12 @@ int acf_of_modes(const struct modes *modes, double *lag, double *correlation, st
     struct transform *transform = NULL;
     double *field = array_create(grid_points(grid), sizeof *field);
     double *counts = array_create(grid->nx / 2 + 1, sizeof *counts);
-    int status = field && counts
+    int status = field != NULL && counts != NULL
                      ? 0
                      : error_memory(err, grid_points(grid) * sizeof *field, "an autocorrelation");
-    if (!status)
+    if (status == 0)
         status = transform_create(&transform, grid, modes->mode_x, modes->mode_y, err);
-    if (!status) {
+    if (status == 0) {
         double complex *mode = transform_spectrum(transform);
         for (size_t mx = 0; mx <= modes->mode_x; mx++)
             for (size_t row = 0; row < grid->ny; row++, mode++) {
@@ -245,7 +245,7 @@ int acf_measure(const struct grid *grid, const double *z, double *lag, double *c
                 struct error *err) {
     struct modes modes;
     int status = power_measure(grid, z, &modes, err);
-    if (status)
+    if (status != 0)
         return status;
     status = acf_of_modes(&modes, lag, correlation, err);
     free(modes.power);

@@ -27,7 +27,7 @@ int summit_list_add(struct summit_list *list, const struct summit *summit, struc
         size_t bytes = capacity * sizeof *list->summits;
         struct summit *larger =
             capacity < SIZE_MAX / sizeof *larger ? realloc(list->summits, bytes) : NULL;
-        if (!larger)
+        if (larger == NULL)
             return error_memory(err, bytes, "summits");
         list->summits = larger;
         list->capacity = capacity;
@@ -41,12 +41,12 @@ static int finder_fill(struct summit_finder *f, enum summit_curvature curvature,
     if (f->stencil == SUMMITS_REFINED)
         return refined_create(&f->refined, &f->grid, f->mode_x, f->mode_y, err);
     f->columns = array_create(f->grid.nx, sizeof *f->columns);
-    if (!f->columns)
+    if (f->columns == NULL)
         return error_memory(err, f->grid.nx * sizeof *f->columns, "a row of summits");
     if (curvature == CURVATURE_FINITE_DIFFERENCE)
         return 0;
     f->curvature = array_create(grid_points(&f->grid), sizeof *f->curvature);
-    if (!f->curvature)
+    if (f->curvature == NULL)
         return error_memory(err, grid_points(&f->grid) * sizeof *f->curvature, "curvatures");
     return transform_create(&f->transform, &f->grid, f->mode_x, f->mode_y, err);
 }
@@ -55,17 +55,17 @@ int summit_finder_create(struct summit_finder **out, const struct grid *grid,
                          enum summit_stencil stencil, enum summit_curvature curvature,
                          size_t mode_x, size_t mode_y, struct error *err) {
     int status = grid_check(grid, err);
-    if (status)
+    if (status != 0)
         return status;
     struct summit_finder *f = array_create(1, sizeof *f);
-    if (!f)
+    if (f == NULL)
         return error_memory(err, sizeof *f, "a summit finder");
     f->grid = *grid;
     f->stencil = stencil;
     f->mode_x = mode_x;
     f->mode_y = mode_y;
     status = finder_fill(f, curvature, err);
-    if (status) {
+    if (status != 0) {
         summit_finder_destroy(&f);
         return status;
     }
@@ -75,7 +75,7 @@ int summit_finder_create(struct summit_finder **out, const struct grid *grid,
 
 void summit_finder_destroy(struct summit_finder **finder) {
     struct summit_finder *f = *finder;
-    if (!f)
+    if (f == NULL)
         return;
     refined_destroy(&f->refined);
     transform_destroy(&f->transform);
@@ -136,10 +136,11 @@ static int row_add(struct summit_finder *f, const double *z, size_t j, size_t fo
             .x = (double)i * grid_dx(grid),
             .y = grid_is_profile(grid) ? 0 : (double)j * grid_dy(grid),
             .height = z[point],
-            .curvature = f->curvature ? f->curvature[point] : difference_curvature(grid, z, i, j),
+            .curvature =
+                f->curvature != NULL ? f->curvature[point] : difference_curvature(grid, z, i, j),
         };
         int status = summit_list_add(list, &summit, err);
-        if (status)
+        if (status != 0)
             return status;
     }
     return 0;
@@ -150,7 +151,7 @@ int summits_find(struct summit_finder *f, const double *z, struct summit_list *l
     list->count = 0;
     if (f->stencil == SUMMITS_REFINED)
         return refined_find(f->refined, z, list, err);
-    if (f->curvature)
+    if (f->curvature != NULL)
         curvature_fill(f, z);
     size_t nx = f->grid.nx, ny = f->grid.ny;
     bool corners = f->stencil == SUMMITS_NINE_POINT, profile = grid_is_profile(&f->grid);
@@ -159,7 +160,7 @@ int summits_find(struct summit_finder *f, const double *z, struct summit_list *l
         const double *down = profile ? NULL : z + (j + 1 < ny ? j + 1 : 0) * nx;
         size_t found = row_summits(up, z + j * nx, down, nx, corners, f->columns);
         int status = row_add(f, z, j, found, list, err);
-        if (status)
+        if (status != 0)
             return status;
     }
     return 0;

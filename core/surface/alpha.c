@@ -163,7 +163,7 @@ int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, d
     };
     size_t bytes = 2 * (2 * RINGS_MOST + 1) * sizeof(double);
     double *work = dimension == 2 ? malloc(bytes) : NULL;
-    if (dimension == 2 && !work)
+    if (dimension == 2 && work == NULL)
         return error_memory(err, bytes, "rings of modes");
     bool passed = dimension == 2 ? plane_search(&search, work) : line_search(&search);
     free(work);

@@ -57,18 +57,18 @@ static void amplitudes_sum(struct height_error *e) {
 int height_error_create(struct height_error **out, const struct modes *modes, struct error *err) {
     const struct grid *grid = &modes->grid;
     struct height_error *e = array_create(1, sizeof *e);
-    if (!e)
+    if (e == NULL)
         return error_memory(err, sizeof *e, "errors of heights");
     e->modes = modes;
     e->bins_most = bins_for(grid_points(grid));
     e->target = array_create(e->bins_most, sizeof *e->target);
     e->count = array_create(e->bins_most, sizeof *e->count);
     int status = 0;
-    if (!e->target || !e->count)
+    if (e->target == NULL || e->count == NULL)
         status = error_memory(err, 2 * e->bins_most * sizeof *e->count, "height histograms");
-    if (!status && (modes->mode_x < grid->nx / 2 || modes->mode_y < grid->ny / 2))
+    if (status == 0 && (modes->mode_x < grid->nx / 2 || modes->mode_y < grid->ny / 2))
         status = transform_create(&e->whole, grid, grid->nx / 2, grid->ny / 2, err);
-    if (status) {
+    if (status != 0) {
         height_error_destroy(&e);
         return status;
     }
@@ -79,7 +79,7 @@ int height_error_create(struct height_error **out, const struct modes *modes, st
 
 void height_error_destroy(struct height_error **height_error) {
     struct height_error *e = *height_error;
-    if (!e)
+    if (e == NULL)
         return;
     transform_destroy(&e->whole);
     free(e->target);
@@ -165,7 +165,7 @@ static double null_squares(const struct height_error *e, const double *z_h,
                            const double complex *spectrum) {
     const struct modes *modes = e->modes;
     const struct grid *grid = &modes->grid;
-    if (e->whole) {
+    if (e->whole != NULL) {
         transform_forward(e->whole, z_h);
         spectrum = transform_spectrum(e->whole);
     }

@@ -164,7 +164,7 @@ static void powers_integrate(const struct heights *heights, double mean, double 
 
 static int quantile_moments(const struct heights *heights, struct height_moments *out,
                             struct error *err) {
-    if (!heights->quantile)
+    if (heights->quantile == NULL)
         return error_set(err, ERROR_INPUT, "heights by quantile without a quantile function");
     double mean = 0;
     double last = -INFINITY;

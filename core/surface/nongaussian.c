@@ -61,7 +61,7 @@ static int amplitude_create(struct nongaussian *g, struct error *err) {
     modes_moments(modes, &moments);
     g->deviation = moments.rms_height;
     g->amplitude = array_create(count, sizeof *g->amplitude);
-    if (!g->amplitude)
+    if (g->amplitude == NULL)
         return error_memory(err, count * sizeof *g->amplitude, "amplitudes");
     for (size_t k = 0; k < count; k++)
         g->amplitude[k] = sqrt(modes->power[k]) / g->deviation;
@@ -71,12 +71,12 @@ static int amplitude_create(struct nongaussian *g, struct error *err) {
 static int arrays_create(struct nongaussian *g, struct error *err) {
     bool relaxed = g->options.iteration == ITERATION_RELAXED;
     int status = ranker_create(&g->ranker, g->points, err);
-    if (status)
+    if (status != 0)
         return status;
     g->sorted = fftw_alloc_real(g->points);
     g->h = fftw_alloc_real(g->points);
     g->x = relaxed ? fftw_alloc_real(g->points) : NULL;
-    if (!g->sorted || !g->h || (relaxed && !g->x))
+    if (g->sorted == NULL || g->h == NULL || (relaxed && g->x == NULL))
         return error_memory(err, g->points * sizeof(double), "heights of one iteration");
     return 0;
 }
@@ -84,22 +84,22 @@ static int arrays_create(struct nongaussian *g, struct error *err) {
 int nongaussian_create(struct nongaussian **out, const struct modes *modes,
                        const struct surface_options *options, struct error *err) {
     int status = options_check(options, err);
-    if (status)
+    if (status != 0)
         return status;
     struct nongaussian *g = array_create(1, sizeof *g);
-    if (!g)
+    if (g == NULL)
         return error_memory(err, sizeof *g, "non-Gaussian generation");
     g->modes = modes;
     g->options = *options;
     g->points = grid_points(&modes->grid);
     status = heights_moments(&options->heights, &g->moments, err);
-    if (!status)
+    if (status == 0)
         status = amplitude_create(g, err);
-    if (!status)
+    if (status == 0)
         status = arrays_create(g, err);
-    if (!status)
+    if (status == 0)
         status = height_error_create(&g->height_error, modes, err);
-    if (status) {
+    if (status != 0) {
         nongaussian_destroy(&g);
         return status;
     }
@@ -109,7 +109,7 @@ int nongaussian_create(struct nongaussian **out, const struct modes *modes,
 
 void nongaussian_destroy(struct nongaussian **nongaussian) {
     struct nongaussian *g = *nongaussian;
-    if (!g)
+    if (g == NULL)
         return;
     ranker_destroy(&g->ranker);
     fftw_free(g->sorted);
@@ -179,7 +179,7 @@ static int accelerated_phase(struct nongaussian *g, struct transform *transform,
     for (size_t iteration = 0; iteration < iterations; iteration++) {
         spectral_surface(g, transform, z);
         int status = rank_place(g->ranker, z, g->sorted, g->h, err);
-        if (status)
+        if (status != 0)
             return status;
         double t = (double)iteration;
         double momentum = iteration < 2 ? 0 : fmin(MOMENTUM_MOST, (t - 1) / (t + 2));
@@ -210,7 +210,7 @@ static int relaxed_phase(struct nongaussian *g, struct transform *transform, dou
         for (size_t i = 0; i < g->points; i++)
             z[i] = 2 * z[i] - x[i];
         int status = rank_place(g->ranker, z, g->sorted, g->h, err);
-        if (status)
+        if (status != 0)
             return status;
         double way = iterations > 1 ? (double)iteration / (double)(iterations - 1) : 0;
         double b = first + rise * way;
@@ -225,7 +225,7 @@ static int plain_iterate(struct nongaussian *g, struct transform *transform, dou
                          struct error *err) {
     spectral_surface(g, transform, z);
     int status = rank_place(g->ranker, z, g->sorted, g->h, err);
-    if (!status)
+    if (status == 0)
         transform_forward(transform, g->h);
     return status;
 }
@@ -242,7 +242,7 @@ static int plain_phase(struct nongaussian *g, struct transform *transform, doubl
     report->end = END_LIMIT;
     for (size_t iteration = 0; report->end == END_LIMIT && iteration < limit; iteration++) {
         int status = plain_iterate(g, transform, z, err);
-        if (status)
+        if (status != 0)
             return status;
         report->iterations++;
         double worst = height_error_measure(g->height_error, z, g->h, spectrum, false, report);
@@ -273,9 +273,9 @@ static int iterate(struct nongaussian *g, struct transform *transform, double *z
     report->iterations = relaxed;
     transform_forward(transform, z);
     int status = accelerated_phase(g, transform, z, accelerated, err);
-    if (!status)
+    if (status == 0)
         status = relaxed_phase(g, transform, z, relaxed - accelerated, err);
-    return status ? status : plain_phase(g, transform, z, plain, report, err);
+    return status != 0 ? status : plain_phase(g, transform, z, plain, report, err);
 }
 
 int nongaussian_run(struct nongaussian *g, struct transform *transform, struct random_key key,
@@ -284,18 +284,18 @@ int nongaussian_run(struct nongaussian *g, struct transform *transform, struct r
     struct surface_report local = {0};
     int status = target_heights_draw(&options->heights, &g->moments, options->draw, key, g->points,
                                      g->ranker, g->sorted, err);
-    if (status)
+    if (status != 0)
         return status;
     height_error_start(g->height_error, &g->moments, g->sorted);
     for (size_t i = 0; i < g->points; i++)
         z[i] /= g->deviation;
     status = iterate(g, transform, z, &local, err);
-    if (status)
+    if (status != 0)
         return status;
     const double *kept = options->keep == KEEP_HEIGHTS ? g->h : z;
     for (size_t i = 0; i < g->points; i++)
         z[i] = g->deviation * kept[i];
-    if (report)
+    if (report != NULL)
         *report = local;
     return 0;
 }

@@ -69,7 +69,7 @@ int ranker_create(struct ranker **out, size_t n, struct error *err) {
         return error_set(err, ERROR_INPUT, "%zu values to rank; allowed: 1 to %u", n,
                          (unsigned)(UINT32_MAX / 2));
     struct ranker *ranker = array_create(1, sizeof *ranker);
-    if (!ranker)
+    if (ranker == NULL)
         return error_memory(err, ranker_bytes(n), "ranking");
     size_t cells = cells_for(n);
     ranker->n = n;
@@ -85,9 +85,10 @@ int ranker_create(struct ranker **out, size_t n, struct error *err) {
     ranker->rising = array_create(KEYS_FAST, sizeof *ranker->rising);
     ranker->fine = array_create(KEYS_FAST, sizeof *ranker->fine);
     ranker->count = array_create(FINE_A_KEY * KEYS_FAST + 1, sizeof *ranker->count);
-    if (!ranker->dealt || !ranker->cell || !ranker->order || !ranker->spare || !ranker->start ||
-        !ranker->cursor || !ranker->first || !ranker->bucket || !ranker->rising || !ranker->fine ||
-        !ranker->count) {
+    if (ranker->dealt == NULL || ranker->cell == NULL || ranker->order == NULL ||
+        ranker->spare == NULL || ranker->start == NULL || ranker->cursor == NULL ||
+        ranker->first == NULL || ranker->bucket == NULL || ranker->rising == NULL ||
+        ranker->fine == NULL || ranker->count == NULL) {
         ranker_destroy(&ranker);
         return error_memory(err, ranker_bytes(n), "ranking");
     }
@@ -96,7 +97,7 @@ int ranker_create(struct ranker **out, size_t n, struct error *err) {
 }
 
 void ranker_destroy(struct ranker **ranker) {
-    if (!ranker || !*ranker)
+    if (ranker == NULL || *ranker == NULL)
         return;
     free((*ranker)->dealt);
     free((*ranker)->cell);
@@ -311,7 +312,7 @@ static size_t bucket_count(const struct ranker *ranker, size_t bucket) {
 
 static int keys_to_buckets(struct ranker *ranker, const double *key, struct error *err) {
     int status = map_set(ranker, key, err);
-    if (status)
+    if (status != 0)
         return status;
     cells_count(ranker, key);
     buckets_join(ranker);
@@ -322,7 +323,7 @@ static int keys_to_buckets(struct ranker *ranker, const double *key, struct erro
 int rank_place(struct ranker *ranker, const double *key, const double *sorted, double *placed,
                struct error *err) {
     int status = keys_to_buckets(ranker, key, err);
-    if (status)
+    if (status != 0)
         return status;
     for (size_t b = 0; b < ranker->buckets; b++) {
         size_t m = bucket_count(ranker, b);
@@ -341,7 +342,7 @@ int rank_place(struct ranker *ranker, const double *key, const double *sorted, d
 
 int rank_sort(struct ranker *ranker, double *z, struct error *err) {
     int status = keys_to_buckets(ranker, z, err);
-    if (status)
+    if (status != 0)
         return status;
     for (size_t b = 0; b < ranker->buckets; b++) {
         size_t m = bucket_count(ranker, b);

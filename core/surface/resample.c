@@ -5,9 +5,9 @@ int surface_resample(const struct grid *from, const double *z, const struct grid
                      size_t mode_x, size_t mode_y, struct error *err) {
     struct transform *coarse = NULL, *fine = NULL;
     int status = transform_create(&coarse, from, mode_x, mode_y, err);
-    if (!status)
+    if (status == 0)
         status = transform_create(&fine, to, mode_x, mode_y, err);
-    if (!status) {
+    if (status == 0) {
         transform_forward(coarse, z);
         transform_pad(coarse, fine);
         transform_inverse(fine, out);

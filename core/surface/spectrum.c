@@ -180,28 +180,28 @@ static int modes_scale(struct modes *modes, const struct spectrum *s, struct err
 int modes_create(struct modes **out, const struct spectrum *spectrum, const struct grid *grid,
                  struct error *err) {
     int status = grid_check(grid, err);
-    if (!status)
+    if (status == 0)
         status = spectrum_check(spectrum, grid, err);
-    if (status)
+    if (status != 0)
         return status;
     struct modes *modes = array_create(1, sizeof *modes);
-    if (!modes)
+    if (modes == NULL)
         return error_memory(err, sizeof *modes, "a discrete spectrum");
     modes->grid = *grid;
     status = band_edge(spectrum, grid->lx, grid->nx, &modes->mode_x, err);
-    if (!status && !grid_is_profile(grid))
+    if (status == 0 && !grid_is_profile(grid))
         status = band_edge(spectrum, grid->ly, grid->ny, &modes->mode_y, err);
-    if (!status) {
+    if (status == 0) {
         size_t count = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
         modes->power = array_create(count, sizeof *modes->power);
-        if (!modes->power)
+        if (modes->power == NULL)
             status = error_memory(err, count * sizeof *modes->power, "a discrete spectrum");
     }
-    if (!status) {
+    if (status == 0) {
         modes_fill(modes, spectrum);
         status = modes_scale(modes, spectrum, err);
     }
-    if (status) {
+    if (status != 0) {
         modes_destroy(&modes);
         return status;
     }
@@ -210,7 +210,7 @@ int modes_create(struct modes **out, const struct spectrum *spectrum, const stru
 }
 
 void modes_destroy(struct modes **modes) {
-    if (!*modes)
+    if (*modes == NULL)
         return;
     free((*modes)->power);
     free(*modes);

@@ -46,7 +46,7 @@ static int arrays_create(struct generator *g, struct error *err) {
     g->amplitude = array_create(columns * rows, sizeof *g->amplitude);
     g->row_length = array_create(rows, sizeof *g->row_length);
     g->words = array_create(columns, sizeof *g->words);
-    if (!g->amplitude || !g->row_length || !g->words)
+    if (g->amplitude == NULL || g->row_length == NULL || g->words == NULL)
         return error_memory(err, columns * rows * sizeof *g->amplitude, "amplitudes");
     amplitudes_fill(g);
     return 0;
@@ -56,16 +56,16 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
                      const struct grid *grid, const struct surface_options *options,
                      struct error *err) {
     struct generator *g = array_create(1, sizeof *g);
-    if (!g)
+    if (g == NULL)
         return error_memory(err, sizeof *g, "a generator");
     int status = modes_create(&g->modes, spectrum, grid, err);
-    if (!status)
+    if (status == 0)
         status = transform_create(&g->transform, grid, g->modes->mode_x, g->modes->mode_y, err);
-    if (!status)
+    if (status == 0)
         status = arrays_create(g, err);
-    if (!status && options->heights.type != HEIGHTS_GAUSSIAN)
+    if (status == 0 && options->heights.type != HEIGHTS_GAUSSIAN)
         status = nongaussian_create(&g->nongaussian, g->modes, options, err);
-    if (status) {
+    if (status != 0) {
         generator_destroy(&g);
         return status;
     }
@@ -75,7 +75,7 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
 
 void generator_destroy(struct generator **generator) {
     struct generator *g = *generator;
-    if (!g)
+    if (g == NULL)
         return;
     nongaussian_destroy(&g->nongaussian);
     transform_destroy(&g->transform);
@@ -161,9 +161,9 @@ int generator_run(struct generator *g, struct random_key key, double *z,
                   struct surface_report *report, struct error *err) {
     spectrum_draw(g, key);
     transform_inverse(g->transform, z);
-    if (g->nongaussian)
+    if (g->nongaussian != NULL)
         return nongaussian_run(g->nongaussian, g->transform, key, z, report, err);
-    if (report)
+    if (report != NULL)
         *report = (struct surface_report){.end = END_DIRECT};
     return 0;
 }

@@ -33,7 +33,7 @@ int target_heights_draw(const struct heights *heights, const struct height_momen
          */
         random_uniform(key, STREAM_HEIGHTS, 0, n, sorted);
         int status = rank_sort(ranker, sorted, err);
-        if (status)
+        if (status != 0)
             return status;
     }
     double last = -INFINITY;

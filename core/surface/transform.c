@@ -43,15 +43,15 @@ static int plans_create(struct transform *t) {
     t->row_forward = fftw_plan_many_dft_r2c(1, &nx, batch, t->lines, NULL, 1, nx, t->rows, NULL, 1,
                                             half, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
     pthread_mutex_unlock(&planner);
-    return t->row_inverse && t->row_forward &&
-           (t->ny == 1 ||
-            (t->column_inverse && t->column_forward && t->one_inverse && t->one_forward));
+    return t->row_inverse != NULL && t->row_forward != NULL &&
+           (t->ny == 1 || (t->column_inverse != NULL && t->column_forward != NULL &&
+                           t->one_inverse != NULL && t->one_forward != NULL));
 }
 
 int transform_create(struct transform **out, const struct grid *grid, size_t mode_x, size_t mode_y,
                      struct error *err) {
-    if (grid_check(grid, err))
-        return err ? err->code : ERROR_INPUT;
+    if (grid_check(grid, err) != 0)
+        return err != NULL ? err->code : ERROR_INPUT;
     if (mode_x > grid->nx / 2 || mode_y > grid->ny / 2)
         return error_set(
             err, ERROR_INPUT,
@@ -62,7 +62,7 @@ int transform_create(struct transform **out, const struct grid *grid, size_t mod
         return error_set(err, ERROR_INPUT, "a grid of %zu by %zu points has too long a side",
                          grid->nx, grid->ny);
     struct transform *t = array_create(1, sizeof *t);
-    if (!t)
+    if (t == NULL)
         return error_memory(err, sizeof *t, "a transform");
     t->nx = grid->nx;
     t->ny = grid->ny;
@@ -73,7 +73,7 @@ int transform_create(struct transform **out, const struct grid *grid, size_t mod
     t->spectrum = fftw_alloc_complex(t->columns * t->ny);
     t->rows = fftw_alloc_complex(t->batch * t->half);
     t->lines = fftw_alloc_real(t->batch * t->nx);
-    if (!t->spectrum || !t->rows || !t->lines || !plans_create(t)) {
+    if (t->spectrum == NULL || t->rows == NULL || t->lines == NULL || plans_create(t) == 0) {
         size_t bytes = (t->columns * t->ny + t->batch * t->half) * sizeof *t->spectrum;
         transform_destroy(&t);
         return error_memory(err, bytes, "a transform");
@@ -84,13 +84,13 @@ int transform_create(struct transform **out, const struct grid *grid, size_t mod
 
 void transform_destroy(struct transform **transform) {
     struct transform *t = *transform;
-    if (!t)
+    if (t == NULL)
         return;
     pthread_mutex_lock(&planner);
     fftw_plan plans[] = {t->column_inverse, t->column_forward, t->row_inverse,
                          t->row_forward,    t->one_inverse,    t->one_forward};
     for (size_t p = 0; p < sizeof plans / sizeof *plans; p++)
-        if (plans[p])
+        if (plans[p] != NULL)
             fftw_destroy_plan(plans[p]);
     pthread_mutex_unlock(&planner);
     fftw_free(t->spectrum);

@@ -206,7 +206,7 @@ static void curve(contact_at *at, const void *theory, size_t n, const double *se
                   double *load, double *area) {
     for (size_t i = 0; i < n; i++) {
         struct asperity_contact contact = {NAN, NAN};
-        if (theory && isfinite(separation[i]))
+        if (theory != NULL && isfinite(separation[i]))
             contact = at(theory, separation[i]);
         load[i] = contact.load;
         area[i] = contact.area;
@@ -251,7 +251,7 @@ static const double CLOSE = 1e-12;
 /* Brings the load between two separations, at or above it and at or below it. */
 static void approach(struct inversion *inversion, double low, double high) {
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-    if (!solver)
+    if (solver == NULL)
         return;
     gsl_function function = {excess, inversion};
     int status = gsl_root_fsolver_set(solver, &function, low, high);
