@@ -11,7 +11,7 @@
 
 enum random_stream { STREAM_PHASES = 0, STREAM_HEIGHTS = 1, STREAM_HEIGHT_PHASES = 2 };
 
-/* Which random numbers: plain data, copied freely. */
+/* Selects random numbers. Plain data that may be copied. */
 struct random_key {
     uint64_t seed;
     uint64_t case_number;

@@ -1,6 +1,7 @@
-/* WIDE_VECTORS in front of a plain element-wise loop: built for AVX2 too, chosen when the program
- * starts. Without contraction (see the Makefile) every width gives the same digits. Not under
- * ThreadSanitizer, which is not yet awake when the choice is made. */
+/* A function marked WIDE_VECTORS, whose loops are plain and element-wise, is compiled for AVX2 too;
+ * the version is chosen when the program starts. Without contraction of operations (see the
+ * Makefile) both give the same digits. Not available under ThreadSanitizer, which starts after that
+ * choice is made. */
 #ifndef RUGO_CORE_VECTORS_H
 #define RUGO_CORE_VECTORS_H
 

@@ -60,11 +60,12 @@ static void fill_rise(struct area_workspace *workspace, const double *p, const d
     }
 }
 
-/* A walk along a grid line from a node in contact over the edge to its neighbour. */
+/* The nodes around one edge on a grid line, from a node in contact to its neighbour out of contact.
+ */
 struct crossing {
-    size_t inside, outside;                                        /* nodes, as all below */
-    size_t before, far_before;                                     /* further inside */
-    size_t behind;                                                 /* further outside */
+    size_t inside, outside;    /* the two nodes; all names below are nodes too */
+    size_t before, far_before; /* further inside */
+    size_t behind;             /* further outside */
     size_t inside_left, inside_right, outside_left, outside_right; /* beside the two */
     double step, across;                                           /* spacings, along and beside */
 };
@@ -74,7 +75,7 @@ static double distance(double rise, double u2, double ug) {
     return rise > 0 ? rise * u2 : rise * ug;
 }
 
-/* |cos| of the angle between the grid line and the edge's normal. */
+/* Cosine, without its sign, of the angle between the grid line and the edge's normal. */
 static double crossing_cosine(const struct crossing *x, const double *rise, double p1, double g1) {
     double cosine = 1;
     for (int a = 0; a < ANGLE_STEPS; a++) {
@@ -92,14 +93,14 @@ static double crossing_cosine(const struct crossing *x, const double *rise, doub
     return cosine;
 }
 
-/* Gap, over the largest pressure, of a rise outside. */
+/* Gap over the largest pressure, from the rise of a node out of contact. */
 static double gap_of(double rise) {
     double root = sqrt(fmax(0, -rise));
     return 4.0 / 3 * root * root * root;
 }
 
-/* Half the width of a profile's patch of one node, in steps: the crossing's part of it; NaN where
- * the inside node is not alone. */
+/* Half the width, in steps, of a profile's patch of one node; NaN where the inside node is not
+ * alone. */
 static double lone_in_profile(const struct crossing *x, const double *rise) {
     if (rise[x->before] > 0)
         return NAN;
@@ -107,8 +108,8 @@ static double lone_in_profile(const struct crossing *x, const double *rise) {
                      gap_of(rise[x->outside]));
 }
 
-/* Half the area of a surface's patch of one node, in cells: an ellipse, no larger than the steps to
- * the nodes beside it; NaN where the inside node is not alone. */
+/* Half the area, in cells, of a surface's patch of one node: an ellipse that reaches no further
+ * than the nodes beside it; NaN where the inside node is not alone. */
 static double lone_in_surface(const struct crossing *x, const double *rise) {
     if (rise[x->before] > 0 || rise[x->inside_left] > 0 || rise[x->inside_right] > 0)
         return NAN;
@@ -135,8 +136,8 @@ static double crossing_share(const struct crossing *x, const struct edge_law *la
     }
     bool known = rise[x->before] > 0 && rise[x->far_before] > 0; /* in two nodes it does harm */
     double share = edge_share(law, p1, known ? rise[x->before] : 0, g1);
-    /* Alone on its line: no length is below 0, nor below that of the node alone. Elsewhere an edge
-     * may well lie before the node inside, which then has a small pressure. */
+    /* For a node alone on its line no length is below 0 or below that of the patch of one node.
+     * Elsewhere an edge may well lie before the node inside, which then has a small pressure. */
     return rise[x->before] > 0 ? share : fmax(fmax(0, lone), share);
 }
 
@@ -185,7 +186,7 @@ static double family_share(const struct family *f, const struct edge_law *law, c
     return steps / ((double)f->lines * (double)f->nodes);
 }
 
-/* Sides of nodes in contact that face open ones, in x and in y. */
+/* Counts the sides of nodes in contact that face open ones, along x and y. */
 static void count_sides(const struct grid *grid, const double *p, size_t sides[2]) {
     size_t nx = grid->nx, ny = grid->ny;
     sides[0] = sides[1] = 0;
@@ -229,7 +230,8 @@ void contact_area(struct area_workspace *workspace, const double *p, const doubl
     size_t sides[2];
     out->edges = 0.5 * (out->edges + family_share(&columns, &workspace->columns, workspace->rise));
     count_sides(grid, p, sides);
-    /* A side across x is dy long and the correction acts along x, over dx; and the other way. */
+    /* A side across x is dy long, and the correction acts along x over dx; for sides across y it is
+     * the other way round. */
     double missed = PERIMETER * (double)(sides[0] + sides[1]) / (double)grid_points(grid);
     out->perimeter = out->nodes - missed;
 }

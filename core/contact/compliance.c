@@ -65,8 +65,8 @@ static size_t row_mode(const struct grid *grid, size_t row) {
     return row <= grid->ny / 2 ? row : grid->ny - row;
 }
 
-/* S of an elastic layer whose far side stays flat and free of shear, with q = exp(-2kH) taken out
- * of the hyperbolic functions: no term overflows, none cancels. */
+/* S of an elastic layer whose far side stays flat and free of shear (F10.2). q = exp(-2kH) is
+ * factored out of the hyperbolic functions, so that no term overflows or cancels. */
 static double halfspace_length(double k, double height) {
     double x = 2 * k * height;
     if (isinf(x))
@@ -90,7 +90,7 @@ static void halfspace_lengths(struct compliance *compliance) {
         }
 }
 
-/* (1, 4, 1)/6 in one direction. */
+/* Symbol of the mean (1, 4, 1)/6 along one axis (F10.5). */
 static double weight_symbol(size_t mode, size_t n) {
     return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
 }
@@ -103,7 +103,7 @@ static void weight_symbols(struct compliance *compliance) {
                 weight_symbol(mx, grid->nx) * weight_symbol(row_mode(grid, row), grid->ny);
 }
 
-/* Lengths of very different size leave the range of doubles. */
+/* Refuses lengths whose ratios overflow or underflow a double. */
 static int lengths_check(const struct compliance *compliance, struct error *err) {
     for (size_t k = 1; k < compliance->waves; k++)
         if (!(compliance->length[k] > 0 && isfinite(compliance->length[k])))

@@ -17,11 +17,11 @@
 
 #include "core/surface/grid.h"
 
-/* The linear ones; that of core/full looks at all of a block but this. */
+/* The linear models. The finite elements of core/full use all of a block but its model. */
 enum block_model { MODEL_HALFSPACE, MODEL_LAYERED };
-/* Weighting of the gap by the mortar functions of the finite elements: the standard ones (Petrov-
- * Galerkin, as the reference) average it over neighbours by (1, 4, 1)/6 in each direction; the dual
- * ones leave the gap at the node. */
+/* Weighting of the gap by the mortar functions of the finite elements (F10.5): the standard ones
+ * (Petrov-Galerkin, as in the reference, core/theory/BIBLIOGRAPHY.md) average it over neighbours by
+ * (1, 4, 1)/6 along each axis; the dual ones take the gap at the node. */
 enum gap_weighting { GAP_STANDARD, GAP_DUAL };
 
 struct block {

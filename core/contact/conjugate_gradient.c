@@ -1,12 +1,13 @@
 /* Conjugate gradients in the set of nodes in contact (Polonsky & Keer 1999), preconditioned by the
- * inverse compliance restricted to the set: transform the gap there, multiply, transform back, drop
- * what lies outside, remove the mean so that the load stays. Two things differ from the textbook.
- * The direction is kept when the set changes, with Polak and Ribiere's factor: a restart at every
- * node that opens or closes takes half as many iterations again. And when no progress is made,
- * careful steps follow (as Dostal 1997): conjugate gradients in the set that stop where a pressure
- * comes to 0, and projected gradients where one did or where penetrations outweigh the gaps inside.
- * The energy falls in each of them, in projected steps by no less than a part of the square of the
- * change: they end at the solution, from wherever they start. */
+ * inverse compliance restricted to the set: the residual is transformed, multiplied and transformed
+ * back; what lies outside the set is dropped, and the mean is subtracted so that the load stays.
+ * Two things differ from the textbook. The search direction is kept when the set changes, with
+ * Polak and Ribiere's factor; a restart at every node that opens or closes takes half as many
+ * iterations again. When there is no progress, careful steps follow (as in Dostal 1997): conjugate
+ * gradients in the set that stop where a pressure becomes 0, and projected gradients where that
+ * happened or where penetrations exceed the gaps inside. The energy falls in each of them, in
+ * projected steps by at least a fixed part of the square of the change, so that they end at the
+ * solution from any start. */
 #include "core/contact/conjugate_gradient.h"
 #include "core/vectors.h"
 #include <fftw3.h>
@@ -20,13 +21,15 @@ enum {
     REFRESH = 50, /* iterations after which u is computed anew from p */
     TANGENT_MOST = 300,
 };
-/* Of a projected step, over the largest compliance, which is 1; below 2. */
+/* Length of a projected step over the inverse of the largest compliance, which is 1 here; must be
+ * below 2. */
 static const double STRIDE = 1.8;
-static const double TANGENT_TOLERANCE = 1e-2; /* of the slope; measured: errors below 3e-4 */
-/* Violations that rounding of the highest points can make. */
+static const double TANGENT_TOLERANCE =
+    1e-2; /* relative, of the slope; measured errors are below 3e-4 */
+/* Violations that rounding of the highest points can make, in heights. */
 static const double ROUNDING = 64 * DBL_EPSILON;
 
-/* Never in contact, whatever the approach. */
+/* Depth of the padding nodes, which never come into contact. */
 static const double FAR = 1e30;
 
 static size_t padded(size_t n) {
@@ -113,7 +116,7 @@ static double lanes_most(const double *lanes) {
     return most;
 }
 
-/* Minus the mean of u - z over nodes under pressure: the approach at which they touch on average.
+/* The approach at which nodes under pressure touch on average: minus the mean of u - z over them.
  */
 WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double *u,
                                          const double *z) {
@@ -127,8 +130,9 @@ WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double
     return -lanes_sum(sum) / lanes_sum(count);
 }
 
-/* r = gap in the set {p > 0, or gap < 0 where released}, never 0 there and exactly 0 outside, so
- * that r != 0 is the set. Returns its size; fills end but for its approach, which it takes. */
+/* r is the gap in the set {p > 0, or gap < 0 where released}, where it is never exactly 0, and 0
+ * outside, so that r != 0 marks the set. Returns the size of the set. end->approach is an input;
+ * all other fields of end are filled. */
 WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, const double *z,
                                     double released, double *r,
                                     struct conjugate_gradient_end *end) {
@@ -153,7 +157,7 @@ WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, 
     return lanes_sum(members);
 }
 
-/* The same for the tangent: r = u + approach in the set p > 0. Returns its largest size. */
+/* The same for the tangent: r = u + approach in the set p > 0. Returns the largest |r|. */
 WIDE_VECTORS static double tangent_residual(size_t n, const double *p, const double *u,
                                             double approach, double *r) {
     double most[LANES] = {0};
@@ -248,13 +252,13 @@ static void scale(size_t n, double factor, double *x) {
         x[i] *= factor;
 }
 
-/* What one step leaves to the next. */
+/* What one step passes on to the next. */
 struct step_memory {
-    double energy; /* w.r of the last direction; 0: start anew */
+    double energy; /* w.r of the last direction; 0 restarts */
     bool blocked;  /* a careful step ended where a pressure came to 0 */
 };
 
-/* The next direction into t, and S of it into w. */
+/* Computes the next direction t, and w = S t. */
 static void direct(struct conjugate_gradient *d, struct step_memory *memory) {
     filter(d, d->stiff, d->r, d->w);
     struct products s = multiply(d->padded, d->r, d->w, d->old, d->t);
@@ -269,9 +273,9 @@ static void direct(struct conjugate_gradient *d, struct step_memory *memory) {
     filter(d, d->soft, d->t, d->w);
 }
 
-/* The pressures nearest to p - STRIDE gap among those >= 0 of this mean (Michelot 1986: the level
- * to take off is raised until no more of them turn negative). Where p is not the solution, its
- * energy falls by at least the square of the change, times 1/STRIDE - 1/2. */
+/* Replaces p by the pressures nearest to p - STRIDE gap among those >= 0 of this mean (Michelot
+ * 1986: the level to subtract is raised until no more of them become negative). Where p is not the
+ * solution, the energy falls by at least the square of the change times 1/STRIDE - 1/2. */
 static void project(struct conjugate_gradient *d, double mean) {
     double top = -INFINITY, level = -INFINITY, sum = 0;
     size_t count = d->n + 1, last;
@@ -304,7 +308,7 @@ static double feasible_step(const struct conjugate_gradient *d, double step) {
     return step;
 }
 
-/* Whether the violation has not halved for so many iterations. */
+/* Watches whether the violation has halved within a number of iterations. */
 struct stall_watch {
     double best;
     size_t since;
@@ -317,7 +321,7 @@ static bool stalled(struct stall_watch *progress, double violation, size_t itera
     return progress->since >= iterations;
 }
 
-/* One iteration from r; *stale: whether u has to be computed anew. */
+/* One iteration from r; *stale says whether u must be computed anew from p. */
 static void iterate(struct conjugate_gradient *d, double mean, bool careful,
                     struct step_memory *memory, bool *stale) {
     direct(d, memory);

@@ -10,18 +10,18 @@
 const struct contact_options CONTACT_DEFAULTS = {
     .tolerance = 1e-8, .max_iterations = 5000, .stall_iterations = 400};
 
-/* Within, heights are in units of the surface's RMS height and pressures in RMS height over the
- * largest compliance: all numbers are near 1 whatever the units of the user. */
+/* In this file heights are in units of the surface's RMS height and pressures in RMS height over
+ * the largest compliance, so that all numbers are near 1 whatever the user's units. */
 struct contact {
     const struct compliance *compliance; /* borrowed */
     struct contact_options options;
-    struct conjugate_gradient solver; /* its heights are weighted */
+    struct conjugate_gradient solver; /* its heights are the weighted ones */
     double *z;                        /* heights, mean 0 */
-    double *pressure, *gap;           /* what is told: the user's units */
-    double *opening;                  /* gap where there is no weighting */
-    double unit;                      /* RMS height, the grid's length; 0 for a flat surface */
-    double full;                      /* smallest mean pressure of full contact */
-    double mean;                      /* of the descent's p: the load that it solves; 0 for none */
+    double *pressure, *gap;           /* results, in the user's units */
+    double *opening; /* the weighted gap; the same array as gap without weighting */
+    double unit;     /* RMS height, the grid's length; 0 for a flat surface */
+    double full;     /* smallest mean pressure of full contact */
+    double mean;     /* mean of the solver's p, the load that it solves; 0 before the first load */
 };
 
 double contact_bytes(const struct grid *grid) {
@@ -71,7 +71,7 @@ void contact_destroy(struct contact **contact) {
     *contact = NULL;
 }
 
-/* Pressures are told in E*: this much a scaled one. */
+/* The unit of the solver's pressures, in E*. */
 static double pressure_unit(const struct contact *c) {
     return c->unit / c->solver.largest;
 }
@@ -87,7 +87,8 @@ static int take_heights(struct contact *c, const double *z, struct error *err) {
                              z[i]);
         most = fmax(most, fabs(z[i]));
     }
-    /* Over the largest first: squares of huge or tiny heights would leave the range. */
+    /* Heights are divided by the largest first, because squares of huge or tiny heights would
+     * overflow or underflow. */
     for (size_t i = 0; i < n; i++)
         sum_add(&sum, most > 0 ? z[i] / most : 0);
     double mean = sum_value(&sum) / (double)n;
@@ -109,7 +110,7 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
     int status = take_heights(c, z, err);
     if (status != 0)
         return status;
-    /* A surface's results must not depend on the one before. */
+    /* The results of a surface must not depend on the one before. */
     memset(d->q, 0, d->padded * sizeof *d->q);
     memcpy(d->z, c->z, d->n * sizeof *d->z);
     if (c->compliance->weight != NULL)
@@ -125,7 +126,7 @@ double contact_full_pressure(const struct contact *c) {
     return c->full * pressure_unit(c);
 }
 
-/* Nothing touches, or one point without force: the block hangs on its highest point. */
+/* The state without contact: the highest point touches the flat without force. */
 static void fill_open(struct contact *c, struct contact_state *out) {
     const struct conjugate_gradient *d = &c->solver;
     double highest = 0;
@@ -139,7 +140,7 @@ static void fill_open(struct contact *c, struct contact_state *out) {
     out->mean_gap = highest * c->unit;
 }
 
-/* The flat fills every valley: the pressures are those that flatten the surface (Johnson 1985). */
+/* The state of full contact: the pressures are those that flatten the surface (F9.3). */
 static void fill_full(struct contact *c, double pressure, struct contact_state *out) {
     struct conjugate_gradient *d = &c->solver;
     transform_filter(d->transform, d->stiff, pressure_unit(c), d->z, c->pressure);
@@ -171,12 +172,13 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
     out->iterations = end->iterations;
     out->violation = fmax(end->inside, end->penetration);
     out->penetration = end->penetration;
-    /* All nodes in contact, a rounding error below the load of full contact. */
+    /* All nodes can be in contact when the load is a rounding error below that of full contact. */
     out->stiffness =
         out->nodes == d->n ? INFINITY : 1 / (conjugate_gradient_tangent(d) * d->largest);
 }
 
-/* The pressures of the last load, moved along their tangent to a mean; uniform before the first. */
+/* Predicts the pressures at a mean from those of the last load and their tangent; uniform before
+ * the first load. */
 static void predict(struct contact *c, double mean) {
     struct conjugate_gradient *d = &c->solver;
     double sum = 0;

@@ -21,8 +21,8 @@ struct contact_options {
 };
 extern const struct contact_options CONTACT_DEFAULTS;
 
-/* How one load was solved, and what came out. Arrays are the solver's, valid until its next call.
- */
+/* The state under one load, and how it was found. The arrays belong to the solver and are valid
+ * until its next call. */
 struct contact_state {
     double pressure;   /* mean, in E* */
     const double *p;   /* grid_points, in E*; mean = pressure, 0 where open */

@@ -4,9 +4,9 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* One wave over so many steps, pressed to this part of the pressure of full contact. Neither
- * matters as long as the edges are far from each other; a longer wave would show the error of the
- * model's compliance at long waves, a shorter one the curvature of the pressure. */
+/* The wave has WAVE_STEPS grid points and is pressed to WAVE_LOAD of the pressure of full contact.
+ * Neither matters as long as the edges are far from each other; a longer wave would show the error
+ * of the model's compliance at long waves, a shorter one the curvature of the pressure. */
 enum { WAVE_STEPS = 128 };
 static const double WAVE_LOAD = 0.4;
 static const double BEND_MOST = 0.5;
@@ -21,7 +21,7 @@ double edge_guess(double pressure_squared, double gap_rise) {
     return fmin(1, ratio * rest * rest * rest);
 }
 
-/* Values of the law at a root, between samples or at the nearest end. */
+/* Interpolates values of the law at a root; outside of the samples the nearest one counts. */
 static double interpolate(const struct edge_law *law, const double *values, double root) {
     size_t low = 0, high = EDGE_PHASES - 1;
     if (!(root > law->root[low]))
@@ -109,7 +109,7 @@ static struct grid strip_of(const struct grid *grid, bool columns) {
                          .ly = profile ? WAVE_STEPS * along : 2 * across};
 }
 
-/* Presses the wave with its crest `phase` steps beyond a node, and looks at the edge on its right.
+/* Presses the wave with its crest `phase` steps beyond a node, and measures the edge on its right.
  */
 static int sample(struct contact *contact, const struct grid *strip, double phase, double *root,
                   double *before, double *share, struct error *err) {

@@ -35,14 +35,16 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* Waves that go through the layers together: one a lane of the innermost loops. */
+/* Number of waves that are taken through the layers together, one in each lane of the innermost
+ * loops. */
 enum { LANES = 32 };
 typedef double lane[LANES];
 
 struct layered_material layered_material(double poisson) {
     double mu = (1 - poisson) / 2, ratio = (1 - 2 * poisson) / (2 * (1 - poisson));
     double local = 2 / (1 + ratio * ratio) - 3 * mu;
-    /* Rounding errors grow as lambda/mu; beyond this one the compliance moves by less than they. */
+    /* Limits lambda/mu, with which rounding errors grow; beyond this limit the compliance changes
+     * by less than they do. */
     double compressible = fmax(1 - 2 * poisson, 1e-8);
     return (struct layered_material){mu, local, 2 * mu * poisson / compressible - local};
 }
@@ -66,8 +68,8 @@ static struct symbols symbols_of(size_t mode, size_t n, double distance) {
                             .tilt = 2 * s / distance};
 }
 
-/* The waves under way; lanes from count on hold anything, and nobody reads what becomes of them. Of
- * symmetric matrices one half; terms left out are 0. */
+/* The waves that are taken through the layers. Lanes from count on are undefined and not read. Of
+ * symmetric matrices one half is stored; entries left out are 0. */
 struct wave_lanes {
     lane axx, axy, ayy, azz; /* A */
     lane bxx, bxy, byy;      /* the part of A that sees the mean of phi: zeta zeta is h/4 */
@@ -202,7 +204,7 @@ WIDE_VECTORS static void face(struct wave_lanes *w) {
     }
 }
 
-/* A mesh under way; lengths in units of dx, so that no unit of the user's overflows. */
+/* A mesh being solved. Lengths are in units of dx, so that no unit of the user's can overflow. */
 struct layered_mesh {
     struct compliance *compliance;
     struct layered_material material;
@@ -220,7 +222,7 @@ static void length_store(struct compliance *compliance, size_t mx, size_t my, do
     column[my ? ny - my : 0] = length;
 }
 
-/* Takes the waves through the layers and stores what comes out. */
+/* Eliminates the layers for the waves collected, and stores their compliances. */
 static void waves_solve(struct layered_mesh *mesh) {
     struct wave_lanes *w = &mesh->waves;
     size_t layers = mesh->compliance->layers;

@@ -25,16 +25,16 @@ static void array_close(const struct vtu_writer *w) {
 
 /* --- points ---
  *
- * A plane a level, of its nodes, the last ones of a row and column images of the first. Where
- * columns widen, one more behind it: of the narrower columns' corners, which lie between its nodes.
- */
+ * Each level is a plane of its nodes, in which the last column and row repeat the first. Where
+ * columns widen, a second plane follows: that of the corners of the narrower columns, which lie
+ * between the nodes. */
 
 struct vtu_point {
     double x, y; /* in steps */
     size_t count, node[4];
 };
 
-/* Of a level whose nodes are `wide` columns apart. */
+/* The point in row j and column i of a level whose nodes are `wide` columns apart. */
 static struct vtu_point point_of(const struct mesh *mesh, size_t k, size_t wide, size_t j,
                                  size_t i) {
     const struct level *level = &mesh->level[k];
@@ -91,7 +91,7 @@ static size_t plane_columns(const struct mesh *mesh, size_t level) {
 static size_t plane_rows(const struct mesh *mesh, size_t level) {
     return mesh->dimension == 3 ? mesh->level[level].ny + 1 : 1;
 }
-/* Points of a level, with those behind them. */
+/* Number of points of a level, with those of its second plane. */
 static size_t plane_points(const struct mesh *mesh, size_t level) {
     size_t points = plane_columns(mesh, level) * plane_rows(mesh, level);
     if (level > 0 && mesh_widens(mesh, level - 1))

@@ -11,18 +11,21 @@
 
 enum { ZONES_MOST = 32 };
 
-/* Arrays by wave hold a level's waves in the layout of transform.h, innermost; levels follow one
- * another. */
+/* Arrays by wave hold the waves of a level, innermost, in the layout of transform.h; the levels
+ * follow one another. */
 struct preconditioner {
     const struct mesh *mesh; /* borrowed */
     size_t d;
-    struct transform *transform[ZONES_MOST]; /* by how often columns have doubled */
-    size_t *before;   /* [level]: waves of the levels above; the last, of all */
-    double *inverse;  /* [level][i*d + j][wave]: of the level's pivot, which holds all below it */
-    double *coupling; /* [level][i*d + j][wave]: row of the level, column of the next */
-    double *field;    /* [level][i][2][wave]: real and imaginary parts of forces, displacements */
-    double *passed, *folded; /* [i][2][wave]: between levels of unlike columns */
-    double *plane;           /* face: one component of one level */
+    struct transform *transform[ZONES_MOST]; /* index: how often columns have doubled */
+    size_t *before;  /* [level]: waves of all levels above it; the last entry counts all waves */
+    double *inverse; /* [level][i*d + j][wave]: inverse of the level's pivot, into which all levels
+                        below have been eliminated */
+    double *
+        coupling; /* [level][i*d + j][wave]: stiffness between the level (i) and the next one (j) */
+    double *field; /* [level][i][2][wave]: real and imaginary parts of forces, displacements */
+    double *passed,
+        *folded;   /* [i][2][wave]: scratch between levels whose columns differ in width */
+    double *plane; /* scratch for one component of one level, as large as the face */
 };
 
 static size_t waves_at(const struct preconditioner *f, size_t level) {
@@ -49,7 +52,8 @@ static struct transform *transform_at(const struct preconditioner *f, size_t lev
 
 /* --- elimination --- */
 
-/* Inverse of a symmetric positive definite matrix, by Gauss and Jordan without pivoting. */
+/* Inverts a symmetric positive definite matrix by Gauss-Jordan elimination without pivoting;
+ * overwrites a. */
 static void invert(int d, double a[3][3], double out[3][3]) {
     for (int i = 0; i < d; i++)
         for (int j = 0; j < d; j++)
@@ -70,7 +74,8 @@ static void invert(int d, double a[3][3], double out[3][3]) {
     }
 }
 
-/* The far side: Z is 0 but for the mean wave, whose X and Y float. */
+/* Applies the conditions on the far side: Z is 0 for all waves but the mean, and X and Y of the
+ * mean wave, which nothing holds, get a stiffness of 1. */
 static void hold_far_side(int d, bool mean, double pivot[3][3]) {
     for (int i = 0; i < d; i++)
         for (int j = 0; j < d; j++) {
@@ -80,8 +85,8 @@ static void hold_far_side(int d, bool mean, double pivot[3][3]) {
         }
 }
 
-/* Adds the lower side of the layer above a level: that of all aliases, which are `share` times as
- * many nodes. */
+/* Adds the stiffness of the lower side of the layer above a level, for all aliases of the wave; the
+ * layer has `share` times as many nodes. */
 static void add_above(const struct preconditioner *f, struct layer_stiffness *layer, size_t level,
                       size_t mx, size_t row, double share, double pivot[3][3]) {
     int d = f->mesh->dimension;
@@ -95,9 +100,10 @@ static void add_above(const struct preconditioner *f, struct layer_stiffness *la
         }
 }
 
-/* Couples a level to the next, of which it takes up the inverse: exact on like columns. On unlike
- * ones aliases are taken apart, though the level below ties them together; short waves do not reach
- * that deep (that is why columns may be wide there). */
+/* Couples a level to the next, eliminating the latter with its inverse. This is exact where both
+ * have the same columns. Where columns widen, the aliases of a wave are treated as independent
+ * although the level below couples them; that is accurate because short waves have decayed at such
+ * depths. */
 static void couple(const struct preconditioner *f, struct layer_stiffness *layer, size_t level,
                    size_t wave, double share, double pivot[3][3]) {
     int d = f->mesh->dimension;
@@ -112,7 +118,7 @@ static void couple(const struct preconditioner *f, struct layer_stiffness *layer
     layer_stiffness_add_symbol(d, layer->block[0][1], &phases,
                                wide ? wave_phases_hanging(d, &phases) : 1, between);
     for (int i = 0; level + 1 == f->mesh->layers && below != 0 && i < d; i++)
-        between[i][d - 1] = 0; /* the far side moves as one */
+        between[i][d - 1] = 0; /* all nodes of the far side move together */
     for (int i = 0; i < d; i++)
         for (int j = 0; j < d; j++) {
             coupling_at(f, level)[(size_t)(i * d + j) * n + wave] = between[i][j];
@@ -125,7 +131,7 @@ static void couple(const struct preconditioner *f, struct layer_stiffness *layer
         }
 }
 
-/* Nodes of a level for each of the next. */
+/* Number of nodes of a level for each node of the next one. */
 static double share_of(const struct mesh *mesh, size_t level) {
     return mesh_widens(mesh, level) ? 1 << (mesh->dimension - 1) : 1;
 }
@@ -143,7 +149,8 @@ static void eliminate(struct preconditioner *f, struct layer_stiffness *layers, 
                   pivot);
     if (level == last)
         hold_far_side(d, wave == 0, pivot);
-    bool floats = level == 0 && wave == 0; /* whatever carries the load tells where it is */
+    bool floats =
+        level == 0 && wave == 0; /* the mean height of the face is not determined by forces */
     for (int i = 0; floats && i < d; i++)
         pivot[i][d - 1] = pivot[d - 1][i] = i == d - 1;
     invert(d, pivot, inverse);
@@ -170,7 +177,7 @@ static int eliminate_all(struct preconditioner *f, const struct material *materi
     return 0;
 }
 
-/* Waves of all levels. */
+/* Number of waves of all levels. */
 static size_t all_waves(const struct mesh *mesh) {
     size_t waves = 0;
     for (size_t level = 0; level <= mesh->layers; level++)
@@ -259,7 +266,8 @@ const double *preconditioner_compliance(const struct preconditioner *f) {
 
 /* --- waves in and out --- */
 
-/* A component's plane into the field. Its spectrum s stands for X and Y as -i s. */
+/* Transforms one component of a level's forces from plane into the field. A spectrum s of a
+ * sideways component is stored as -i s. */
 static void plane_in(struct preconditioner *f, size_t level, size_t i) {
     size_t n = waves_at(f, level);
     double *re = field_at(f, level, i), *im = re + n;
@@ -282,7 +290,7 @@ static void plane_out(struct preconditioner *f, size_t level, size_t i) {
     transform_inverse(transform_at(f, level), f->plane);
 }
 
-/* y -= a x, a one real value a wave, x and y real and imaginary parts. */
+/* y -= a x, with one real value a for each wave; x and y are real and imaginary parts. */
 WIDE_VECTORS static void subtract(size_t n, const double *a, const double *x, double *y) {
     for (size_t k = 0; k < n; k++) {
         y[k] -= a[k] * x[k];
@@ -290,7 +298,7 @@ WIDE_VECTORS static void subtract(size_t n, const double *a, const double *x, do
     }
 }
 
-/* x = inverse x at one level. */
+/* Multiplies x (and y, z) by the inverse pivot of one level. */
 WIDE_VECTORS static void pivot_two(size_t n, const double *a, double *x, double *y) {
     for (size_t k = 0; k < n; k++)
         for (size_t part = 0; part < 2; part++) {
@@ -333,7 +341,7 @@ void preconditioner_load(struct preconditioner *f, const double *forces) {
     for (size_t k = 1; k < wide; k++)
         far_side[k] = far_side[wide + k] = 0;
     for (size_t level = last; level > 0; level--) {
-        /* Below, the field keeps the displacements under its own load alone. */
+        /* The field of the level below keeps the displacements under the forces stored there. */
         size_t n = waves_at(f, level - 1);
         const double *field = field_at(f, level, 0);
         pivot_apply(f, level, field_at(f, level, 0));
@@ -348,7 +356,8 @@ void preconditioner_load(struct preconditioner *f, const double *forces) {
     }
 }
 
-/* Z of pivot times forces of the face; preconditioner_displace still needs these. */
+/* Only the vertical row of the inverse pivot is needed; the field itself is kept for
+ * preconditioner_displace. */
 void preconditioner_face(struct preconditioner *f, double *vertical) {
     size_t n = waves_at(f, 0), d = f->d;
     double complex *s = transform_spectrum(f->transform[0]);
@@ -362,7 +371,8 @@ void preconditioner_face(struct preconditioner *f, double *vertical) {
     transform_inverse(f->transform[0], vertical);
 }
 
-/* The next level's displacements less pivot times coupling^T times this level's. */
+/* Subtracts pivot times coupling^T times this level's displacements from those of the next level.
+ */
 INLINE void descend(size_t d, size_t n, const double *pivot, const double *coupling,
                     const double *above, double *below) {
     for (size_t part = 0; part < 2; part++)
@@ -399,7 +409,7 @@ WIDE_VECTORS static void pull(size_t d, size_t n, const double *coupling, const 
                         coupling[(i * d + j) * n + k] * above[(2 * i + part) * n + k];
 }
 
-/* The next level's displacements, on wider columns. */
+/* The next level's displacements where its columns are wider. */
 static void descend_wider(struct preconditioner *f, size_t level) {
     size_t n = 2 * f->d * waves_at(f, level + 1);
     double share = share_of(f->mesh, level), *below = field_at(f, level + 1, 0);

@@ -2,10 +2,10 @@
  *
  * Because its columns are equal, the flat block's stiffness separates into one block-tridiagonal
  * system in depth for each wave vector (as in core/contact/layered.c, which keeps only the face).
- * With sideways displacements written as i X and i Y the systems are real; they are eliminated once,
- * from the far side up. Where columns widen, a wave and its aliases (aliasing.h) are coupled. The
- * inverse neglects that coupling; for forces on the face its relative error is exp(-pi depth), with
- * the depth of the wider columns in columns.
+ * With sideways displacements written as i X and i Y the systems are real; they are eliminated
+ * once, from the far side up. Where columns widen, a wave and its aliases (aliasing.h) are coupled.
+ * The inverse neglects that coupling; for forces on the face its relative error is exp(-pi depth),
+ * with the depth of the wider columns in columns.
  *
  * All nodes of the far side have one vertical displacement. The block is free to move sideways, and
  * vertically where nothing is in contact; the mean displacements of its far side and of its face

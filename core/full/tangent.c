@@ -49,7 +49,8 @@ double tangent_bytes(const struct mesh *mesh, bool pressures) {
            (pressures ? volumetric_bytes(mesh, false) : 0);
 }
 
-/* One step back, none and one on, x fastest, from row j, column i of a level. */
+/* Neighbours of row j, column i within a level: one step back, none and one step on along each
+ * axis, x fastest. */
 INLINE void neighbours_of(int d, const struct level *level, size_t j, size_t i, size_t *out) {
     const size_t column[3] = {i == 0 ? level->nx - 1 : i - 1, i, i + 1 == level->nx ? 0 : i + 1};
     const size_t row[3] = {j == 0 ? level->ny - 1 : j - 1, j, j + 1 == level->ny ? 0 : j + 1};
@@ -58,8 +59,8 @@ INLINE void neighbours_of(int d, const struct level *level, size_t j, size_t i, 
             *out++ = level->first + row[r] * level->nx + column[c];
 }
 
-/* Below a node between two wide columns, the last slot in that direction counts as the first would:
- * it is empty. */
+/* Neighbours in the level and in the next one. For a node between two wide columns of the next
+ * level, the last slot along that axis repeats a neighbour, and its values are 0. */
 INLINE void neighbours(int d, const struct mesh *mesh, size_t level, size_t j, size_t i,
                        size_t *out) {
     const size_t half = d == 2 ? 3 : 9;
@@ -78,7 +79,8 @@ void tangent_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t 
     neighbours(mesh->dimension, mesh, level, j, i, neighbour);
 }
 
-/* y += value x[other] and, for neighbours below, their share of x[node]. */
+/* Adds value x[neighbour] to y at the node and, because the matrix is symmetric, value^T x[node] to
+ * y at neighbours in the level below. */
 INLINE void apply_node(size_t d, size_t slots, const double *value, const size_t *neighbour,
                        size_t node, const double *x, double *y) {
     double sum[3] = {0}, here[3];
@@ -119,14 +121,14 @@ WIDE_VECTORS void tangent_apply(const struct tangent *tangent, const double *x, 
 
 /* --- assembly --- */
 
-/* What an element gives, by its corners. */
+/* What one element contributes, by its corners. */
 struct contribution {
     double energy, force[ELEMENT_DEGREES_OF_FREEDOM],
         stiffness[ELEMENT_DEGREES_OF_FREEDOM][ELEMENT_DEGREES_OF_FREEDOM];
 };
 
-/* From its deeper corners to the nodes that they hang on, rows or columns alike: out_b = sum over a
- * of weight_ab in_a, for values a step apart. */
+/* Distributes values at the deeper corners, `step` apart, to the nodes that the corners are
+ * interpolated from: out_b = sum over a of weight_ab in_a. Serves rows and columns alike. */
 static void pass_on(size_t d, size_t sideways, const struct mesh_element *element, double *value,
                     size_t step) {
     for (size_t i = 0; i < d; i++) {
@@ -152,9 +154,9 @@ static void untie(size_t d, const struct mesh_element *element, struct contribut
         pass_on(d, sideways, element, &c->stiffness[0][f], ELEMENT_DEGREES_OF_FREEDOM);
 }
 
-/* Slot of element node b as seen from its node a, b not above it: steps sideways count in the
- * columns of b's level. Within a wide column, a node of the level above stands for its first one
- * unless it is the second column's second side. */
+/* Slot of element node b among the neighbours of its node a, where b is not above a. Steps sideways
+ * are counted in columns of b's level; a node above a wide column counts as that column's first
+ * node, unless it lies on the second side of the column's second element. */
 INLINE size_t slot_between(int d, int a, int b, int parity) {
     bool across = (a ^ b) >> (d - 1) & 1;
     size_t slot = 0, power = 1;
@@ -166,8 +168,8 @@ INLINE size_t slot_between(int d, int a, int b, int parity) {
     return slot + (across ? power : 0);
 }
 
-/* parity: bit k tells whether the element is the second one of a wide column along axis k; all set
- * where it has its own. */
+/* parity: bit k is set where the element is the second one of a wide column along axis k; all bits
+ * are set where columns do not widen. */
 INLINE void scatter(int d, const size_t node[8], int parity, struct contribution *c, double *force,
                     struct tangent *tangent) {
     const size_t n = (size_t)d, slots = d == 2 ? 6 : 18;
@@ -186,7 +188,7 @@ INLINE void scatter(int d, const size_t node[8], int parity, struct contribution
         }
 }
 
-/* Of the layer's elements, from its first one on; NULL where pressures are bound. */
+/* Pressures of a layer's elements, beginning with the first one. */
 struct layer_pressures {
     const double *pressure;
     bool bound;

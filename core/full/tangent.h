@@ -1,6 +1,6 @@
-/* Forces and tangent stiffness of a whole mesh. A node is coupled only to nodes one step away in each
- * direction, so that the matrix is stored as a stencil, without indices. It is symmetric: the blocks
- * between a node and the level above it are stored with the nodes of that level. */
+/* Forces and tangent stiffness of a whole mesh. A node is coupled only to nodes one step away in
+ * each direction, so that the matrix is stored as a stencil, without indices. It is symmetric: the
+ * blocks between a node and the level above it are stored with the nodes of that level. */
 #ifndef RUGO_CORE_FULL_TANGENT_H
 #define RUGO_CORE_FULL_TANGENT_H
 
@@ -12,11 +12,12 @@ enum { NEIGHBOURS_MOST = 18 };
  * neighbour in the slot. The conditions on the far side are not applied here but in gmres.c and
  * factorisation.c. */
 struct tangent {
-    const struct mesh *mesh;       /* borrowed */
-    size_t slots;                  /* 2 * 3^(dimension - 1): neighbours on the own level, then below */
-    double *values;                /* owned */
-    struct volumetric *volumetric; /* owned: the volumetric part apart, which values hold too; or NULL */
-    bool bound; /* pressures follow the dilatations, and those given are ignored */
+    const struct mesh *mesh; /* borrowed */
+    size_t slots;            /* 2 * 3^(dimension - 1): neighbours on the own level, then below */
+    double *values;          /* owned */
+    struct volumetric
+        *volumetric; /* owned: the volumetric part apart, which values hold too; or NULL */
+    bool bound;      /* pressures follow the dilatations, and those given are ignored */
 };
 
 /* pressures: whether the tangent has a volumetric part (gmres.h). */
@@ -37,9 +38,10 @@ size_t tangent_unknowns(const struct tangent *tangent);
 
 /* Computes the energy (E* times the cube, of profiles the square, of the mesh's unit; may be NULL),
  * the inner forces at displacements u, and the tangent (may be NULL), which contains all forces as
- * functions of u alone. With a volumetric part, u and force have tangent_unknowns values: behind the
- * displacements the elements' pressures, and behind the forces how far these exceed the pressures of
- * the dilatations. Returns false, with undefined outputs, when an element is inverted. */
+ * functions of u alone. With a volumetric part, u and force have tangent_unknowns values: behind
+ * the displacements the elements' pressures, and behind the forces how far these exceed the
+ * pressures of the dilatations. Returns false, with undefined outputs, when an element is inverted.
+ */
 bool tangent_evaluate(const struct mesh *mesh, const struct material *material, const double *u,
                       double *energy, double *force, struct tangent *tangent);
 

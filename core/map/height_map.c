@@ -134,7 +134,7 @@ static int parse_csv(struct height_map *map, struct table *table, double dx, str
     return 0;
 }
 
-/* Of a step: coordinates come printed with few digits. */
+/* Tolerance of coordinates, which are printed with few digits, in steps of the grid. */
 static const double OFF_GRID = 0.01;
 
 /* Checks that point number `point` is where a regular grid has it. */

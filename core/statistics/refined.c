@@ -23,7 +23,7 @@ struct refined {
     struct transform *coarse, *dense;
     double *window;    /* WINDOW x fine.nx: rows first - MARGIN .. first + STRIP + MARGIN - 1 */
     size_t *columns;   /* starts of one row */
-    double mean, unit; /* heights of the surface in hand are mean + unit * window */
+    double mean, unit; /* heights of the present surface are mean + unit * window */
 };
 
 static size_t fine_points(size_t points, size_t mode, size_t points_a_wave) {
@@ -142,7 +142,7 @@ static void jet_of_profile(const struct refined *r, double x, const struct cell 
     }
 }
 
-/* y counts from the first row of the window. */
+/* Interpolates at (x, y); y counts from the first row of the window. */
 static void jet_at(const struct refined *r, double x, double y, struct cell *cell,
                    struct jet *jet) {
     cell_follow(x, &cell->x);
@@ -213,7 +213,7 @@ static void step_up(const struct refined *r, const struct jet *jet, double *dx, 
     }
 }
 
-/* From a grid maximum to the true one; false when there is none within TRAVEL. */
+/* Searches the true maximum near a grid maximum; returns false when there is none within TRAVEL. */
 static bool climb(const struct refined *r, double x0, double y0, double *x, double *y,
                   struct jet *jet) {
     struct cell cell = {(long)x0, (long)y0};
@@ -286,8 +286,8 @@ static double apart(double a, double b, double period) {
 /* Drops summits found from several starts: sorted by row, copies are near neighbours in the list.
  * A dropped one is marked by x < 0 until the list is closed up. */
 static void merge_copies(const struct grid *fine, struct summit_list *list) {
-    /* Of a fine cell: interpolants of neighbour cells place a flat maximum this far apart at most,
-     * and no two maxima are as near. */
+    /* In fine cells: copies of one maximum found by interpolants of neighbouring cells are at most
+     * this far apart, and two different maxima are never so near. */
     const double near = 0.02;
     struct summit *s = list->summits;
     bool profile = grid_is_profile(fine);

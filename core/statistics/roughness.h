@@ -4,8 +4,9 @@
 
 #include "core/surface/spectrum.h"
 
-/* By finite differences on the periodic grid, as the reference: forward ones for slopes (2.7),
- * central second ones for curvatures (3.20). */
+/* Parameters by finite differences on the periodic grid (FORMULAS.md, F1.3): forward differences
+ * for slopes, central second ones for curvatures, as in the reference
+ * (core/theory/BIBLIOGRAPHY.md). */
 struct roughness {
     double mean, rms_height, rms_slope, rms_curvature; /* about the mean; profile: |z'|, z'' */
     double skewness, kurtosis;                         /* NaN for a flat map */
@@ -14,7 +15,8 @@ struct roughness {
 };
 void roughness_measure(const struct grid *grid, const double *z, struct roughness *out);
 
-/* Spectral moments of a height map, by transform (2.33). Works on any map, band-limited or not. */
+/* Spectral moments of a height map by its transform (F2.3). Works on any map, band-limited or not.
+ */
 int roughness_spectral(const struct grid *grid, const double *z, struct moments *out,
                        struct error *err);
 

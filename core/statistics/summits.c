@@ -113,7 +113,7 @@ static void curvature_fill(struct summit_finder *f, const double *z) {
     transform_inverse(f->transform, f->curvature);
 }
 
-/* Central differences (theory.md 3.20). */
+/* Central second differences (F1.3). */
 static double difference_curvature(const struct grid *grid, const double *z, size_t i, size_t j) {
     size_t nx = grid->nx, ny = grid->ny;
     const double *row = z + j * nx;

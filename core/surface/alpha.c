@@ -53,7 +53,7 @@ int spectrum_ratio_continuous(int dimension, double hurst, double ratio_rolloff,
     return 0;
 }
 
-/* Running moments of the modes with L/lambda_l <= |m| <= R, as R grows ring by ring. */
+/* Moments of the modes with L/lambda_l <= |m| <= R, updated as R grows ring by ring. */
 struct ring_sums {
     int dimension;
     double hurst, lowest, rolloff; /* |m| of lambda_l and lambda_r */
@@ -108,11 +108,11 @@ struct ring_search {
     double first_alpha, last_alpha;
 };
 
-/* True once alpha was passed. */
+/* Visits one more ring; returns true once alpha has been passed. */
 static bool ring_visit(struct ring_search *search, double square, double points, double fourth) {
     ring_add(&search->sums, square, points, fourth);
     double reached = ring_alpha(&search->sums);
-    /* The band must reach the roll-off, where lambda_s = lambda_r. */
+    /* The shortest wave may not be longer than the roll-off. */
     if (isnan(reached) || sqrt(square) < search->sums.rolloff * (1 - 1e-9))
         return false;
     if (isnan(search->first_alpha))

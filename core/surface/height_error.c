@@ -5,23 +5,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Scott (1979), with his rounding, as the reference. */
+/* Factor of the width of bins (Scott 1979), rounded as there and as in the reference. */
 static const double SCOTT = 3.49;
 
 struct height_error {
     const struct modes *modes;
     struct transform *whole; /* the whole half spectrum; NULL when the band fills it */
-    double power;            /* sum of the powers of modes: 1 is that in our unit */
+    double power;            /* sum of the powers of all modes, in the caller's unit */
     double mean_amplitude;   /* mean over the non-null modes of sqrt(power/sum) */
     size_t bins_most;
-    /* bin 0 and the last one hold all that lies outside */
+    /* number of bins; the first and the last one hold all that lies outside */
     size_t bins;
     double first_edge, width; /* lower edge of bin 1 */
     uint32_t *target;         /* counts of z_h */
     uint32_t *count;          /* counts of z_s */
 };
 
-/* n values of standard deviation 1 lie within sqrt(n), and an edge may be one width away. */
+/* Bins that can be needed: n values of standard deviation 1 lie within sqrt(n) of their mean, and
+ * an edge may be one width away. */
 static size_t bins_for(size_t points) {
     double n = (double)points;
     return (size_t)(2 * sqrt(n) * cbrt(n) / SCOTT) + 8;
@@ -122,7 +123,7 @@ void height_error_start(struct height_error *e, const struct height_moments *mom
     histogram_count(e, sorted, e->target);
 }
 
-/* 3.33: integral of the difference between the histogram densities. */
+/* eps_h of F5.2: the integral of the difference between the histogram densities. */
 static double heights_distance(const struct height_error *e, const double *z_s) {
     histogram_count(e, z_s, e->count);
     uint64_t difference = 0;
@@ -136,7 +137,7 @@ static double squared_modulus(double complex z) {
     return creal(z) * creal(z) + cimag(z) * cimag(z);
 }
 
-/* 3.34 over the non-null modes. Returns the power of z_h in them. */
+/* eps_s of F5.2 over the non-null modes. Returns the power of z_h in them. */
 static double band_errors(const struct height_error *e, const double complex *spectrum,
                           struct surface_report *report) {
     const struct modes *modes = e->modes;

@@ -1,7 +1,6 @@
-/* How far a pair of iterates is from having both the spectrum and the heights (Perez-Rafols and
- * Almqvist 2019, theory.md 3.33, 3.34): z_s has the exact spectrum, z_h the exact heights in the
- * same rank order. Heights are in standard deviations throughout, so that the powers add up to 1.
- */
+/* How far a pair of iterates is from having both the spectrum and the heights (Perez-Rafols &
+ * Almqvist 2019; FORMULAS.md, F5.2): z_s has the exact spectrum, z_h the exact heights in the same
+ * rank order. Heights are in standard deviations throughout, so that the powers add up to 1. */
 #ifndef RUGO_CORE_SURFACE_HEIGHT_ERROR_H
 #define RUGO_CORE_SURFACE_HEIGHT_ERROR_H
 

@@ -146,7 +146,8 @@ static double node_probability(size_t node, double *weight) {
     return t < 0 ? low : 1 - low;
 }
 
-/* Adds the powers 2..4 of the quantile function about mean to central[0..2]; tails apart. */
+/* Integrates the powers 2 to 4 of the quantile function about mean into central[0..2], and the
+ * parts of the tails separately. */
 static void powers_integrate(const struct heights *heights, double mean, double *central,
                              double *tail) {
     for (size_t node = 0; node < NODES; node++) {

@@ -121,7 +121,8 @@ void nongaussian_destroy(struct nongaussian **nongaussian) {
     *nongaussian = NULL;
 }
 
-/* A mode with the wanted amplitude and the phase it has; phase 0 where it has none. */
+/* Returns a mode with the given amplitude and the phase of `mode`, or the phase 0 where that is 0.
+ */
 static double complex with_amplitude(double complex mode, double amplitude) {
     double size = sqrt(creal(mode) * creal(mode) + cimag(mode) * cimag(mode));
     return size > 0 ? amplitude / size * mode : amplitude;
@@ -230,9 +231,9 @@ static int plain_iterate(struct nongaussian *g, struct transform *transform, dou
     return status;
 }
 
-/* The plain phase, ended by the tolerance, by the limit of iterations, or by the stall rule of
- * theory.md: the largest error has not gained `stall_gain` on its best in `stall_iterations`, the
- * best being the error when it last gained so much. Looked at after every iteration. */
+/* The plain phase, which ends by the tolerance, the limit of iterations, or the stall rule (F5.3):
+ * the largest error has not fallen by the share `stall_gain` in `stall_iterations`. The rule is
+ * checked after every iteration. */
 static int plain_phase(struct nongaussian *g, struct transform *transform, double *z, size_t limit,
                        struct surface_report *report, struct error *err) {
     const struct surface_options *options = &g->options;

@@ -1,6 +1,6 @@
-/* Non-Gaussian surfaces: alternates between a spectrum and a height distribution (Perez-Rafols and
- * Almqvist 2019; theory.md 3.31-3.34). The generator in surface.c draws the Gaussian start and owns
- * one of these a case; it is a workspace, for one thread. */
+/* Non-Gaussian surfaces, made by alternating between a spectrum and a height distribution
+ * (Perez-Rafols & Almqvist 2019; FORMULAS.md, F5.1 to F5.4). The generator in surface.c draws the
+ * Gaussian start and owns one of these for each case; it is a workspace for one thread. */
 #ifndef RUGO_CORE_SURFACE_NONGAUSSIAN_H
 #define RUGO_CORE_SURFACE_NONGAUSSIAN_H
 

@@ -27,7 +27,7 @@ enum {
     FINE_A_KEY = 2,      /* fine cells a key: most hold one key or none */
     SHIFTS_A_KEY = 8,    /* insertion gives way to merging beyond this */
 };
-/* Keeps a product just below the number of cells, whatever the rounding. */
+/* Factor that keeps a product below the number of cells whatever the rounding. */
 static const double JUST_BELOW_ONE = 1 - 0x1p-40;
 
 struct ranker {
@@ -227,7 +227,7 @@ static void order_merge(const double *key, uint32_t *order, uint32_t *spare, siz
                 touched = true;
             }
         }
-        if (!touched && width == 1) { /* perhaps risen all along */
+        if (!touched && width == 1) { /* checks whether the keys rise already */
             size_t p = 1;
             while (p < n && key[to[p - 1]] <= key[to[p]])
                 p++;

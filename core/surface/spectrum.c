@@ -3,7 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Wavelengths and cells come from divisions: a mode this close to a band edge is on it. */
+/* A mode whose relative distance to a band edge is below this counts as on the edge, because
+ * wavelengths and cells come from divisions. */
 static const double EDGE = 1e-9;
 
 static int refuse(struct error *err, const char *what, double value, const char *allowed) {
@@ -66,7 +67,7 @@ static int spectrum_check(const struct spectrum *s, const struct grid *grid, str
     return error_set(err, ERROR_INPUT, "spectrum type %d is unknown", (int)s->type);
 }
 
-/* Unscaled density at wave numbers (2.50, 2.51); frequencies q = |k|/(2 pi). */
+/* Unscaled self-affine density (F2.1) at the frequency q = |k|/(2 pi). */
 static double self_affine_density(const struct spectrum *s, bool profile, double q) {
     if (q * s->wavelength_long < 1 - EDGE || q * s->wavelength_short > 1 + EDGE)
         return 0;
@@ -76,7 +77,7 @@ static double self_affine_density(const struct spectrum *s, bool profile, double
     return pow(relative, profile ? -1 - 2 * s->hurst : -2 * (s->hurst + 1));
 }
 
-/* Transform of the exponential autocorrelation (2.17, 2.18), up to a constant. */
+/* Unscaled density of the exponential autocorrelation (F2.2). */
 static double exponential_density(const struct spectrum *s, bool profile, double kx, double ky) {
     double x = kx * s->correlation_x, y = profile ? 0 : ky * s->correlation_y;
     double base = 1 + x * x + y * y;

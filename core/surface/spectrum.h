@@ -16,14 +16,14 @@ enum spectrum_scale {
 
 struct spectrum {
     enum spectrum_type type;
-    /* self-affine (theory.md 2.50, 2.51): wavelengths, long >= rolloff >= shortest > 0; band edges
-     * lx/long <= |m| <= lx/short inclusive (with a rounding guard of 1e-9 relative) */
+    /* self-affine (FORMULAS.md, F2.1): wavelengths, long >= rolloff >= short > 0; the band lx/long
+     * <= |m| <= lx/short includes both edges, with a relative guard of 1e-9 against rounding */
     double hurst; /* [0, 1] */
     double wavelength_long, wavelength_rolloff, wavelength_short;
-    /* exponential ACF exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (2.17, 2.18); not band-limited: fills the
-     * grid */
+    /* exponential autocorrelation exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (F2.2); it has no band limit
+     * and fills the grid */
     double correlation_x, correlation_y;
-    /* table: density (isotropic, any scale) at rising |k|, log-log interpolated, 0 outside;
+    /* table: isotropic density of any scale at rising |k|, interpolated in logarithms, 0 outside;
      * borrowed */
     size_t table_count;
     const double *table_wave_number; /* radians per length */
@@ -52,19 +52,19 @@ static inline double modes_power(const struct modes *modes, size_t mx, long my) 
     return modes->power[mx * (2 * modes->mode_y + 1) + (size_t)(my + (long)modes->mode_y)];
 }
 
-/* Spectral moments (theory.md 2.33, 2.37). A profile has m00 = m0, m20 = m2, m40 = m4, others 0. */
+/* Spectral moments (FORMULAS.md, F2.3). A profile has m00 = m0, m20 = m2, m40 = m4; the others are
+ * 0. */
 struct moments {
     double m00, m20, m02, m11, m22, m40, m04, m31, m13;
     double m0, m2, m4;                           /* isotropic: m00, (m20+m02)/2, (m40+m04)/2 */
-    double nayak_alpha;                          /* m0 m4 / m2^2 */
-    double rms_height, rms_slope, rms_curvature; /* (2.35) */
+    double nayak_alpha;                          /* m0 m4 / m2^2 (F2.4) */
+    double rms_height, rms_slope, rms_curvature; /* F1.2 */
 };
 /* Pairwise or compensated sums: relative error about 1e-15. */
 void modes_moments(const struct modes *modes, struct moments *out);
 
-/* Nayak parameter of the continuous self-affine spectrum (3.37 and its profile form), dimension 1
- * or 2; ratio_long = lambda_l/lambda_s, ratio_rolloff = lambda_l/lambda_r >= 1. NaN when out of
- * domain. */
+/* Nayak parameter of the continuous self-affine spectrum (F2.5) of dimension 1 or 2; ratio_long is
+ * lambda_l/lambda_s, ratio_rolloff lambda_l/lambda_r >= 1. NaN outside of the domain. */
 double spectrum_alpha_continuous(int dimension, double hurst, double ratio_long,
                                  double ratio_rolloff);
 /* The wavelength ratio lambda_l/lambda_s that gives alpha; ERROR_NUMERIC with the range that can

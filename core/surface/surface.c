@@ -109,7 +109,7 @@ static uint64_t row_first_word(long my) {
     return zigzag << 32;
 }
 
-/* Where a wave number my stands in a column of ny values. */
+/* The row of a wave number my in a column of ny values. */
 static size_t column_row(long my, size_t ny) {
     return my >= 0 ? (size_t)my : ny - (size_t)-my;
 }
@@ -134,7 +134,7 @@ static void own_mirror_mode(double complex *column, long my, size_t ny, double a
     column[column_row(-my, ny)] = conj(mode);
 }
 
-/* Deterministic amplitudes, random phases (Wu 2000; theory.md 3.14-3.19). */
+/* Draws amplitudes that are fixed and phases that are random (Wu 2000; F3.1). */
 static void spectrum_draw(struct generator *g, struct random_key key) {
     const struct modes *modes = g->modes;
     size_t columns = modes->mode_x + 1, ny = modes->grid.ny, nx = modes->grid.nx;

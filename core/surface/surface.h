@@ -13,13 +13,16 @@ enum surface_keep { KEEP_SPECTRUM, KEEP_HEIGHTS };
 enum surface_iteration { ITERATION_RELAXED, ITERATION_PLAIN };
 enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
 
-/* Perez-Rafols & Almqvist (2019) iteration; theory.md 3.31-3.34. Ignored for Gaussian heights. */
+/* The iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4). Gaussian heights need
+ * none of it. */
 struct surface_options {
     struct heights heights;
     enum surface_keep keep;           /* which of the two last iterates is returned */
-    enum surface_iteration iteration; /* accelerated and relaxed, or plain as the reference */
+    enum surface_iteration iteration; /* accelerated and relaxed (F5.4), or plain alternation (F5.1)
+                                         as in the reference */
     enum surface_draw draw;           /* target heights drawn at random, or exact quantiles */
-    double tolerance;          /* on eps_h, eps_s, eps_s0; default 1e-3; 0 runs to the stall */
+    double
+        tolerance; /* on eps_h, eps_s and eps_s0 (F5.2); default 1e-3; 0 iterates until it stalls */
     double stall_gain;         /* default 0.05: stuck when the worst error has not gained this */
     size_t stall_iterations;   /* default 10: ... in so many iterations */
     size_t max_iterations;     /* default 1000, of both kinds together */

@@ -15,7 +15,7 @@ struct asperity_contact {
     double load, area;
 };
 
-/* Beyond this many factors of e below its peak an integrand is nothing to a double. */
+/* An integrand is negligible in double precision where it is exp(-DEPTH) of its peak. */
 static const double DEPTH = 42;
 
 /* E[max(0, t - x)], t standard normal. */
@@ -47,7 +47,7 @@ static double three_halves_moment(double x) {
     return M_SQRT2 / sqrt(M_PI) * step * sum; /* both signs of u */
 }
 
-/* Greenwood & Williamson (1966), McCool (1986). */
+/* --- Greenwood & Williamson (1966) with McCool's (1986) parameters (F13.4) --- */
 
 struct spheres {
     double mean, deviation; /* of summit heights */
@@ -194,7 +194,7 @@ static struct asperity_contact ellipses_contact(const void *theory, double separ
     return (struct asperity_contact){t->load * sum.load, t->area * sum.area};
 }
 
-/* Curves and their inversion, for both. */
+/* --- curves and their inversion, for both theories --- */
 
 typedef struct asperity_contact contact_at(const void *theory, double separation);
 
@@ -244,11 +244,12 @@ static double excess(double separation, void *context) {
     return logarithm;
 }
 
-/* The fraction changes no faster than the load, so that this much in the logarithm of the load is
- * no more in the fraction's. */
+/* Tolerance on the logarithm of the load: the fraction changes no faster than the load, so that its
+ * relative error is no larger. */
 static const double CLOSE = 1e-12;
 
-/* Brings the load between two separations, at or above it and at or below it. */
+/* Finds the separation of the wanted load between two separations whose loads are at or above it
+ * and at or below it. */
 static void approach(struct inversion *inversion, double low, double high) {
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     if (solver == NULL)

@@ -1,7 +1,8 @@
-/* Theories and exact solutions of elastic, frictionless contact, in dimensionless form.
+/* Theories and exact solutions of elastic, frictionless contact, in dimensionless form
+ * (FORMULAS.md, sections 11 and 13).
  *
- * load = p/(E* h'), p the mean pressure and h' the RMS slope of the surface. Functions return NaN
- * out of their domain. */
+ * load = p/(E* h'), where p is the mean pressure and h' the RMS slope of the surface. Functions
+ * return NaN outside of their domain. */
 #ifndef RUGO_CORE_THEORY_CONTACT_H
 #define RUGO_CORE_THEORY_CONTACT_H
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* With s = -t1 > 0 the joint density of summits is (theory.md)
+/* With s = -t1 > 0 the joint density of summits (F6.1) is
  *   sqrt(3 C1)/(2 pi) w(s) exp(-C1 z^2 + b s - C1 s^2/2),
  *   w(s) = s^2 - 2 + 2 exp(-s^2/2),  C1 = alpha/(2 alpha - 3),  b = C1 sqrt(3/alpha) z.
  * Densities and curvatures are moments of it over s. Nayak's closed forms cancel for low z and
@@ -37,7 +37,7 @@ static double tilted_weight(double s, const void *context) {
     return power * weight(s) * exp(s * (t->b - t->c1 * s / 2) - t->peak);
 }
 
-/* Beyond this many factors of e below its peak an integrand is nothing to a double. */
+/* An integrand is negligible in double precision where it is exp(-DEPTH) of its peak. */
 static const double DEPTH = 80;
 enum { PANELS = 24 };
 
@@ -72,7 +72,7 @@ double nayak_joint_pdf(double z, double t1, double alpha) {
         return NAN;
     if (t1 >= 0)
         return 0;
-    /* One exponent: its parts overflow singly for alpha near 3/2. */
+    /* The exponents are added first: their exponentials overflow singly for alpha near 3/2. */
     double c1 = alpha / (2 * alpha - 3), slant = sqrt(12 / alpha);
     double exponent = -c1 * (z * z + (t1 * t1 + slant * t1 * z) / 2);
     return sqrt(3 * c1) / (2 * M_PI) * weight(-t1) * exp(exponent);

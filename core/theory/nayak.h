@@ -1,28 +1,30 @@
-/* Nayak's (1971) theory of Gaussian isotropic surfaces, in the normalisation of theory.md:
- * z* = z/sqrt(m0), t1 = -sqrt(3/m4) kappa_m, kappa_m = -(z_xx + z_yy)/2. alpha > 3/2 (surfaces);
- * functions return NaN for alpha <= 3/2 or a NaN argument. Stable for every alpha > 3/2. */
+/* Nayak's (1971) theory of the summits of Gaussian isotropic surfaces, in the normalisation of
+ * FORMULAS.md, section 6: z* = z/sqrt(m0), t1 = -sqrt(3/m4) kappa_m, kappa_m = -(z_xx + z_yy)/2.
+ * Functions return NaN for alpha <= 3/2 or a NaN argument, and are stable for every alpha > 3/2. */
 #ifndef RUGO_CORE_THEORY_NAYAK_H
 #define RUGO_CORE_THEORY_NAYAK_H
 
-/* Probability density of summit heights (3.4), and its integral from -infinity. */
+/* Probability density of summit heights (F6.2), and its integral from -infinity (F6.3). */
 double nayak_summit_pdf(double z, double alpha);
 double nayak_summit_cdf(double z, double alpha);
-/* Joint density of summit height and equivalent curvature (3.7); 0 for t1 >= 0. */
+/* Joint density of summit height and equivalent curvature (F6.1); 0 for t1 >= 0. */
 double nayak_joint_pdf(double z, double t1, double alpha);
-/* Expected mean curvature of summits at height z, kappa_m/sqrt(m4). */
+/* Expected mean curvature of summits at height z over sqrt(m4) (F6.5). */
 double nayak_mean_curvature(double z, double alpha);
-/* Summits per area (m2, m4 isotropic moments). */
+/* Summits per area (F6.7); m2 and m4 are the isotropic moments. */
 double nayak_summit_density(double m2, double m4);
-/* Mean and variance of summit heights z*, mean of kappa_m/sqrt(m4) over all summits. */
+/* Mean and variance of summit heights z* (F6.4); mean of kappa_m/sqrt(m4) over all summits (F6.5).
+ */
 double nayak_summit_mean(double alpha);
 double nayak_summit_variance(double alpha);
 double nayak_overall_curvature(void);
 
-/* Profiles (alpha = m0 m4/m2^2 > 1): density of peak heights (Rice; Cartwright & Longuet-Higgins
- * 1956), its integral, expected curvature -z''/sqrt(m4) of peaks at height z, peaks per length. */
+/* Peaks of profiles, alpha = m0 m4/m2^2 > 1 (F7.1, F7.2; Rice 1945; Cartwright & Longuet-Higgins
+ * 1956): density of peak heights, its integral, joint density with t1 = z''/sqrt(m4) < 0, expected
+ * curvature -z''/sqrt(m4) of peaks at height z, and peaks per length. */
 double profile_peak_pdf(double z, double alpha);
 double profile_peak_cdf(double z, double alpha);
-double profile_peak_joint_pdf(double z, double t1, double alpha); /* t1 = z''/sqrt(m4) < 0 */
+double profile_peak_joint_pdf(double z, double t1, double alpha);
 double profile_mean_curvature(double z, double alpha);
 double profile_peak_density(double m2, double m4);
 
