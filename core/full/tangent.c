@@ -208,9 +208,9 @@ INLINE bool evaluate_element(int d, const struct mesh *mesh, const struct materi
     mesh_corners(mesh, element, u, (size_t)d, moved);
     return element_shape_make(d, position, &shape) &&
            element_evaluate(d, material, &shape, moved,
-                            own && !own->bound ? &own->pressure[e] : NULL,
+                            own != NULL && !own->bound ? &own->pressure[e] : NULL,
                             energy ? &c->energy : NULL, c->force, stiffness ? c->stiffness : NULL,
-                            own ? &own->volumetric[e] : NULL);
+                            own != NULL ? &own->volumetric[e] : NULL);
 }
 
 INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct material *material,

@@ -5,28 +5,28 @@
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/contact_view.h"
 
-static int read_case(void *study, const cJSON *parameters, struct fault_list *faults,
+static int read_case(void *one_case, const cJSON *parameters, struct fault_list *faults,
                      struct error *err) {
-    return contact_case_read(study, parameters, faults, err);
+    return contact_case_read(one_case, parameters, faults, err);
 }
 
-static void clear_case(void *study) {
-    contact_case_clear(study);
+static void clear_case(void *one_case) {
+    contact_case_clear(one_case);
 }
 
-static void estimate(const void *study, struct study_cost *out) {
-    contact_case_estimate(study, out);
+static void estimate(const void *one_case, struct study_cost *out) {
+    contact_case_estimate(one_case, out);
 }
 
-static const struct surface_case *surface_of(const void *study) {
-    const struct contact_case *contact = study;
+static const struct surface_case *surface_of(const void *one_case) {
+    const struct contact_case *contact = one_case;
     return &contact->surface;
 }
 
 /* --- realisations --- */
 
-static int shared_create(void *shared, const void *study, struct error *err) {
-    return contact_compliances_create(shared, study, err);
+static int shared_create(void *shared, const void *one_case, struct error *err) {
+    return contact_compliances_create(shared, one_case, err);
 }
 
 static void shared_clear(void *shared) {
@@ -37,10 +37,11 @@ struct workspace {
     struct contact_scene *scene;
 };
 
-static int workspace_create(void *workspace, const void *study, const struct surface_basis *basis,
-                            const void *shared, struct error *err) {
+static int workspace_create(void *workspace, const void *one_case,
+                            const struct surface_basis *basis, const void *shared,
+                            struct error *err) {
     struct workspace *work = workspace;
-    return contact_scene_create(&work->scene, study, &basis->moments, shared, err);
+    return contact_scene_create(&work->scene, one_case, &basis->moments, shared, err);
 }
 
 static void workspace_clear(void *workspace) {
@@ -67,10 +68,10 @@ static int realise(void *workspace, const struct realisation *realisation, void 
 
 /* --- the tally --- */
 
-static int sums_create(void *tally, const void *study, const struct surface_basis *basis,
+static int sums_create(void *tally, const void *one_case, const struct surface_basis *basis,
                        struct error *err) {
     (void)basis;
-    return contact_tally_create(tally, study, err);
+    return contact_tally_create(tally, one_case, err);
 }
 
 static void sums_clear(void *tally) {
@@ -96,13 +97,14 @@ static bool adds_up(const void *tally) {
 /* Scalars, tally and notes of a block must tell of the same realisations. */
 static bool belongs(const void *tally, const struct block_result *result) {
     const struct contact_tally *contact = tally;
-    const struct contact_case *study = contact->study;
+    const struct contact_case *one_case = contact->one_case;
     double scalars = 0, tallied = 0;
     for (uint64_t r = 0; r < result->count; r++)
         scalars += result->scalars[r * result->scalar_count + CONTACT_SCALAR_ITERATIONS];
-    for (size_t k = 0; k < study->load_count; k++)
-        tallied += contact_tally_total(contact, MEASURE_ITERATIONS,
-                                       contact_case_cell(study, 0, study->level_count - 1, k));
+    for (size_t k = 0; k < one_case->load_count; k++)
+        tallied +=
+            contact_tally_total(contact, MEASURE_ITERATIONS,
+                                contact_case_cell(one_case, 0, one_case->level_count - 1, k));
     bool within = true;
     for (size_t n = 0; n < notes_kept(&contact->notes); n++)
         within = within && contact->notes.kept[n].realisation - result->first < result->count;
@@ -111,20 +113,20 @@ static bool belongs(const void *tally, const struct block_result *result) {
 
 /* --- what comes out --- */
 
-static int result(const void *study, const struct surface_basis *basis, const void *tally,
+static int result(const void *one_case, const struct surface_basis *basis, const void *tally,
                   const struct realisations *realisations, struct case_result *out,
                   struct error *err) {
     const struct contact_tally *contact = tally;
-    int status = contact_scalars(study, &basis->moments, realisations, out, err);
+    int status = contact_scalars(one_case, &basis->moments, realisations, out, err);
     if (status == 0)
-        status = contact_curves(study, basis->modes, &basis->moments, contact, out, err);
+        status = contact_curves(one_case, basis->modes, &basis->moments, contact, out, err);
     return status != 0 ? status : notes_result(&contact->notes, out, err);
 }
 
 /* The first model that has a mesh writes it. */
-static int write_mesh(const char *path, const void *study, const double *z, double pressure,
+static int write_mesh(const char *path, const void *one_case, const double *z, double pressure,
                       struct error *err) {
-    const struct contact_case *contact = study;
+    const struct contact_case *contact = one_case;
     for (size_t m = 0; m < contact->model_count; m++)
         if (contact->models[m]->write_mesh != NULL)
             return contact->models[m]->write_mesh(path, contact, m, z, pressure, err);

@@ -8,18 +8,18 @@ enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
 const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
                                                         NULL};
 
-bool contact_case_has_scale(const struct contact_case *study) {
-    enum spectrum_scale scale = study->surface.spectrum.scale;
+bool contact_case_has_scale(const struct contact_case *one_case) {
+    enum spectrum_scale scale = one_case->surface.spectrum.scale;
     return scale == SCALE_RMS_HEIGHT || scale == SCALE_RMS_SLOPE;
 }
 
-int contact_case_scale(const struct contact_case *study, double *rms_height, double *rms_slope,
+int contact_case_scale(const struct contact_case *one_case, double *rms_height, double *rms_slope,
                        struct error *err) {
-    const struct surface_case *surface = &study->surface;
+    const struct surface_case *surface = &one_case->surface;
     struct modes *modes = NULL;
     struct moments moments;
     *rms_height = *rms_slope = NAN;
-    if (!contact_case_has_scale(study))
+    if (!contact_case_has_scale(one_case))
         return 0;
     int status = modes_create(&modes, &surface->spectrum, &surface->grid, err);
     if (status != 0)
@@ -32,18 +32,18 @@ int contact_case_scale(const struct contact_case *study, double *rms_height, dou
 }
 
 /* Height of the block in lambda_s; INFINITY, or NaN where it is not given. */
-static int read_height(const struct contact_case *study, struct values *values, double *out,
+static int read_height(const struct contact_case *one_case, struct values *values, double *out,
                        struct error *err) {
     int unit;
     *out = values_measure(values, "/contact/block_height", &unit);
-    if (!isfinite(*out) || study->surface.grid.nx == 0)
+    if (!isfinite(*out) || one_case->surface.grid.nx == 0)
         return 0;
     if (unit == HEIGHT_LENGTHS) {
-        *out *= study->surface.grid.lx;
+        *out *= one_case->surface.grid.lx;
         return 0;
     }
     double rms_height, rms_slope;
-    int status = contact_case_scale(study, &rms_height, &rms_slope, err);
+    int status = contact_case_scale(one_case, &rms_height, &rms_slope, err);
     *out *= rms_height;
     if (status == 0 && isnan(rms_height))
         values_fault(values, "/contact/block_height",
@@ -143,28 +143,29 @@ static void read_estimators(struct contact_case *out, struct values *values) {
 /* The mesh of `points` a shortest wave; false, and a fault, where it cannot be sampled exactly. A
  * grid of two points a shortest wave holds that wave at its Nyquist frequency, as half of itself,
  * so that it cannot be resampled; but it can be part of a finer one. */
-static bool level_make(struct contact_level *out, const struct contact_case *study, double points,
-                       const char *path, struct values *values) {
-    const struct grid *own = &study->surface.grid;
+static bool level_make(struct contact_level *out, const struct contact_case *one_case,
+                       double points, const char *path, struct values *values) {
+    const struct grid *own = &one_case->surface.grid;
     double wanted = own->lx * points; /* lambda_s is 1 */
-    double total = study->surface.dimension == 1 ? wanted : wanted * wanted;
+    double total = one_case->surface.dimension == 1 ? wanted : wanted * wanted;
     if (total > SURFACE_POINTS_MOST * (1 + ROUNDING)) {
-        values_fault(
-            values, path, "a grid of %.0f points a side is too large: at most %.0f", wanted,
-            study->surface.dimension == 1 ? SURFACE_POINTS_MOST : floor(sqrt(SURFACE_POINTS_MOST)));
+        values_fault(values, path, "a grid of %.0f points a side is too large: at most %.0f",
+                     wanted,
+                     one_case->surface.dimension == 1 ? SURFACE_POINTS_MOST
+                                                      : floor(sqrt(SURFACE_POINTS_MOST)));
         return false;
     }
     size_t side = surface_case_side(wanted);
     *out = (struct contact_level){.points = points,
                                   .grid = {side, own->ny == 1 ? 1 : side, own->lx, own->ly},
                                   .stride = own->nx % side == 0 ? own->nx / side : 0};
-    if (out->stride > 0 || side > 2 * study->band)
+    if (out->stride > 0 || side > 2 * one_case->band)
         return true;
     values_fault(
         values, path,
         "%g points a shortest wave, %zu in all, neither hold the %zu waves of the surface nor "
         "divide its own %zu points (points_per_wavelength)",
-        points, side, study->band, own->nx);
+        points, side, one_case->band, own->nx);
     return false;
 }
 
@@ -195,26 +196,26 @@ static int read_levels(struct contact_case *out, struct values *values, struct e
 }
 
 /* Layers that a block takes on each mesh. */
-static void check_layers(const struct contact_case *study, struct values *values) {
+static void check_layers(const struct contact_case *one_case, struct values *values) {
     double thickness[LAYERS_MOST];
-    for (size_t m = 0; m < study->model_count; m++)
-        for (size_t l = 0; l < study->level_count; l++)
-            if (study->models[m]->elements && isfinite(study->blocks[m].height) &&
-                isfinite(study->blocks[m].layer_growth) &&
-                block_layers(&study->levels[l].grid, &study->blocks[m], thickness) == 0) {
+    for (size_t m = 0; m < one_case->model_count; m++)
+        for (size_t l = 0; l < one_case->level_count; l++)
+            if (one_case->models[m]->elements && isfinite(one_case->blocks[m].height) &&
+                isfinite(one_case->blocks[m].layer_growth) &&
+                block_layers(&one_case->levels[l].grid, &one_case->blocks[m], thickness) == 0) {
                 values_fault(
                     values, "/contact/block_height",
                     "the block takes more than %d layers at %g points a shortest wave; take "
                     "a lower block, or a larger layer_growth",
-                    LAYERS_MOST, study->levels[l].points);
+                    LAYERS_MOST, one_case->levels[l].points);
                 return;
             }
 }
 
 /* Position of a load among the study's, load_count where it is none of them. */
-static size_t load_find(const struct contact_case *study, double load) {
+static size_t load_find(const struct contact_case *one_case, double load) {
     size_t k = 0;
-    while (k < study->load_count && !(fabs(study->loads[k] - load) <= ROUNDING * load))
+    while (k < one_case->load_count && !(fabs(one_case->loads[k] - load) <= ROUNDING * load))
         k++;
     return k;
 }
@@ -284,17 +285,17 @@ int contact_case_read(struct contact_case *out, const cJSON *parameters, struct 
     return status;
 }
 
-void contact_case_clear(struct contact_case *study) {
-    surface_case_clear(&study->surface);
-    free(study->loads);
-    free(study->pdf_loads);
-    *study = (struct contact_case){0};
+void contact_case_clear(struct contact_case *one_case) {
+    surface_case_clear(&one_case->surface);
+    free(one_case->loads);
+    free(one_case->pdf_loads);
+    *one_case = (struct contact_case){0};
 }
 
-size_t contact_case_complete(const struct contact_case *study) {
+size_t contact_case_complete(const struct contact_case *one_case) {
     size_t complete = 0;
-    for (size_t m = 1; m < study->model_count; m++)
-        if (study->models[m]->rank > study->models[complete]->rank)
+    for (size_t m = 1; m < one_case->model_count; m++)
+        if (one_case->models[m]->rank > one_case->models[complete]->rank)
             complete = m;
     return complete;
 }

@@ -44,29 +44,29 @@ struct contact_case {
 /* As surface_case_read. */
 int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,
                       struct error *err);
-void contact_case_clear(struct contact_case *study);
+void contact_case_clear(struct contact_case *one_case);
 
-static inline const struct contact_level *contact_case_finest(const struct contact_case *study) {
-    return &study->levels[study->level_count - 1];
+static inline const struct contact_level *contact_case_finest(const struct contact_case *one_case) {
+    return &one_case->levels[one_case->level_count - 1];
 }
 /* Model, level and load as one number, loads running fastest; and how many there are. */
-static inline size_t contact_case_cell(const struct contact_case *study, size_t model, size_t level,
-                                       size_t load) {
-    return (model * study->level_count + level) * study->load_count + load;
+static inline size_t contact_case_cell(const struct contact_case *one_case, size_t model,
+                                       size_t level, size_t load) {
+    return (model * one_case->level_count + level) * one_case->load_count + load;
 }
-static inline size_t contact_case_cells(const struct contact_case *study) {
-    return contact_case_cell(study, study->model_count, 0, 0);
+static inline size_t contact_case_cells(const struct contact_case *one_case) {
+    return contact_case_cell(one_case, one_case->model_count, 0, 0);
 }
 
 /* The most complete of the models: that from which the errors of the others are counted. */
-size_t contact_case_complete(const struct contact_case *study);
+size_t contact_case_complete(const struct contact_case *one_case);
 /* Whether the surface has lengths of its own, and its RMS height and slope by the prescribed
  * spectrum, in lambda_s; NaN where it has none. */
-bool contact_case_has_scale(const struct contact_case *study);
-int contact_case_scale(const struct contact_case *study, double *rms_height, double *rms_slope,
+bool contact_case_has_scale(const struct contact_case *one_case);
+int contact_case_scale(const struct contact_case *one_case, double *rms_height, double *rms_slope,
                        struct error *err);
 
 /* Memory, time and error of one realisation, before anything ran. */
-void contact_case_estimate(const struct contact_case *study, struct study_cost *out);
+void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out);
 
 #endif

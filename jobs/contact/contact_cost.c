@@ -8,19 +8,20 @@
 /* The program, its libraries, and tables that do not grow with the grid. */
 static const double PROCESS_BYTES = 1.2e7;
 
-void contact_case_estimate(const struct contact_case *study, struct study_cost *out) {
-    const struct surface_case *surface = &study->surface;
-    const struct grid *finest = &contact_case_finest(study)->grid;
+void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
+    const struct surface_case *surface = &one_case->surface;
+    const struct grid *finest = &contact_case_finest(one_case)->grid;
     size_t mode_x = surface_case_band(surface), mode_y = surface->dimension == 1 ? 0 : mode_x;
     out->nx = finest->nx;
     out->ny = finest->ny;
     out->memory_bytes = generator_bytes(&surface->grid, mode_x, mode_y, &surface->options) +
-                        contact_scene_bytes(study) + contact_tally_bytes(study) + PROCESS_BYTES;
+                        contact_scene_bytes(one_case) + contact_tally_bytes(one_case) +
+                        PROCESS_BYTES;
     out->seconds =
         1e-4 + 1e-9 * cost_generation(&surface->options) * (double)grid_points(&surface->grid);
-    for (size_t l = 0; l < study->level_count; l++)
-        for (size_t m = 0; m < study->model_count; m++)
-            out->seconds += study->models[m]->seconds(study, m, &study->levels[l].grid);
+    for (size_t l = 0; l < one_case->level_count; l++)
+        for (size_t m = 0; m < one_case->model_count; m++)
+            out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);
     bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
     out->relative_error = cost_area_scatter(surface->dimension, surface->length_ratio,
                                             affine ? surface->spectrum.hurst : NAN);

@@ -6,7 +6,7 @@
 
 /* What all curves of a case are made from. */
 struct curve_maker {
-    const struct contact_case *study;
+    const struct contact_case *one_case;
     const struct modes *modes;
     const struct contact_tally *tally;
     struct contact_theories theories;
@@ -27,7 +27,7 @@ struct row {
 /* Room for one source's errors at each load. */
 static int error_create(struct curve_maker *maker, double **value, double **standard_error,
                         struct curve_error *out, struct error *err) {
-    size_t n = maker->study->load_count;
+    size_t n = maker->one_case->load_count;
     *value = result_numbers(maker->result, 2 * n);
     if (*value == NULL)
         return no_room(err);
@@ -44,7 +44,7 @@ static int put_discretisation(struct curve_maker *maker, const struct row *row, 
     int status = error_create(maker, &value, &standard_error, out, err);
     if (status != 0)
         return status;
-    for (size_t k = 0; k < maker->study->load_count; k++) {
+    for (size_t k = 0; k < maker->one_case->load_count; k++) {
         struct estimate change = contact_tally_level(maker->tally, row->measure, model, k);
         value[k] = -factor * change.value;
         standard_error[k] = factor * change.standard_error;
@@ -58,8 +58,8 @@ static int put_discretisation(struct curve_maker *maker, const struct row *row, 
  * tell them, or else of the finest level, whose own error is then in it. */
 static int put_model(struct curve_maker *maker, const struct row *row, size_t model,
                      struct curve_error *out, struct error *err) {
-    size_t complete = contact_case_complete(maker->study);
-    bool limits = maker->study->level_count > 1;
+    size_t complete = contact_case_complete(maker->one_case);
+    bool limits = maker->one_case->level_count > 1;
     double factor = 0, best = 0, *value, *standard_error;
     int status = error_create(maker, &value, &standard_error, out, err);
     if (status != 0)
@@ -68,7 +68,7 @@ static int put_model(struct curve_maker *maker, const struct row *row, size_t mo
         factor = contact_extrapolate(maker->tally, row->measure, model).factor;
         best = contact_extrapolate(maker->tally, row->measure, complete).factor;
     }
-    for (size_t k = 0; k < maker->study->load_count; k++) {
+    for (size_t k = 0; k < maker->one_case->load_count; k++) {
         struct estimate difference = contact_tally_model(maker->tally, row->measure, model, k);
         double own = 0, other = 0;
         if (limits) {
@@ -103,39 +103,39 @@ static void add_theories(const struct curve_maker *maker, const struct row *row,
 }
 
 /* Of strain; NULL where there is nothing to choose. */
-static const char *kinematics_of(const struct contact_case *study, size_t model) {
-    const struct contact_model *of = study->models[model];
-    return of->kinematics != NULL ? of->kinematics(study) : NULL;
+static const char *kinematics_of(const struct contact_case *one_case, size_t model) {
+    const struct contact_model *of = one_case->models[model];
+    return of->kinematics != NULL ? of->kinematics(one_case) : NULL;
 }
 
 /* What tells the curves of a model and level apart. */
-static struct curve curve_of(const struct contact_case *study, size_t model, size_t level,
+static struct curve curve_of(const struct contact_case *one_case, size_t model, size_t level,
                              const char *quantity, const char *x_label, const char *y_label) {
     struct curve curve = curve_named(quantity, x_label, y_label);
-    curve.model = study->models[model]->name;
-    curve.kinematics = kinematics_of(study, model);
-    curve.level = study->levels[level].points;
-    curve.points = (double)grid_points(&study->levels[level].grid);
+    curve.model = one_case->models[model]->name;
+    curve.kinematics = kinematics_of(one_case, model);
+    curve.level = one_case->levels[level].points;
+    curve.points = (double)grid_points(&one_case->levels[level].grid);
     return curve;
 }
 
 static int add_errors(struct curve_maker *maker, const struct row *row, size_t model,
                       struct curve *curve, struct error *err) {
-    const struct contact_case *study = maker->study;
+    const struct contact_case *one_case = maker->one_case;
     int status = 0;
-    if (study->level_count > 1)
+    if (one_case->level_count > 1)
         status = put_discretisation(maker, row, model, &curve->errors[ERROR_DISCRETISATION], err);
-    if (status == 0 && study->model_count > 1 && model != contact_case_complete(study))
+    if (status == 0 && one_case->model_count > 1 && model != contact_case_complete(one_case))
         status = put_model(maker, row, model, &curve->errors[ERROR_MODEL], err);
     return status;
 }
 
 static int append(struct curve_maker *maker, const struct row *row, size_t model, size_t level,
                   struct error *err) {
-    const struct contact_case *study = maker->study;
+    const struct contact_case *one_case = maker->one_case;
     struct curve curve =
-        curve_of(study, model, level, row->quantity, "p/(E* h'_rms)", row->y_label);
-    size_t n = study->load_count;
+        curve_of(one_case, model, level, row->quantity, "p/(E* h'_rms)", row->y_label);
+    size_t n = one_case->load_count;
     double *x = result_numbers(maker->result, 4 * n), factor = row->factor;
     if (x == NULL)
         return no_room(err);
@@ -143,19 +143,19 @@ static int append(struct curve_maker *maker, const struct row *row, size_t model
     if (row->measure == MEASURE_WORK)
         factor *= curve.points;
     for (size_t k = 0; k < n; k++) {
-        size_t cell = contact_case_cell(study, model, level, k);
+        size_t cell = contact_case_cell(one_case, model, level, k);
         struct estimate mean = contact_tally_mean(maker->tally, row->measure, cell);
-        x[k] = study->loads[k];
+        x[k] = one_case->loads[k];
         y[k] = factor * mean.value;
         standard_error[k] = factor * mean.standard_error;
         valueless[k] = (double)contact_tally_valueless(maker->tally, row->measure, cell);
     }
     curve.series = row->series != NULL ? row->series : "";
     curve_set_points(&curve, n, x, y, standard_error);
-    if (row->measure == MEASURE_STIFFNESS || study->models[model]->may_fail)
+    if (row->measure == MEASURE_STIFFNESS || one_case->models[model]->may_fail)
         curve.valueless = valueless;
     add_theories(maker, row, &curve);
-    bool finest = level + 1 == study->level_count;
+    bool finest = level + 1 == one_case->level_count;
     int status = 0;
     if (finest && row->measure < MEASURE_PAIRED)
         status = add_errors(maker, row, model, &curve, err);
@@ -166,7 +166,7 @@ static int append(struct curve_maker *maker, const struct row *row, size_t model
 static int append_model(struct curve_maker *maker, const struct row *row, size_t model,
                         struct error *err) {
     int status = 0;
-    for (size_t l = maker->study->level_count; l > 0 && status == 0; l--)
+    for (size_t l = maker->one_case->level_count; l > 0 && status == 0; l--)
         status = append(maker, row, model, l - 1, err);
     return status;
 }
@@ -175,7 +175,7 @@ static int append_rows(struct curve_maker *maker, size_t count, const struct row
                        struct error *err) {
     int status = 0;
     for (size_t a = 0; a < count && status == 0; a++)
-        for (size_t m = 0; m < maker->study->model_count && status == 0; m++)
+        for (size_t m = 0; m < maker->one_case->model_count && status == 0; m++)
             status = append_model(maker, &rows[a], m, err);
     return status;
 }
@@ -187,16 +187,16 @@ static int append_areas(struct curve_maker *maker, struct error *err) {
         {"contact_area", "nodes_lower", "A/A0", MEASURE_NODES_LOWER, 1},
         {"contact_area", "nodes_upper", "A/A0", MEASURE_NODES_UPPER, 1}};
     static const struct row PERIMETER = {"contact_area", "perimeter", "A/A0", MEASURE_PERIMETER, 1};
-    const struct contact_case *study = maker->study;
-    int status = append_rows(maker, study->edges ? 1 : 0, &EDGES, err);
+    const struct contact_case *one_case = maker->one_case;
+    int status = append_rows(maker, one_case->edges ? 1 : 0, &EDGES, err);
     if (status == 0)
-        status = append_rows(maker, study->nodes ? sizeof NODES / sizeof *NODES : 0, NODES, err);
-    return status != 0 ? status : append_rows(maker, study->perimeter ? 1 : 0, &PERIMETER, err);
+        status = append_rows(maker, one_case->nodes ? sizeof NODES / sizeof *NODES : 0, NODES, err);
+    return status != 0 ? status : append_rows(maker, one_case->perimeter ? 1 : 0, &PERIMETER, err);
 }
 
 static int append_others(struct curve_maker *maker, struct error *err) {
-    bool surface = maker->study->surface.dimension == 2;
-    double waves = pow(maker->study->surface.length_ratio, maker->study->surface.dimension);
+    bool surface = maker->one_case->surface.dimension == 2;
+    double waves = pow(maker->one_case->surface.length_ratio, maker->one_case->surface.dimension);
     const struct row rows[] = {
         {"mean_gap", NULL, "mean gap/sqrt(m0)", MEASURE_GAP, 1},
         {"stiffness", NULL, "K sqrt(m0)/(E* h'_rms)", MEASURE_STIFFNESS, 1},
@@ -212,7 +212,7 @@ static int append_others(struct curve_maker *maker, struct error *err) {
 
 /* Curves that a model alone has. */
 static int append_own(struct curve_maker *maker, size_t m, struct error *err) {
-    const struct contact_model *model = maker->study->models[m];
+    const struct contact_model *model = maker->one_case->models[m];
     int status = 0;
     for (size_t a = 0; a < model->curve_count && status == 0; a++) {
         const struct model_curve *own = &model->curves[a];
@@ -226,12 +226,12 @@ static int append_own(struct curve_maker *maker, size_t m, struct error *err) {
 /* Density over the nominal area: its integral is the fraction in contact, its first moment the
  * load. Under- and overflow in undeformed areas of nodes. */
 static int append_pressures(struct curve_maker *maker, size_t model, size_t at, struct error *err) {
-    const struct contact_case *study = maker->study;
-    const struct bins *bins = &study->pressure;
-    size_t n = bins->count, finest = study->level_count - 1;
-    double load = study->loads[study->pdf_loads[at]], width = bins_width(bins);
-    double units = (double)contact_tally_units(study, model);
-    size_t cell = contact_case_cell(study, model, finest, study->pdf_loads[at]);
+    const struct contact_case *one_case = maker->one_case;
+    const struct bins *bins = &one_case->pressure;
+    size_t n = bins->count, finest = one_case->level_count - 1;
+    double load = one_case->loads[one_case->pdf_loads[at]], width = bins_width(bins);
+    double units = (double)contact_tally_units(one_case, model);
+    size_t cell = contact_case_cell(one_case, model, finest, one_case->pdf_loads[at]);
     const uint64_t *count =
         maker->tally->pressures.count + contact_tally_pressure_cell(maker->tally, model, at);
     double *x = result_numbers(maker->result, 5 * n);
@@ -246,13 +246,13 @@ static int append_pressures(struct curve_maker *maker, size_t model, size_t at, 
         standard_error[b] = share.standard_error / width;
         valueless[b] = (double)contact_tally_valueless(maker->tally, MEASURE_NODES, cell);
     }
-    struct curve curve = curve_of(study, model, finest, "contact_pressure_pdf",
+    struct curve curve = curve_of(one_case, model, finest, "contact_pressure_pdf",
                                   "local p/(E* h'_rms)", "probability density");
     curve.pressure = load;
     curve_set_points(&curve, n, x, y, standard_error);
-    if (contact_theory_pressures(study, maker->modes, load, pdf))
+    if (contact_theory_pressures(one_case, maker->modes, load, pdf))
         curve.theories[curve.theory_count++] = (struct theory){"persson", pdf};
-    if (study->models[model]->may_fail)
+    if (one_case->models[model]->may_fail)
         curve.valueless = valueless;
     curve.counted = true;
     curve.underflow = (double)count[0] / units;
@@ -260,19 +260,20 @@ static int append_pressures(struct curve_maker *maker, size_t model, size_t at, 
     return result_add_curve(maker->result, &curve, err);
 }
 
-int contact_curves(const struct contact_case *study, const struct modes *modes,
+int contact_curves(const struct contact_case *one_case, const struct modes *modes,
                    const struct moments *moments, const struct contact_tally *tally,
                    struct case_result *out, struct error *err) {
-    struct curve_maker maker = {.study = study, .modes = modes, .tally = tally, .result = out};
-    int status = contact_theories_make(&maker.theories, study, modes, moments, out, err);
+    struct curve_maker maker = {
+        .one_case = one_case, .modes = modes, .tally = tally, .result = out};
+    int status = contact_theories_make(&maker.theories, one_case, modes, moments, out, err);
     if (status == 0)
         status = append_areas(&maker, err);
     if (status == 0)
         status = append_others(&maker, err);
-    for (size_t m = 0; m < study->model_count && status == 0; m++)
+    for (size_t m = 0; m < one_case->model_count && status == 0; m++)
         status = append_own(&maker, m, err);
-    for (size_t m = 0; m < study->model_count; m++)
-        for (size_t a = 0; a < study->pdf_count && status == 0; a++)
+    for (size_t m = 0; m < one_case->model_count; m++)
+        for (size_t a = 0; a < one_case->pdf_count && status == 0; a++)
             status = append_pressures(&maker, m, a, err);
     return status;
 }

@@ -8,7 +8,7 @@
 /* Appends all curves to the result, whose arena owns them, those of one quantity together: the
  * first is the contact area of the first model on the finest level. modes, moments: of the
  * prescribed spectrum. */
-int contact_curves(const struct contact_case *study, const struct modes *modes,
+int contact_curves(const struct contact_case *one_case, const struct modes *modes,
                    const struct moments *moments, const struct contact_tally *tally,
                    struct case_result *out, struct error *err);
 

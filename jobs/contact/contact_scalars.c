@@ -58,9 +58,9 @@ const char *contact_scalar_name(size_t scalar) {
 }
 
 /* Position of a model in a case; model_count where it is none of its. */
-static size_t position_of(const struct contact_case *study, const struct contact_model *model) {
+static size_t position_of(const struct contact_case *one_case, const struct contact_model *model) {
     size_t m = 0;
-    while (m < study->model_count && study->models[m] != model)
+    while (m < one_case->model_count && one_case->models[m] != model)
         m++;
     return m;
 }
@@ -68,24 +68,25 @@ static size_t position_of(const struct contact_case *study, const struct contact
 /* Of a measure on the finest level, by load. */
 static const double *finest_values(struct contact_tally *tally, enum contact_measure measure,
                                    size_t model) {
-    const struct contact_case *study = tally->study;
+    const struct contact_case *one_case = tally->one_case;
     return contact_tally_values(tally, measure) +
-           contact_case_cell(study, model, study->level_count - 1, 0);
+           contact_case_cell(one_case, model, one_case->level_count - 1, 0);
 }
 
 /* What each model of the case tells of itself, behind the scalars that come first; NaN of others.
  */
 static void measure_models(struct contact_tally *tally, double *out) {
-    const struct contact_case *study = tally->study;
+    const struct contact_case *one_case = tally->one_case;
     double *at = out + CONTACT_SCALARS_OF_MODELS;
     for (size_t t = 0; CONTACT_MODELS[t] != NULL; t++) {
         const struct contact_model *model = CONTACT_MODELS[t];
-        size_t m = position_of(study, model);
+        size_t m = position_of(one_case, model);
         for (size_t a = 0; a < model->scalar_count; a++)
             at[a] = NAN;
-        if (m < study->model_count && model->measure != NULL) {
-            struct model_values values = {
-                .load_count = study->load_count, .loads = study->loads, .facts = tally->facts[m]};
+        if (m < one_case->model_count && model->measure != NULL) {
+            struct model_values values = {.load_count = one_case->load_count,
+                                          .loads = one_case->loads,
+                                          .facts = tally->facts[m]};
             for (size_t a = 0; a < MEASURE_COUNT; a++)
                 values.of[a] = finest_values(tally, (enum contact_measure)a, m);
             model->measure(&values, at);
@@ -95,15 +96,15 @@ static void measure_models(struct contact_tally *tally, double *out) {
 }
 
 /* Fits of the fraction against the load. */
-static int measure_fits(const struct contact_case *study, const double *fraction, double *out,
+static int measure_fits(const struct contact_case *one_case, const double *fraction, double *out,
                         struct error *err) {
     struct fit line = {NAN, NAN, NAN, NAN, 0}, power = line, erf = line;
-    size_t n = study->load_count;
-    int status = fit_light_load(n, study->loads, fraction, &line, err);
+    size_t n = one_case->load_count;
+    int status = fit_light_load(n, one_case->loads, fraction, &line, err);
     if (status == 0)
-        status = fit_power_law(n, study->loads, fraction, &power, err);
+        status = fit_power_law(n, one_case->loads, fraction, &power, err);
     if (status == 0)
-        status = fit_erf(n, study->loads, fraction, &erf, err);
+        status = fit_erf(n, one_case->loads, fraction, &erf, err);
     out[CONTACT_SCALAR_KAPPA] = line.a;
     out[CONTACT_SCALAR_POWER_LAW_A] = power.a;
     out[CONTACT_SCALAR_POWER_LAW_B] = power.b;
@@ -114,8 +115,8 @@ static int measure_fits(const struct contact_case *study, const double *fraction
 int contact_scalars_measure(struct contact_tally *tally, const struct roughness *roughness,
                             double nayak_alpha, const struct surface_report *report, double *out,
                             struct error *err) {
-    const struct contact_case *study = tally->study;
-    size_t n = study->load_count;
+    const struct contact_case *one_case = tally->one_case;
+    size_t n = one_case->load_count;
     const double *fraction = finest_values(tally, MEASURE_EDGES, 0);
     bool iterated = report->end != END_DIRECT;
     double scalars[CONTACT_SCALAR_COUNT] = {
@@ -133,7 +134,7 @@ int contact_scalars_measure(struct contact_tally *tally, const struct roughness 
         [CONTACT_SCALAR_EPS_S] = iterated ? report->eps_s : NAN,
         [CONTACT_SCALAR_EPS_S0] = iterated ? report->eps_s0 : NAN,
     };
-    int status = measure_fits(study, fraction, scalars, err);
+    int status = measure_fits(one_case, fraction, scalars, err);
     size_t count = contact_scalar_count();
     for (size_t a = 0; a < count; a++) {
         struct place place = place_of(a);
@@ -144,39 +145,40 @@ int contact_scalars_measure(struct contact_tally *tally, const struct roughness 
     return status;
 }
 
-static void theories(const struct contact_case *study, const struct moments *moments,
+static void theories(const struct contact_case *one_case, const struct moments *moments,
                      double *theory) {
     struct height_moments heights;
     for (size_t a = 0; a < CONTACT_SCALAR_COUNT; a++)
         theory[a] = NAN;
     /* One wave alone has alpha = 1, and no light-load line. */
-    if (study->surface.dimension == 2 || moments->nayak_alpha > 1 + 1e-9)
+    if (one_case->surface.dimension == 2 || moments->nayak_alpha > 1 + 1e-9)
         theory[CONTACT_SCALAR_KAPPA] = theory[CONTACT_SCALAR_ERF_KAPPA] = persson_light_load();
     theory[CONTACT_SCALAR_RMS_HEIGHT] = moments->rms_height;
     theory[CONTACT_SCALAR_RMS_SLOPE] = moments->rms_slope;
-    if (!surface_case_exact(&study->surface))
+    if (!surface_case_exact(&one_case->surface))
         theory[CONTACT_SCALAR_NAYAK_ALPHA] = moments->nayak_alpha;
-    if (heights_moments(&study->surface.options.heights, &heights, NULL) == 0) {
+    if (heights_moments(&one_case->surface.options.heights, &heights, NULL) == 0) {
         theory[CONTACT_SCALAR_SKEWNESS] = heights.skewness;
         theory[CONTACT_SCALAR_KURTOSIS] = heights.kurtosis;
     }
 }
 
-static int add_scalars(const struct contact_case *study, const struct moments *moments,
+static int add_scalars(const struct contact_case *one_case, const struct moments *moments,
                        const struct realisations *realisations, double *column,
                        struct case_result *out, struct error *err) {
     double theory[CONTACT_SCALAR_COUNT];
     size_t count = contact_scalar_count();
     int status = 0;
-    theories(study, moments, theory);
+    theories(one_case, moments, theory);
     for (size_t a = 0; a < count && status == 0; a++) {
         struct place place = place_of(a);
         bool own = place.model != NULL;
-        if (own && position_of(study, place.model) == study->model_count)
+        if (own && position_of(one_case, place.model) == one_case->model_count)
             continue;
         realisations_column(realisations, a, column);
         struct estimate mean = estimate_mean((size_t)realisations->count, column);
-        if (!own && place.at == CONTACT_SCALAR_NAYAK_ALPHA && surface_case_exact(&study->surface))
+        if (!own && place.at == CONTACT_SCALAR_NAYAK_ALPHA &&
+            surface_case_exact(&one_case->surface))
             mean = (struct estimate){moments->nayak_alpha, 0};
         status = result_add_scalar(out,
                                    &(struct scalar){contact_scalar_name(a), mean.value,
@@ -188,17 +190,17 @@ static int add_scalars(const struct contact_case *study, const struct moments *m
         return status;
     /* as given, or as solved for nayak_alpha */
     return result_add_scalar(
-        out, &(struct scalar){"wavelength_ratio", study->surface.wavelength_ratio, 0, NAN}, err);
+        out, &(struct scalar){"wavelength_ratio", one_case->surface.wavelength_ratio, 0, NAN}, err);
 }
 
-int contact_scalars(const struct contact_case *study, const struct moments *moments,
+int contact_scalars(const struct contact_case *one_case, const struct moments *moments,
                     const struct realisations *realisations, struct case_result *out,
                     struct error *err) {
     size_t n = (size_t)realisations->count;
     double *column = array_create(n, sizeof *column);
     if (column == NULL)
         return error_memory(err, n * sizeof *column, "scalars");
-    int status = add_scalars(study, moments, realisations, column, out, err);
+    int status = add_scalars(one_case, moments, realisations, column, out, err);
     free(column);
     return status;
 }

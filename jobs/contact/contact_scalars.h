@@ -40,7 +40,7 @@ int contact_scalars_measure(struct contact_tally *tally, const struct roughness 
                             struct error *err);
 
 /* Appends the scalars over the realisations to the result. */
-int contact_scalars(const struct contact_case *study, const struct moments *moments,
+int contact_scalars(const struct contact_case *one_case, const struct moments *moments,
                     const struct realisations *realisations, struct case_result *out,
                     struct error *err);
 

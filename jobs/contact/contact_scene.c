@@ -10,7 +10,7 @@
 static const double STIFFNESS_MOST = 1e6;
 
 struct contact_scene {
-    const struct contact_case *study;
+    const struct contact_case *one_case;
     double rms_slope, rms_height; /* of the prescribed spectrum */
     struct contact_solver *solvers[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct area_workspace *areas[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
@@ -18,14 +18,14 @@ struct contact_scene {
     double *z; /* a level's sampling; room for the finest */
 };
 
-int contact_compliances_create(struct contact_compliances *out, const struct contact_case *study,
+int contact_compliances_create(struct contact_compliances *out, const struct contact_case *one_case,
                                struct error *err) {
     int status = 0;
     *out = (struct contact_compliances){0};
-    for (size_t m = 0; m < study->model_count && status == 0; m++)
-        for (size_t l = 0; l < study->level_count && status == 0; l++) {
-            status =
-                compliance_create(&out->of[m][l], &study->levels[l].grid, &study->blocks[m], err);
+    for (size_t m = 0; m < one_case->model_count && status == 0; m++)
+        for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
+            status = compliance_create(&out->of[m][l], &one_case->levels[l].grid,
+                                       &one_case->blocks[m], err);
         }
     if (status != 0)
         contact_compliances_clear(out);
@@ -40,31 +40,31 @@ void contact_compliances_clear(struct contact_compliances *compliances) {
 
 static int scene_fill(struct contact_scene *scene, const struct contact_compliances *compliances,
                       struct error *err) {
-    const struct contact_case *study = scene->study;
+    const struct contact_case *one_case = scene->one_case;
     int status = 0;
-    for (size_t l = 0; l < study->level_count && status == 0; l++) {
-        status = patch_finder_create(&scene->finders[l], &study->levels[l].grid, err);
-        for (size_t m = 0; m < study->model_count && status == 0; m++) {
+    for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
+        status = patch_finder_create(&scene->finders[l], &one_case->levels[l].grid, err);
+        for (size_t m = 0; m < one_case->model_count && status == 0; m++) {
             status = area_workspace_create(&scene->areas[m][l], compliances->of[m][l], err);
             if (status == 0)
-                status = study->models[m]->create(&scene->solvers[m][l], study, m,
-                                                  compliances->of[m][l], err);
+                status = one_case->models[m]->create(&scene->solvers[m][l], one_case, m,
+                                                     compliances->of[m][l], err);
         }
     }
     if (status != 0)
         return status;
-    size_t points = grid_points(&contact_case_finest(study)->grid);
+    size_t points = grid_points(&contact_case_finest(one_case)->grid);
     scene->z = array_create(points, sizeof *scene->z);
     return scene->z != NULL ? 0 : error_memory(err, points * sizeof *scene->z, "a surface");
 }
 
-int contact_scene_create(struct contact_scene **out, const struct contact_case *study,
+int contact_scene_create(struct contact_scene **out, const struct contact_case *one_case,
                          const struct moments *moments,
                          const struct contact_compliances *compliances, struct error *err) {
     struct contact_scene *scene = array_create(1, sizeof *scene);
     if (scene == NULL)
         return error_memory(err, sizeof *scene, "a contact scene");
-    scene->study = study;
+    scene->one_case = one_case;
     scene->rms_slope = moments->rms_slope;
     scene->rms_height = moments->rms_height;
     int status = scene_fill(scene, compliances, err);
@@ -83,7 +83,7 @@ void contact_scene_destroy(struct contact_scene **scene) {
         for (size_t m = 0; m < CONTACT_MODELS_MOST; m++) {
             area_workspace_destroy(&s->areas[m][l]);
             if (s->solvers[m][l] != NULL)
-                s->study->models[m]->destroy(&s->solvers[m][l]);
+                s->one_case->models[m]->destroy(&s->solvers[m][l]);
         }
     }
     free(s->z);
@@ -91,23 +91,24 @@ void contact_scene_destroy(struct contact_scene **scene) {
     *scene = NULL;
 }
 
-double contact_scene_bytes(const struct contact_case *study) {
-    double bytes = 8.0 * (double)grid_points(&contact_case_finest(study)->grid);
-    for (size_t l = 0; l < study->level_count; l++) {
-        const struct grid *grid = &study->levels[l].grid;
+double contact_scene_bytes(const struct contact_case *one_case) {
+    double bytes = 8.0 * (double)grid_points(&contact_case_finest(one_case)->grid);
+    for (size_t l = 0; l < one_case->level_count; l++) {
+        const struct grid *grid = &one_case->levels[l].grid;
         bytes += 32.0 * (double)grid_points(grid); /* patches */
-        for (size_t m = 0; m < study->model_count; m++) {
-            bytes += 8.0 * (double)grid_points(grid) + study->models[m]->bytes(study, m, grid) +
-                     compliance_bytes(grid, &study->blocks[m]);
+        for (size_t m = 0; m < one_case->model_count; m++) {
+            bytes += 8.0 * (double)grid_points(grid) +
+                     one_case->models[m]->bytes(one_case, m, grid) +
+                     compliance_bytes(grid, &one_case->blocks[m]);
         }
     }
     return bytes;
 }
 
-int contact_level_sample(const struct contact_case *study, const struct contact_level *level,
+int contact_level_sample(const struct contact_case *one_case, const struct contact_level *level,
                          const double *z, double *out, struct error *err) {
-    const struct grid *own = &study->surface.grid, *grid = &level->grid;
-    size_t band = study->band;
+    const struct grid *own = &one_case->surface.grid, *grid = &level->grid;
+    size_t band = one_case->band;
     if (level->stride == 0)
         return surface_resample(own, z, grid, out, band, grid_is_profile(own) ? 0 : band, err);
     for (size_t j = 0; j < grid->ny; j++) {
@@ -122,7 +123,7 @@ int contact_level_sample(const struct contact_case *study, const struct contact_
 static void measure(struct contact_scene *scene, size_t model, size_t level,
                     const struct contact_pressed *pressed, struct contact_tally *tally,
                     size_t cell) {
-    double points = (double)grid_points(&scene->study->levels[level].grid);
+    double points = (double)grid_points(&scene->one_case->levels[level].grid);
     const struct contact_state *state = &pressed->state;
     double stiffness = state->stiffness * scene->rms_height / scene->rms_slope;
     double now = pressed->stretch;
@@ -156,9 +157,9 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
 /* On areas as they are now, whose forces are those on the undeformed ones. */
 static void count_pressures(const struct contact_scene *scene, size_t model, size_t load,
                             const double *p, double now, struct contact_tally *tally) {
-    const struct contact_case *study = scene->study;
-    for (size_t a = 0; a < study->pdf_count; a++)
-        if (study->pdf_loads[a] == load)
+    const struct contact_case *one_case = scene->one_case;
+    for (size_t a = 0; a < one_case->pdf_count; a++)
+        if (one_case->pdf_loads[a] == load)
             contact_tally_pressures(tally, model, a, p, 1 / (now * scene->rms_slope), now);
 }
 
@@ -178,26 +179,26 @@ static struct contact_pressed not_pressed(void) {
 static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
                        struct contact_tally *tally, const struct stopper *stopper,
                        struct error *err) {
-    const struct contact_case *study = scene->study;
-    const struct contact_model *model = study->models[m];
+    const struct contact_case *one_case = scene->one_case;
+    const struct contact_model *model = one_case->models[m];
     struct contact_solver *solver = scene->solvers[m][level];
     double unused[MODEL_FACTS_MOST];
-    bool finest = level + 1 == study->level_count;
+    bool finest = level + 1 == one_case->level_count;
     int status = model->begin(solver, scene->z, stopper->stop, stopper->context,
                               finest ? tally->facts[m] : unused, err);
-    for (size_t k = 0; k < study->load_count && status == 0; k++) {
+    for (size_t k = 0; k < one_case->load_count && status == 0; k++) {
         struct contact_pressed pressed = not_pressed();
         if (stopper->stop(stopper->context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
-                             study->load_count);
-        status = model->press(solver, study->loads[k] * scene->rms_slope, &pressed, err);
+                             one_case->load_count);
+        status = model->press(solver, one_case->loads[k] * scene->rms_slope, &pressed, err);
         if (status == 0)
-            measure(scene, m, level, &pressed, tally, contact_case_cell(study, m, level, k));
+            measure(scene, m, level, &pressed, tally, contact_case_cell(one_case, m, level, k));
         else if (!isnan(pressed.reached))
-            error_context(err, "load %g, reached %.4g", study->loads[k],
+            error_context(err, "load %g, reached %.4g", one_case->loads[k],
                           pressed.reached / scene->rms_slope);
         else
-            error_context(err, "load %g", study->loads[k]);
+            error_context(err, "load %g", one_case->loads[k]);
         if (status == 0 && finest)
             count_pressures(scene, m, k, pressed.state.p, pressed.stretch, tally);
     }
@@ -205,12 +206,12 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
 }
 
 /* "model layered, level 6", and the kinematics behind the name of a model that has several. */
-static void name_model(const struct contact_case *study, size_t m, size_t level,
+static void name_model(const struct contact_case *one_case, size_t m, size_t level,
                        struct error *err) {
-    const struct contact_model *model = study->models[m];
-    double points = study->levels[level].points;
+    const struct contact_model *model = one_case->models[m];
+    double points = one_case->levels[level].points;
     if (model->kinematics != NULL)
-        error_context(err, "model %s (%s), level %g", model->name, model->kinematics(study),
+        error_context(err, "model %s (%s), level %g", model->name, model->kinematics(one_case),
                       points);
     else
         error_context(err, "model %s, level %g", model->name, points);
@@ -220,14 +221,14 @@ static void name_model(const struct contact_case *study, size_t m, size_t level,
 static int solve_model(struct contact_scene *scene, size_t m, size_t level,
                        struct contact_tally *tally, const struct stopper *stopper,
                        struct error *err) {
-    const struct contact_case *study = scene->study;
+    const struct contact_case *one_case = scene->one_case;
     struct error why = {0};
     int status = solve_loads(scene, m, level, tally, stopper, &why);
     if (status == 0)
         return 0;
-    name_model(study, m, level, &why);
+    name_model(one_case, m, level, &why);
     bool unsolved = status == ERROR_NUMERIC || status == ERROR_INPUT;
-    if (unsolved && study->models[m]->may_fail) {
+    if (unsolved && one_case->models[m]->may_fail) {
         notes_add(&tally->notes, tally->realisation, why.text);
         return 0;
     }
@@ -236,12 +237,12 @@ static int solve_model(struct contact_scene *scene, size_t m, size_t level,
 
 int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
                         int (*stop)(void *context), void *context, struct error *err) {
-    const struct contact_case *study = scene->study;
+    const struct contact_case *one_case = scene->one_case;
     const struct stopper stopper = {stop, context};
     int status = 0;
-    for (size_t l = 0; l < study->level_count && status == 0; l++) {
-        status = contact_level_sample(study, &study->levels[l], z, scene->z, err);
-        for (size_t m = 0; m < study->model_count && status == 0; m++)
+    for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
+        status = contact_level_sample(one_case, &one_case->levels[l], z, scene->z, err);
+        for (size_t m = 0; m < one_case->model_count && status == 0; m++)
             status = solve_model(scene, m, l, tally, &stopper, err);
     }
     return status;

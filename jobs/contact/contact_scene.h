@@ -10,22 +10,22 @@
 struct contact_compliances {
     struct compliance *of[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST]; /* owned */
 };
-int contact_compliances_create(struct contact_compliances *out, const struct contact_case *study,
+int contact_compliances_create(struct contact_compliances *out, const struct contact_case *one_case,
                                struct error *err);
 void contact_compliances_clear(struct contact_compliances *compliances);
 
 /* Heights on the own grid of the case, sampled on that of a level. */
-int contact_level_sample(const struct contact_case *study, const struct contact_level *level,
+int contact_level_sample(const struct contact_case *one_case, const struct contact_level *level,
                          const double *z, double *out, struct error *err);
 
 struct contact_scene;
 /* Borrows all three. moments: of the prescribed spectrum, which sets the scale. */
-int contact_scene_create(struct contact_scene **out, const struct contact_case *study,
+int contact_scene_create(struct contact_scene **out, const struct contact_case *one_case,
                          const struct moments *moments,
                          const struct contact_compliances *compliances, struct error *err);
 void contact_scene_destroy(struct contact_scene **scene);
 /* Bytes of both, without the surface itself. */
-double contact_scene_bytes(const struct contact_case *study);
+double contact_scene_bytes(const struct contact_case *one_case);
 
 /* Solves every level, model and load of one realisation, z on the own grid of the case, into the
  * tally's values. stop is asked before each load, and within loads by models that take long;

@@ -6,19 +6,19 @@ enum { SCALE_BITS_MOST = 16 };
 /* Areas that strains have changed are rounded to 2^-20 of a node's, so that sums stay exact. */
 static const uint64_t STRETCHED_UNITS = 1 << 20;
 
-static size_t bins_of(const struct contact_case *study) {
-    return study->pressure.count + 2;
+static size_t bins_of(const struct contact_case *one_case) {
+    return one_case->pressure.count + 2;
 }
 
 /* Exact sums resolve 2^-60. What falls with the load is summed over a power of two near it, which
  * costs no digits, so that light loads keep theirs. */
-static double scale_of(const struct contact_case *study, enum contact_measure measure,
+static double scale_of(const struct contact_case *one_case, enum contact_measure measure,
                        size_t load) {
     bool falls =
         measure != MEASURE_GAP && (measure <= MEASURE_STIFFNESS || measure == MEASURE_PATCH_MEAN ||
                                    measure == MEASURE_PATCH_LARGEST);
     int exponent;
-    (void)frexp(fmin(study->loads[load], 1), &exponent);
+    (void)frexp(fmin(one_case->loads[load], 1), &exponent);
     return falls ? ldexp(1, exponent < -SCALE_BITS_MOST ? SCALE_BITS_MOST : -exponent) : 1;
 }
 
@@ -47,7 +47,7 @@ static struct estimate sums_mean(const struct contact_sums *sums, size_t cell,
 }
 
 static void values_begin(struct contact_tally *tally) {
-    size_t n = MEASURE_COUNT * contact_case_cells(tally->study);
+    size_t n = MEASURE_COUNT * contact_case_cells(tally->one_case);
     for (size_t a = 0; a < n; a++)
         tally->values[a] = NAN;
     for (size_t m = 0; m < CONTACT_MODELS_MOST; m++)
@@ -55,10 +55,10 @@ static void values_begin(struct contact_tally *tally) {
             tally->facts[m][a] = NAN;
 }
 
-int contact_tally_create(struct contact_tally *out, const struct contact_case *study,
+int contact_tally_create(struct contact_tally *out, const struct contact_case *one_case,
                          struct error *err) {
-    size_t cells = contact_case_cells(study), bins = bins_of(study);
-    *out = (struct contact_tally){.study = study,
+    size_t cells = contact_case_cells(one_case), bins = bins_of(one_case);
+    *out = (struct contact_tally){.one_case = one_case,
                                   .values = array_create(cells, MEASURE_COUNT * sizeof(double)),
                                   .bin = array_create(bins, sizeof *out->bin)};
     int status = 0;
@@ -67,14 +67,15 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *s
     for (size_t a = 0; a < MEASURE_COUNT && status == 0; a++)
         status = sums_create(&out->sums[a], cells, err);
     for (size_t a = 0; a < MEASURE_PAIRED && status == 0; a++) {
-        size_t pairs = study->level_count > 1 ? study->model_count * study->load_count : 0;
+        size_t pairs = one_case->level_count > 1 ? one_case->model_count * one_case->load_count : 0;
         status = sums_create(&out->sums[SUMS_LEVELS + a], pairs, err);
         if (status == 0)
             status = sums_create(&out->sums[SUMS_MODELS + a],
-                                 (study->model_count - 1) * study->load_count, err);
+                                 (one_case->model_count - 1) * one_case->load_count, err);
     }
     if (status == 0)
-        status = tally_create(&out->pressures, study->model_count * study->pdf_count * bins, err);
+        status =
+            tally_create(&out->pressures, one_case->model_count * one_case->pdf_count * bins, err);
     if (status == 0)
         values_begin(out);
     else
@@ -91,30 +92,30 @@ void contact_tally_clear(struct contact_tally *tally) {
     *tally = (struct contact_tally){0};
 }
 
-double contact_tally_bytes(const struct contact_case *study) {
-    size_t cells = contact_case_cells(study), bins = bins_of(study);
-    size_t pairs = (2 * study->model_count - 1) * study->load_count;
+double contact_tally_bytes(const struct contact_case *one_case) {
+    size_t cells = contact_case_cells(one_case), bins = bins_of(one_case);
+    size_t pairs = (2 * one_case->model_count - 1) * one_case->load_count;
     double a_cell = tally_sums_bytes(1) + tally_bytes(1);
     return MEASURE_COUNT * (double)cells * (a_cell + sizeof(double)) +
            MEASURE_PAIRED * (double)pairs * a_cell +
-           tally_bytes(study->model_count * study->pdf_count * bins);
+           tally_bytes(one_case->model_count * one_case->pdf_count * bins);
 }
 
-uint64_t contact_tally_units(const struct contact_case *study, size_t model) {
-    return study->models[model]->stretches ? STRETCHED_UNITS : 1;
+uint64_t contact_tally_units(const struct contact_case *one_case, size_t model) {
+    return one_case->models[model]->stretches ? STRETCHED_UNITS : 1;
 }
 
 void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, const double *p,
                              double scale, double area) {
-    const struct contact_case *study = tally->study;
+    const struct contact_case *one_case = tally->one_case;
     size_t first = contact_tally_pressure_cell(tally, model, at);
-    size_t n = grid_points(&contact_case_finest(study)->grid);
-    uint64_t units = contact_tally_units(study, model),
+    size_t n = grid_points(&contact_case_finest(one_case)->grid);
+    uint64_t units = contact_tally_units(one_case, model),
              each = (uint64_t)lround(area * (double)units);
     for (size_t j = 0; j < n; j++)
         if (p[j] > 0)
-            tally->bin[bins_find(&study->pressure, scale * p[j])]++;
-    for (size_t b = 0; b < bins_of(study); b++) {
+            tally->bin[bins_find(&one_case->pressure, scale * p[j])]++;
+    for (size_t b = 0; b < bins_of(one_case); b++) {
         if (tally->bin[b] > 0)
             tally_add(&tally->pressures, first + b, each * tally->bin[b], units * n);
         tally->bin[b] = 0;
@@ -122,64 +123,64 @@ void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t a
 }
 
 static void add_level_pairs(struct contact_tally *tally, enum contact_measure measure) {
-    const struct contact_case *study = tally->study;
+    const struct contact_case *one_case = tally->one_case;
     const double *values = contact_tally_values(tally, measure);
-    size_t finest = study->level_count - 1;
-    for (size_t m = 0; m < study->model_count; m++)
-        for (size_t k = 0; k < study->load_count; k++)
-            sums_add(&tally->sums[SUMS_LEVELS + measure], m * study->load_count + k,
-                     (values[contact_case_cell(study, m, finest, k)] -
-                      values[contact_case_cell(study, m, finest - 1, k)]) *
-                         scale_of(study, measure, k));
+    size_t finest = one_case->level_count - 1;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        for (size_t k = 0; k < one_case->load_count; k++)
+            sums_add(&tally->sums[SUMS_LEVELS + measure], m * one_case->load_count + k,
+                     (values[contact_case_cell(one_case, m, finest, k)] -
+                      values[contact_case_cell(one_case, m, finest - 1, k)]) *
+                         scale_of(one_case, measure, k));
 }
 
 /* Place of a model and load among the differences from the most complete model, which has none. */
-static size_t model_pair(const struct contact_case *study, size_t model, size_t load) {
-    return (model - (model > contact_case_complete(study))) * study->load_count + load;
+static size_t model_pair(const struct contact_case *one_case, size_t model, size_t load) {
+    return (model - (model > contact_case_complete(one_case))) * one_case->load_count + load;
 }
 
 static void add_model_pairs(struct contact_tally *tally, enum contact_measure measure) {
-    const struct contact_case *study = tally->study;
+    const struct contact_case *one_case = tally->one_case;
     const double *values = contact_tally_values(tally, measure);
-    size_t finest = study->level_count - 1, complete = contact_case_complete(study);
-    for (size_t m = 0; m < study->model_count; m++)
-        for (size_t k = 0; m != complete && k < study->load_count; k++)
-            sums_add(&tally->sums[SUMS_MODELS + measure], model_pair(study, m, k),
-                     (values[contact_case_cell(study, m, finest, k)] -
-                      values[contact_case_cell(study, complete, finest, k)]) *
-                         scale_of(study, measure, k));
+    size_t finest = one_case->level_count - 1, complete = contact_case_complete(one_case);
+    for (size_t m = 0; m < one_case->model_count; m++)
+        for (size_t k = 0; m != complete && k < one_case->load_count; k++)
+            sums_add(&tally->sums[SUMS_MODELS + measure], model_pair(one_case, m, k),
+                     (values[contact_case_cell(one_case, m, finest, k)] -
+                      values[contact_case_cell(one_case, complete, finest, k)]) *
+                         scale_of(one_case, measure, k));
 }
 
 void contact_tally_add(struct contact_tally *tally) {
-    const struct contact_case *study = tally->study;
-    size_t cells = contact_case_cells(study);
+    const struct contact_case *one_case = tally->one_case;
+    size_t cells = contact_case_cells(one_case);
     for (size_t a = 0; a < MEASURE_COUNT; a++) {
         const double *values = contact_tally_values(tally, (enum contact_measure)a);
         for (size_t cell = 0; cell < cells; cell++)
             sums_add(&tally->sums[a], cell,
                      values[cell] *
-                         scale_of(study, (enum contact_measure)a, cell % study->load_count));
+                         scale_of(one_case, (enum contact_measure)a, cell % one_case->load_count));
     }
     for (size_t a = 0; a < MEASURE_PAIRED; a++) {
-        if (study->level_count > 1)
+        if (one_case->level_count > 1)
             add_level_pairs(tally, (enum contact_measure)a);
-        if (study->model_count > 1)
+        if (one_case->model_count > 1)
             add_model_pairs(tally, (enum contact_measure)a);
     }
-    tally_total_add(&tally->points, grid_points(&contact_case_finest(study)->grid));
+    tally_total_add(&tally->points, grid_points(&contact_case_finest(one_case)->grid));
     tally->realisations++;
     values_begin(tally);
 }
 
 struct estimate contact_tally_mean(const struct contact_tally *tally, enum contact_measure measure,
                                    size_t cell) {
-    double scale = scale_of(tally->study, measure, cell % tally->study->load_count);
+    double scale = scale_of(tally->one_case, measure, cell % tally->one_case->load_count);
     return sums_mean(&tally->sums[measure], cell, tally->realisations, scale);
 }
 
 double contact_tally_total(const struct contact_tally *tally, enum contact_measure measure,
                            size_t cell) {
-    double scale = scale_of(tally->study, measure, cell % tally->study->load_count);
+    double scale = scale_of(tally->one_case, measure, cell % tally->one_case->load_count);
     return exact_sum_value(&tally->sums[measure].sums.sum[cell]) / scale;
 }
 
@@ -190,30 +191,32 @@ uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact
 
 struct estimate contact_tally_level(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load) {
-    if (tally->study->level_count < 2)
+    if (tally->one_case->level_count < 2)
         return (struct estimate){NAN, NAN};
-    return sums_mean(&tally->sums[SUMS_LEVELS + measure], model * tally->study->load_count + load,
-                     tally->realisations, scale_of(tally->study, measure, load));
+    return sums_mean(&tally->sums[SUMS_LEVELS + measure],
+                     model * tally->one_case->load_count + load, tally->realisations,
+                     scale_of(tally->one_case, measure, load));
 }
 
 struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load) {
-    if (model == contact_case_complete(tally->study))
+    if (model == contact_case_complete(tally->one_case))
         return (struct estimate){NAN, NAN};
-    return sums_mean(&tally->sums[SUMS_MODELS + measure], model_pair(tally->study, model, load),
-                     tally->realisations, scale_of(tally->study, measure, load));
+    return sums_mean(&tally->sums[SUMS_MODELS + measure], model_pair(tally->one_case, model, load),
+                     tally->realisations, scale_of(tally->one_case, measure, load));
 }
 
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at) {
-    return (model * tally->study->pdf_count + at) * bins_of(tally->study);
+    return (model * tally->one_case->pdf_count + at) * bins_of(tally->one_case);
 }
 
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
                                        size_t bin) {
-    const struct contact_case *study = tally->study;
-    size_t cell = contact_case_cell(study, model, study->level_count - 1, study->pdf_loads[at]);
-    fixed_point points = (fixed_point)grid_points(&contact_case_finest(study)->grid) *
-                         contact_tally_units(study, model);
+    const struct contact_case *one_case = tally->one_case;
+    size_t cell =
+        contact_case_cell(one_case, model, one_case->level_count - 1, one_case->pdf_loads[at]);
+    fixed_point points = (fixed_point)grid_points(&contact_case_finest(one_case)->grid) *
+                         contact_tally_units(one_case, model);
     uint64_t solved = tally->sums[MEASURE_NODES].counts.count[cell];
     struct tally_total total = {solved, points * solved, points * points * solved};
     return tally_share(&tally->pressures, contact_tally_pressure_cell(tally, model, at) + bin,
@@ -246,49 +249,50 @@ void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally) 
  * where all have one, and of a model that may fail no more than at the load before. */
 static bool count_fits(const struct contact_tally *tally, enum contact_measure measure,
                        size_t cell) {
-    const struct contact_case *study = tally->study;
+    const struct contact_case *one_case = tally->one_case;
     const uint64_t *count = tally->sums[measure].counts.count;
-    size_t model = cell / (study->level_count * study->load_count);
+    size_t model = cell / (one_case->level_count * one_case->load_count);
     bool always = measure == MEASURE_NODES || measure == MEASURE_EDGES || measure == MEASURE_GAP ||
                   measure == MEASURE_ITERATIONS;
     if (!always)
         return count[cell] <= tally->realisations;
-    if (study->models[model]->may_fail)
+    if (one_case->models[model]->may_fail)
         return count[cell] <=
-               (cell % study->load_count > 0 ? count[cell - 1] : tally->realisations);
+               (cell % one_case->load_count > 0 ? count[cell - 1] : tally->realisations);
     return count[cell] == tally->realisations;
 }
 
 /* Realisations and levels that a model which may fail did not bring to the last load: a note each.
  */
 static uint64_t unsolved(const struct contact_tally *tally) {
-    const struct contact_case *study = tally->study;
-    size_t last = study->load_count - 1;
+    const struct contact_case *one_case = tally->one_case;
+    size_t last = one_case->load_count - 1;
     uint64_t count = 0;
-    for (size_t m = 0; m < study->model_count; m++)
-        for (size_t l = 0; l < study->level_count && study->models[m]->may_fail; l++)
-            count +=
-                contact_tally_valueless(tally, MEASURE_NODES, contact_case_cell(study, m, l, last));
+    for (size_t m = 0; m < one_case->model_count; m++)
+        for (size_t l = 0; l < one_case->level_count && one_case->models[m]->may_fail; l++)
+            count += contact_tally_valueless(tally, MEASURE_NODES,
+                                             contact_case_cell(one_case, m, l, last));
     return count;
 }
 
 /* Whether the pressures of a load lie on as much area as is in contact, but for rounding. */
 static bool pressures_fit(const struct contact_tally *tally, size_t model, size_t at) {
-    const struct contact_case *study = tally->study;
-    size_t cell = contact_case_cell(study, model, study->level_count - 1, study->pdf_loads[at]);
+    const struct contact_case *one_case = tally->one_case;
+    size_t cell =
+        contact_case_cell(one_case, model, one_case->level_count - 1, one_case->pdf_loads[at]);
     const uint64_t *count = tally->pressures.count + contact_tally_pressure_cell(tally, model, at);
-    double units = (double)grid_points(&contact_case_finest(study)->grid) *
-                   (double)contact_tally_units(study, model);
+    double units = (double)grid_points(&contact_case_finest(one_case)->grid) *
+                   (double)contact_tally_units(one_case, model);
     double area = units * contact_tally_total(tally, MEASURE_NODES, cell), sum = 0;
-    for (size_t b = 0; b < bins_of(study); b++)
+    for (size_t b = 0; b < bins_of(one_case); b++)
         sum += (double)count[b];
     return fabs(sum - area) <= 1e-6 * area + 0.5;
 }
 
 bool contact_tally_adds_up(const struct contact_tally *tally) {
-    const struct contact_case *study = tally->study;
+    const struct contact_case *one_case = tally->one_case;
     for (size_t a = 0; a < MEASURE_COUNT; a++)
-        for (size_t cell = 0; cell < contact_case_cells(study); cell++)
+        for (size_t cell = 0; cell < contact_case_cells(one_case); cell++)
             if (!count_fits(tally, (enum contact_measure)a, cell))
                 return false;
     for (size_t a = MEASURE_COUNT; a < CONTACT_SUMS; a++) {
@@ -297,8 +301,8 @@ bool contact_tally_adds_up(const struct contact_tally *tally) {
             if (counts->count[cell] > tally->realisations)
                 return false;
     }
-    for (size_t m = 0; m < study->model_count; m++)
-        for (size_t a = 0; a < study->pdf_count; a++)
+    for (size_t m = 0; m < one_case->model_count; m++)
+        for (size_t a = 0; a < one_case->pdf_count; a++)
             if (!pressures_fit(tally, m, a))
                 return false;
     return tally->points.realisations == tally->realisations &&

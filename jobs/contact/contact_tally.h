@@ -24,7 +24,7 @@ enum {
     CONTACT_SUMS = SUMS_MODELS + MEASURE_PAIRED
 };
 struct contact_tally {
-    const struct contact_case *study; /* borrowed */
+    const struct contact_case *one_case; /* borrowed */
     uint64_t realisations;
     struct contact_sums sums[CONTACT_SUMS];
     struct tally_total points; /* of the finest level */
@@ -37,15 +37,15 @@ struct contact_tally {
     double facts[CONTACT_MODELS_MOST][MODEL_FACTS_MOST]; /* the same, on the finest level */
     uint64_t *bin;                                       /* owned: scratch, zero in between */
 };
-int contact_tally_create(struct contact_tally *out, const struct contact_case *study,
+int contact_tally_create(struct contact_tally *out, const struct contact_case *one_case,
                          struct error *err);
 void contact_tally_clear(struct contact_tally *tally);
-double contact_tally_bytes(const struct contact_case *study);
+double contact_tally_bytes(const struct contact_case *one_case);
 
 /* The realisation under way: values of a measure, by cell; NaN until they are set. */
 static inline double *contact_tally_values(struct contact_tally *tally,
                                            enum contact_measure measure) {
-    return tally->values + (size_t)measure * contact_case_cells(tally->study);
+    return tally->values + (size_t)measure * contact_case_cells(tally->one_case);
 }
 /* Counts the pressures, scale * p at the points of the finest level where p > 0, on area times the
  * undeformed area of a node each. at: position in pdf_loads. */
@@ -71,7 +71,7 @@ struct estimate contact_tally_model(const struct contact_tally *tally, enum cont
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
                                        size_t bin);
 /* In how many parts a node's area is counted: 1 where all are equal. */
-uint64_t contact_tally_units(const struct contact_case *study, size_t model);
+uint64_t contact_tally_units(const struct contact_case *one_case, size_t model);
 /* First cell of the pressures of a model and load: underflow, the bins, overflow. */
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at);
 

@@ -13,12 +13,12 @@ struct contact_theories {
 };
 /* modes, moments: of the prescribed spectrum. A profile of one wave has Westergaard's solution,
  * everything else Persson's theory and those of asperities that apply. */
-int contact_theories_make(struct contact_theories *out, const struct contact_case *study,
+int contact_theories_make(struct contact_theories *out, const struct contact_case *one_case,
                           const struct modes *modes, const struct moments *moments,
                           struct case_result *result, struct error *err);
 
 /* Mean density of the pressures in each bin; false where there is no theory. */
-bool contact_theory_pressures(const struct contact_case *study, const struct modes *modes,
+bool contact_theory_pressures(const struct contact_case *one_case, const struct modes *modes,
                               double load, double *pdf);
 
 #endif

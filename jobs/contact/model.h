@@ -56,17 +56,17 @@ struct contact_model {
     const char *const *scalars;
 
     /* Of the strains; NULL where there is nothing to choose. */
-    const char *(*kinematics)(const struct contact_case *study);
+    const char *(*kinematics)(const struct contact_case *one_case);
     /* Adds faults that only this model finds in a case; `model` is its position there. NULL: none.
      */
-    int (*check)(struct contact_case *study, size_t model, struct values *values,
+    int (*check)(struct contact_case *one_case, size_t model, struct values *values,
                  struct error *err);
     /* Of a solver on one grid, and CPU seconds of all loads there on a 3 GHz core. */
-    double (*bytes)(const struct contact_case *study, size_t model, const struct grid *grid);
-    double (*seconds)(const struct contact_case *study, size_t model, const struct grid *grid);
+    double (*bytes)(const struct contact_case *one_case, size_t model, const struct grid *grid);
+    double (*seconds)(const struct contact_case *one_case, size_t model, const struct grid *grid);
 
     /* Borrows both, which must outlive it; the compliance is that of `block`. */
-    int (*create)(struct contact_solver **out, const struct contact_case *study, size_t model,
+    int (*create)(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err);
     void (*destroy)(struct contact_solver **solver);
     /* Takes a surface of the grid and lifts it off: nothing is left of the last one. stop may be
@@ -82,7 +82,7 @@ struct contact_model {
     void (*measure)(const struct model_values *values, double *scalars);
     /* Writes the block meshed on the surface z of the case's own grid, pressed to p/(E* h') where
      * that is above 0, as a VTU file. NULL where it has no mesh. */
-    int (*write_mesh)(const char *path, const struct contact_case *study, size_t model,
+    int (*write_mesh)(const char *path, const struct contact_case *one_case, size_t model,
                       const double *z, double pressure, struct error *err);
 };
 

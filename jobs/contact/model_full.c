@@ -50,34 +50,34 @@ static const char *const SCALARS[SCALAR_COUNT] = {
     [SCALAR_QUALITY] = "full_mesh_quality",
 };
 
-struct full_options full_model_options(const struct contact_case *study) {
+struct full_options full_model_options(const struct contact_case *one_case) {
     struct full_options options = FULL_DEFAULTS;
-    options.kinematics = study->kinematics;
-    options.transition = study->transition_depth;
-    options.tolerance = study->tolerance;
+    options.kinematics = one_case->kinematics;
+    options.transition = one_case->transition_depth;
+    options.tolerance = one_case->tolerance;
     return options;
 }
 
-static const char *kinematics_name(const struct contact_case *study) {
-    return choice_name(KINEMATICS_CHOICES, (int)study->kinematics);
+static const char *kinematics_name(const struct contact_case *one_case) {
+    return choice_name(KINEMATICS_CHOICES, (int)one_case->kinematics);
 }
 
 /* What finite elements on the true geometry ask of the surface: its slopes matter. */
-static int check(struct contact_case *study, size_t model, struct values *values,
+static int check(struct contact_case *one_case, size_t model, struct values *values,
                  struct error *err) {
-    const struct surface_case *surface = &study->surface;
+    const struct surface_case *surface = &one_case->surface;
     double rms_height, rms_slope;
     if (surface->grid.nx == 0)
         return 0; /* at fault already */
-    if (!contact_case_has_scale(study))
+    if (!contact_case_has_scale(one_case))
         values_fault(
             values, "/surface/rms_slope",
             "the model full needs the scale of the surface, whose slopes count in it: give "
             "rms_slope or rms_height");
-    int status = contact_case_scale(study, &rms_height, &rms_slope, err);
+    int status = contact_case_scale(one_case, &rms_height, &rms_slope, err);
     if (status != 0)
         return status;
-    double height = study->blocks[model].height / rms_height;
+    double height = one_case->blocks[model].height / rms_height;
     if (rms_slope > SLOPE_MOST)
         values_fault(
             values,
@@ -92,23 +92,24 @@ static int check(struct contact_case *study, size_t model, struct values *values
             "%.4g RMS heights of the surface: the model full needs %g or more; the layers of "
             "lower blocks fold over the surface's valleys",
             height, HEIGHT_LEAST);
-    study->rms_slope = rms_slope;
+    one_case->rms_slope = rms_slope;
     return 0;
 }
 
 /* --- cost --- */
 
-static double bytes(const struct contact_case *study, size_t model, const struct grid *grid) {
-    const struct block *block = &study->blocks[model];
-    struct full_options options = full_model_options(study);
-    struct full_size size = cost_full_size(grid, block, &options, study->rms_slope);
+static double bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    const struct block *block = &one_case->blocks[model];
+    struct full_options options = full_model_options(one_case);
+    struct full_size size = cost_full_size(grid, block, &options, one_case->rms_slope);
     return cost_full_bytes(grid, block, &options, &size);
 }
 
-static double seconds(const struct contact_case *study, size_t model, const struct grid *grid) {
-    struct full_options options = full_model_options(study);
-    struct full_size size = cost_full_size(grid, &study->blocks[model], &options, study->rms_slope);
-    return cost_full_contact(grid, &size, study->load_count);
+static double seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    struct full_options options = full_model_options(one_case);
+    struct full_size size =
+        cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
+    return cost_full_contact(grid, &size, one_case->load_count);
 }
 
 /* --- solving --- */
@@ -125,15 +126,15 @@ static void destroy(struct contact_solver **solver) {
     *solver = NULL;
 }
 
-static int create(struct contact_solver **out, const struct contact_case *study, size_t model,
+static int create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err) {
-    struct full_options options = full_model_options(study);
+    struct full_options options = full_model_options(one_case);
     const struct grid *grid = &compliance->grid;
     struct contact_solver *solver = array_create(1, sizeof *solver);
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
     solver->transforms = cost_full_transforms(grid);
-    int status = full_create(&solver->full, grid, &study->blocks[model], &options, err);
+    int status = full_create(&solver->full, grid, &one_case->blocks[model], &options, err);
     if (status != 0)
         destroy(&solver);
     *out = solver;

@@ -6,9 +6,9 @@
 #include "jobs/contact/contact_case.h"
 
 /* What a study asks of the model. */
-struct full_options full_model_options(const struct contact_case *study);
+struct full_options full_model_options(const struct contact_case *one_case);
 /* write_mesh of struct contact_model. */
-int full_write_mesh(const char *path, const struct contact_case *study, size_t model,
+int full_write_mesh(const char *path, const struct contact_case *one_case, size_t model,
                     const double *z, double pressure, struct error *err);
 
 #endif

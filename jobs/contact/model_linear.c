@@ -6,25 +6,25 @@ struct contact_solver {
     struct contact *contact;
 };
 
-double linear_seconds(const struct contact_case *study, size_t model, const struct grid *grid) {
+double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
     (void)model;
-    return cost_linear_contact(grid, study->tolerance, study->load_count);
+    return cost_linear_contact(grid, one_case->tolerance, one_case->load_count);
 }
 
-double linear_bytes(const struct contact_case *study, size_t model, const struct grid *grid) {
-    (void)study;
+double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    (void)one_case;
     (void)model;
     return contact_bytes(grid);
 }
 
-int linear_create(struct contact_solver **out, const struct contact_case *study, size_t model,
+int linear_create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err) {
     (void)model;
     struct contact_options options = CONTACT_DEFAULTS;
     struct contact_solver *solver = array_create(1, sizeof *solver);
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
-    options.tolerance = study->tolerance;
+    options.tolerance = one_case->tolerance;
     int status = contact_create(&solver->contact, compliance, &options, err);
     if (status != 0)
         linear_destroy(&solver);

@@ -5,9 +5,9 @@
 #include "jobs/contact/contact_case.h"
 
 /* Functions of struct contact_model. */
-double linear_bytes(const struct contact_case *study, size_t model, const struct grid *grid);
-double linear_seconds(const struct contact_case *study, size_t model, const struct grid *grid);
-int linear_create(struct contact_solver **out, const struct contact_case *study, size_t model,
+double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid);
+double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid);
+int linear_create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err);
 void linear_destroy(struct contact_solver **solver);
 int linear_begin(struct contact_solver *solver, const double *z, int (*stop)(void *context),

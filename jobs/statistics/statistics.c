@@ -4,43 +4,44 @@
 #include "jobs/statistics/statistics_spectra.h"
 #include "jobs/statistics/statistics_view.h"
 
-static int read_case(void *study, const cJSON *parameters, struct fault_list *faults,
+static int read_case(void *one_case, const cJSON *parameters, struct fault_list *faults,
                      struct error *err) {
-    return statistics_case_read(study, parameters, faults, err);
+    return statistics_case_read(one_case, parameters, faults, err);
 }
 
-static void clear_case(void *study) {
-    statistics_case_clear(study);
+static void clear_case(void *one_case) {
+    statistics_case_clear(one_case);
 }
 
-static void estimate(const void *study, struct study_cost *out) {
-    statistics_case_estimate(study, out);
+static void estimate(const void *one_case, struct study_cost *out) {
+    statistics_case_estimate(one_case, out);
 }
 
-static const struct surface_case *surface_of(const void *study) {
-    const struct statistics_case *statistics = study;
+static const struct surface_case *surface_of(const void *one_case) {
+    const struct statistics_case *statistics = one_case;
     return &statistics->surface;
 }
 
 /* --- realisations --- */
 
 struct workspace {
-    const struct statistics_case *study; /* borrowed */
-    struct moments moments;              /* of the prescribed spectrum */
+    const struct statistics_case *one_case; /* borrowed */
+    struct moments moments;                 /* of the prescribed spectrum */
     struct summit_finder *finder;
     struct spectra spectra;
     struct summit_list summits;
 };
 
-static int workspace_create(void *workspace, const void *study, const struct surface_basis *basis,
-                            const void *shared, struct error *err) {
+static int workspace_create(void *workspace, const void *one_case,
+                            const struct surface_basis *basis, const void *shared,
+                            struct error *err) {
     struct workspace *work = workspace;
-    const struct statistics_case *statistics = study;
+    const struct statistics_case *statistics = one_case;
     const struct grid *grid = &statistics->surface.grid;
     const struct modes *modes = basis->modes;
     bool exact = surface_case_exact(&statistics->surface); /* else heights placed point by point */
     (void)shared;
-    work->study = statistics;
+    work->one_case = statistics;
     work->moments = basis->moments;
     int status = summit_finder_create(&work->finder, grid, statistics->stencil,
                                       statistics->curvature, exact ? modes->mode_x : grid->nx / 2,
@@ -58,7 +59,7 @@ static void workspace_clear(void *workspace) {
 static int realise(void *workspace, const struct realisation *realisation, void *tally,
                    double *scalars, struct error *err) {
     struct workspace *work = workspace;
-    const struct grid *grid = &work->study->surface.grid;
+    const struct grid *grid = &work->one_case->surface.grid;
     int status = summits_find(work->finder, realisation->z, &work->summits, err);
     if (status == 0)
         status = spectra_measure(&work->spectra, grid, realisation->z, tally, err);
@@ -66,7 +67,7 @@ static int realise(void *workspace, const struct realisation *realisation, void 
         return status;
     statistics_tally_heights(tally, grid_points(grid), realisation->z);
     statistics_tally_summits(tally, &work->summits);
-    statistics_scalars_measure(work->study, &work->moments,
+    statistics_scalars_measure(work->one_case, &work->moments,
                                &(struct realisation_measures){.roughness = &realisation->roughness,
                                                               .moments = &realisation->moments,
                                                               .summits = &work->summits,
@@ -77,10 +78,10 @@ static int realise(void *workspace, const struct realisation *realisation, void 
 
 /* --- the tally --- */
 
-static int sums_create(void *tally, const void *study, const struct surface_basis *basis,
+static int sums_create(void *tally, const void *one_case, const struct surface_basis *basis,
                        struct error *err) {
-    return statistics_tally_create(tally, study, &basis->moments, spectra_densities(study),
-                                   spectra_correlations(study), err);
+    return statistics_tally_create(tally, one_case, &basis->moments, spectra_densities(one_case),
+                                   spectra_correlations(one_case), err);
 }
 
 static void sums_clear(void *tally) {
@@ -112,17 +113,18 @@ static bool belongs(const void *tally, const struct block_result *result) {
            summits == (double)statistics->summits.sum;
 }
 
-static int result(const void *study, const struct surface_basis *basis, const void *tally,
+static int result(const void *one_case, const struct surface_basis *basis, const void *tally,
                   const struct realisations *realisations, struct case_result *out,
                   struct error *err) {
-    int status = statistics_scalars(study, &basis->moments, realisations, out, err);
-    return status != 0 ? status
-                       : statistics_curves(study, basis->modes, &basis->moments, tally, out, err);
+    int status = statistics_scalars(one_case, &basis->moments, realisations, out, err);
+    return status != 0
+               ? status
+               : statistics_curves(one_case, basis->modes, &basis->moments, tally, out, err);
 }
 
-static int complete(const void *study, const struct surface_basis *basis, struct case_result *out,
-                    struct error *err) {
-    return statistics_curves_complete(study, basis->moments.nayak_alpha, out, err);
+static int complete(const void *one_case, const struct surface_basis *basis,
+                    struct case_result *out, struct error *err) {
+    return statistics_curves_complete(one_case, basis->moments.nayak_alpha, out, err);
 }
 
 const struct job_kind STATISTICS_KIND = {

@@ -39,23 +39,23 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
     return status;
 }
 
-void statistics_case_clear(struct statistics_case *study) {
-    surface_case_clear(&study->surface);
-    *study = (struct statistics_case){0};
+void statistics_case_clear(struct statistics_case *one_case) {
+    surface_case_clear(&one_case->surface);
+    *one_case = (struct statistics_case){0};
 }
 
 /* CPU seconds of one realisation. */
-static double expected_seconds(const struct statistics_case *study) {
-    double points = (double)grid_points(&study->surface.grid);
-    double nanoseconds = cost_generation(&study->surface.options);
-    nanoseconds += cost_summits(study->stencil, study->curvature);
-    if (!surface_case_exact(&study->surface))
+static double expected_seconds(const struct statistics_case *one_case) {
+    double points = (double)grid_points(&one_case->surface.grid);
+    double nanoseconds = cost_generation(&one_case->surface.options);
+    nanoseconds += cost_summits(one_case->stencil, one_case->curvature);
+    if (!surface_case_exact(&one_case->surface))
         nanoseconds += cost_spectra();
     return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points);
 }
 
-void statistics_case_estimate(const struct statistics_case *study, struct study_cost *out) {
-    const struct surface_case *surface = &study->surface;
+void statistics_case_estimate(const struct statistics_case *one_case, struct study_cost *out) {
+    const struct surface_case *surface = &one_case->surface;
     const struct grid *grid = &surface->grid;
     size_t mode_x = surface_case_band(surface);
     size_t mode_y = surface->dimension == 1 ? 0 : mode_x;
@@ -70,12 +70,12 @@ void statistics_case_estimate(const struct statistics_case *study, struct study_
     /* a list of summits doubles as it grows; spectra of height maps take a transform of the grid */
     out->memory_bytes =
         generator_bytes(grid, mode_x, mode_y, &surface->options) +
-        (exact ? summit_finder_bytes(grid, study->stencil, study->curvature, mode_x, mode_y)
-               : summit_finder_bytes(grid, study->stencil, study->curvature, grid->nx / 2,
+        (exact ? summit_finder_bytes(grid, one_case->stencil, one_case->curvature, mode_x, mode_y)
+               : summit_finder_bytes(grid, one_case->stencil, one_case->curvature, grid->nx / 2,
                                      grid->ny / 2)) +
-        statistics_tally_bytes(study) + 2 * summits * sizeof(struct summit) +
+        statistics_tally_bytes(one_case) + 2 * summits * sizeof(struct summit) +
         (exact ? 0 : 24 * points) + 6e6;
-    out->seconds = expected_seconds(study);
+    out->seconds = expected_seconds(one_case);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */
-    out->relative_error = 2.239 * sqrt(spread / (summits * bins_width(&study->height)));
+    out->relative_error = 2.239 * sqrt(spread / (summits * bins_width(&one_case->height)));
 }

@@ -22,9 +22,9 @@ struct statistics_case {
 /* As surface_case_read. */
 int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
                          struct fault_list *faults, struct error *err);
-void statistics_case_clear(struct statistics_case *study);
+void statistics_case_clear(struct statistics_case *one_case);
 
 /* Memory, time and error of one realisation, before anything ran. */
-void statistics_case_estimate(const struct statistics_case *study, struct study_cost *out);
+void statistics_case_estimate(const struct statistics_case *one_case, struct study_cost *out);
 
 #endif

@@ -6,7 +6,7 @@
 
 /* What all curves of a case are made from. */
 struct curve_maker {
-    const struct statistics_case *study;
+    const struct statistics_case *one_case;
     const struct statistics_tally *tally;
     const char *theory_name;       /* of summits; NULL: does not apply */
     struct case_result *result;    /* its arena owns all arrays */
@@ -32,7 +32,7 @@ static int columns_create(struct curve_maker *maker, size_t n, struct columns *o
 
 /* Room for theories of the heights of the next curves. */
 static int theories_create(struct curve_maker *maker, struct error *err) {
-    size_t n = maker->study->height.count;
+    size_t n = maker->one_case->height.count;
     maker->pdf = result_numbers(maker->result, 3 * n);
     if (maker->pdf == NULL)
         return no_room(err);
@@ -51,7 +51,7 @@ static const char *height_label(void) {
 }
 
 static const char *equivalent_label(const struct curve_maker *maker) {
-    return maker->study->surface.dimension == 2 ? "-sqrt(3/m4) kappa_m" : "z''/sqrt(m4)";
+    return maker->one_case->surface.dimension == 2 ? "-sqrt(3/m4) kappa_m" : "z''/sqrt(m4)";
 }
 
 /* A histogram as a density over its bins. */
@@ -92,7 +92,7 @@ static int add_density(struct curve_maker *maker, const struct histogram *histog
 static int add_cumulative(struct curve_maker *maker, const char *quantity,
                           const struct tally *below, const struct tally_total *total,
                           const char *theory_name, struct error *err) {
-    const struct bins *bins = &maker->study->height;
+    const struct bins *bins = &maker->one_case->height;
     struct curve curve = curve_named(quantity, height_label(), "cumulative probability");
     struct columns columns;
     int status = columns_create(maker, bins->count, &columns, err);
@@ -110,9 +110,9 @@ static int add_cumulative(struct curve_maker *maker, const char *quantity,
 }
 
 static int add_curvature(struct curve_maker *maker, struct error *err) {
-    const struct bins *bins = &maker->study->height;
+    const struct bins *bins = &maker->one_case->height;
     const struct statistics_tally *tally = maker->tally;
-    bool surface = maker->study->surface.dimension == 2;
+    bool surface = maker->one_case->surface.dimension == 2;
     struct curve curve = curve_named("summit_mean_curvature", height_label(),
                                      surface ? "kappa_m/sqrt(m4)" : "-z''/sqrt(m4)");
     struct columns columns;
@@ -134,21 +134,21 @@ static int add_curvature(struct curve_maker *maker, struct error *err) {
 /* --- the joint density of summit heights and curvatures --- */
 
 /* Cell of the tally, which has cells for under- and overflow around the bins. */
-static size_t joint_cell(const struct statistics_case *study, size_t cell) {
-    size_t columns = study->equivalent.count;
+static size_t joint_cell(const struct statistics_case *one_case, size_t cell) {
+    size_t columns = one_case->equivalent.count;
     return (cell / columns + 1) * (columns + 2) + cell % columns + 1;
 }
 
 /* Only the cells that summits fell into; their theory is made where it is asked for. */
 static int add_joint(struct curve_maker *maker, struct error *err) {
-    const struct statistics_case *study = maker->study;
-    const struct bins *height = &study->height, *equivalent = &study->equivalent;
+    const struct statistics_case *one_case = maker->one_case;
+    const struct bins *height = &one_case->height, *equivalent = &one_case->equivalent;
     const struct tally *tally = &maker->tally->joint;
     const struct tally_total *total = &maker->tally->summits;
     double area = bins_width(height) * bins_width(equivalent), inside = 0;
     size_t all = height->count * equivalent->count, count = 0;
     for (size_t cell = 0; cell < all; cell++)
-        count += tally->count[joint_cell(study, cell)] > 0;
+        count += tally->count[joint_cell(one_case, cell)] > 0;
     uint32_t *cells = result_room(maker->result, count + 1, sizeof *cells);
     double *axes = result_numbers(maker->result, height->count + equivalent->count);
     double *y = result_numbers(maker->result, 2 * count), *standard_error = y + count;
@@ -160,10 +160,10 @@ static int add_joint(struct curve_maker *maker, struct error *err) {
         axes[height->count + b] = bins_centre(equivalent, b);
     count = 0;
     for (size_t cell = 0; cell < all; cell++) {
-        uint64_t n = tally->count[joint_cell(study, cell)];
+        uint64_t n = tally->count[joint_cell(one_case, cell)];
         if (n == 0)
             continue;
-        struct estimate share = tally_share(tally, joint_cell(study, cell), total);
+        struct estimate share = tally_share(tally, joint_cell(one_case, cell), total);
         y[count] = share.value / area;
         standard_error[count] = share.standard_error / area;
         cells[count++] = (uint32_t)cell;
@@ -185,18 +185,18 @@ static int add_joint(struct curve_maker *maker, struct error *err) {
     return result_add_curve(maker->result, &curve, err);
 }
 
-int statistics_curves_complete(const struct statistics_case *study, double alpha,
+int statistics_curves_complete(const struct statistics_case *one_case, double alpha,
                                struct case_result *result, struct error *err) {
     for (size_t a = 0; a < result->curve_count; a++) {
         struct curve *curve = &result->curves[a];
         for (size_t t = 0; t < curve->theory_count; t++) {
-            if (curve->theories[t].y != NULL || curve->columns != study->equivalent.count ||
-                curve->n != study->height.count)
+            if (curve->theories[t].y != NULL || curve->columns != one_case->equivalent.count ||
+                curve->n != one_case->height.count)
                 continue;
             double *pdf = result_numbers(result, curve->n * curve->columns);
             if (pdf == NULL)
                 return no_room(err);
-            statistics_theory_joint(study, alpha, pdf);
+            statistics_theory_joint(one_case, alpha, pdf);
             curve->theories[t].y = pdf;
         }
     }
@@ -206,13 +206,13 @@ int statistics_curves_complete(const struct statistics_case *study, double alpha
 /* --- all curves --- */
 
 static int add_heights(struct curve_maker *maker, struct error *err) {
-    const struct statistics_case *study = maker->study;
+    const struct statistics_case *one_case = maker->one_case;
     const struct statistics_tally *tally = maker->tally;
-    const char *name = heights_distribution(study->surface.options.heights.type)->family;
+    const char *name = heights_distribution(one_case->surface.options.heights.type)->family;
     int status = theories_create(maker, err);
     if (status == 0)
-        status = statistics_theory_heights(study, maker->pdf, maker->cdf, err);
-    const struct histogram heights = {"height_pdf",   height_label(), &study->height,
+        status = statistics_theory_heights(one_case, maker->pdf, maker->cdf, err);
+    const struct histogram heights = {"height_pdf",   height_label(), &one_case->height,
                                       &tally->height, &tally->points, name,
                                       maker->pdf};
     if (status == 0)
@@ -224,14 +224,14 @@ static int add_heights(struct curve_maker *maker, struct error *err) {
 }
 
 static int add_summit_heights(struct curve_maker *maker, double alpha, struct error *err) {
-    const struct statistics_case *study = maker->study;
+    const struct statistics_case *one_case = maker->one_case;
     const struct statistics_tally *tally = maker->tally;
     int status = theories_create(maker, err);
     if (status != 0)
         return status;
     if (maker->theory_name != NULL)
-        statistics_theory_summits(study, alpha, maker->pdf, maker->cdf, maker->curvature);
-    const struct histogram heights = {"summit_height_pdf", height_label(),  &study->height,
+        statistics_theory_summits(one_case, alpha, maker->pdf, maker->cdf, maker->curvature);
+    const struct histogram heights = {"summit_height_pdf", height_label(),  &one_case->height,
                                       &tally->summit,      &tally->summits, maker->theory_name,
                                       maker->pdf};
     status = add_density(maker, &heights, err);
@@ -242,15 +242,15 @@ static int add_summit_heights(struct curve_maker *maker, double alpha, struct er
 }
 
 static int add_summit_curvatures(struct curve_maker *maker, struct error *err) {
-    const struct statistics_case *study = maker->study;
-    double *theory = result_numbers(maker->result, study->equivalent.count);
+    const struct statistics_case *one_case = maker->one_case;
+    double *theory = result_numbers(maker->result, one_case->equivalent.count);
     if (theory == NULL)
         return no_room(err);
     if (maker->theory_name != NULL)
-        statistics_theory_equivalent(study, theory);
+        statistics_theory_equivalent(one_case, theory);
     const struct histogram curvatures = {"summit_curvature_pdf",
                                          equivalent_label(maker),
-                                         &study->equivalent,
+                                         &one_case->equivalent,
                                          &maker->tally->equivalent,
                                          &maker->tally->summits,
                                          maker->theory_name,
@@ -258,14 +258,14 @@ static int add_summit_curvatures(struct curve_maker *maker, struct error *err) {
     return add_density(maker, &curvatures, err);
 }
 
-int statistics_curves(const struct statistics_case *study, const struct modes *modes,
+int statistics_curves(const struct statistics_case *one_case, const struct modes *modes,
                       const struct moments *moments, const struct statistics_tally *tally,
                       struct case_result *out, struct error *err) {
-    bool applies = statistics_theory_applies(study, moments);
-    struct curve_maker maker = {.study = study,
+    bool applies = statistics_theory_applies(one_case, moments);
+    struct curve_maker maker = {.one_case = one_case,
                                 .tally = tally,
                                 .result = out,
-                                .theory_name = applies ? statistics_theory_name(study) : NULL};
+                                .theory_name = applies ? statistics_theory_name(one_case) : NULL};
     int status = add_heights(&maker, err);
     if (status == 0)
         status = add_summit_heights(&maker, moments->nayak_alpha, err);
@@ -273,5 +273,5 @@ int statistics_curves(const struct statistics_case *study, const struct modes *m
         status = add_summit_curvatures(&maker, err);
     if (status == 0)
         status = add_joint(&maker, err);
-    return status != 0 ? status : spectra_curves(study, modes, tally, out, err);
+    return status != 0 ? status : spectra_curves(one_case, modes, tally, out, err);
 }

@@ -6,12 +6,12 @@
 #include "schema/result/result.h"
 
 /* Appends all curves to the result, whose arena owns them. moments are those of modes. */
-int statistics_curves(const struct statistics_case *study, const struct modes *modes,
+int statistics_curves(const struct statistics_case *one_case, const struct modes *modes,
                       const struct moments *moments, const struct statistics_tally *tally,
                       struct case_result *out, struct error *err);
 /* Makes the theories that the curves name without holding them (the joint density's): alpha is that
  * of the prescribed spectrum. */
-int statistics_curves_complete(const struct statistics_case *study, double alpha,
+int statistics_curves_complete(const struct statistics_case *one_case, double alpha,
                                struct case_result *result, struct error *err);
 
 #endif

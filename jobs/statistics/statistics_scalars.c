@@ -42,11 +42,11 @@ const char *statistics_scalar_name(size_t at) {
 
 /* Mean and variance of heights, mean curvature, of the summits of one realisation; NaN (0/0) where
  * there is none. */
-static void measure_summits(const struct statistics_case *study, const struct moments *moments,
+static void measure_summits(const struct statistics_case *one_case, const struct moments *moments,
                             const struct summit_list *list, double *out) {
-    const struct grid *grid = &study->surface.grid;
-    double n = (double)list->count, ratio = study->surface.wavelength_ratio;
-    bool surface = study->surface.dimension == 2;
+    const struct grid *grid = &one_case->surface.grid;
+    double n = (double)list->count, ratio = one_case->surface.wavelength_ratio;
+    bool surface = one_case->surface.dimension == 2;
     struct sum heights = {0, 0}, curvatures = {0, 0}, squares = {0, 0};
     for (size_t a = 0; a < list->count; a++) {
         sum_add(&heights, list->summits[a].height);
@@ -66,7 +66,8 @@ static void measure_summits(const struct statistics_case *study, const struct mo
     out[SCALAR_SUMMIT_CURVATURE_MEAN] = curvature / sqrt(moments->m4);
 }
 
-void statistics_scalars_measure(const struct statistics_case *study, const struct moments *moments,
+void statistics_scalars_measure(const struct statistics_case *one_case,
+                                const struct moments *moments,
                                 const struct realisation_measures *measures,
                                 double out[SCALAR_COUNT]) {
     const struct roughness *roughness = measures->roughness;
@@ -86,7 +87,7 @@ void statistics_scalars_measure(const struct statistics_case *study, const struc
     out[SCALAR_M2_DIFFERENCE] = roughness->m2;
     out[SCALAR_M4_DIFFERENCE] = roughness->m4;
     out[SCALAR_NAYAK_ALPHA_DIFFERENCE] = roughness->nayak_alpha;
-    measure_summits(study, moments, measures->summits, out);
+    measure_summits(one_case, moments, measures->summits, out);
     out[SCALAR_GENERATOR_ITERATIONS] = (double)report->iterations;
     out[SCALAR_GENERATOR_CONVERGED] = iterated ? report->end == END_CONVERGED : NAN;
     out[SCALAR_EPS_H] = iterated ? report->eps_h : NAN;
@@ -126,11 +127,11 @@ static int add_scalar(struct case_result *out, const char *name, struct estimate
     return result_add_scalar(out, &scalar, err);
 }
 
-static int add_scalars(struct case_result *out, const struct statistics_case *study,
+static int add_scalars(struct case_result *out, const struct statistics_case *one_case,
                        const struct moments *moments, struct columns *columns, struct error *err) {
     double theory[SCALAR_COUNT];
-    statistics_theory_scalars(study, moments, theory);
-    bool exact = surface_case_exact(&study->surface);
+    statistics_theory_scalars(one_case, moments, theory);
+    bool exact = surface_case_exact(&one_case->surface);
     const double prescribed[] = {moments->m0, moments->m2, moments->m4, moments->nayak_alpha};
     int status = 0;
     for (enum statistics_scalar a = 0; a < SCALAR_COUNT && status == 0; a++) {
@@ -147,10 +148,10 @@ static int add_scalars(struct case_result *out, const struct statistics_case *st
         return status;
     /* as given, or as solved for nayak_alpha */
     return add_scalar(out, "wavelength_ratio",
-                      (struct estimate){study->surface.wavelength_ratio, 0}, NAN, err);
+                      (struct estimate){one_case->surface.wavelength_ratio, 0}, NAN, err);
 }
 
-int statistics_scalars(const struct statistics_case *study, const struct moments *moments,
+int statistics_scalars(const struct statistics_case *one_case, const struct moments *moments,
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err) {
     struct columns columns = {.n = (size_t)realisations->count};
@@ -159,7 +160,7 @@ int statistics_scalars(const struct statistics_case *study, const struct moments
         return error_memory(err, columns.n * SCALAR_COUNT * sizeof(double), "scalars");
     for (size_t a = 0; a < SCALAR_COUNT; a++)
         realisations_column(realisations, a, columns.values + a * columns.n);
-    int status = add_scalars(out, study, moments, &columns, err);
+    int status = add_scalars(out, one_case, moments, &columns, err);
     free(columns.values);
     return status;
 }

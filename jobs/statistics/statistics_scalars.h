@@ -48,12 +48,13 @@ struct realisation_measures {
     const struct surface_report *report;
 };
 /* moments: of the prescribed spectrum, which sets the scale. NaN: none. */
-void statistics_scalars_measure(const struct statistics_case *study, const struct moments *moments,
+void statistics_scalars_measure(const struct statistics_case *one_case,
+                                const struct moments *moments,
                                 const struct realisation_measures *measures,
                                 double out[SCALAR_COUNT]);
 
 /* Appends the scalars over the realisations to the result. */
-int statistics_scalars(const struct statistics_case *study, const struct moments *moments,
+int statistics_scalars(const struct statistics_case *one_case, const struct moments *moments,
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err);
 

@@ -8,12 +8,12 @@ enum {
 }; /* points a side that the prescribed autocorrelation is sampled on, at most
     * unless the band needs more: a long case would cost a transform of its grid */
 
-size_t spectra_densities(const struct statistics_case *study) {
-    return surface_case_exact(&study->surface) ? 0 : radial_bins(&study->surface.grid);
+size_t spectra_densities(const struct statistics_case *one_case) {
+    return surface_case_exact(&one_case->surface) ? 0 : radial_bins(&one_case->surface.grid);
 }
 
-size_t spectra_correlations(const struct statistics_case *study) {
-    return surface_case_exact(&study->surface) ? 0 : study->surface.grid.nx / 2 + 1;
+size_t spectra_correlations(const struct statistics_case *one_case) {
+    return surface_case_exact(&one_case->surface) ? 0 : one_case->surface.grid.nx / 2 + 1;
 }
 
 /* What measured densities are divided by before they are summed, so that the sums are exact. */
@@ -29,10 +29,10 @@ static void reference_of(size_t n, double *density) {
             density[a] = sum / (double)used;
 }
 
-int spectra_create(struct spectra *out, const struct statistics_case *study,
+int spectra_create(struct spectra *out, const struct statistics_case *one_case,
                    const struct modes *modes, struct error *err) {
-    *out = (struct spectra){.densities = spectra_densities(study),
-                            .correlations = spectra_correlations(study)};
+    *out = (struct spectra){.densities = spectra_densities(one_case),
+                            .correlations = spectra_correlations(one_case)};
     if (out->densities == 0)
         return 0;
     size_t most = out->densities > out->correlations ? out->densities : out->correlations;
@@ -91,11 +91,11 @@ static int add_curve(struct case_result *result, struct curve *curve, bool exact
     return result_add_curve(result, curve, err);
 }
 
-static int density_curve(const struct statistics_case *study, const struct modes *modes,
+static int density_curve(const struct statistics_case *one_case, const struct modes *modes,
                          const struct statistics_tally *tally, struct case_result *result,
                          struct error *err) {
     size_t n = radial_bins(&modes->grid), last = n - 1;
-    bool exact = surface_case_exact(&study->surface);
+    bool exact = surface_case_exact(&one_case->surface);
     struct curve curve = curve_named("psd", "k lambda_s", "power spectral density");
     struct spectrum_columns columns, reference;
     int status = columns_create(result, &columns, n, err);
@@ -123,25 +123,25 @@ static int density_curve(const struct statistics_case *study, const struct modes
     return add_curve(result, &curve, exact, columns.theory + 1, err);
 }
 
-static size_t correlation_side(const struct statistics_case *study) {
-    size_t side = study->surface.grid.nx, needed = 2 * surface_case_band(&study->surface) + 2;
+static size_t correlation_side(const struct statistics_case *one_case) {
+    size_t side = one_case->surface.grid.nx, needed = 2 * surface_case_band(&one_case->surface) + 2;
     if (side <= ACF_GRID || side <= needed)
         return side;
     return needed > ACF_GRID ? needed : ACF_GRID;
 }
 
 /* The prescribed autocorrelation; *n lags. */
-static int prescribed_correlation(const struct statistics_case *study, const struct modes *modes,
+static int prescribed_correlation(const struct statistics_case *one_case, const struct modes *modes,
                                   struct case_result *result, struct spectrum_columns *out,
                                   size_t *n, struct error *err) {
     struct modes *coarse = NULL;
-    struct grid grid = study->surface.grid;
+    struct grid grid = one_case->surface.grid;
     int status = 0;
-    grid.nx = surface_case_exact(&study->surface) ? correlation_side(study) : grid.nx;
-    grid.ny = study->surface.dimension == 1 ? 1 : grid.nx;
+    grid.nx = surface_case_exact(&one_case->surface) ? correlation_side(one_case) : grid.nx;
+    grid.ny = one_case->surface.dimension == 1 ? 1 : grid.nx;
     *n = grid.nx / 2 + 1;
     if (grid.nx != modes->grid.nx) {
-        status = modes_create(&coarse, &study->surface.spectrum, &grid, err);
+        status = modes_create(&coarse, &one_case->surface.spectrum, &grid, err);
         modes = coarse;
     }
     if (status == 0)
@@ -152,14 +152,14 @@ static int prescribed_correlation(const struct statistics_case *study, const str
     return status;
 }
 
-static int correlation_curve(const struct statistics_case *study, const struct modes *modes,
+static int correlation_curve(const struct statistics_case *one_case, const struct modes *modes,
                              const struct statistics_tally *tally, struct case_result *result,
                              struct error *err) {
-    bool exact = surface_case_exact(&study->surface);
+    bool exact = surface_case_exact(&one_case->surface);
     struct curve curve = curve_named("acf", "lag/lambda_s", "autocorrelation");
     struct spectrum_columns columns;
     size_t n;
-    int status = prescribed_correlation(study, modes, result, &columns, &n, err);
+    int status = prescribed_correlation(one_case, modes, result, &columns, &n, err);
     if (status != 0)
         return status;
     for (size_t a = 0; a < n; a++) {
@@ -173,9 +173,9 @@ static int correlation_curve(const struct statistics_case *study, const struct m
     return add_curve(result, &curve, exact, columns.theory, err);
 }
 
-int spectra_curves(const struct statistics_case *study, const struct modes *modes,
+int spectra_curves(const struct statistics_case *one_case, const struct modes *modes,
                    const struct statistics_tally *tally, struct case_result *result,
                    struct error *err) {
-    int status = density_curve(study, modes, tally, result, err);
-    return status != 0 ? status : correlation_curve(study, modes, tally, result, err);
+    int status = density_curve(one_case, modes, tally, result, err);
+    return status != 0 ? status : correlation_curve(one_case, modes, tally, result, err);
 }

@@ -7,8 +7,8 @@
 #include "schema/result/result.h"
 
 /* Entries of the two tallies: 0 where nothing is measured. */
-size_t spectra_densities(const struct statistics_case *study);
-size_t spectra_correlations(const struct statistics_case *study);
+size_t spectra_densities(const struct statistics_case *one_case);
+size_t spectra_correlations(const struct statistics_case *one_case);
 
 /* Workspace for measuring, made once a case. */
 struct spectra {
@@ -16,14 +16,14 @@ struct spectra {
     double *abscissa, *measured; /* owned, scratch */
     double *reference; /* owned, densities: prescribed density, its mean where that is 0 */
 };
-int spectra_create(struct spectra *out, const struct statistics_case *study,
+int spectra_create(struct spectra *out, const struct statistics_case *one_case,
                    const struct modes *modes, struct error *err);
 void spectra_clear(struct spectra *spectra);
 int spectra_measure(struct spectra *spectra, const struct grid *grid, const double *z,
                     struct statistics_tally *tally, struct error *err);
 
 /* Appends the curves "psd" and "acf". */
-int spectra_curves(const struct statistics_case *study, const struct modes *modes,
+int spectra_curves(const struct statistics_case *one_case, const struct modes *modes,
                    const struct statistics_tally *tally, struct case_result *result,
                    struct error *err);
 

@@ -6,14 +6,14 @@ static size_t cells_of(const struct bins *bins) {
     return bins->count + 2;
 }
 
-int statistics_tally_create(struct statistics_tally *out, const struct statistics_case *study,
+int statistics_tally_create(struct statistics_tally *out, const struct statistics_case *one_case,
                             const struct moments *moments, size_t densities, size_t correlations,
                             struct error *err) {
-    size_t heights = cells_of(&study->height), curvatures = cells_of(&study->equivalent);
+    size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
     size_t joint = heights * curvatures;
-    double third = study->surface.dimension == 2 ? sqrt(3) : 1;
+    double third = one_case->surface.dimension == 2 ? sqrt(3) : 1;
     *out = (struct statistics_tally){
-        .study = study,
+        .one_case = one_case,
         .height_scale = 1 / sqrt(moments->m0),
         .curvature_scale = -third / sqrt(moments->m4),
         .count = array_create(joint + heights + curvatures, sizeof *out->count),
@@ -54,8 +54,8 @@ void statistics_tally_clear(struct statistics_tally *tally) {
     *tally = (struct statistics_tally){0};
 }
 
-double statistics_tally_bytes(const struct statistics_case *study) {
-    size_t heights = cells_of(&study->height), curvatures = cells_of(&study->equivalent);
+double statistics_tally_bytes(const struct statistics_case *one_case) {
+    size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
     size_t joint = heights * curvatures;
     return tally_bytes(4 * heights + curvatures + joint) + tally_sums_bytes(heights) +
            16.0 * (double)joint;
@@ -76,14 +76,15 @@ static void add_cells(struct tally *cells, struct tally *below, uint64_t *count,
 
 void statistics_tally_heights(struct statistics_tally *tally, size_t n, const double *z) {
     tally_total_add(&tally->points, n);
-    histogram_add(&tally->study->height, n, z, tally->height_scale, tally->count);
+    histogram_add(&tally->one_case->height, n, z, tally->height_scale, tally->count);
     add_cells(&tally->height, &tally->height_below, tally->count, n);
 }
 
 void statistics_tally_summits(struct statistics_tally *tally, const struct summit_list *summits) {
-    const struct bins *height = &tally->study->height, *equivalent = &tally->study->equivalent;
+    const struct bins *height = &tally->one_case->height,
+                      *equivalent = &tally->one_case->equivalent;
     size_t columns = tally->equivalent.size, touched = 0;
-    double third = tally->study->surface.dimension == 2 ? sqrt(3) : 1;
+    double third = tally->one_case->surface.dimension == 2 ? sqrt(3) : 1;
     tally_total_add(&tally->summits, summits->count);
     for (size_t a = 0; a < summits->count; a++) {
         double t1 = tally->curvature_scale * summits->summits[a].curvature;

@@ -9,9 +9,9 @@
 #include "jobs/tally.h"
 
 struct statistics_tally {
-    const struct statistics_case *study; /* borrowed */
-    double height_scale;                 /* 1/sqrt(m0) */
-    double curvature_scale;              /* t1 = curvature_scale * curvature; negative */
+    const struct statistics_case *one_case; /* borrowed */
+    double height_scale;                    /* 1/sqrt(m0) */
+    double curvature_scale;                 /* t1 = curvature_scale * curvature; negative */
     struct tally_total points, summits;
     /* `below` cell b: values under the upper edge of bin b - 1 (cell 0: underflow alone) */
     struct tally height, height_below, summit, summit_below;
@@ -27,11 +27,11 @@ struct statistics_tally {
 };
 
 /* densities, correlations: sizes of psd and acf, 0 where the spectrum is exact. */
-int statistics_tally_create(struct statistics_tally *out, const struct statistics_case *study,
+int statistics_tally_create(struct statistics_tally *out, const struct statistics_case *one_case,
                             const struct moments *moments, size_t densities, size_t correlations,
                             struct error *err);
 void statistics_tally_clear(struct statistics_tally *tally);
-double statistics_tally_bytes(const struct statistics_case *study);
+double statistics_tally_bytes(const struct statistics_case *one_case);
 
 void statistics_tally_heights(struct statistics_tally *tally, size_t n, const double *z);
 void statistics_tally_summits(struct statistics_tally *tally, const struct summit_list *summits);

@@ -5,23 +5,24 @@
 #include "jobs/statistics/statistics_case.h"
 
 /* Whether summit theory applies: an isotropic spectrum with alpha above 3/2 (profiles: 1). */
-bool statistics_theory_applies(const struct statistics_case *study, const struct moments *moments);
+bool statistics_theory_applies(const struct statistics_case *one_case,
+                               const struct moments *moments);
 /* Its name: "nayak", and for profiles "longuet_higgins" (Cartwright & Longuet-Higgins 1956). */
-const char *statistics_theory_name(const struct statistics_case *study);
+const char *statistics_theory_name(const struct statistics_case *one_case);
 
 /* Of each scalar, NaN where there is none; out has SCALAR_COUNT entries. */
-void statistics_theory_scalars(const struct statistics_case *study, const struct moments *moments,
-                               double *out);
+void statistics_theory_scalars(const struct statistics_case *one_case,
+                               const struct moments *moments, double *out);
 
 /* Prescribed height distribution: mean density of each bin; cumulative at its upper edge. */
-int statistics_theory_heights(const struct statistics_case *study, double *pdf, double *cdf,
+int statistics_theory_heights(const struct statistics_case *one_case, double *pdf, double *cdf,
                               struct error *err);
 /* Summit heights likewise, and the mean curvature kappa_m/sqrt(m4) of the summits in each bin. */
-void statistics_theory_summits(const struct statistics_case *study, double alpha, double *pdf,
+void statistics_theory_summits(const struct statistics_case *one_case, double alpha, double *pdf,
                                double *cdf, double *curvature);
 /* Mean density of each t1 bin. */
-void statistics_theory_equivalent(const struct statistics_case *study, double *pdf);
+void statistics_theory_equivalent(const struct statistics_case *one_case, double *pdf);
 /* height.count x equivalent.count, t1 runs fastest. */
-void statistics_theory_joint(const struct statistics_case *study, double alpha, double *pdf);
+void statistics_theory_joint(const struct statistics_case *one_case, double alpha, double *pdf);
 
 #endif

@@ -5,17 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct options {
+struct characterise_options {
     double dx; /* 0: not given */
     int json;
 };
-#define AT(member) offsetof(struct options, member)
+#define AT(member) offsetof(struct characterise_options, member)
 static const struct option_row OPTIONS[] = {
     {"dx", 0, OPTION_NUMBER, 0, 0, AT(dx), "D", NULL, MAP_SPACING_HELP},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
     {0}};
 
-static int print(const struct options *options, const struct height_map *map, struct error *err) {
+static int print(const struct characterise_options *options, const struct height_map *map,
+                 struct error *err) {
     struct characterisation values;
     int status =
         characterise_heights(&values, &map->grid, map->z, map->grid.nx / 2, map->grid.ny / 2, err);
@@ -33,7 +34,7 @@ static int print(const struct options *options, const struct height_map *map, st
 }
 
 static int run(const void *values, const char *const *arguments) {
-    const struct options *options = values;
+    const struct characterise_options *options = values;
     struct height_map map = {0};
     struct error err = {0};
     int status = map_file_read(&map, arguments[0], options->dx, &err);
@@ -50,6 +51,6 @@ const struct command COMMAND_CHARACTERISE = {
     .least = 1,
     .most = 1,
     .options = OPTIONS,
-    .options_size = sizeof(struct options),
+    .options_size = sizeof(struct characterise_options),
     .run = run,
 };

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-struct options {
+struct generate_options {
     const char *output;     /* NULL: standard output */
     const char **overrides; /* of --set */
     int64_t case_number, realisation;
@@ -19,7 +19,7 @@ struct options {
     const char *mesh; /* NULL: the surface alone */
     double pressure;  /* p/(E* h') on the mesh; 0: not pressed */
 };
-#define AT(member) offsetof(struct options, member)
+#define AT(member) offsetof(struct generate_options, member)
 static const struct option_row OPTIONS[] = {
     {"case", 0, OPTION_INDEX, 0, 0, AT(case_number), "K", "0", "of this case"},
     {"realisation", 0, OPTION_INDEX, 0, 0, AT(realisation), "R", "0", "this realisation"},
@@ -35,7 +35,7 @@ static const struct option_row OPTIONS[] = {
 
 /* What to do, from the options. */
 struct order {
-    const struct options *options;
+    const struct generate_options *options;
     const char *study, *output; /* output NULL: standard output */
     enum height_map_format format;
 };
@@ -65,7 +65,8 @@ static int choose_format(struct order *order) {
     return 0;
 }
 
-static int read_order(struct order *order, const struct options *options, const char *study) {
+static int read_order(struct order *order, const struct generate_options *options,
+                      const char *study) {
     *order = (struct order){.options = options, .study = study, .output = options->output};
     if (order->output != NULL && strcmp(order->output, "-") == 0)
         order->output = NULL;
@@ -180,7 +181,7 @@ static int run(const void *values, const char *const *arguments) {
     struct fault_list faults = {0};
     struct study *study = NULL;
     struct error err = {0};
-    const struct options *options = values;
+    const struct generate_options *options = values;
     if (read_order(&order, options, arguments[0]) != 0)
         return EXIT_USAGE;
     int status = study_file_read(&study, order.study, options->overrides, &faults, &err);
@@ -201,6 +202,6 @@ const struct command COMMAND_GENERATE = {
     .least = 1,
     .most = 1,
     .options = OPTIONS,
-    .options_size = sizeof(struct options),
+    .options_size = sizeof(struct generate_options),
     .run = run,
 };

@@ -16,12 +16,12 @@ enum { LOADS_MOST = 1000 };
 
 enum { HALFSPACE, LAYERED };
 
-struct options {
+struct press_options {
     const char *loads, *output;
     double dx, poisson, lengths; /* dx, height of the block in lengths of the map: 0: not given */
     int model, json;
 };
-#define AT(member) offsetof(struct options, member)
+#define AT(member) offsetof(struct press_options, member)
 static const struct option_row OPTIONS[] = {
     {"dx", 0, OPTION_NUMBER, 0, 0, AT(dx), "D", NULL, MAP_SPACING_HELP},
     {"loads", 0, OPTION_TEXT, 0, 0, AT(loads), "LIST", "0.01,0.02,0.05,0.1,0.2,0.3",
@@ -211,7 +211,7 @@ static int press_map(const struct order *order, const struct height_map *map, st
 }
 
 static int run(const void *values, const char *const *arguments) {
-    const struct options *options = values;
+    const struct press_options *options = values;
     struct order order = {.path = arguments[0],
                           .output = options->output,
                           .lengths = options->lengths,
@@ -243,6 +243,6 @@ const struct command COMMAND_PRESS = {
     .least = 1,
     .most = 1,
     .options = OPTIONS,
-    .options_size = sizeof(struct options),
+    .options_size = sizeof(struct press_options),
     .run = run,
 };

@@ -10,7 +10,7 @@
 enum { STREAMS_MOST = 64, LOOK_MS = 300, ALIVE_MS = 15000 };
 
 /* One stream; the library calls next_event on the connection's own thread, which may wait. */
-struct stream {
+struct event_stream {
     struct exchange *exchange; /* lives as long as the library calls next_event */
     struct service *service;
     int socket; /* the library's */
@@ -24,7 +24,7 @@ struct stream {
 
 /* Waits a little; true when the peer has left, which a stream that writes nothing would not notice.
  */
-static bool peer_leaves(const struct stream *stream) {
+static bool peer_leaves(const struct event_stream *stream) {
     struct pollfd peer = {.fd = stream->socket, .events = POLLRDHUP};
     return poll(&peer, 1, LOOK_MS) > 0;
 }
@@ -35,7 +35,7 @@ static bool has_ended(const cJSON *status) {
 }
 
 /* The text of the next event, NULL when there is nothing new. */
-static char *look(struct stream *stream) {
+static char *look(struct event_stream *stream) {
     struct store *reader;
     struct error err = {0};
     cJSON *status = NULL;
@@ -61,7 +61,7 @@ static char *look(struct stream *stream) {
 }
 
 static ssize_t next_event(void *context, uint64_t position, char *buffer, size_t room) {
-    struct stream *stream = context;
+    struct event_stream *stream = context;
     (void)position;
     while (!stream->pending) {
         exchange_renew(stream->exchange);
@@ -87,7 +87,7 @@ static ssize_t next_event(void *context, uint64_t position, char *buffer, size_t
 }
 
 static void stream_free(void *context) {
-    struct stream *stream = context;
+    struct event_stream *stream = context;
     atomic_fetch_sub(&stream->service->streams, 1);
     free(stream->pending);
     free(stream);
@@ -102,7 +102,7 @@ void handle_events(struct exchange *exchange, const char *id) {
         code = store_status(reader, id, &status, &err);
     service_give_back(exchange->service, reader);
     study_status_clear(&status);
-    struct stream *stream = code ? NULL : calloc(1, sizeof *stream);
+    struct event_stream *stream = code ? NULL : calloc(1, sizeof *stream);
     if (!stream) {
         if (!code)
             error_memory(&err, sizeof *stream, "a stream");

@@ -21,7 +21,7 @@ static const double EVEN[] = {.03, .06, .09, .12, .15, .18, .21, .24, .27, .3};
 static const double WIDE[] = {.01, .02, .05, .1, .2, .3, .4, .5};
 enum { EVEN_COUNT = 10, WIDE_COUNT = 8, SURFACES = 3 };
 
-struct bench {
+struct contact_bench {
     struct generator *generator;
     struct compliance *compliance;
     struct contact *contact;
@@ -29,7 +29,7 @@ struct bench {
     double *z, slope, preparation; /* ms: compliance and edge law */
 };
 
-static void bench_clear(struct bench *bench) {
+static void bench_clear(struct contact_bench *bench) {
     area_workspace_destroy(&bench->areas);
     contact_destroy(&bench->contact);
     compliance_destroy(&bench->compliance);
@@ -38,7 +38,7 @@ static void bench_clear(struct bench *bench) {
 }
 
 /* A cell 8 longest waves wide; `points` a shortest wave. */
-static int bench_create(struct bench *bench, size_t n, int dimension, double points,
+static int bench_create(struct contact_bench *bench, size_t n, int dimension, double points,
                         enum block_model model, struct error *err) {
     double cell = (double)n / points;
     struct grid grid = {n, dimension == 2 ? n : 1, cell, cell};
@@ -52,7 +52,7 @@ static int bench_create(struct bench *bench, size_t n, int dimension, double poi
                           .height = model == MODEL_LAYERED ? 1.5 * cell : INFINITY,
                           .layer_growth = 1.1,
                           .weighting = GAP_STANDARD};
-    *bench = (struct bench){.z = array_create(grid_points(&grid), sizeof(double))};
+    *bench = (struct contact_bench){.z = array_create(grid_points(&grid), sizeof(double))};
     int status = bench->z ? 0 : error_memory(err, grid_points(&grid) * sizeof(double), "heights");
     if (!status)
         status = generator_create(&bench->generator, &spectrum, &grid, &SURFACE_DEFAULTS, err);
@@ -76,8 +76,8 @@ struct result {
     double ms, iterations, violation, *area; /* a load */
 };
 
-static int bench_run(struct bench *bench, uint64_t realisation, size_t loads, const double *load,
-                     struct result *result, struct error *err) {
+static int bench_run(struct contact_bench *bench, uint64_t realisation, size_t loads,
+                     const double *load, struct result *result, struct error *err) {
     struct contact_state state;
     struct contact_area area;
     int status = generator_run(bench->generator, (struct random_key){1, 0, realisation}, bench->z,
@@ -102,7 +102,7 @@ static int bench_run(struct bench *bench, uint64_t realisation, size_t loads, co
 static int measure(size_t n, int dimension, double points, enum block_model model, size_t loads,
                    const double *load, struct result *result, double *preparation,
                    struct error *err) {
-    struct bench bench;
+    struct contact_bench bench;
     int surfaces = n >= 512 && dimension == 2 ? 1 : SURFACES;
     int status = bench_create(&bench, n, dimension, points, model, err);
     for (int r = 0; !status && r < surfaces; r++)

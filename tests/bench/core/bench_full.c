@@ -18,7 +18,7 @@ static double cpu_seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-struct run {
+struct bench_run {
     struct grid grid;
     struct block block;
     struct full_options options;
@@ -27,7 +27,7 @@ struct run {
     double greatest; /* last load, E* */
 };
 
-static int run_loads(const struct run *run, struct error *err) {
+static int run_loads(const struct bench_run *run, struct error *err) {
     struct full *full = NULL;
     struct contact_state state = {0};
     struct full_report report = {0}, sum = {0};
@@ -70,15 +70,15 @@ static int profile(size_t n, double slope, struct full_options options, struct e
                                 .wavelength_short = 1,
                                 .scale = SCALE_RMS_SLOPE,
                                 .scale_value = slope};
-    struct run run = {.grid = grid,
-                      .block = {.poisson = 0.3,
-                                .height = 1.5 * cell,
-                                .layer_growth = 1.1,
-                                .weighting = GAP_STANDARD},
-                      .options = options,
-                      .z = array_create(n, sizeof(double)),
-                      .loads = 10,
-                      .greatest = 0.3 * slope};
+    struct bench_run run = {.grid = grid,
+                            .block = {.poisson = 0.3,
+                                      .height = 1.5 * cell,
+                                      .layer_growth = 1.1,
+                                      .weighting = GAP_STANDARD},
+                            .options = options,
+                            .z = array_create(n, sizeof(double)),
+                            .loads = 10,
+                            .greatest = 0.3 * slope};
     struct generator *generator = NULL;
     int status = run.z ? 0 : error_memory(err, n * sizeof(double), "heights");
     if (!status)
@@ -93,15 +93,15 @@ static int profile(size_t n, double slope, struct full_options options, struct e
 }
 
 static int double_sine(size_t n, double height, double poisson, struct error *err) {
-    struct run run = {.grid = {n, n, 1, 1},
-                      .block = {.poisson = poisson,
-                                .height = 1.5,
-                                .layer_growth = 1.2,
-                                .weighting = GAP_STANDARD},
-                      .options = FULL_DEFAULTS,
-                      .z = array_create(n * n, sizeof(double)),
-                      .loads = 5,
-                      .greatest = 0.7 * sqrt(2) * PI * height};
+    struct bench_run run = {.grid = {n, n, 1, 1},
+                            .block = {.poisson = poisson,
+                                      .height = 1.5,
+                                      .layer_growth = 1.2,
+                                      .weighting = GAP_STANDARD},
+                            .options = FULL_DEFAULTS,
+                            .z = array_create(n * n, sizeof(double)),
+                            .loads = 5,
+                            .greatest = 0.7 * sqrt(2) * PI * height};
     if (run.z == NULL)
         return error_memory(err, n * n * sizeof(double), "heights");
     for (size_t i = 0; i < n * n; i++) {

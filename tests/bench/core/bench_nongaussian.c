@@ -42,7 +42,7 @@ enum { COUNT, HEIGHT, DEVIATION, CURVATURE, FIGURES };
 static const char *const NAMES[FIGURES] = {"number of summits", "mean height",
                                            "deviation of height", "mean curvature"};
 
-struct bench {
+struct nongaussian_bench {
     struct grid grid;
     struct generator *generator;
     struct summit_finder *finder;
@@ -52,11 +52,11 @@ struct bench {
     struct surface_report report;
 };
 
-static int bench_create(struct bench *bench, double ratio, double points,
+static int bench_create(struct nongaussian_bench *bench, double ratio, double points,
                         const struct surface_options *options, struct error *err) {
     size_t n = (size_t)(8 * ratio * points);
     struct spectrum spectrum = self_affine(ratio);
-    *bench = (struct bench){.grid = {n, n, 8 * ratio, 8 * ratio}};
+    *bench = (struct nongaussian_bench){.grid = {n, n, 8 * ratio, 8 * ratio}};
     bench->z = array_create(n * n, sizeof *bench->z);
     int status = bench->z ? 0 : error_memory(err, n * n * sizeof *bench->z, "heights");
     if (!status)
@@ -67,14 +67,14 @@ static int bench_create(struct bench *bench, double ratio, double points,
     return status;
 }
 
-static void bench_destroy(struct bench *bench) {
+static void bench_destroy(struct nongaussian_bench *bench) {
     generator_destroy(&bench->generator);
     summit_finder_destroy(&bench->finder);
     summit_list_clear(&bench->summits);
     free(bench->z);
 }
 
-static int bench_surface(struct bench *bench, uint64_t realisation, double *figures,
+static int bench_surface(struct nongaussian_bench *bench, uint64_t realisation, double *figures,
                          struct error *err) {
     struct random_key key = {1, 0, realisation};
     double start = cpu_ms();
@@ -120,7 +120,7 @@ enum { REPEATS = 5 };
 static int time_rank(struct error *err) {
     size_t n = 1024 * 1024;
     struct surface_options options = SURFACE_DEFAULTS;
-    struct bench bench;
+    struct nongaussian_bench bench;
     struct ranker *ranker = NULL;
     double figures[FIGURES], times[REPEATS];
     double *sorted = array_create(n, sizeof *sorted), *placed = array_create(n, sizeof *placed);
@@ -159,7 +159,7 @@ static int time_rank(struct error *err) {
 
 static int time_variant(const char *name, const struct surface_options *options,
                         struct error *err) {
-    struct bench bench;
+    struct nongaussian_bench bench;
     double figures[FIGURES] = {0}, times[REPEATS], counts = 0;
     int status = bench_create(&bench, 16, 8, options, err);
     int repeats =
@@ -205,7 +205,7 @@ static int short_bench(struct error *err) {
 
 static int compare(const char *name, const struct surface_options *options, const double *limit,
                    size_t surfaces, struct error *err) {
-    struct bench bench;
+    struct nongaussian_bench bench;
     double sum[FIGURES] = {0}, square[FIGURES] = {0}, mean[FIGURES] = {0}, ms = 0;
     int status = bench_create(&bench, 4, 8, options, err);
     for (size_t r = 0; !status && r < surfaces; r++) {
@@ -232,7 +232,7 @@ static int compare(const char *name, const struct surface_options *options, cons
 }
 
 static int long_bench(size_t surfaces, struct error *err) {
-    struct bench bench;
+    struct nongaussian_bench bench;
     struct surface_options limit_options = plain(1500), relaxed = maximum(), twice = maximum();
     struct surface_options stalled = maximum(), plain_400 = plain(400);
     double *limit = array_create(surfaces * FIGURES, sizeof *limit);

@@ -26,14 +26,14 @@ static void heights(const struct grid *grid, double amplitude, double *z) {
                                                cos(2 * M_PI * (double)j / (double)grid->ny));
 }
 
-struct pressed {
+struct pressed_fault {
     struct compliance *compliance;
     struct contact *contact;
     struct area_workspace *areas;
     struct patch_finder *finder;
 };
 
-static int press_once(struct pressed *p, const struct block *block, struct error *err) {
+static int press_once(struct pressed_fault *p, const struct block *block, struct error *err) {
     double z[POINTS];
     struct contact_state state;
     struct contact_area area;
@@ -60,7 +60,7 @@ static int press_once(struct pressed *p, const struct block *block, struct error
 }
 
 static int press(void *context, struct error *err) {
-    struct pressed p = {0};
+    struct pressed_fault p = {0};
     int status = press_once(&p, context, err);
     patch_finder_destroy(&p.finder);
     area_workspace_destroy(&p.areas);

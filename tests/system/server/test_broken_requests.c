@@ -36,7 +36,7 @@ static int stop(void **state) {
 #define TYPE(type) "Content-Type: " type "\r\n"
 #define JSON TYPE("application/json")
 
-struct broken {
+struct broken_request {
     const char *method, *path, *role, *headers, *body;
     int status;
     const char *pointer; /* of the first fault; NULL: the problem has no list of faults */
@@ -48,7 +48,7 @@ static const char *text_at(const cJSON *document, const char *pointer) {
     return text ? text : "";
 }
 
-static bool is_answered(const struct broken *broken, const char *reply) {
+static bool is_answered(const struct broken_request *broken, const char *reply) {
     struct error err = {0};
     cJSON *problem = NULL;
     int status = 0;
@@ -71,7 +71,7 @@ static bool is_answered(const struct broken *broken, const char *reply) {
     return good;
 }
 
-static void check_broken(const struct broken *broken) {
+static void check_broken(const struct broken_request *broken) {
     const char *body = broken->body ? broken->body : "";
     char *request = NULL;
     bool host = strstr(broken->headers, "Host:") != NULL;
@@ -182,8 +182,9 @@ static void broken_studies_are_told_what_is_wrong(void **state) {
     };
     char *answer;
     for (size_t s = 0; s < sizeof STUDIES / sizeof *STUDIES; s++)
-        check_broken(&(struct broken){"POST", "/v1/studies", SUBMIT, JSON, STUDIES[s].body,
-                                      STUDIES[s].status, STUDIES[s].pointer, STUDIES[s].detail});
+        check_broken(&(struct broken_request){"POST", "/v1/studies", SUBMIT, JSON, STUDIES[s].body,
+                                              STUDIES[s].status, STUDIES[s].pointer,
+                                              STUDIES[s].detail});
     assert_int_equal(http_exchange(port, "GET", "/v1/studies", READ, NULL, &answer), 200);
     assert_string_equal(answer, "{\"studies\":[]}");
     free(answer);
@@ -194,7 +195,7 @@ static void broken_studies_are_told_what_is_wrong(void **state) {
 
 static void broken_requests_are_told_what_is_wrong(void **state) {
     (void)state;
-    static const struct broken REQUESTS[] = {
+    static const struct broken_request REQUESTS[] = {
         {"POST", "/v1/studies", SUBMIT, TYPE("text/plain"), "{}", 415, NULL,
          "a body must be application/json"},
         {"POST", "/v1/studies", SUBMIT, TYPE("application/jsonlines"), "{}", 415, NULL,

@@ -20,7 +20,7 @@ static void random_gradient(uint64_t draw, double size, double h[3][3]) {
 }
 
 /* Of one point, among others of an element. */
-struct point {
+struct strained_point {
     double energy, dilatation, stress[3][3];
 };
 enum { HERE = 2 };
@@ -38,10 +38,10 @@ static bool strain_all(int d, const struct material *material, double h[3][3],
     return material_strain(d, material, all, out);
 }
 
-static struct point strain(int d, const struct material *material, double h[3][3]) {
+static struct strained_point strain(int d, const struct material *material, double h[3][3]) {
     struct strained all;
     assert_true(strain_all(d, material, h, &all));
-    struct point point = {.energy = all.energy[HERE], .dilatation = all.dilatation[HERE]};
+    struct strained_point point = {.energy = all.energy[HERE], .dilatation = all.dilatation[HERE]};
     for (int i = 0; i < d; i++)
         for (int k = 0; k < d; k++)
             point.stress[i][k] = all.stress[i][k][HERE];
@@ -75,7 +75,7 @@ static void hencky_has_its_closed_forms(void **state) {
             double logarithm = log(stretch), mu = material.shear, a = material.local;
             double uniaxial[3][3] = {{stretch - 1}};
             for (int d = 2; d <= 3; d++) {
-                struct point p = strain(d, &material, uniaxial);
+                struct strained_point p = strain(d, &material, uniaxial);
                 check_close(p.stress[0][0], (2 * mu + a) * logarithm, 1e-13);
                 check_close(p.stress[1][1], a * logarithm, 1e-13);
                 check_close(p.energy, (mu + a / 2) * logarithm * logarithm, 1e-13);
@@ -85,7 +85,7 @@ static void hencky_has_its_closed_forms(void **state) {
             double gamma = stretch, e = asinh(gamma / 2), angle = atan2(1, gamma / 2);
             double shear[3][3] = {{0, gamma}};
             for (int d = 2; d <= 3; d++) {
-                struct point p = strain(d, &material, shear);
+                struct strained_point p = strain(d, &material, shear);
                 check_close(p.stress[0][0], 2 * mu * e * cos(angle), 1e-13);
                 check_close(p.stress[0][1], 2 * mu * e * sin(angle), 1e-13);
                 check_close(p.energy, 2 * mu * e * e, 1e-13);
@@ -106,7 +106,7 @@ static void st_venant_has_its_closed_forms(void **state) {
             for (int d = 2; d <= 3; d++) {
                 double square = stretch * stretch, e = (square - 1) / 2;
                 double uniaxial[3][3] = {{stretch - 1}};
-                struct point p = strain(d, &material, uniaxial);
+                struct strained_point p = strain(d, &material, uniaxial);
                 check_close(p.stress[0][0], square * (2 * mu + a) * e, 1e-13);
                 check_close(p.stress[1][1], a * e, 1e-13);
                 check_close(p.energy, (mu + a / 2) * e * e, 1e-13);
@@ -129,10 +129,10 @@ static void small_strains_are_linear(void **state) {
     random_gradient(1, 1e-9, h);
     for (int d = 2; d <= 3; d++) {
         struct material small = material_of(0.3, KINEMATICS_SMALL);
-        struct point linear = strain(d, &small, h);
+        struct strained_point linear = strain(d, &small, h);
         for (size_t k = 0; k < 2; k++) {
             struct material material = material_of(0.3, KINEMATICS[k]);
-            struct point p = strain(d, &material, h);
+            struct strained_point p = strain(d, &material, h);
             for (int i = 0; i < d; i++)
                 for (int j = 0; j < d; j++)
                     check_close(p.stress[i][j], linear.stress[i][j], 1e-16);
@@ -184,7 +184,7 @@ static double varied_energy(int d, const struct material *material, double h[3][
                 varied[i][k] += step * g[i][l] * f;
             }
         }
-    struct point p = strain(d, material, varied);
+    struct strained_point p = strain(d, material, varied);
     return p.energy + pull * p.dilatation;
 }
 
@@ -193,7 +193,7 @@ static double varied_energy(int d, const struct material *material, double h[3][
 static void check_differences(int d, const struct material *material, double h[3][3],
                               double g[3][3]) {
     static const double STEP = 3e-4, PULL = 0.07;
-    struct point p = strain(d, material, h);
+    struct strained_point p = strain(d, material, h);
     double slope =
         (varied_energy(d, material, h, g, STEP, 0) - varied_energy(d, material, h, g, -STEP, 0)) /
         (2 * STEP);
@@ -263,14 +263,14 @@ static void a_rotation_turns_the_stress(void **state) {
             double c = cos((double)draw), s = sin((double)draw), h[3][3], turned[3][3];
             double r[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
             random_gradient(draw, 0.25, h);
-            struct point before = strain(d, &material, h);
+            struct strained_point before = strain(d, &material, h);
             for (int i = 0; i < 3; i++)
                 for (int k = 0; k < 3; k++) {
                     turned[i][k] = -(i == k);
                     for (int l = 0; l < 3; l++)
                         turned[i][k] += r[i][l] * (h[l][k] + (l == k));
                 }
-            struct point after = strain(d, &material, turned);
+            struct strained_point after = strain(d, &material, turned);
             check_close(after.energy, before.energy, 1e-13);
             for (int i = 0; i < d; i++)
                 for (int k = 0; k < d; k++) {

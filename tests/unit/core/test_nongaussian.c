@@ -30,16 +30,16 @@ static struct surface_options weibull(enum heights_type type, double shape) {
 }
 
 /* One surface and all that made it. */
-struct sample {
+struct height_sample {
     struct grid grid;
     struct generator *generator;
     double *z;
     struct surface_report report;
 };
 
-static int sample_create(struct sample *s, struct grid grid, const struct spectrum *spectrum,
+static int sample_create(struct height_sample *s, struct grid grid, const struct spectrum *spectrum,
                          const struct surface_options *options, struct error *err) {
-    *s = (struct sample){.grid = grid};
+    *s = (struct height_sample){.grid = grid};
     int status = generator_create(&s->generator, spectrum, &grid, options, err);
     if (status)
         return status;
@@ -48,13 +48,13 @@ static int sample_create(struct sample *s, struct grid grid, const struct spectr
     return generator_run(s->generator, KEY, s->z, &s->report, err);
 }
 
-static void sample_destroy(struct sample *s) {
+static void sample_destroy(struct height_sample *s) {
     generator_destroy(&s->generator);
     free(s->z);
 }
 
 /* Largest |(power of z) / (power of modes) - 1|, and the power elsewhere over the whole one. */
-static double spectrum_departure(const struct sample *s, double *elsewhere) {
+static double spectrum_departure(const struct height_sample *s, double *elsewhere) {
     const struct modes *modes = generator_modes(s->generator);
     const struct grid *grid = &s->grid;
     struct transform *transform = NULL;
@@ -100,7 +100,7 @@ static void kept_spectrum_is_exact(void **state) {
         for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++) {
             struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 1);
             options.iteration = iteration ? ITERATION_PLAIN : ITERATION_RELAXED;
-            struct sample s;
+            struct height_sample s;
             assert_int_equal(sample_create(&s, GRIDS[g], &spectrum, &options, NULL), 0);
             double elsewhere;
             check_close(spectrum_departure(&s, &elsewhere), 0, 1e-12);
@@ -123,7 +123,7 @@ static void kept_heights_are_exact(void **state) {
     struct surface_options options = weibull(HEIGHTS_WEIBULL_MIN, 1.5);
     options.keep = KEEP_HEIGHTS;
     options.draw = DRAW_QUANTILES;
-    struct sample s;
+    struct height_sample s;
     assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
     size_t n = grid_points(&grid);
     qsort(s.z, n, sizeof *s.z, by_value);
@@ -182,7 +182,7 @@ static void errors_are_those_of_the_pair(void **state) {
     struct grid grid = {96, 80, 1, 1};
     struct spectrum spectrum = self_affine(0.5, 0.1);
     struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 1);
-    struct sample s, h;
+    struct height_sample s, h;
     assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
     options.keep = KEEP_HEIGHTS;
     assert_int_equal(sample_create(&h, grid, &spectrum, &options, NULL), 0);
@@ -248,7 +248,7 @@ static void hard_cases_end(void **state) {
                 weibull(c % 2 ? HEIGHTS_WEIBULL_MIN : HEIGHTS_WEIBULL_MAX, SHAPES[c / 2 % 3]);
             options.iteration = c < 6 ? ITERATION_RELAXED : ITERATION_PLAIN;
             options.tolerance = 0;
-            struct sample s;
+            struct height_sample s;
             assert_int_equal(sample_create(&s, GRIDS[g], &spectrum, &options, NULL), 0);
             double square = 0;
             for (size_t i = 0; i < grid_points(&s.grid); i++)
@@ -267,7 +267,7 @@ static void runs_end_as_they_should(void **state) {
     struct spectrum spectrum = self_affine(0.5, 1. / 8);
     struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 1);
     options.iteration = ITERATION_PLAIN;
-    struct sample s;
+    struct height_sample s;
     assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
     assert_int_equal(s.report.end, END_STALLED);
     assert_true(s.report.iterations > options.stall_iterations);
@@ -295,7 +295,7 @@ static void runs_repeat(void **state) {
     struct grid grid = {64, 48, 1, 1};
     struct spectrum spectrum = self_affine(0.5, 1. / 8);
     struct surface_options options = weibull(HEIGHTS_WEIBULL_MIN, 1.2);
-    struct sample s;
+    struct height_sample s;
     assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
     size_t n = grid_points(&grid);
     double *again = malloc(n * sizeof *again);
@@ -329,7 +329,7 @@ static void quantile_functions_are_used(void **state) {
     options.heights = (struct heights){.type = HEIGHTS_QUANTILE, .quantile = three_values};
     options.keep = KEEP_HEIGHTS;
     options.draw = DRAW_QUANTILES;
-    struct sample s;
+    struct height_sample s;
     assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
     check_report(&s.report);
     qsort(s.z, grid_points(&grid), sizeof *s.z, by_value);

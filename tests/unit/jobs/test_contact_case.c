@@ -14,63 +14,65 @@
 #define STUDY(surface, contact) "{\"surface\": {" surface "}, \"contact\": {" contact "}}"
 
 static struct contact_case read_case(const char *text) {
-    struct contact_case study;
+    struct contact_case one_case;
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
-    if (contact_case_read(&study, parameters, NULL, &err) != 0)
+    if (contact_case_read(&one_case, parameters, NULL, &err) != 0)
         fail_msg("%s: %s", text, err.text);
     cJSON_Delete(parameters);
-    return study;
+    return one_case;
 }
 
 static void defaults(void **state) {
     (void)state;
-    struct contact_case study = read_case(STUDY(PROFILE, ""));
-    assert_int_equal(study.model_count, 1);
-    assert_true(study.blocks[0].model == MODEL_HALFSPACE && isinf(study.blocks[0].height));
-    assert_true(study.blocks[0].poisson == 0.3 && study.blocks[0].weighting == GAP_STANDARD);
-    assert_int_equal(study.load_count, 30);
-    assert_true(fabs(study.loads[0] - 0.01) < 1e-15 && study.loads[29] == 0.3);
-    assert_int_equal(study.level_count, 1);
-    assert_true(study.levels[0].points == 8 && study.levels[0].grid.nx == 64);
-    assert_int_equal(study.levels[0].stride, 1);
-    assert_true(study.nodes && study.edges && !study.perimeter);
-    assert_true(study.tolerance == 1e-8);
-    assert_int_equal(study.pdf_count, 1);
-    assert_int_equal(study.pdf_loads[0], 29);
-    assert_true(study.pressure.low == 0 && study.pressure.high == 4 && study.pressure.count == 80);
-    contact_case_clear(&study);
-    study = read_case("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4}}");
-    assert_true(study.nodes && study.edges && study.perimeter);
-    contact_case_clear(&study);
+    struct contact_case one_case = read_case(STUDY(PROFILE, ""));
+    assert_int_equal(one_case.model_count, 1);
+    assert_true(one_case.blocks[0].model == MODEL_HALFSPACE && isinf(one_case.blocks[0].height));
+    assert_true(one_case.blocks[0].poisson == 0.3 && one_case.blocks[0].weighting == GAP_STANDARD);
+    assert_int_equal(one_case.load_count, 30);
+    assert_true(fabs(one_case.loads[0] - 0.01) < 1e-15 && one_case.loads[29] == 0.3);
+    assert_int_equal(one_case.level_count, 1);
+    assert_true(one_case.levels[0].points == 8 && one_case.levels[0].grid.nx == 64);
+    assert_int_equal(one_case.levels[0].stride, 1);
+    assert_true(one_case.nodes && one_case.edges && !one_case.perimeter);
+    assert_true(one_case.tolerance == 1e-8);
+    assert_int_equal(one_case.pdf_count, 1);
+    assert_int_equal(one_case.pdf_loads[0], 29);
+    assert_true(one_case.pressure.low == 0 && one_case.pressure.high == 4 &&
+                one_case.pressure.count == 80);
+    contact_case_clear(&one_case);
+    one_case = read_case("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4}}");
+    assert_true(one_case.nodes && one_case.edges && one_case.perimeter);
+    contact_case_clear(&one_case);
 }
 
 static void blocks(void **state) {
     (void)state;
-    struct contact_case study =
+    struct contact_case one_case =
         read_case(STUDY(PROFILE, "\"model\": [\"layered\", \"halfspace\"], \"poisson\": 0.4"));
-    assert_int_equal(study.model_count, 2);
-    assert_true(study.blocks[0].model == MODEL_LAYERED && study.blocks[0].height == 12);
-    assert_true(study.blocks[0].layer_growth == 1.1 && study.blocks[0].poisson == 0.4);
-    assert_true(study.blocks[1].model == MODEL_HALFSPACE && isinf(study.blocks[1].height));
-    assert_int_equal(contact_case_complete(&study), 0);
-    contact_case_clear(&study);
-    study = read_case(STUDY(PROFILE, "\"model\": [\"halfspace\", \"layered\"],"
-                                     "\"block_height\": {\"lengths\": 0.5}"));
-    assert_true(study.blocks[0].height == 4 && study.blocks[1].height == 4); /* both take it */
-    assert_int_equal(contact_case_complete(&study), 1);
-    contact_case_clear(&study);
-    study = read_case(STUDY(PROFILE ", \"rms_height\": 0.01",
-                            "\"block_height\": {\"rms_heights\": 160}, \"model\": \"layered\""));
-    assert_true(fabs(study.blocks[0].height - 1.6) < 1e-12);
-    contact_case_clear(&study);
+    assert_int_equal(one_case.model_count, 2);
+    assert_true(one_case.blocks[0].model == MODEL_LAYERED && one_case.blocks[0].height == 12);
+    assert_true(one_case.blocks[0].layer_growth == 1.1 && one_case.blocks[0].poisson == 0.4);
+    assert_true(one_case.blocks[1].model == MODEL_HALFSPACE && isinf(one_case.blocks[1].height));
+    assert_int_equal(contact_case_complete(&one_case), 0);
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE, "\"model\": [\"halfspace\", \"layered\"],"
+                                        "\"block_height\": {\"lengths\": 0.5}"));
+    assert_true(one_case.blocks[0].height == 4 &&
+                one_case.blocks[1].height == 4); /* both take it */
+    assert_int_equal(contact_case_complete(&one_case), 1);
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE ", \"rms_height\": 0.01",
+                               "\"block_height\": {\"rms_heights\": 160}, \"model\": \"layered\""));
+    assert_true(fabs(one_case.blocks[0].height - 1.6) < 1e-12);
+    contact_case_clear(&one_case);
     /* one wave of amplitude a and length 1: slope sqrt(2) pi a, height a/sqrt(2) */
-    study = read_case(STUDY("\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 1,"
-                            "\"length_ratio\": 1, \"rms_slope\": 0.1",
-                            "\"block_height\": {\"rms_heights\": 100}, \"model\": \"layered\""));
-    assert_true(fabs(study.blocks[0].height - 100 * 0.1 / 6.283185307179586) < 1e-12);
-    contact_case_clear(&study);
+    one_case = read_case(STUDY("\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 1,"
+                               "\"length_ratio\": 1, \"rms_slope\": 0.1",
+                               "\"block_height\": {\"rms_heights\": 100}, \"model\": \"layered\""));
+    assert_true(fabs(one_case.blocks[0].height - 100 * 0.1 / 6.283185307179586) < 1e-12);
+    contact_case_clear(&one_case);
 }
 
 /* The name that a study gives is the one that curves tell, and there is room for all models. */
@@ -86,62 +88,62 @@ static void models_bear_their_names(void **state) {
 /* Errors are counted from full, wherever it stands. */
 static void models_beside_full(void **state) {
     (void)state;
-    struct contact_case study = read_case(
+    struct contact_case one_case = read_case(
         STUDY(PROFILE ", \"rms_slope\": 0.1", "\"model\": [\"layered\", \"full\", \"halfspace\"]"));
-    assert_int_equal(study.model_count, 3);
-    assert_int_equal(contact_case_complete(&study), 1);
-    assert_string_equal(study.models[1]->name, "full");
-    assert_int_equal(study.kinematics, KINEMATICS_HENCKY);
-    assert_true(fabs(study.rms_slope - 0.1) < 1e-12);
+    assert_int_equal(one_case.model_count, 3);
+    assert_int_equal(contact_case_complete(&one_case), 1);
+    assert_string_equal(one_case.models[1]->name, "full");
+    assert_int_equal(one_case.kinematics, KINEMATICS_HENCKY);
+    assert_true(fabs(one_case.rms_slope - 0.1) < 1e-12);
     for (size_t m = 0; m < 2; m++) {
-        assert_int_equal(study.blocks[m].weighting, GAP_STANDARD);
-        assert_true(study.blocks[m].height == 1.5 * study.surface.grid.lx);
+        assert_int_equal(one_case.blocks[m].weighting, GAP_STANDARD);
+        assert_true(one_case.blocks[m].height == 1.5 * one_case.surface.grid.lx);
     }
-    assert_true(isinf(study.blocks[2].height));
-    contact_case_clear(&study);
-    study = read_case(STUDY(PROFILE ", \"rms_slope\": 0.1",
-                            "\"model\": \"full\", \"kinematics\": \"st_venant_kirchhoff\","
-                            "\"gap_weighting\": \"dual\""));
-    assert_int_equal(study.kinematics, KINEMATICS_ST_VENANT);
-    assert_int_equal(study.blocks[0].weighting, GAP_DUAL);
-    assert_true(study.transition_depth == 8);
-    contact_case_clear(&study);
-    study = read_case(STUDY(PROFILE, "\"model\": [\"layered\", \"halfspace\"]"));
-    assert_int_equal(study.blocks[0].weighting, GAP_STANDARD);
-    assert_int_equal(contact_case_complete(&study), 0);
-    assert_string_equal(study.models[0]->name, "layered");
-    contact_case_clear(&study);
+    assert_true(isinf(one_case.blocks[2].height));
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE ", \"rms_slope\": 0.1",
+                               "\"model\": \"full\", \"kinematics\": \"st_venant_kirchhoff\","
+                               "\"gap_weighting\": \"dual\""));
+    assert_int_equal(one_case.kinematics, KINEMATICS_ST_VENANT);
+    assert_int_equal(one_case.blocks[0].weighting, GAP_DUAL);
+    assert_true(one_case.transition_depth == 8);
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE, "\"model\": [\"layered\", \"halfspace\"]"));
+    assert_int_equal(one_case.blocks[0].weighting, GAP_STANDARD);
+    assert_int_equal(contact_case_complete(&one_case), 0);
+    assert_string_equal(one_case.models[0]->name, "layered");
+    contact_case_clear(&one_case);
 }
 
 static void loads_and_pressures(void **state) {
     (void)state;
-    struct contact_case study =
+    struct contact_case one_case =
         read_case(STUDY(PROFILE, "\"pressures\": {\"to\": 0.4, \"steps\": 4},"
                                  "\"pressure_pdf\": {\"at\": [0.1, 0.3], \"bins\": [0, 2, 10]}"));
-    assert_int_equal(study.load_count, 4);
-    assert_int_equal(study.pdf_count, 2);
-    assert_true(study.pdf_loads[0] == 0 && study.pdf_loads[1] == 2);
-    contact_case_clear(&study);
-    study = read_case(STUDY(PROFILE, "\"pressures\": {\"values\": [1e-6, 0.1, 7]},"
-                                     "\"estimators\": \"nodes\""));
-    assert_true(study.load_count == 3 && study.loads[2] == 7);
-    assert_true(study.nodes && !study.edges && !study.perimeter);
-    contact_case_clear(&study);
+    assert_int_equal(one_case.load_count, 4);
+    assert_int_equal(one_case.pdf_count, 2);
+    assert_true(one_case.pdf_loads[0] == 0 && one_case.pdf_loads[1] == 2);
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE, "\"pressures\": {\"values\": [1e-6, 0.1, 7]},"
+                                        "\"estimators\": \"nodes\""));
+    assert_true(one_case.load_count == 3 && one_case.loads[2] == 7);
+    assert_true(one_case.nodes && !one_case.edges && !one_case.perimeter);
+    contact_case_clear(&one_case);
 }
 
 /* 2 points a wave: every 4th point of the own 8; 4: every 2nd; 6: resampled; 16: finer. */
 static void levels(void **state) {
     (void)state;
-    struct contact_case study = read_case(STUDY(PROFILE, "\"levels\": [2, 4, 6, 16]"));
+    struct contact_case one_case = read_case(STUDY(PROFILE, "\"levels\": [2, 4, 6, 16]"));
     static const size_t sides[] = {16, 32, 48, 128}, strides[] = {4, 2, 0, 0};
-    assert_int_equal(study.level_count, 4);
+    assert_int_equal(one_case.level_count, 4);
     for (size_t l = 0; l < 4; l++) {
-        assert_int_equal(study.levels[l].grid.nx, sides[l]);
-        assert_int_equal(study.levels[l].grid.ny, 1);
-        assert_int_equal(study.levels[l].stride, strides[l]);
+        assert_int_equal(one_case.levels[l].grid.nx, sides[l]);
+        assert_int_equal(one_case.levels[l].grid.ny, 1);
+        assert_int_equal(one_case.levels[l].stride, strides[l]);
     }
-    assert_ptr_equal(contact_case_finest(&study), &study.levels[3]);
-    contact_case_clear(&study);
+    assert_ptr_equal(contact_case_finest(&one_case), &one_case.levels[3]);
+    contact_case_clear(&one_case);
 }
 
 static void faults(void **state) {
@@ -220,14 +222,14 @@ static void faults(void **state) {
     };
     for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++) {
         struct fault_list list = {0};
-        struct contact_case study;
+        struct contact_case one_case;
         struct error err = {0};
         cJSON *parameters = cJSON_Parse(BAD[b].text);
         assert_non_null(parameters);
-        int status = contact_case_read(&study, parameters, &list, &err);
+        int status = contact_case_read(&one_case, parameters, &list, &err);
         if (BAD[b].pointer == NULL) {
             assert_int_equal(status, 0);
-            contact_case_clear(&study);
+            contact_case_clear(&one_case);
         } else if (status != ERROR_INPUT || list.count != 1 ||
                    strcmp(list.faults[0].pointer, BAD[b].pointer) != 0 ||
                    strstr(list.faults[0].detail, BAD[b].words) == NULL) {
@@ -242,18 +244,18 @@ static void faults(void **state) {
 static void all_faults_at_once(void **state) {
     (void)state;
     struct fault_list list = {0};
-    struct contact_case study;
+    struct contact_case one_case;
     cJSON *parameters = cJSON_Parse(STUDY("\"dimension\": 1, \"hurst\": 2",
                                           "\"poisson\": 1, \"levels\": [8, 2], \"tolerance\": 1,"
                                           "\"pressures\": {\"values\": [2, 1]}"));
-    assert_int_equal(contact_case_read(&study, parameters, &list, NULL), ERROR_INPUT);
+    assert_int_equal(contact_case_read(&one_case, parameters, &list, NULL), ERROR_INPUT);
     assert_int_equal(list.count, 3); /* that do not fit their rows */
     fault_list_clear(&list);
     cJSON_Delete(parameters);
     parameters = cJSON_Parse(STUDY("\"dimension\": 1, \"wavelength_ratio\": 4",
                                    "\"levels\": [8, 4], \"pressures\": {\"values\": [2, 1]},"
                                    "\"gap_weighting\": \"dual\""));
-    assert_int_equal(contact_case_read(&study, parameters, &list, NULL), ERROR_INPUT);
+    assert_int_equal(contact_case_read(&one_case, parameters, &list, NULL), ERROR_INPUT);
     assert_int_equal(list.count, 4); /* that do not fit together */
     fault_list_clear(&list);
     cJSON_Delete(parameters);
@@ -288,14 +290,14 @@ static void fingerprints(void **state) {
 
 static void estimates(void **state) {
     (void)state;
-    struct contact_case study = read_case(STUDY(PROFILE, ""));
+    struct contact_case one_case = read_case(STUDY(PROFILE, ""));
     struct study_cost small, large;
-    contact_case_estimate(&study, &small);
-    contact_case_clear(&study);
-    study = read_case("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 16}, \"contact\":"
-                      " {\"model\": [\"halfspace\", \"layered\"], \"levels\": [4, 8]}}");
-    contact_case_estimate(&study, &large);
-    contact_case_clear(&study);
+    contact_case_estimate(&one_case, &small);
+    contact_case_clear(&one_case);
+    one_case = read_case("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 16}, \"contact\":"
+                         " {\"model\": [\"halfspace\", \"layered\"], \"levels\": [4, 8]}}");
+    contact_case_estimate(&one_case, &large);
+    contact_case_clear(&one_case);
     assert_true(small.nx == 64 && small.ny == 1 && large.nx == 1024 && large.ny == 1024);
     assert_true(small.seconds > 0 && small.seconds < 1 && large.seconds > 10 * small.seconds);
     assert_true(small.memory_bytes > 1e4 && small.memory_bytes < 1e8);

@@ -25,10 +25,10 @@ static void destroy(struct contact_solver **solver) {
     *solver = NULL;
 }
 
-static int create(struct contact_solver **out, const struct contact_case *study, size_t model,
+static int create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err) {
     struct contact_solver *solver = array_create(1, sizeof *solver);
-    (void)study;
+    (void)one_case;
     (void)model;
     *out = solver;
     if (solver == NULL)
@@ -86,15 +86,15 @@ static int press(struct contact_solver *s, double pressure, struct contact_press
     return 0;
 }
 
-static double bytes(const struct contact_case *study, size_t model, const struct grid *grid) {
-    (void)study;
+static double bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    (void)one_case;
     (void)model;
     return 24.0 * (double)grid_points(grid);
 }
 
-static double seconds(const struct contact_case *study, size_t model, const struct grid *grid) {
+static double seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
     (void)model;
-    return 1e-7 * (double)grid_points(grid) * (double)study->load_count;
+    return 1e-7 * (double)grid_points(grid) * (double)one_case->load_count;
 }
 
 static void measure(const struct model_values *values, double *scalars) {
@@ -167,10 +167,10 @@ static void table_is_all_that_is_known(void **state) {
     document = solve(STUDY("\"winkler\""), 2);
     assert_non_null(value_at(document, "/scalars/winkler_shortest_spring"));
     cJSON_Delete(document);
-    struct contact_case study;
+    struct contact_case one_case;
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(STUDY("\"layered\""));
-    assert_int_equal(contact_case_read(&study, parameters, NULL, &err), ERROR_INPUT);
+    assert_int_equal(contact_case_read(&one_case, parameters, NULL, &err), ERROR_INPUT);
     cJSON_Delete(parameters);
 }
 

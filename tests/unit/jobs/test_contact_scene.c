@@ -18,8 +18,8 @@
 enum { LAYERED, FULL, MODELS };
 
 /* A study, and one surface pressed by the scene and, beside it, by a solver of its own. */
-struct fixture {
-    struct contact_case study;
+struct scene_fixture {
+    struct contact_case one_case;
     struct contact_compliances compliances;
     struct contact_scene *scene;
     struct contact_tally tally;
@@ -37,11 +37,11 @@ static void must(int status, const struct error *err) {
         fail_msg("%s", err->text);
 }
 
-static void fixture_surface(struct fixture *f) {
+static void fixture_surface(struct scene_fixture *f) {
     struct generator *generator;
     struct surface_report report;
     struct error err = {0};
-    const struct surface_case *surface = &f->study.surface;
+    const struct surface_case *surface = &f->one_case.surface;
     f->z = array_create(grid_points(&surface->grid), sizeof *f->z);
     assert_non_null(f->z);
     must(generator_create(&generator, &surface->spectrum, &surface->grid, &surface->options, &err),
@@ -51,30 +51,30 @@ static void fixture_surface(struct fixture *f) {
     generator_destroy(&generator);
 }
 
-static void fixture_open(struct fixture *f, const char *text) {
+static void fixture_open(struct scene_fixture *f, const char *text) {
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(text);
-    *f = (struct fixture){0};
+    *f = (struct scene_fixture){0};
     assert_non_null(parameters);
-    must(contact_case_read(&f->study, parameters, NULL, &err), &err);
+    must(contact_case_read(&f->one_case, parameters, NULL, &err), &err);
     fixture_surface(f);
-    must(contact_compliances_create(&f->compliances, &f->study, &err), &err);
-    must(contact_scene_create(&f->scene, &f->study, &f->moments, &f->compliances, &err), &err);
-    must(contact_tally_create(&f->tally, &f->study, &err), &err);
+    must(contact_compliances_create(&f->compliances, &f->one_case, &err), &err);
+    must(contact_scene_create(&f->scene, &f->one_case, &f->moments, &f->compliances, &err), &err);
+    must(contact_tally_create(&f->tally, &f->one_case, &err), &err);
     must(contact_scene_solve(f->scene, f->z, &f->tally, go_on, NULL, &err), &err);
     cJSON_Delete(parameters);
 }
 
-static void fixture_close(struct fixture *f) {
+static void fixture_close(struct scene_fixture *f) {
     contact_scene_destroy(&f->scene);
     contact_compliances_clear(&f->compliances);
     contact_tally_clear(&f->tally);
-    contact_case_clear(&f->study);
+    contact_case_clear(&f->one_case);
     free(f->z);
 }
 
 /* Areas of a state, each `now` times that on the undeformed face. */
-static void check_areas(struct fixture *f, size_t cell, const struct compliance *compliance,
+static void check_areas(struct scene_fixture *f, size_t cell, const struct compliance *compliance,
                         const struct contact_state *state, double now) {
     struct area_workspace *workspace;
     struct patch_finder *finder;
@@ -112,7 +112,7 @@ static void check_areas(struct fixture *f, size_t cell, const struct compliance 
 static void areas_are_those_now(void **state) {
     (void)state;
     static const struct {
-        const char *study;
+        const char *one_case;
         bool stretches;
     } CASES[] = {{PRESSED("1", "hencky"), true},
                  {PRESSED("2", "hencky"), true},
@@ -120,23 +120,24 @@ static void areas_are_those_now(void **state) {
                  {PRESSED("1", "small"), false},
                  {PRESSED("2", "small"), false}};
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
-        struct fixture f;
+        struct scene_fixture f;
         struct error err = {0};
-        fixture_open(&f, CASES[c].study);
+        fixture_open(&f, CASES[c].one_case);
         for (size_t m = 0; m < MODELS; m++) {
             const struct compliance *compliance = f.compliances.of[m][0];
-            const struct contact_model *model = f.study.models[m];
+            const struct contact_model *model = f.one_case.models[m];
             struct contact_solver *solver;
             double facts[MODEL_FACTS_MOST];
-            must(model->create(&solver, &f.study, m, compliance, &err), &err);
+            must(model->create(&solver, &f.one_case, m, compliance, &err), &err);
             must(model->begin(solver, f.z, go_on, NULL, facts, &err), &err);
-            for (size_t k = 0; k < f.study.load_count; k++) {
+            for (size_t k = 0; k < f.one_case.load_count; k++) {
                 struct contact_pressed pressed = {.stretch = 1};
-                must(model->press(solver, f.study.loads[k] * f.moments.rms_slope, &pressed, &err),
-                     &err);
+                must(
+                    model->press(solver, f.one_case.loads[k] * f.moments.rms_slope, &pressed, &err),
+                    &err);
                 bool stretched = m == FULL && CASES[c].stretches;
                 assert_true(stretched == (fabs(pressed.stretch - 1) > 1e-3));
-                check_areas(&f, contact_case_cell(&f.study, m, 0, k), compliance, &pressed.state,
+                check_areas(&f, contact_case_cell(&f.one_case, m, 0, k), compliance, &pressed.state,
                             pressed.stretch);
             }
             model->destroy(&solver);

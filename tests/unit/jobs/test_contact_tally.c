@@ -18,24 +18,24 @@ static const char FULL_STUDY[] =
     " 1, \"rms_slope\": 0.1}, \"contact\": {\"model\": [\"layered\", \"full\"], \"pressures\":"
     " {\"values\": [0.1]}, \"pressure_pdf\": {\"bins\": [1, 4, 3]}}}";
 
-struct fixture {
-    struct contact_case study;
+struct tally_fixture {
+    struct contact_case one_case;
     struct contact_tally tally;
 };
 
-static void fixture_open(struct fixture *fixture, const char *text) {
+static void fixture_open(struct tally_fixture *fixture, const char *text) {
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
-    if (contact_case_read(&fixture->study, parameters, NULL, &err) != 0 ||
-        contact_tally_create(&fixture->tally, &fixture->study, &err) != 0)
+    if (contact_case_read(&fixture->one_case, parameters, NULL, &err) != 0 ||
+        contact_tally_create(&fixture->tally, &fixture->one_case, &err) != 0)
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
 }
 
-static void fixture_close(struct fixture *fixture) {
+static void fixture_close(struct tally_fixture *fixture) {
     contact_tally_clear(&fixture->tally);
-    contact_case_clear(&fixture->study);
+    contact_case_clear(&fixture->one_case);
 }
 
 /* Areas and stiffness fall with the load. Exact sums resolve 2^-60 = 9e-19, squares too: at 1e-8 a
@@ -45,7 +45,7 @@ static void light_loads_keep_their_digits(void **state) {
     static const double loads[] = {1e-12, 1e-8, 1e-3, 0.5, 100};
     static const enum contact_measure measures[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_STIFFNESS,
                                                     MEASURE_PATCH_MEAN};
-    struct fixture f;
+    struct tally_fixture f;
     fixture_open(&f, STUDY("\"pressures\": {\"values\": [1e-12, 1e-8, 1e-3, 0.5, 100]}"));
     for (int r = 0; r < 2; r++) {
         for (size_t k = 0; k < 5; k++)
@@ -66,7 +66,7 @@ static void light_loads_keep_their_digits(void **state) {
 
 static void valueless_realisations_are_counted(void **state) {
     (void)state;
-    struct fixture f;
+    struct tally_fixture f;
     fixture_open(&f, STUDY("\"pressures\": {\"values\": [0.1]}"));
     static const double stiffness[] = {1, NAN, 3, NAN};
     for (size_t r = 0; r < 4; r++) {
@@ -93,7 +93,7 @@ static void pressures_lie_on_the_area(void **state) {
     static const enum contact_measure always[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_GAP,
                                                   MEASURE_ITERATIONS};
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
-        struct fixture f, copy;
+        struct tally_fixture f, copy;
         struct error err = {0};
         double share = (double)CASES[c].nodes / 16, pressures[16] = {0};
         unsigned char *data = NULL;
@@ -122,18 +122,18 @@ static void pressures_lie_on_the_area(void **state) {
 
 /* Values limit + slope (points)^-order on each level. */
 static struct contact_extrapolation extrapolate(const char *text, double order, double slope) {
-    struct fixture f;
+    struct tally_fixture f;
     fixture_open(&f, text);
     double *values = contact_tally_values(&f.tally, MEASURE_EDGES);
-    for (size_t l = 0; l < f.study.level_count; l++)
-        for (size_t k = 0; k < f.study.load_count; k++)
-            values[contact_case_cell(&f.study, 0, l, k)] =
-                0.3 + slope * (double)(k + 1) * pow((double)f.study.levels[l].grid.nx, -order);
+    for (size_t l = 0; l < f.one_case.level_count; l++)
+        for (size_t k = 0; k < f.one_case.load_count; k++)
+            values[contact_case_cell(&f.one_case, 0, l, k)] =
+                0.3 + slope * (double)(k + 1) * pow((double)f.one_case.levels[l].grid.nx, -order);
     contact_tally_add(&f.tally);
     struct contact_extrapolation rule = contact_extrapolate(&f.tally, MEASURE_EDGES, 0);
-    size_t finest = f.study.level_count - 1;
+    size_t finest = f.one_case.level_count - 1;
     double change = contact_tally_level(&f.tally, MEASURE_EDGES, 0, 0).value;
-    double error = slope * pow((double)f.study.levels[finest].grid.nx, -order);
+    double error = slope * pow((double)f.one_case.levels[finest].grid.nx, -order);
     if (rule.observed && rule.order > 1 && rule.order < 3)
         check_relative(-rule.factor * change, error, 1e-9);
     fixture_close(&f);

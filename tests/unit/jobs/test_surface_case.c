@@ -127,10 +127,10 @@ static void other_spectra(void **state) {
     surface_case_clear(&surface);
 }
 
-struct broken {
+struct broken_case {
     const char *surface, *pointer, *words;
 };
-static const struct broken BROKEN[] = {
+static const struct broken_case BROKEN[] = {
     {"{\"wavelength_ratio\": 8}", "/surface/hurst", "needs it"},
     {"{\"hurst\": 0.8}", "/surface/wavelength_ratio", "or nayak_alpha"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"nayak_alpha\": 5}", "/surface/nayak_alpha",

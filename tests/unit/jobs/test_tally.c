@@ -12,11 +12,11 @@
 
 enum { REALISATIONS = 60, CELLS = 12 };
 
-struct sample {
+struct tally_sample {
     uint64_t n[REALISATIONS][CELLS], things[REALISATIONS];
     double k[REALISATIONS][CELLS];
 };
-static struct sample sample;
+static struct tally_sample sample;
 
 static int draw_sample(void **state) {
     (void)state;
@@ -34,24 +34,24 @@ static int draw_sample(void **state) {
     return 0;
 }
 
-struct block {
+struct tally_block {
     struct tally_total total;
     struct tally tally;
     struct tally_sums sums;
 };
 
-static void block_create(struct block *block) {
-    *block = (struct block){0};
+static void block_create(struct tally_block *block) {
+    *block = (struct tally_block){0};
     assert_int_equal(tally_create(&block->tally, CELLS, NULL), 0);
     assert_int_equal(tally_sums_create(&block->sums, CELLS, NULL), 0);
 }
 
-static void block_clear(struct block *block) {
+static void block_clear(struct tally_block *block) {
     tally_clear(&block->tally);
     tally_sums_clear(&block->sums);
 }
 
-static void block_fill(struct block *block, size_t first, size_t last) {
+static void block_fill(struct tally_block *block, size_t first, size_t last) {
     block_create(block);
     for (size_t r = first; r < last; r++) {
         tally_total_add(&block->total, sample.things[r]);
@@ -64,13 +64,13 @@ static void block_fill(struct block *block, size_t first, size_t last) {
     }
 }
 
-static void block_merge(struct block *into, const struct block *from) {
+static void block_merge(struct tally_block *into, const struct tally_block *from) {
     tally_total_merge(&into->total, &from->total);
     tally_merge(&into->tally, &from->tally);
     tally_sums_merge(&into->sums, &from->sums);
 }
 
-static struct bytes block_bytes(const struct block *block) {
+static struct bytes block_bytes(const struct tally_block *block) {
     struct bytes bytes = {0};
     tally_total_put(&bytes, &block->total);
     tally_put(&bytes, &block->tally);
@@ -102,7 +102,7 @@ static void assert_close(double got, double expected, double tolerance) {
 /* 1e-12: rounding of a difference of sums that agree in less than 4 digits. */
 static void errors_are_those_of_the_ratio(void **state) {
     (void)state;
-    struct block block;
+    struct tally_block block;
     block_fill(&block, 0, REALISATIONS);
     for (size_t cell = 0; cell < CELLS; cell++) {
         double n[REALISATIONS], things[REALISATIONS], k[REALISATIONS];
@@ -133,7 +133,7 @@ static void errors_are_those_of_the_ratio(void **state) {
 static void merging_is_exact(void **state) {
     (void)state;
     uint64_t seed = seed_or(99);
-    struct block whole, parts[REALISATIONS];
+    struct tally_block whole, parts[REALISATIONS];
     block_fill(&whole, 0, REALISATIONS);
     struct bytes expected = block_bytes(&whole);
     for (int trial = 0; trial < 50; trial++) {
@@ -144,7 +144,7 @@ static void merging_is_exact(void **state) {
             block_fill(&parts[count++], first, last);
             first = last;
         }
-        struct block merged;
+        struct tally_block merged;
         block_create(&merged);
         for (size_t left = count; left > 0; left--) {
             size_t pick = (size_t)(next_word(&seed) % left);

@@ -99,7 +99,7 @@ static void threads_and_blocks_leave_the_bits(void **state) {
 }
 
 /* What the caller's tick does while a long job runs. */
-struct scene {
+struct worker_scene {
     struct fixture *fixture;
     atomic_int stop;
     int ticks;
@@ -109,7 +109,7 @@ struct scene {
 };
 
 static int tick_stop(void *context) {
-    struct scene *scene = context;
+    struct worker_scene *scene = context;
     scene->stop = 1;
     return 0;
 }
@@ -120,7 +120,7 @@ static void stop_hands_the_job_back(void **state) {
     struct fixture fixture;
     fixture_open(&fixture);
     fixture_submit(&fixture, LONG_STUDY, 20000, NULL, 0);
-    struct scene scene = {.fixture = &fixture};
+    struct worker_scene scene = {.fixture = &fixture};
     struct worker_options options = drain(&fixture, 2);
     options.stop = &scene.stop;
     options.tick = tick_stop;
@@ -142,7 +142,7 @@ static void stop_hands_the_job_back(void **state) {
 }
 
 static int tick_cancel(void *context) {
-    struct scene *scene = context;
+    struct worker_scene *scene = context;
     struct error err = {0};
     (void)store_cancel(scene->fixture->store, scene->fixture->study, &err);
     return 0;
@@ -154,7 +154,7 @@ static void cancelled_study_is_left(void **state) {
     struct fixture fixture;
     fixture_open(&fixture);
     fixture_submit(&fixture, LONG_STUDY, 20000, NULL, 0);
-    struct scene scene = {.fixture = &fixture};
+    struct worker_scene scene = {.fixture = &fixture};
     struct worker_options options = drain(&fixture, 1);
     options.source.lease_ms = 300;
     options.tick = tick_cancel;
@@ -178,7 +178,7 @@ static int64_t in_hours(void *context) {
 /* First takes the running job away, as a worker does whose predecessor's lease ran out; then gives
  * up the whole study. */
 static int tick_steal(void *context) {
-    struct scene *scene = context;
+    struct worker_scene *scene = context;
     struct error err = {0};
     struct claim claim = {.worker = "thief", .count = 1};
     if (scene->ticks == 0) {
@@ -193,7 +193,7 @@ static void lost_lease_is_not_reported(void **state) {
     struct fixture fixture;
     fixture_open(&fixture);
     fixture_submit(&fixture, LONG_STUDY, 20000, NULL, 0);
-    struct scene scene = {.fixture = &fixture};
+    struct worker_scene scene = {.fixture = &fixture};
     struct error err = {0};
     int64_t hours = 1;
     struct store_options later = {.now_ms = in_hours, .context = &hours};
@@ -216,7 +216,7 @@ static void lost_lease_is_not_reported(void **state) {
 }
 
 static int tick_compete(void *context) {
-    struct scene *scene = context;
+    struct worker_scene *scene = context;
     struct error err = {0};
     struct claim claim = {.worker = "rival", .count = 1};
     size_t count = 0;
@@ -231,7 +231,7 @@ static void long_job_keeps_its_lease(void **state) {
     struct fixture fixture;
     fixture_open(&fixture);
     fixture_submit(&fixture, LONG_STUDY, 20000, NULL, 0);
-    struct scene scene = {.fixture = &fixture};
+    struct worker_scene scene = {.fixture = &fixture};
     struct worker_options options = drain(&fixture, 1);
     options.source.lease_ms = 300;
     options.tick = tick_compete;
@@ -297,14 +297,14 @@ static void deadly_job_fails_after_three_workers(void **state) {
 }
 
 static int tick_end(void *context) {
-    struct scene *scene = context;
+    struct worker_scene *scene = context;
     return ++scene->ticks == 2;
 }
 
 /* A server that is not there yet is waited for, and the wait is no obstacle to the end. */
 static void server_away_is_waited_for(void **state) {
     (void)state;
-    struct scene scene = {0};
+    struct worker_scene scene = {0};
     struct worker_options options = {.source = {.url = "http://127.0.0.1:1", .worker = "test"},
                                      .threads = 2,
                                      .tick = tick_end,

@@ -25,11 +25,11 @@ static struct grid square(size_t n) {
 }
 
 /* A rough profile or surface of RMS slope 1: the mean pressure is p/(E* h'). */
-struct roughness {
+struct rough_surface {
     double hurst, ratio, long_waves; /* lambda_l/lambda_s, L/lambda_l */
 };
 
-static void fill_rough(const struct grid *grid, const struct roughness *roughness, uint64_t run,
+static void fill_rough(const struct grid *grid, const struct rough_surface *roughness, uint64_t run,
                        double *z) {
     struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
                                 .hurst = roughness->hurst,
@@ -52,7 +52,7 @@ static void fill_rough(const struct grid *grid, const struct roughness *roughnes
 static void solutions_meet_the_conditions(void **state) {
     (void)state;
     static const struct grid grids[] = {{256, 1, 1, 1}, {24, 24, 1, 1}, {30, 20, 1, 0.5}};
-    static const struct roughness rough = {.hurst = 0.5, .ratio = 4, .long_waves = 2};
+    static const struct rough_surface rough = {.hurst = 0.5, .ratio = 4, .long_waves = 2};
     const struct block *const blocks[] = {&DEEP, &LAYERED, &LAYERED_DUAL};
     for (size_t a = 0; a < 3; a++)
         for (size_t b = 0; b < 3; b++) {
@@ -299,7 +299,7 @@ static void thin_layer(void **state) {
 static void stiffness_is_a_derivative(void **state) {
     (void)state;
     static const struct grid grids[] = {{512, 1, 1, 1}, {64, 64, 1, 1}};
-    static const struct roughness rough = {.hurst = 0.8, .ratio = 4, .long_waves = 2};
+    static const struct rough_surface rough = {.hurst = 0.8, .ratio = 4, .long_waves = 2};
     const struct block *const blocks[] = {&DEEP, &LAYERED, &LAYERED_DUAL};
     for (size_t a = 0; a < 2; a++)
         for (size_t b = 0; b < 3; b++) {
@@ -331,7 +331,7 @@ struct mean_areas {
 };
 
 static void add_areas(const struct grid *grid, const struct block *block, double tolerance,
-                      const struct roughness *rough, uint64_t runs, struct mean_areas *out) {
+                      const struct rough_surface *rough, uint64_t runs, struct mean_areas *out) {
     struct scene scene;
     struct patch_finder *finder = NULL;
     struct error err = {0};
@@ -371,7 +371,7 @@ static void rough_profiles(void **state) {
                  {&LAYERED_DUAL, 0.025, 0.02, 0.49}};
     for (size_t b = 0; b < 3; b++)
         for (size_t h = 0; h < 2; h++) {
-            struct roughness rough = {.hurst = h ? 0.8 : 0.2, .ratio = 8, .long_waves = 8};
+            struct rough_surface rough = {.hurst = h ? 0.8 : 0.2, .ratio = 8, .long_waves = 8};
             struct grid coarse = line(512), fine = line(4096);
             struct mean_areas few, many;
             double nodes = 0, edges = 0;
@@ -395,7 +395,7 @@ static void rough_profiles(void **state) {
 static void rough_surfaces(void **state) {
     (void)state;
     for (size_t h = 0; h < 2; h++) {
-        struct roughness rough = {.hurst = h ? 0.8 : 0.2, .ratio = 4, .long_waves = 4};
+        struct rough_surface rough = {.hurst = h ? 0.8 : 0.2, .ratio = 4, .long_waves = 4};
         struct grid coarse = square(128), fine = square(512);
         struct mean_areas few, many;
         add_areas(&coarse, &DEEP, 1e-8, &rough, 1, &few);

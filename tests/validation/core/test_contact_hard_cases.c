@@ -28,76 +28,76 @@ static size_t draw_below(struct draw *draw, size_t n) {
 /* --- the catalogue --- */
 
 /* Height at (x, y) in [0, 1) of node (i, j); y is 0 in a profile, whose cosine factor is then 1. */
-struct place {
+struct contact_place {
     double x, y;
     size_t i, j, at;
     const struct grid *grid;
 };
 
-static double height_wave(const struct place *p) {
+static double height_wave(const struct contact_place *p) {
     return cos(2 * M_PI * p->x) * cos(2 * M_PI * p->y);
 }
-static double height_wrapped_wave(const struct place *p) {
+static double height_wrapped_wave(const struct contact_place *p) {
     return cos(2 * M_PI * (p->x + 0.013)) + (p->grid->ny > 1 ? cos(2 * M_PI * (p->y + 0.01)) : 0);
 }
-static double height_two_equal_summits(const struct place *p) {
+static double height_two_equal_summits(const struct contact_place *p) {
     size_t n = p->grid->nx;
     return p->j == 0 && (p->i == n / 4 || p->i == n / 4 + n / 2) ? 1 : 0;
 }
-static double height_two_equal_waves(const struct place *p) {
+static double height_two_equal_waves(const struct contact_place *p) {
     return cos(4 * M_PI * p->x) * cos(2 * M_PI * p->y);
 }
-static double height_checkerboard(const struct place *p) {
+static double height_checkerboard(const struct contact_place *p) {
     return (p->i + p->j) % 2 ? 1 : -1;
 }
-static double height_white_noise(const struct place *p) {
+static double height_white_noise(const struct contact_place *p) {
     struct draw draw = {{.seed = 7}, p->at};
     return draw_uniform(&draw);
 }
-static double height_checkerboard_and_noise(const struct place *p) {
+static double height_checkerboard_and_noise(const struct contact_place *p) {
     return height_checkerboard(p) + 1e-6 * height_white_noise(p);
 }
-static double height_step(const struct place *p) {
+static double height_step(const struct contact_place *p) {
     return p->x < 0.5 ? 1 : 0;
 }
-static double height_saw(const struct place *p) {
+static double height_saw(const struct contact_place *p) {
     return p->x + 0.3 * p->y;
 }
-static double height_spike(const struct place *p) {
+static double height_spike(const struct contact_place *p) {
     return p->at == 5 ? 1 : 0;
 }
-static double height_hole(const struct place *p) {
+static double height_hole(const struct contact_place *p) {
     return p->at == 5 ? -1 : 0;
 }
-static double height_giant_spike_on_noise(const struct place *p) {
+static double height_giant_spike_on_noise(const struct contact_place *p) {
     return (p->at == 5 ? 1e9 : 0) + height_white_noise(p);
 }
-static double height_row_of_plateaus(const struct place *p) {
+static double height_row_of_plateaus(const struct contact_place *p) {
     return p->i % 6 < 3 && p->j % 6 < 3 ? 1 : 0;
 }
-static double height_ties(const struct place *p) {
+static double height_ties(const struct contact_place *p) {
     return floor(3 * height_white_noise(p));
 }
-static double height_flat_but_for_rounding(const struct place *p) {
+static double height_flat_but_for_rounding(const struct contact_place *p) {
     return 1 + 1e-13 * height_white_noise(p);
 }
 /* Weibull maximum of shape 1: bounded above, and densest there. */
-static double height_densest_at_top(const struct place *p) {
+static double height_densest_at_top(const struct contact_place *p) {
     return log(1e-9 + height_white_noise(p)) < -3 ? log(1e-9 + height_white_noise(p)) : -3;
 }
-static double height_steep_powers(const struct place *p) {
+static double height_steep_powers(const struct contact_place *p) {
     return pow(height_white_noise(p), 20);
 }
-static double height_all_sizes(const struct place *p) {
+static double height_all_sizes(const struct contact_place *p) {
     return exp(-60 * height_white_noise(p));
 }
-static double height_wave_and_ripple(const struct place *p) {
+static double height_wave_and_ripple(const struct contact_place *p) {
     return height_wave(p) + 1e-3 * height_checkerboard(p);
 }
 
 static const struct surface_case {
     const char *name;
-    double (*height)(const struct place *place);
+    double (*height)(const struct contact_place *place);
 } SURFACES[] = {
     {"one wave: first touch by one node", height_wave},
     {"a patch that wraps around", height_wrapped_wave},
@@ -146,16 +146,16 @@ static const struct block_case {
 static const struct grid GRIDS[] = {{2, 1, 1, 1},   {3, 1, 1, 1},  {37, 1, 1, 1},  {64, 1, 1, 1},
                                     {12, 12, 1, 1}, {13, 7, 1, 1}, {8, 16, 1, 0.1}};
 
-static void fill(struct scene *scene, double (*height)(const struct place *)) {
+static void fill(struct scene *scene, double (*height)(const struct contact_place *)) {
     const struct grid *grid = &scene->grid;
     for (size_t j = 0; j < grid->ny; j++)
         for (size_t i = 0; i < grid->nx; i++) {
-            struct place place = {.x = (double)i / (double)grid->nx,
-                                  .y = (double)j / (double)grid->ny,
-                                  .i = i,
-                                  .j = j,
-                                  .at = j * grid->nx + i,
-                                  .grid = grid};
+            struct contact_place place = {.x = (double)i / (double)grid->nx,
+                                          .y = (double)j / (double)grid->ny,
+                                          .i = i,
+                                          .j = j,
+                                          .at = j * grid->nx + i,
+                                          .grid = grid};
             scene->z[place.at] = height(&place);
         }
     scene_begin(scene);

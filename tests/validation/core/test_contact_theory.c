@@ -214,14 +214,14 @@ static void ellipse(double low, double high, double w, double *area, double *for
     *force = 2.0 / 3 * peak * *area;
 }
 
-struct estimate {
+struct area_estimate {
     double sum, squares;
 };
-static void estimate_add(struct estimate *estimate, double x) {
+static void estimate_add(struct area_estimate *estimate, double x) {
     estimate->sum += x;
     estimate->squares += x * x;
 }
-static void estimate_check(const struct estimate *estimate, double n, double expected) {
+static void estimate_check(const struct area_estimate *estimate, double n, double expected) {
     double mean = estimate->sum / n;
     double error = sqrt((estimate->squares / n - mean * mean) / n);
     check_close(mean, expected, 4 * error);
@@ -238,7 +238,7 @@ static void ellipses_agree_with_drawn_summits(void **state) {
     static const double TRIED[] = {1.6, 5, 50};
     for (size_t c = 0; c < 3; c++) {
         double alpha = TRIED[c], separation = 0.5;
-        struct estimate area = {0, 0}, load = {0, 0};
+        struct area_estimate area = {0, 0}, load = {0, 0};
         for (uint64_t draw = 0; draw < DRAWS; draw++) {
             double u[4], g[4]; /* Box & Muller */
             random_uniform((struct random_key){7, c, 0}, STREAM_HEIGHTS, 4 * draw, 4, u);

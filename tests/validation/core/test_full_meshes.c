@@ -10,7 +10,7 @@
 enum { POINTS = 128, FINER = 256, LOADS = 3, THICK = 16 };
 static const double PRESSURES[LOADS] = {0.005, 0.015, 0.03}; /* of a slope of 0.1: to 0.3 of it */
 
-struct curve {
+struct mesh_curve {
     double area[LOADS], gap[LOADS];
 };
 
@@ -34,9 +34,9 @@ static void fill(double *z, size_t points, size_t rows) {
 }
 
 /* A profile, or its extrusion over THICK rows. */
-static struct curve press(double growth, double transition, size_t points, size_t rows) {
+static struct mesh_curve press(double growth, double transition, size_t points, size_t rows) {
     double z[THICK * POINTS > FINER ? THICK * POINTS : FINER] = {0};
-    struct curve curve = {{0}, {0}};
+    struct mesh_curve curve = {{0}, {0}};
     struct grid grid = {.nx = points, .ny = rows, .lx = 1, .ly = (double)rows / (double)points};
     struct block block = {.model = MODEL_LAYERED,
                           .poisson = 0.3,
@@ -75,7 +75,7 @@ static struct curve press(double growth, double transition, size_t points, size_
     return curve;
 }
 
-static double largest_difference(const struct curve *a, const struct curve *b) {
+static double largest_difference(const struct mesh_curve *a, const struct mesh_curve *b) {
     double most = 0;
     for (size_t k = 0; k < LOADS; k++)
         most = fmax(most, fmax(fabs(a->area[k] / b->area[k] - 1), fabs(a->gap[k] / b->gap[k] - 1)));
@@ -86,10 +86,10 @@ static double largest_difference(const struct curve *a, const struct curve *b) {
  * more; at 16 points both by a fourth of it, and what growth takes from the long waves, 0.1 %. */
 static void graded_layers_give_the_curve_of_uniform_ones(void **state) {
     (void)state;
-    struct curve uniform = press(1, INFINITY, POINTS, 1);
-    struct curve graded = press(1.1, INFINITY, POINTS, 1);
-    struct curve finer_uniform = press(1, INFINITY, FINER, 1);
-    struct curve finer = press(1.1, INFINITY, FINER, 1);
+    struct mesh_curve uniform = press(1, INFINITY, POINTS, 1);
+    struct mesh_curve graded = press(1.1, INFINITY, POINTS, 1);
+    struct mesh_curve finer_uniform = press(1, INFINITY, FINER, 1);
+    struct mesh_curve finer = press(1.1, INFINITY, FINER, 1);
     double coarse = largest_difference(&graded, &uniform);
     double fine = largest_difference(&finer, &finer_uniform);
     print_message("largest difference %.2g at 8 points, %.2g at 16\n", coarse, fine);
@@ -102,9 +102,9 @@ static void graded_layers_give_the_curve_of_uniform_ones(void **state) {
 static void wider_columns_give_the_curve_of_equal_ones(void **state) {
     (void)state;
     static const double DEPTH[] = {4, 8, 16}, BOUND[] = {0.015, 0.003, 0.0005};
-    struct curve equal = press(1.1, INFINITY, FINER, 1);
+    struct mesh_curve equal = press(1.1, INFINITY, FINER, 1);
     for (size_t c = 0; c < 3; c++) {
-        struct curve wider = press(1.1, DEPTH[c], FINER, 1);
+        struct mesh_curve wider = press(1.1, DEPTH[c], FINER, 1);
         double difference = largest_difference(&wider, &equal);
         print_message("widening from %g widths on: %.2g\n", DEPTH[c], difference);
         assert_true(difference > 0 && difference < BOUND[c]);
@@ -115,7 +115,7 @@ static void wider_columns_give_the_curve_of_equal_ones(void **state) {
  * to the solver's tolerance. */
 static void extruded_profiles_are_profiles(void **state) {
     (void)state;
-    struct curve profile = press(1.2, 6, POINTS, 1), surface = press(1.2, 6, POINTS, THICK);
+    struct mesh_curve profile = press(1.2, 6, POINTS, 1), surface = press(1.2, 6, POINTS, THICK);
     for (size_t k = 0; k < LOADS; k++)
         check_relative(surface.gap[k], profile.gap[k], 1e-8);
 }

@@ -14,20 +14,20 @@ enum { ROWS = 6, COLUMNS = 6, SEED = 77 };
 /* Bins that hold nearly all summits: z/sqrt(m0) and t1. */
 static const double LOW_Z = -1, STEP_Z = 0.75, LOW_T = -5, STEP_T = 0.8;
 
-struct figures {
+struct joint_figures {
     double shares[ROWS][COLUMNS], errors[ROWS][COLUMNS]; /* of all summits */
     double density, density_error;                       /* summits a cell area or length */
     double curvature, curvature_error;                   /* mean over sqrt(m4) */
     struct moments moments;
 };
 
-struct sample {
+struct joint_sample {
     double counts[ROWS][COLUMNS], total, curvature;
 };
 
-static void sample_fill(struct sample *sample, const struct summit_list *list,
+static void sample_fill(struct joint_sample *sample, const struct summit_list *list,
                         const struct moments *m, double t_per_curvature) {
-    *sample = (struct sample){.total = (double)list->count};
+    *sample = (struct joint_sample){.total = (double)list->count};
     for (size_t s = 0; s < list->count; s++) {
         double scaled = list->summits[s].curvature / sqrt(m->m4);
         double row = (list->summits[s].height / sqrt(m->m0) - LOW_Z) / STEP_Z;
@@ -39,7 +39,8 @@ static void sample_fill(struct sample *sample, const struct summit_list *list,
 }
 
 /* Shares are ratios of sums; their errors by linearisation. */
-static void figures_fill(struct figures *f, const struct sample *samples, size_t count) {
+static void figures_fill(struct joint_figures *f, const struct joint_sample *samples,
+                         size_t count) {
     double n = (double)count, all = 0, squares = 0, curvature = 0, curvatures = 0;
     for (size_t r = 0; r < count; r++) {
         all += samples[r].total;
@@ -66,7 +67,7 @@ static void figures_fill(struct figures *f, const struct sample *samples, size_t
 }
 
 static void measure(const struct grid *grid, double ratio, enum summit_stencil stencil,
-                    enum summit_curvature curvature, size_t count, struct figures *figures) {
+                    enum summit_curvature curvature, size_t count, struct joint_figures *figures) {
     struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
                                 .hurst = 0.8,
                                 .wavelength_long = ratio,
@@ -77,7 +78,7 @@ static void measure(const struct grid *grid, double ratio, enum summit_stencil s
     struct summit_finder *finder = NULL;
     struct summit_list list = {0};
     double *z = malloc(grid_points(grid) * sizeof *z);
-    struct sample *samples = malloc(count * sizeof *samples);
+    struct joint_sample *samples = malloc(count * sizeof *samples);
     assert_true(z && samples);
     assert_int_equal(generator_create(&generator, &spectrum, grid, &SURFACE_DEFAULTS, NULL), 0);
     const struct modes *modes = generator_modes(generator);
@@ -99,30 +100,30 @@ static void measure(const struct grid *grid, double ratio, enum summit_stencil s
     free(z);
 }
 
-struct slice {
+struct joint_slice {
     double (*joint)(double, double, double);
     double alpha, z, low; /* t1 from low to low + STEP_T */
 };
 
 static double along_t(double t, const void *context) {
-    const struct slice *slice = context;
+    const struct joint_slice *slice = context;
     return slice->joint(slice->z, t, slice->alpha);
 }
 
 static double along_z(double z, const void *context) {
-    struct slice slice = *(const struct slice *)context;
+    struct joint_slice slice = *(const struct joint_slice *)context;
     slice.z = z;
     return quadrature(along_t, &slice, slice.low, slice.low + STEP_T, 2);
 }
 
 /* The largest distance of a bin from theory, in standard errors; bins of less than a thousandth of
  * the summits are left out, their errors being poorly known. */
-static double worst_bin(const struct figures *f, double (*joint)(double, double, double)) {
+static double worst_bin(const struct joint_figures *f, double (*joint)(double, double, double)) {
     double worst = 0, covered = 0;
     for (size_t row = 0; row < ROWS; row++)
         for (size_t column = 0; column < COLUMNS; column++) {
-            struct slice slice = {joint, f->moments.nayak_alpha, 0,
-                                  LOW_T + (double)column * STEP_T};
+            struct joint_slice slice = {joint, f->moments.nayak_alpha, 0,
+                                        LOW_T + (double)column * STEP_T};
             double low = LOW_Z + (double)row * STEP_Z;
             double expected = quadrature(along_z, &slice, low, low + STEP_Z, 2);
             if (expected < 1e-3)
@@ -137,7 +138,7 @@ static double worst_bin(const struct figures *f, double (*joint)(double, double,
 static void summits_of_surfaces(void **state) {
     (void)state;
     const struct grid grid = {256, 256, 64, 64};
-    struct figures f;
+    struct joint_figures f;
     measure(&grid, 8, SUMMITS_REFINED, CURVATURE_SPECTRAL, 300, &f);
     double worst = worst_bin(&f, nayak_joint_pdf);
     print_message("seed %d: worst bin of the joint density at %.1f standard errors\n", SEED, worst);
@@ -148,7 +149,7 @@ static void summits_of_surfaces(void **state) {
 static void peaks_of_profiles(void **state) {
     (void)state;
     const struct grid grid = {4096, 1, 512, 1};
-    struct figures f;
+    struct joint_figures f;
     measure(&grid, 8, SUMMITS_REFINED, CURVATURE_SPECTRAL, 1500, &f);
     const struct moments *m = &f.moments;
     double worst = worst_bin(&f, profile_peak_joint_pdf);
@@ -166,7 +167,7 @@ static void peaks_of_profiles(void **state) {
 static void curvature_at_grid_summits(void **state) {
     (void)state;
     const struct grid grid = {512, 512, 64, 64};
-    struct figures exact, differences;
+    struct joint_figures exact, differences;
     measure(&grid, 8, SUMMITS_NINE_POINT, CURVATURE_SPECTRAL, 60, &exact);
     measure(&grid, 8, SUMMITS_NINE_POINT, CURVATURE_FINITE_DIFFERENCE, 60, &differences);
     print_message("seed %d: mean curvature %.4f exact, %.4f by differences, +- %.4f\n", SEED,

@@ -8,13 +8,14 @@
 #include <stdlib.h>
 
 /* Square cell of 8 long waves, 8 points a shortest wave, H = 0.8. */
-struct scene {
+struct surface_scene {
     struct grid grid;
     struct generator *generator;
     double *z;
 };
 
-static void scene_create(struct scene *scene, double ratio, const struct surface_options *options) {
+static void scene_create(struct surface_scene *scene, double ratio,
+                         const struct surface_options *options) {
     size_t n = (size_t)(64 * ratio);
     struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
                                 .hurst = 0.8,
@@ -29,7 +30,7 @@ static void scene_create(struct scene *scene, double ratio, const struct surface
                      0);
 }
 
-static void scene_destroy(struct scene *scene) {
+static void scene_destroy(struct surface_scene *scene) {
     generator_destroy(&scene->generator);
     free(scene->z);
 }
@@ -47,7 +48,7 @@ static void height_shape(const double *z, size_t n, double *skewness, double *ku
     *kurtosis = fourth / (double)n / (square * square);
 }
 
-static double spectrum_departure(const struct scene *scene) {
+static double spectrum_departure(const struct surface_scene *scene) {
     const struct modes *modes = generator_modes(scene->generator);
     struct transform *transform = NULL;
     assert_int_equal(transform_create(&transform, &scene->grid, modes->mode_x, modes->mode_y, NULL),
@@ -74,7 +75,7 @@ static void surface_meets_its_targets(enum heights_type type, double shape) {
     options.draw = DRAW_QUANTILES; /* sampling alone moves the skewness of C = 1 by 0.03 here */
     struct height_moments moments;
     assert_int_equal(heights_moments(&options.heights, &moments, NULL), 0);
-    struct scene scene;
+    struct surface_scene scene;
     scene_create(&scene, 8, &options);
     struct surface_report report;
     struct random_key key = {2021, 0, 1};
@@ -142,7 +143,7 @@ enum { COUNT, HEIGHT, CURVATURE, FIGURES };
 
 static void summit_figures(const struct surface_options *options, size_t surfaces,
                            double *figures) {
-    struct scene scene;
+    struct surface_scene scene;
     struct summit_finder *finder = NULL;
     struct summit_list list = {0};
     scene_create(&scene, 4, options);
