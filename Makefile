@@ -112,7 +112,7 @@ $(BUILD)/$(SHARED): $(call objects,$(call sources,core)) core/rugo.map
 
 $(BUILD)/librugo.a: $(call objects,$(call sources,core))
 	$(Q)$(LD) -r -o $(BUILD)/librugo.o $^
-	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='rugo_*' -R '.gnu.lto_*' $(BUILD)/librugo.o
+	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='rugo_*' -R '.gnu.lto_*' -N '*.c.*' $(BUILD)/librugo.o
 	$(Q)rm -f $@; $(AR) rcs $@ $(BUILD)/librugo.o
 
 $(BUILD)/rugo.pc: core/rugo.pc.in FORCE
