@@ -154,7 +154,8 @@ static void broken_studies_are_told_what_is_wrong(void **state) {
         {SURFACE("\"heights\":{\"distribution\":\"cauchy\"}"), 422, "/surface/heights/distribution",
          "\"cauchy\" is not one of \"gaussian\", \"weibull_min\", \"weibull_max\""},
         {SURFACE("\"heights\":{\"distribution\":\"weibull_max\"}"), 422, "/surface/heights/shape",
-         "a Weibull distribution needs its shape, a number in [0.5, 20]"},
+         "the distribution needs its shape (shape C of a Weibull distribution), a number in [0.5, "
+         "20]"},
         {SURFACE("\"heights\":{\"distribution\":\"weibull_max\",\"shape\":0}"), 422,
          "/surface/heights/shape", "0 is not in [0.5, 20]"},
         {SURFACE("\"spectrum\":{\"type\":\"white\"}"), 422, "/surface/spectrum/type",
