@@ -1,13 +1,27 @@
 #include "jobs/kind.h"
 #include "jobs/fingerprint.h"
+#include "jobs/memory.h"
 #include <stdlib.h>
 #include <string.h>
 
+/* A study may take this part of the memory there is; the rest is the system's. */
+static const double MEMORY_PART = 0.9;
+
+const struct job_kind *kind_of(const struct study_kind *study) {
+    return (const struct job_kind *)study; /* its first member */
+}
+
 const struct job_kind *kind_find(const char *name) {
-    for (size_t a = 0; a < JOB_KIND_COUNT; a++)
-        if (strcmp(JOB_KINDS[a]->name, name) == 0)
-            return JOB_KINDS[a];
+    for (size_t k = 0; JOB_KINDS[k] != NULL; k++)
+        if (strcmp(JOB_KINDS[k]->name, name) == 0)
+            return kind_of(JOB_KINDS[k]);
     return NULL;
+}
+
+int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
+                    struct fault_list *faults, struct error *err) {
+    return study_read(out, text, size, overrides, JOB_KINDS, MEMORY_PART * memory_available(),
+                      faults, err);
 }
 
 int kind_case_create(void **out, const struct job_kind *kind, const cJSON *parameters,
@@ -29,8 +43,9 @@ void kind_case_destroy(const struct job_kind *kind, void **study) {
     *study = NULL;
 }
 
-int kind_check(const struct job_kind *kind, const cJSON *parameters, struct fault_list *faults,
+int kind_check(const struct study_kind *head, const cJSON *parameters, struct fault_list *faults,
                struct study_cost *cost, struct error *err) {
+    const struct job_kind *kind = kind_of(head);
     void *study = NULL;
     size_t before = faults->count;
     int status = kind_case_create(&study, kind, parameters, faults, err);
@@ -44,9 +59,9 @@ int kind_check(const struct job_kind *kind, const cJSON *parameters, struct faul
 int kind_fingerprint(const struct job_kind *kind, const cJSON *parameters, uint64_t *out,
                      struct error *err) {
     struct values *values = NULL;
-    int status = values_create(&values, parameters, kind->tables, NULL, err);
+    int status = values_create(&values, parameters, kind->study.tables, NULL, err);
     if (status == 0)
-        *out = case_fingerprint(values, kind->tables);
+        *out = case_fingerprint(values, kind->study.tables);
     values_destroy(&values);
     return status;
 }

@@ -46,9 +46,7 @@ struct realisation {
 };
 
 struct job_kind {
-    const char *name;
-    const struct parameter_table *const *tables; /* of its parameters; NULL at the end */
-    uint64_t default_realisations;
+    struct study_kind study;          /* what readers of studies must know; check: kind_check */
     const char *(*scalar)(size_t at); /* of one realisation: a name; NULL behind the last */
     const struct result_view *view;   /* NULL: nothing special is shown */
 
@@ -108,25 +106,29 @@ struct job_kind {
                       struct error *err);
 };
 
-/* All kinds, in a fixed order; kind_find gives NULL for an unknown name. kinds.c holds nothing but
- * these two: a program that defines them itself has the kinds that it names there. */
-extern const struct job_kind *const JOB_KINDS[];
-extern const size_t JOB_KIND_COUNT;
-/* Defines both from a list: #define LIST(KIND) KIND(STATISTICS_KIND) KIND(CONTACT_KIND) */
+/* All kinds, in a fixed order, NULL at the end; each is the head of a struct job_kind. kinds.c
+ * holds nothing but this table: a program that defines it itself has the kinds that it names there.
+ */
+extern const struct study_kind *const JOB_KINDS[];
+/* Defines it from a list: #define LIST(KIND) KIND(STATISTICS_KIND) KIND(CONTACT_KIND) */
 #define JOB_KIND_DECLARE(kind) extern const struct job_kind kind;
-#define JOB_KIND_ADDRESS(kind) &(kind),
+#define JOB_KIND_HEAD(kind) &(kind).study,
 #define JOB_KIND_TABLE(LIST)                                                                       \
     LIST(JOB_KIND_DECLARE)                                                                         \
-    const struct job_kind *const JOB_KINDS[] = {LIST(JOB_KIND_ADDRESS)};                           \
-    const size_t JOB_KIND_COUNT = sizeof JOB_KINDS / sizeof JOB_KINDS[0];
+    const struct study_kind *const JOB_KINDS[] = {LIST(JOB_KIND_HEAD) NULL};
 
+/* The kind of a table's entry; and by name, NULL for an unknown one. */
+const struct job_kind *kind_of(const struct study_kind *study);
 const struct job_kind *kind_find(const char *name);
+/* Reads a study of these kinds; a case may need as much memory as the machine has. */
+int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
+                    struct fault_list *faults, struct error *err);
 /* Reads a case into memory of its own, zeroed and filled; kind_case_destroy accepts NULL. */
 int kind_case_create(void **out, const struct job_kind *kind, const cJSON *parameters,
                      struct fault_list *faults, struct error *err);
 void kind_case_destroy(const struct job_kind *kind, void **study);
 /* Adds what is wrong with a case to faults (0 then too), or estimates what it costs. */
-int kind_check(const struct job_kind *kind, const cJSON *parameters, struct fault_list *faults,
+int kind_check(const struct study_kind *head, const cJSON *parameters, struct fault_list *faults,
                struct study_cost *cost, struct error *err);
 /* The mark of a case in its partial results (fingerprint.h). */
 int kind_fingerprint(const struct job_kind *kind, const cJSON *parameters, uint64_t *out,

@@ -27,7 +27,7 @@ int partial_decode(const struct job_kind *kind, uint64_t fingerprint, const unsi
     if (reader.failed)
         return refuse(err, "is cut short or damaged: its seal does not match");
     if (bytes_get_unsigned(&reader) != kind->format)
-        return error_set(err, ERROR_INPUT, "the partial result is not one of %s", kind->name);
+        return error_set(err, ERROR_INPUT, "the partial result is not one of %s", kind->study.name);
     if (bytes_get_unsigned(&reader) != kind->format_version)
         return refuse(err, "is of another version of its format");
     if (bytes_get_unsigned(&reader) != fingerprint)

@@ -29,9 +29,12 @@ static int name_copy(char *out, size_t size, const char *what, const char *name,
 
 static int source_fill(struct source *source, const struct source_options *options,
                        struct error *err) {
-    size_t kinds = JOB_KIND_COUNT < WIRE_KINDS_MOST ? JOB_KIND_COUNT : WIRE_KINDS_MOST;
-    for (size_t n = 0; n < kinds; n++)
+    size_t n = 0;
+    for (; JOB_KINDS[n] != NULL && n < WIRE_KINDS_MOST; n++)
         source->kinds[n] = JOB_KINDS[n]->name;
+    if (JOB_KINDS[n] != NULL)
+        return error_set(err, ERROR_INPUT, "a claim names at most %d kinds, and there are more",
+                         WIRE_KINDS_MOST);
     source->backend = options->database != NULL ? &SOURCE_STORE : &SOURCE_SERVER;
     int status = name_copy(source->worker, NAME_MOST, "worker name", options->worker, err);
     status =

@@ -138,9 +138,10 @@ static int write_mesh(const char *path, const void *one_case, const double *z, d
 }
 
 const struct job_kind CONTACT_KIND = {
-    .name = "contact",
-    .tables = CONTACT_TABLES,
-    .default_realisations = 20,
+    .study = {.name = "contact",
+              .tables = CONTACT_TABLES,
+              .default_realisations = 20,
+              .check = kind_check},
     .scalar = contact_scalar_name,
     .view = &CONTACT_VIEW,
     .case_size = sizeof(struct contact_case),

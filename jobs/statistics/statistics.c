@@ -128,9 +128,10 @@ static int complete(const void *one_case, const struct surface_basis *basis,
 }
 
 const struct job_kind STATISTICS_KIND = {
-    .name = "statistics",
-    .tables = STATISTICS_TABLES,
-    .default_realisations = 1000,
+    .study = {.name = "statistics",
+              .tables = STATISTICS_TABLES,
+              .default_realisations = 1000,
+              .check = kind_check},
     .scalar = statistics_scalar_name,
     .view = &STATISTICS_VIEW,
     .case_size = sizeof(struct statistics_case),

@@ -33,10 +33,13 @@ static const struct parameter ROWS[] = {
 };
 const struct parameter_table COMMON_PARAMETERS = {"study", ROWS, sizeof ROWS / sizeof *ROWS};
 
-struct choice *kind_choices(const struct study_kind *kinds, size_t kind_count) {
-    struct choice *choices = array_create(kind_count + 1, sizeof *choices);
-    for (size_t k = 0; choices != NULL && k < kind_count; k++)
-        choices[k] = (struct choice){kinds[k].name, (int)k};
+struct choice *kind_choices(const struct study_kind *const *kinds) {
+    size_t count = 0;
+    while (kinds[count] != NULL)
+        count++;
+    struct choice *choices = array_create(count + 1, sizeof *choices);
+    for (size_t k = 0; choices != NULL && k < count; k++)
+        choices[k] = (struct choice){kinds[k]->name, (int)k};
     return choices;
 }
 
@@ -50,10 +53,10 @@ static bool asks_for_error(const cJSON *realisations, struct fault_list *faults)
 }
 
 static int take(struct study *study, const struct parameter *row, const cJSON *value,
-                const struct study_kind *kinds, struct error *err) {
+                const struct study_kind *const *kinds, struct error *err) {
     uint64_t seed = 0;
     if (row->type == PARAMETER_CHOICE) {
-        study->kind = &kinds[choice_find(row->choices, value->valuestring)->value];
+        study->kind = kinds[choice_find(row->choices, value->valuestring)->value];
     } else if (row->type == PARAMETER_INTEGER) {
         study->realisations = (uint64_t)value->valuedouble;
     } else if (row->type == PARAMETER_SEED && value_seed(value, &seed)) {
@@ -68,7 +71,8 @@ static int take(struct study *study, const struct parameter *row, const cJSON *v
 
 /* Reads the value of a row where it is given and good, or its default. */
 static int read_row(struct study *study, const struct parameter *row, const cJSON *document,
-                    const struct study_kind *kinds, struct fault_list *faults, struct error *err) {
+                    const struct study_kind *const *kinds, struct fault_list *faults,
+                    struct error *err) {
     const cJSON *given = json_at(document, row->path);
     if (given == NULL && row->required)
         value_missing(row, faults);
@@ -85,11 +89,11 @@ static int read_row(struct study *study, const struct parameter *row, const cJSO
     return status;
 }
 
-int common_read(struct study *study, const cJSON *document, const struct study_kind *kinds,
-                size_t kind_count, struct fault_list *faults, struct error *err) {
-    struct choice *choices = kind_choices(kinds, kind_count);
+int common_read(struct study *study, const cJSON *document, const struct study_kind *const *kinds,
+                struct fault_list *faults, struct error *err) {
+    struct choice *choices = kind_choices(kinds);
     if (choices == NULL)
-        return error_memory(err, kind_count * sizeof *choices, "the kinds of studies");
+        return error_memory(err, sizeof *choices, "the kinds of studies");
     int status = 0;
     for (size_t p = 0; status == 0 && p < COMMON_PARAMETERS.count; p++) {
         struct parameter row = COMMON_PARAMETERS.rows[p];

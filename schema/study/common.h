@@ -10,10 +10,10 @@ extern const struct parameter_table COMMON_PARAMETERS;
 
 /* Names of kinds as choices, whose values are their positions; caller frees. NULL when out of
  * memory. */
-struct choice *kind_choices(const struct study_kind *kinds, size_t kind_count);
+struct choice *kind_choices(const struct study_kind *const *kinds);
 
 /* Reads what every study has into study; adds faults. ERROR_MEMORY. */
-int common_read(struct study *study, const cJSON *document, const struct study_kind *kinds,
-                size_t kind_count, struct fault_list *faults, struct error *err);
+int common_read(struct study *study, const cJSON *document, const struct study_kind *const *kinds,
+                struct fault_list *faults, struct error *err);
 
 #endif

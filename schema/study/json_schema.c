@@ -233,9 +233,9 @@ static bool place(cJSON *schema, const struct parameter *parameter) {
 }
 
 /* What every study of any kind has; other members are for the kind's own part to judge. */
-static cJSON *common_schema(const struct study_kind *kinds, size_t kind_count) {
+static cJSON *common_schema(const struct study_kind *const *kinds) {
     cJSON *schema = object_schema();
-    struct choice *choices = kind_choices(kinds, kind_count);
+    struct choice *choices = kind_choices(kinds);
     bool complete = schema != NULL && choices != NULL;
     for (size_t p = 0; complete && p < COMMON_PARAMETERS.count; p++) {
         struct parameter row = COMMON_PARAMETERS.rows[p];
@@ -283,8 +283,8 @@ static cJSON *branch_schema(const struct study_kind *kind) {
                                put(schema, "then", kind_schema(kind)));
 }
 
-cJSON *study_schema(const struct study_kind *kinds, size_t kind_count) {
-    cJSON *schema = common_schema(kinds, kind_count);
+cJSON *study_schema(const struct study_kind *const *kinds) {
+    cJSON *schema = common_schema(kinds);
     bool complete =
         put_text(schema, "$schema", "https://json-schema.org/draft/2020-12/schema") &&
         put_text(schema, "title", "Rugo study") &&
@@ -294,8 +294,8 @@ cJSON *study_schema(const struct study_kind *kinds, size_t kind_count) {
             "parameters that exclude each other) is told by rugo check.");
     cJSON *branches = complete ? cJSON_AddArrayToObject(schema, "allOf") : NULL;
     complete = branches != NULL;
-    for (size_t k = 0; complete && k < kind_count; k++) {
-        cJSON *branch = branch_schema(&kinds[k]);
+    for (size_t k = 0; complete && kinds[k] != NULL; k++) {
+        cJSON *branch = branch_schema(kinds[k]);
         complete = branch != NULL && cJSON_AddItemToArray(branches, branch);
     }
     return checked(schema, complete);

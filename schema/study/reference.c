@@ -7,9 +7,8 @@
 
 /* What the writers share: all kinds, and the choices that /kind has by them. */
 struct reference {
-    const struct study_kind *kinds;
-    size_t kind_count;
-    struct choice *names; /* owned */
+    const struct study_kind *const *kinds; /* NULL at the end */
+    struct choice *names;                  /* owned */
 };
 
 enum { CELL_SIZE = 320 };
@@ -62,10 +61,10 @@ static void describe_default(const struct reference *reference, const struct par
     if (strcmp(row->path, "/realisations") != 0)
         return;
     size_t used = 0;
-    for (size_t k = 0; k < reference->kind_count && used < size; k++)
+    for (size_t k = 0; reference->kinds[k] != NULL && used < size; k++)
         used += (size_t)snprintf(text + used, size - used, "%s%llu (%s)", k > 0 ? ", " : "",
-                                 (unsigned long long)reference->kinds[k].default_realisations,
-                                 reference->kinds[k].name);
+                                 (unsigned long long)reference->kinds[k]->default_realisations,
+                                 reference->kinds[k]->name);
 }
 
 /* --- tables and their kinds --- */
@@ -81,7 +80,7 @@ static bool has_table(const struct study_kind *kind, const struct parameter_tabl
 static bool was_shown(const struct reference *reference, size_t kind,
                       const struct parameter_table *table) {
     for (size_t k = 0; k < kind; k++)
-        if (has_table(&reference->kinds[k], table))
+        if (has_table(reference->kinds[k], table))
             return true;
     return false;
 }
@@ -91,10 +90,10 @@ static void kinds_of(const struct reference *reference, const struct parameter_t
                      char *text, size_t size) {
     size_t used = 0;
     *text = '\0';
-    for (size_t k = 0; k < reference->kind_count && used < size; k++)
-        if (has_table(&reference->kinds[k], table))
+    for (size_t k = 0; reference->kinds[k] != NULL && used < size; k++)
+        if (has_table(reference->kinds[k], table))
             used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "",
-                                     reference->kinds[k].name);
+                                     reference->kinds[k]->name);
 }
 
 typedef void table_writer(FILE *file, const struct reference *reference,
@@ -104,8 +103,8 @@ typedef void table_writer(FILE *file, const struct reference *reference,
 static void write_tables(FILE *file, const struct reference *reference, const char *path,
                          table_writer *write) {
     write(file, reference, &COMMON_PARAMETERS, path);
-    for (size_t k = 0; k < reference->kind_count; k++)
-        for (const struct parameter_table *const *table = reference->kinds[k].tables;
+    for (size_t k = 0; reference->kinds[k] != NULL; k++)
+        for (const struct parameter_table *const *table = reference->kinds[k]->tables;
              *table != NULL; table++)
             if (!was_shown(reference, k, *table))
                 write(file, reference, *table, path);
@@ -234,10 +233,10 @@ static const char INTRODUCTION[] =
 
 /* --- together --- */
 
-static int reference_open(struct reference *out, const struct study_kind *kinds, size_t kind_count,
+static int reference_open(struct reference *out, const struct study_kind *const *kinds,
                           struct error *err) {
-    *out = (struct reference){kinds, kind_count, kind_choices(kinds, kind_count)};
-    return out->names != NULL ? 0 : error_memory(err, kind_count * sizeof *out->names, "kinds");
+    *out = (struct reference){kinds, kind_choices(kinds)};
+    return out->names != NULL ? 0 : error_memory(err, sizeof *out->names, "kinds");
 }
 
 /* "surface.hurst" and "surface/hurst" mean "/surface/hurst". */
@@ -253,18 +252,18 @@ static bool is_known(const struct reference *reference, const char *path) {
         if (is_below(path, COMMON_PARAMETERS.rows[p].path))
             return true;
     const struct parameter *row;
-    for (size_t k = 0; k < reference->kind_count; k++)
-        for (size_t p = 0; (row = parameter_row(reference->kinds[k].tables, p)) != NULL; p++)
+    for (size_t k = 0; reference->kinds[k] != NULL; k++)
+        for (size_t p = 0; (row = parameter_row(reference->kinds[k]->tables, p)) != NULL; p++)
             if (is_below(path, row->path))
                 return true;
     return false;
 }
 
-int reference_print(FILE *file, const struct study_kind *kinds, size_t kind_count, const char *path,
+int reference_print(FILE *file, const struct study_kind *const *kinds, const char *path,
                     struct error *err) {
     struct reference reference;
     char below[POINTER_SIZE] = "";
-    int status = reference_open(&reference, kinds, kind_count, err);
+    int status = reference_open(&reference, kinds, err);
     if (status != 0)
         return status;
     if (path != NULL)
@@ -277,10 +276,9 @@ int reference_print(FILE *file, const struct study_kind *kinds, size_t kind_coun
     return status;
 }
 
-int reference_markdown(FILE *file, const struct study_kind *kinds, size_t kind_count,
-                       struct error *err) {
+int reference_markdown(FILE *file, const struct study_kind *const *kinds, struct error *err) {
     struct reference reference;
-    int status = reference_open(&reference, kinds, kind_count, err);
+    int status = reference_open(&reference, kinds, err);
     if (status != 0)
         return status;
     fprintf(file, INTRODUCTION, STUDY_CASES_MOST);

@@ -10,10 +10,9 @@
  * it to one parameter or to those below one ("/surface/heights", also "surface.heights"); NULL for
  * all. ERROR_INPUT where there is no such path, and nothing is written then; ERROR_MEMORY. Whether
  * the text arrived is for the caller to ask of the file. */
-int reference_print(FILE *file, const struct study_kind *kinds, size_t kind_count, const char *path,
+int reference_print(FILE *file, const struct study_kind *const *kinds, const char *path,
                     struct error *err);
 /* The same of all parameters as Markdown, with an introduction. */
-int reference_markdown(FILE *file, const struct study_kind *kinds, size_t kind_count,
-                       struct error *err);
+int reference_markdown(FILE *file, const struct study_kind *const *kinds, struct error *err);
 
 #endif

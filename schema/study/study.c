@@ -162,8 +162,7 @@ static int check_cases(struct study *study, double memory_limit, struct fault_li
     for (size_t c = 0; c < study->case_count; c++) {
         struct study_case *one = &study->cases[c];
         struct fault_list found = {0};
-        int status =
-            study->kind->check(study->kind->context, one->parameters, &found, &one->cost, err);
+        int status = study->kind->check(study->kind, one->parameters, &found, &one->cost, err);
         if (!status && !found.count && memory_limit > 0 && one->cost.memory_bytes > memory_limit)
             fault_add(&found, "",
                       "a worker needs %.3g GiB for a grid of %zu by %zu; allowed: "
@@ -189,10 +188,9 @@ static int faulty(const struct fault_list *faults, struct error *err) {
     return error_set(err, ERROR_INPUT, "the study has %zu faults", faults->count);
 }
 
-static int fill(struct study *study, const cJSON *document, const struct study_kind *kinds,
-                size_t kind_count, double memory_limit, struct fault_list *faults,
-                struct error *err) {
-    int status = common_read(study, document, kinds, kind_count, faults, err);
+static int fill(struct study *study, const cJSON *document, const struct study_kind *const *kinds,
+                double memory_limit, struct fault_list *faults, struct error *err) {
+    int status = common_read(study, document, kinds, faults, err);
     if (status)
         return status;
     if (study->kind) {
@@ -213,7 +211,7 @@ static int fill(struct study *study, const cJSON *document, const struct study_k
 }
 
 int study_read(struct study **out, const char *text, size_t size, const char *const *overrides,
-               const struct study_kind *kinds, size_t kind_count, double memory_limit,
+               const struct study_kind *const *kinds, double memory_limit,
                struct fault_list *faults, struct error *err) {
     cJSON *document = NULL;
     struct study *study = NULL;
@@ -227,7 +225,7 @@ int study_read(struct study **out, const char *text, size_t size, const char *co
     if (!status && !(study = array_create(1, sizeof *study)))
         status = error_memory(err, sizeof *study, "a study");
     if (!status)
-        status = fill(study, document, kinds, kind_count, memory_limit, faults, err);
+        status = fill(study, document, kinds, memory_limit, faults, err);
     cJSON_Delete(document);
     if (status) {
         study_destroy(&study);

@@ -1,6 +1,6 @@
 /* A study: what a researcher wrote, checked, with its sweeps opened into cases.
  *
- * The schema knows no job kind: the caller hands over a table of them. */
+ * The schema knows no kind: the caller hands over a table of them, NULL at the end. */
 #ifndef RUGO_SCHEMA_STUDY_STUDY_H
 #define RUGO_SCHEMA_STUDY_STUDY_H
 
@@ -9,22 +9,22 @@
 #include "schema/study/parameter.h"
 #include <stdint.h>
 
+/* What a case costs; rough, before anything ran. */
 struct study_cost {
-    size_t nx, ny;
-    double memory_bytes;   /* peak of one worker */
-    double seconds;        /* CPU seconds a realisation */
-    double relative_error; /* of the main curve, one realisation */
+    size_t nx, ny;         /* grid of one realisation (the finest) */
+    double memory_bytes;   /* peak of one worker thread */
+    double seconds;        /* CPU seconds a realisation on a 3 GHz core */
+    double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
 };
 
-/* What the reader must know of a job kind. */
+/* What the reader must know of a kind of study. */
 struct study_kind {
     const char *name;
     const struct parameter_table *const *tables; /* of its parameters; NULL at the end */
     uint64_t default_realisations;
-    /* Adds faults that no single range shows, and estimates the cost; context is handed through. */
-    int (*check)(const void *context, const cJSON *parameters, struct fault_list *faults,
+    /* Adds faults that no single range shows (0 then too), and estimates the cost. */
+    int (*check)(const struct study_kind *kind, const cJSON *parameters, struct fault_list *faults,
                  struct study_cost *cost, struct error *err);
-    const void *context;
 };
 
 struct study_case {
@@ -51,12 +51,12 @@ enum { STUDY_CASES_MOST = 10000 };
  * case that needs more is a fault (0: no limit). Returns ERROR_INPUT with faults filled (or, where
  * the text is no JSON, with err alone); *out is then untouched. */
 int study_read(struct study **out, const char *text, size_t size, const char *const *overrides,
-               const struct study_kind *kinds, size_t kind_count, double memory_limit,
+               const struct study_kind *const *kinds, double memory_limit,
                struct fault_list *faults, struct error *err);
 void study_destroy(struct study **study);
 
 /* JSON Schema (draft 2020-12) of studies of these kinds; caller deletes. NULL when out of memory.
  */
-cJSON *study_schema(const struct study_kind *kinds, size_t kind_count);
+cJSON *study_schema(const struct study_kind *const *kinds);
 
 #endif

@@ -1,10 +1,10 @@
 #include "server/command/access.h"
+#include "jobs/kind.h"
 #include "schema/result/result_json.h"
 #include "schema/study/override.h"
 #include "server/command/api.h"
 #include "server/command/command.h"
 #include "worker/client.h"
-#include "worker/kinds.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,7 +115,7 @@ int access_submit(struct access *access, const char *text, size_t size,
     struct study *study = NULL;
     if (access->client)
         return submit_remote(access, text, size, overrides, out, faults, err);
-    int status = kinds_read_study(&study, text, size, overrides, faults, err);
+    int status = kind_read_study(&study, text, size, overrides, faults, err);
     if (!status)
         status = api_submit(access->store, study, NULL, out, &existing, err);
     study_destroy(&study);

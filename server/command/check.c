@@ -1,8 +1,8 @@
 /* `rugo check`: what a study would do, and what it would cost; runs nothing. */
+#include "jobs/kind.h"
 #include "server/command/command.h"
 #include "server/command/options.h"
 #include "server/show/summary_cells.h"
-#include "worker/kinds.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -134,7 +134,7 @@ static int print_document(cJSON *document, struct error *err) {
 
 /* On many lines, for people; validators do not mind. */
 static int print_schema(struct error *err) {
-    cJSON *schema = study_schema(kinds_table(), kinds_count());
+    cJSON *schema = study_schema(JOB_KINDS);
     char *text = schema != NULL ? cJSON_Print(schema) : NULL;
     cJSON_Delete(schema);
     if (text == NULL)

@@ -1,5 +1,5 @@
 #include "server/command/command.h"
-#include "worker/kinds.h"
+#include "jobs/kind.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -116,7 +116,7 @@ int study_file_read(struct study **out, const char *path, const char *const *ove
     int status = file_read(path, JSON_LIMITS.bytes, &text, &size, err);
     if (status)
         return status;
-    status = kinds_read_study(out, text, size, overrides, faults, err);
+    status = kind_read_study(out, text, size, overrides, faults, err);
     free(text);
     return status ? error_context(err, "%s", name_of(path)) : 0;
 }

@@ -1,10 +1,10 @@
 /* rugo generate STUDY.json: one surface of a study, or a block meshed on it, to look at or to use
  * elsewhere. */
 #include "core/map/height_map.h"
+#include "jobs/kind.h"
 #include "jobs/surface_case.h"
 #include "server/command/command.h"
 #include "server/show/characterisation.h"
-#include "worker/kinds.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -132,15 +132,15 @@ static int write_case_mesh(const struct order *order, const struct job_kind *kin
 
 static int write_mesh(const struct order *order, const struct study *study, const double *z,
                       struct error *err) {
-    const struct job_kind *kind = kind_find(study->kind->name);
+    const struct job_kind *kind = kind_of(study->kind);
     size_t other = 0;
-    if (kind != NULL && kind->write_mesh != NULL)
+    if (kind->write_mesh != NULL)
         return write_case_mesh(order, kind, study->cases[order->options->case_number].parameters, z,
                                err);
-    while (other < JOB_KIND_COUNT && JOB_KINDS[other]->write_mesh == NULL)
+    while (JOB_KINDS[other] != NULL && kind_of(JOB_KINDS[other])->write_mesh == NULL)
         other++;
     return error_set(err, ERROR_INPUT, "--mesh needs a study of kind %s, and this is %s",
-                     other < JOB_KIND_COUNT ? JOB_KINDS[other]->name : "with meshes",
+                     JOB_KINDS[other] != NULL ? JOB_KINDS[other]->name : "with meshes",
                      study->kind->name);
 }
 

@@ -1,6 +1,6 @@
 #include "server/command/help.h"
+#include "jobs/kind.h"
 #include "schema/study/reference.h"
-#include "worker/kinds.h"
 #include <string.h>
 
 /* What `rugo help` tells beside the commands. */
@@ -73,8 +73,8 @@ static const struct option_row OPTIONS[] = {{"format", 0, OPTION_CHOICE, 0, 0,
 
 static int help_study(const char *path, bool markdown) {
     struct error err = {0};
-    int status = markdown ? reference_markdown(stdout, kinds_table(), kinds_count(), &err)
-                          : reference_print(stdout, kinds_table(), kinds_count(), path, &err);
+    int status = markdown ? reference_markdown(stdout, JOB_KINDS, &err)
+                          : reference_print(stdout, JOB_KINDS, path, &err);
     return status == 0 ? EXIT_DONE : command_fail("help", &err);
 }
 

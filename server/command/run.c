@@ -7,7 +7,6 @@
 #include "server/show/output.h"
 #include "server/show/progress.h"
 #include "server/show/summary.h"
-#include "worker/kinds.h"
 #include "worker/publish.h"
 #include "worker/worker.h"
 #include <stdio.h>

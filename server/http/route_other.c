@@ -1,6 +1,6 @@
 /* Health, metrics, snapshot, descriptions and the page. */
+#include "jobs/kind.h"
 #include "server/http/route.h"
-#include "worker/kinds.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -43,7 +43,7 @@ void handle_style(struct exchange *exchange, const char *id) {
 
 void handle_schema(struct exchange *exchange, const char *id) {
     (void)id;
-    answer_json(exchange, 200, study_schema(kinds_table(), kinds_count()));
+    answer_json(exchange, 200, study_schema(JOB_KINDS));
 }
 
 void handle_health(struct exchange *exchange, const char *id) {

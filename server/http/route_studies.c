@@ -1,7 +1,7 @@
 /* Studies over HTTP: submission, progress. */
+#include "jobs/kind.h"
 #include "server/command/api.h"
 #include "server/http/route.h"
-#include "worker/kinds.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,7 +59,7 @@ void handle_study_create(struct exchange *exchange, const char *id) {
     struct error err = {0};
     if (!check_key(exchange) || !check_body(exchange))
         return;
-    int status = kinds_read_study(&study, exchange->body, exchange->body_size, NULL, &faults, &err);
+    int status = kind_read_study(&study, exchange->body, exchange->body_size, NULL, &faults, &err);
     if (!status)
         submit(exchange, study);
     else if (faults.count)

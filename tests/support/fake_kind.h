@@ -68,10 +68,10 @@ static const struct parameter_table FAKE_PARAMETERS = {"boxes", FAKE_ROWS,
 static const struct parameter_table *const FAKE_TABLES[] = {&FAKE_PARAMETERS, NULL};
 
 /* Refuses width 0.5 together with 7 boxes; a worker needs a byte a box; costs /seconds. */
-static inline int fake_check(const void *context, const cJSON *parameters,
+static inline int fake_check(const struct study_kind *kind, const cJSON *parameters,
                              struct fault_list *faults, struct study_cost *cost,
                              struct error *err) {
-    (void)context;
+    (void)kind;
     (void)err;
     double count = json_at(parameters, "/box/count")->valuedouble;
     if (json_at(parameters, "/box/width")->valuedouble == 0.5 && count == 7)
@@ -85,5 +85,6 @@ static inline int fake_check(const void *context, const cJSON *parameters,
 
 static const struct study_kind FAKE_KIND = {
     .name = "boxes", .tables = FAKE_TABLES, .default_realisations = 100, .check = fake_check};
+static const struct study_kind *const FAKE_KINDS[] = {&FAKE_KIND, NULL};
 
 #endif

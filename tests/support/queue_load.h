@@ -6,7 +6,6 @@
 #include "jobs/runner.h"
 #include "schema/store/store.h"
 #include "schema/study/fault.h"
-#include "worker/kinds.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,7 +44,7 @@ static inline struct study *queue_study(unsigned jobs, struct error *err) {
              "\"surface\":{\"hurst\":0.8,\"wavelength_ratio\":8,\"length_ratio\":16},"
              "\"statistics\":{\"bins\":{\"height\":[-4,6,42],\"curvature\":[-12,0,27]}}}",
              jobs);
-    if (kinds_read_study(&study, text, strlen(text), NULL, &faults, err) == 0)
+    if (kind_read_study(&study, text, strlen(text), NULL, &faults, err) == 0)
         study->cases[0].block = 1; /* a job a realisation */
     fault_list_clear(&faults);
     return study;

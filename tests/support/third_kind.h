@@ -97,9 +97,7 @@ static int needle_result(const void *study, const struct surface_basis *basis, c
     return status != 0 ? status : result_add_curve(out, &curve, err);
 }
 static const struct job_kind NEEDLE_KIND = {
-    .name = "needle",
-    .tables = NEEDLE_TABLES,
-    .default_realisations = 10,
+    .study = {"needle", NEEDLE_TABLES, 10, kind_check},
     .scalar = needle_scalar,
     .case_size = sizeof(double),
     .read = needle_read,

@@ -1,16 +1,15 @@
 /* Studies of the real kinds: one that is taken has cases of finite cost, and what is kept of it is
  * read as the same study; one that is refused says why. */
 #include "schema/study/study.h"
+#include "jobs/kind.h"
 #include "tests/support/fuzz/fuzz.h"
-#include "worker/kinds.h"
 #include <math.h>
 
 static const double MEMORY = 1e9; /* bytes: what a machine may have */
 
 static int read_study(struct study **out, const char *text, size_t size, struct error *err) {
     struct fault_list faults = {0};
-    int status =
-        study_read(out, text, size, NULL, kinds_table(), kinds_count(), MEMORY, &faults, err);
+    int status = study_read(out, text, size, NULL, JOB_KINDS, MEMORY, &faults, err);
     MUST(status != 0 || faults.count == 0);
     fault_list_clear(&faults);
     return status;

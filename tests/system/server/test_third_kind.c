@@ -12,8 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#define KINDS(KIND) KIND(STATISTICS_KIND) KIND(CONTACT_KIND) KIND(NEEDLE_KIND)
-JOB_KIND_TABLE(KINDS)
+#define LIST(KIND) KIND(STATISTICS_KIND) KIND(CONTACT_KIND) KIND(NEEDLE_KIND)
+JOB_KIND_TABLE(LIST)
 
 static const char STUDY[] =
     "{\"name\":\"buffon\",\"kind\":\"needle\",\"seed\":4,\"realisations\":8,\"needle\":{"

@@ -372,7 +372,7 @@ static void checking(void **state) {
     struct fault_list faults = {0};
     struct study_cost estimate;
     cJSON *parameters = parse(GAUSSIAN);
-    assert_int_equal(kind_check(kind(), parameters, &faults, &estimate, NULL), 0);
+    assert_int_equal(kind_check(&kind()->study, parameters, &faults, &estimate, NULL), 0);
     assert_int_equal(faults.count, 0);
     assert_int_equal(estimate.nx, 32);
     assert_true(estimate.memory_bytes > 1e5 && estimate.memory_bytes < 1e8);
@@ -381,7 +381,7 @@ static void checking(void **state) {
     cJSON_Delete(parameters);
     parameters = parse("{\"surface\": {\"hurst\": 0.8}, \"statistics\": {\"bins\":"
                        " {\"height\": [3, 3, 5], \"curvature\": [0, 1, 0.5]}}}");
-    assert_int_equal(kind_check(kind(), parameters, &faults, &estimate, NULL), 0);
+    assert_int_equal(kind_check(&kind()->study, parameters, &faults, &estimate, NULL), 0);
     assert_int_equal(faults.count, 3);
     assert_string_equal(faults.faults[1].pointer, "/statistics/bins/height");
     assert_non_null(strstr(faults.faults[1].detail, "below high"));

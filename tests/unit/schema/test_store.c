@@ -37,8 +37,7 @@ static void submit(struct store *store, int realisations, const char *key, char 
              "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":%d,\"seconds\":6,\"box\":{"
              "\"width\":[0.5,1]}}",
              realisations);
-    assert_int_equal(study_read(&study, text, strlen(text), NULL, &FAKE_KIND, 1, 0, &faults, NULL),
-                     0);
+    assert_int_equal(study_read(&study, text, strlen(text), NULL, FAKE_KINDS, 0, &faults, NULL), 0);
     assert_int_equal(store_submit(store, study, key, id, NULL, NULL), 0);
     study_destroy(&study);
 }

@@ -9,7 +9,7 @@
 
 static int read_text(const char *text, struct study **study, struct fault_list *faults,
                      struct error *err) {
-    return study_read(study, text, strlen(text), NULL, &FAKE_KIND, 1, 1000, faults, err);
+    return study_read(study, text, strlen(text), NULL, FAKE_KINDS, 1000, faults, err);
 }
 
 #define STUDY(rest) "{\"name\":\"n\",\"kind\":\"boxes\"," rest "}"
@@ -240,24 +240,22 @@ static void overrides_change_the_document(void **state) {
     struct study *study = NULL;
     struct error err = {0};
     const char *text = BOX("");
-    assert_int_equal(study_read(&study, text, strlen(text), SETS, &FAKE_KIND, 1, 0, &faults, NULL),
-                     0);
+    assert_int_equal(study_read(&study, text, strlen(text), SETS, FAKE_KINDS, 0, &faults, NULL), 0);
     assert_int_equal(study->case_count, 2);
     assert_int_equal(study->realisations, 7);
     assert_string_equal(json_at(study->cases[1].parameters, "/box/colour")->valuestring, "green");
     assert_non_null(strstr(study->source, "\"realisations\":7"));
     study_destroy(&study);
-    assert_int_equal(study_read(&study, text, strlen(text), BAD, &FAKE_KIND, 1, 0, &faults, &err),
+    assert_int_equal(study_read(&study, text, strlen(text), BAD, FAKE_KINDS, 0, &faults, &err),
                      ERROR_INPUT);
     assert_string_equal(err.text, "\"nothing\" is not PATH=VALUE");
-    assert_int_equal(
-        study_read(&study, text, strlen(text), THROUGH, &FAKE_KIND, 1, 0, &faults, &err),
-        ERROR_INPUT);
+    assert_int_equal(study_read(&study, text, strlen(text), THROUGH, FAKE_KINDS, 0, &faults, &err),
+                     ERROR_INPUT);
 }
 
 static void schema_has_what_the_reader_asks(void **state) {
     (void)state;
-    cJSON *schema = study_schema(&FAKE_KIND, 1);
+    cJSON *schema = study_schema(FAKE_KINDS);
     assert_non_null(schema);
     const cJSON *box = json_at(schema, "/allOf/0/then/properties/box");
     assert_true(cJSON_IsFalse(json_at(box, "/additionalProperties")));

@@ -2,9 +2,9 @@
 #ifndef RUGO_TESTS_UNIT_WORKER_SMALL_STUDY_H
 #define RUGO_TESTS_UNIT_WORKER_SMALL_STUDY_H
 
+#include "jobs/kind.h"
 #include "schema/store/store.h"
 #include "schema/study/fault.h"
-#include "worker/kinds.h"
 
 #include <stdarg.h>
 #include <stddef.h>
@@ -52,7 +52,7 @@ static inline void fixture_submit(struct fixture *fixture, const char *text, uin
     struct fault_list faults = {0};
     struct study *study = NULL;
     bool existing = false;
-    if (kinds_read_study(&study, text, strlen(text), NULL, &faults, &err) != 0) {
+    if (kind_read_study(&study, text, strlen(text), NULL, &faults, &err) != 0) {
         fail_msg("%s (%s)", err.text, faults.count ? faults.faults[0].detail : "");
     }
     for (size_t c = 0; c < study->case_count; c++) {

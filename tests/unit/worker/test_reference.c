@@ -1,8 +1,8 @@
 /* Protects: the reference of the study file tells of every parameter, and the one in the tree is
  * what the tables say today. */
+#include "jobs/kind.h"
 #include "schema/study/reference.h"
 #include "tests/support/check.h"
-#include "worker/kinds.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@ static char *text_of(const char *path, int *status, struct error *err) {
     size_t size;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
-    *status = reference_print(file, kinds_table(), kinds_count(), path, err);
+    *status = reference_print(file, JOB_KINDS, path, err);
     assert_int_equal(fclose(file), 0);
     return text;
 }
@@ -30,8 +30,8 @@ static void text_tells_of_all_parameters(void **state) {
     assert_int_equal(status, 0);
     const struct parameter *row;
     size_t rows = 0;
-    for (size_t k = 0; k < kinds_count(); k++)
-        for (size_t p = 0; (row = parameter_row(kinds_table()[k].tables, p)) != NULL; p++, rows++) {
+    for (size_t k = 0; JOB_KINDS[k] != NULL; k++)
+        for (size_t p = 0; (row = parameter_row(JOB_KINDS[k]->tables, p)) != NULL; p++, rows++) {
             char line[300];
             snprintf(line, sizeof line, "\n  %s\n      %s\n", row->path, row->help);
             if (times(text, line) != 1) /* also of a table that kinds share */
@@ -74,7 +74,7 @@ static void the_reference_in_the_tree_is_current(void **state) {
     size_t size, length;
     FILE *memory = open_memstream(&wanted, &size);
     assert_non_null(memory);
-    assert_int_equal(reference_markdown(memory, kinds_table(), kinds_count(), NULL), 0);
+    assert_int_equal(reference_markdown(memory, JOB_KINDS, NULL), 0);
     assert_int_equal(fclose(memory), 0);
     snprintf(path, sizeof path, "%s/schema/study/REFERENCE.md", source);
     FILE *file = fopen(path, "rb");

@@ -49,13 +49,13 @@ static void clear(void *shared) {
         atomic_fetch_sub(&alive, 1);
 }
 
-static const struct job_kind SHARING = {.name = "sharing",
+static const struct job_kind SHARING = {.study = {.name = "sharing"},
                                         .read = read_case,
                                         .clear = clear_case,
                                         .shared_size = sizeof(struct part),
                                         .shared_create = create,
                                         .shared_clear = clear};
-static const struct job_kind ALONE = {.name = "alone"};
+static const struct job_kind ALONE = {.study = {.name = "alone"}};
 
 static int value_of(const struct shared_part *part, int n) {
     const struct part *content = job_shared_content(shared_part_content(part));

@@ -119,7 +119,7 @@ static void lost_leases_are_told_apart(void **state) {
 /* The other end reads from the request what was sent. */
 static void result_arrives(void **state) {
     (void)state;
-    const struct job_kind *kind = JOB_KINDS[0];
+    const struct job_kind *kind = kind_of(JOB_KINDS[0]);
     double scalars[64];
     unsigned char data[3] = {0, 255, 7};
     struct block_result result = {.first = 10,

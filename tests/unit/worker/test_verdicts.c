@@ -2,17 +2,17 @@
  * tables: of every parameter values at, within and beyond its bounds, of wrong types, in lists,
  * beside names that do not exist. An independent validator (python3-jsonschema) judges them by the
  * schema; without it the test is skipped. */
+#include "jobs/kind.h"
 #include "schema/study/value.h"
 #include "tests/support/check.h"
-#include "worker/kinds.h"
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 
 /* What no single value shows is not in the schema: the kinds' own checks are left out. */
-static int check_nothing(const void *context, const cJSON *parameters, struct fault_list *faults,
-                         struct study_cost *cost, struct error *err) {
-    (void)context;
+static int check_nothing(const struct study_kind *kind, const cJSON *parameters,
+                         struct fault_list *faults, struct study_cost *cost, struct error *err) {
+    (void)kind;
     (void)parameters;
     (void)faults;
     (void)err;
@@ -23,6 +23,7 @@ static int check_nothing(const void *context, const cJSON *parameters, struct fa
 enum { KINDS_MOST = 16, DOCUMENTS_MOST = 10000 };
 struct fixture {
     struct study_kind kinds[KINDS_MOST];
+    const struct study_kind *table[KINDS_MOST + 1]; /* of these */
     size_t kind_count, documents, accepted;
     FILE *file;                    /* a document a line */
     bool verdicts[DOCUMENTS_MOST]; /* of the reader */
@@ -35,8 +36,7 @@ static void judge(struct fixture *f, const cJSON *document) {
     struct study *study = NULL;
     assert_non_null(text);
     assert_true(f->documents < DOCUMENTS_MOST);
-    int status =
-        study_read(&study, text, strlen(text), NULL, f->kinds, f->kind_count, 0, &faults, NULL);
+    int status = study_read(&study, text, strlen(text), NULL, f->table, 0, &faults, NULL);
     assert_true(status == 0 || status == ERROR_INPUT);
     f->verdicts[f->documents++] = status == 0;
     f->accepted += status == 0;
@@ -182,7 +182,7 @@ static void judge_common(struct fixture *f) {
 }
 
 static void write_schema(const struct fixture *f) {
-    cJSON *schema = study_schema(f->kinds, f->kind_count);
+    cJSON *schema = study_schema(f->table);
     char *text = json_print(schema);
     FILE *file = fopen("schema.json", "w");
     assert_true(text != NULL && file != NULL && fputs(text, file) >= 0);
@@ -225,11 +225,11 @@ static void verdicts_agree(void **state) {
     }
     remove("no-validator");
     static struct fixture f;
-    f.kind_count = kinds_count();
-    assert_true(f.kind_count <= KINDS_MOST);
-    for (size_t k = 0; k < f.kind_count; k++) {
-        f.kinds[k] = kinds_table()[k];
-        f.kinds[k].check = check_nothing;
+    for (; JOB_KINDS[f.kind_count] != NULL; f.kind_count++) {
+        assert_true(f.kind_count < KINDS_MOST);
+        f.kinds[f.kind_count] = *JOB_KINDS[f.kind_count];
+        f.kinds[f.kind_count].check = check_nothing;
+        f.table[f.kind_count] = &f.kinds[f.kind_count];
     }
     f.file = fopen("documents", "w");
     assert_non_null(f.file);

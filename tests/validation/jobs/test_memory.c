@@ -54,7 +54,7 @@ static void stated_memory(void **state) {
         struct rusage usage;
         int ended = 0;
         cJSON *parameters = cJSON_Parse(CASES[a].parameters);
-        assert_int_equal(kind_check(kind, parameters, &faults, &estimate, NULL), 0);
+        assert_int_equal(kind_check(&kind->study, parameters, &faults, &estimate, NULL), 0);
         assert_int_equal(faults.count, 0);
         double available = (double)sysconf(_SC_AVPHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
         if (available < 1.5 * estimate.memory_bytes) {

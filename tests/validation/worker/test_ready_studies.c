@@ -1,7 +1,7 @@
 /* Every study in jobs/studies reads without a fault and opens into the cases its README promises.
  */
+#include "jobs/kind.h"
 #include "schema/study/fault.h"
-#include "worker/kinds.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -22,7 +22,7 @@ static struct study *study_of(const char *name) {
         fail_msg("cannot open %s", path);
     size_t size = fread(text, 1, sizeof text, file);
     fclose(file);
-    if (kinds_read_study(&study, text, size, NULL, &faults, &err) != 0)
+    if (kind_read_study(&study, text, size, NULL, &faults, &err) != 0)
         fail_msg("%s: %s %s", name, err.text, faults.faults != NULL ? faults.faults[0].detail : "");
     fault_list_clear(&faults);
     return study;

@@ -1,4 +1,4 @@
-#include "worker/memory.h"
+#include "jobs/memory.h"
 
 #include <limits.h>
 #include <math.h>
