@@ -157,7 +157,7 @@ static void broken_studies_are_told_what_is_wrong(void **state) {
          "the distribution needs its shape (shape C of a Weibull distribution), a number in [0.5, "
          "20]"},
         {SURFACE("\"heights\":{\"distribution\":\"weibull_max\",\"shape\":0}"), 422,
-         "/surface/heights/shape", "0 is not in [0.5, 20]"},
+         "/surface/heights/shape", "0 is not in [0.01, 20]"},
         {SURFACE("\"spectrum\":{\"type\":\"white\"}"), 422, "/surface/spectrum/type",
          "\"white\" is not one of \"self_affine\", \"exponential_acf\", \"table\""},
         {BESIDE("\"seed\":-1"), 422, "/seed", "-1 is not an integer of 0 or more"},
