@@ -28,7 +28,7 @@ struct heights {
 
 struct height_moments {
     double mean, deviation;    /* of the raw distribution, before standardising */
-    double skewness, kurtosis; /* theory.md 3.26-3.30; kurtosis 3 for a Gaussian */
+    double skewness, kurtosis; /* F4.2; kurtosis 3 for a Gaussian */
     double lowest, highest;    /* bounds in standard deviations about the mean; +-INFINITY if none,
                                   or unknown as for HEIGHTS_QUANTILE */
 };
