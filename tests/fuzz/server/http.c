@@ -47,8 +47,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (size > 0)
         (void)!send(peer, data, size, MSG_NOSIGNAL);
     shutdown(peer, SHUT_WR);
-    while ((got = recv(peer, answer + length, sizeof answer - 1 - length, 0)) > 0)
-        if ((length += (size_t)got) == sizeof answer - 1)
+    /* libFuzzer's clock interrupts now and then. */
+    while ((got = recv(peer, answer + length, sizeof answer - 1 - length, 0)) > 0 ||
+           (got < 0 && errno == EINTR))
+        if (got > 0 && (length += (size_t)got) == sizeof answer - 1)
             length = 32; /* its beginning is enough */
     /* After half a request that follows a whole one the service waits for the rest. */
     MUST(got == 0 || errno == ECONNRESET || errno == EAGAIN);
