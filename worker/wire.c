@@ -1,5 +1,5 @@
 #include "worker/wire.h"
-#include "schema/json/wire_field.h"
+#include "schema/json/field.h"
 
 #include <errno.h>
 #include <math.h>

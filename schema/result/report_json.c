@@ -1,3 +1,4 @@
+#include "schema/json/field.h"
 #include "schema/result/report.h"
 #include "schema/result/result_json.h"
 #include <math.h>
@@ -119,17 +120,8 @@ bool study_report_print(FILE *file, const struct study_report *report) {
 
 /* --- reading --- */
 
-static const cJSON *member(const cJSON *object, const char *key) {
-    return cJSON_GetObjectItemCaseSensitive(object, key);
-}
-
-static double number_at(const cJSON *object, const char *key) {
-    const cJSON *value = member(object, key);
-    return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
-}
-
 static uint64_t count_at(const cJSON *object, const char *key) {
-    double number = number_at(object, key);
+    double number = field_number(object, key);
     return number >= 0 && number <= 0x1p53 ? (uint64_t)number : 0;
 }
 
@@ -139,20 +131,20 @@ static int no_memory(struct error *err) {
 
 static int read_curve(struct case_result *about, const cJSON *object, struct curve_report *out,
                       struct error *err) {
-    const char *quantity = cJSON_GetStringValue(member(object, "quantity"));
+    const char *quantity = cJSON_GetStringValue(field_at(object, "quantity"));
     if (quantity == NULL)
         return error_set(err, ERROR_INPUT, "\"quantity\" of a report must be a string");
     out->place.quantity = result_text(about, quantity);
     if (out->place.quantity == NULL)
         return no_memory(err);
     int status = curve_read_attributes(about, object, &out->place, err);
-    out->seconds = number_at(object, "seconds");
-    out->statistical = number_at(object, "statistical_error");
+    out->seconds = field_number(object, "seconds");
+    out->statistical = field_number(object, "statistical_error");
     for (size_t s = 0; s < ERROR_SOURCES; s++)
-        out->errors[s] = number_at(object, ERROR_SOURCE_ROWS[s].key);
-    out->total = number_at(object, "total_error");
-    out->valueless = number_at(object, "valueless");
-    const cJSON *deviations = member(object, "theory_deviation");
+        out->errors[s] = field_number(object, ERROR_SOURCE_ROWS[s].key);
+    out->total = field_number(object, "total_error");
+    out->valueless = field_number(object, "valueless");
+    const cJSON *deviations = field_at(object, "theory_deviation");
     for (const cJSON *item = deviations != NULL ? deviations->child : NULL;
          item != NULL && status == 0 && out->theory_count < THEORIES_MOST; item = item->next) {
         size_t t = out->theory_count++;
@@ -166,26 +158,26 @@ static int read_curve(struct case_result *about, const cJSON *object, struct cur
 static int read_scalar(struct case_result *about, const cJSON *object, struct scalar_report *out,
                        struct error *err) {
     *out = (struct scalar_report){.name = result_text(about, object->string),
-                                  .value = number_at(object, "value"),
-                                  .statistical = number_at(object, "statistical_error"),
-                                  .deviation = number_at(object, "theory_deviation"),
-                                  .has_theory = member(object, "theory_deviation") != NULL};
+                                  .value = field_number(object, "value"),
+                                  .statistical = field_number(object, "statistical_error"),
+                                  .deviation = field_number(object, "theory_deviation"),
+                                  .has_theory = field_at(object, "theory_deviation") != NULL};
     return out->name != NULL ? 0 : no_memory(err);
 }
 
 /* Its place among the curves, by quantity and attributes; those that reports leave out are none. */
 static const struct curve_report *find_main(const struct case_report *report,
                                             const cJSON *document) {
-    const char *quantity = cJSON_GetStringValue(member(document, "main_curve"));
+    const char *quantity = cJSON_GetStringValue(field_at(document, "main_curve"));
     for (size_t a = 0; a < report->curve_count && quantity != NULL; a++) {
         const struct curve *place = &report->curves[a].place;
         bool same = strcmp(place->quantity, quantity) == 0;
         for (size_t n = 0; n < CURVE_ATTRIBUTE_COUNT && same; n++) {
             const struct curve_attribute *row = &CURVE_ATTRIBUTES[n];
             const char *text = curve_attribute_text(place, row);
-            const char *asked = cJSON_GetStringValue(member(document, row->key));
+            const char *asked = cJSON_GetStringValue(field_at(document, row->key));
             double number = curve_attribute_number(place, row);
-            double wanted = number_at(document, row->key);
+            double wanted = field_number(document, row->key);
             same = text != NULL && asked != NULL
                        ? strcmp(text, asked) == 0
                        : text == asked && (number == wanted || (isnan(number) && isnan(wanted)));
@@ -197,7 +189,7 @@ static const struct curve_report *find_main(const struct case_report *report,
 }
 
 static int read_lists(const cJSON *document, struct case_report *report, struct error *err) {
-    const cJSON *curves = member(document, "curves"), *scalars = member(document, "scalars");
+    const cJSON *curves = field_at(document, "curves"), *scalars = field_at(document, "scalars");
     struct case_result *about = &report->about;
     report->curves =
         result_room(about, (size_t)cJSON_GetArraySize(curves) + 1, sizeof *report->curves);
@@ -217,12 +209,12 @@ int case_report_read(const cJSON *document, struct case_report *out, struct erro
     struct case_report report = {.realisations_total = count_at(document, "realisations_total"),
                                  .jobs = count_at(document, "jobs"),
                                  .attempts = count_at(document, "attempts"),
-                                 .seconds = number_at(document, "seconds")};
+                                 .seconds = field_number(document, "seconds")};
     report.about.case_number = count_at(document, "case");
     report.about.realisations = count_at(document, "realisations");
-    int status = result_read_parameters(&report.about, member(document, "parameters"), err);
+    int status = result_read_parameters(&report.about, field_at(document, "parameters"), err);
     if (status == 0)
-        status = result_read_notes(&report.about, member(document, "notes"), err);
+        status = result_read_notes(&report.about, field_at(document, "notes"), err);
     if (status == 0)
         status = read_lists(document, &report, err);
     if (status != 0) {
@@ -236,8 +228,8 @@ int case_report_read(const cJSON *document, struct case_report *out, struct erro
 
 int study_report_read(const cJSON *document, struct study_report *out, struct error *err) {
     struct study_result head = {0};
-    struct study_report report = {.seconds = number_at(document, "seconds")};
-    const cJSON *cases = member(document, "cases");
+    struct study_report report = {.seconds = field_number(document, "seconds")};
+    const cJSON *cases = field_at(document, "cases");
     int status = study_head_read(document, &head, err);
     report.cases = array_create((size_t)cJSON_GetArraySize(cases), sizeof *report.cases);
     if (status == 0 && report.cases == NULL)

@@ -1,3 +1,4 @@
+#include "schema/json/field.h"
 #include "schema/result/result_json.h"
 #include <math.h>
 #include <stdlib.h>
@@ -9,10 +10,6 @@ struct reading {
     struct error *err;
 };
 
-static const cJSON *member(const cJSON *object, const char *key) {
-    return cJSON_GetObjectItemCaseSensitive(object, key);
-}
-
 static int fault(const struct reading *reading, const char *key, const char *what) {
     return error_set(reading->err, ERROR_INPUT, "\"%s\" of a result must be %s", key, what);
 }
@@ -21,15 +18,9 @@ static int no_memory(const struct reading *reading) {
     return error_set(reading->err, ERROR_MEMORY, "no memory left to read a result");
 }
 
-/* NaN for what is null or absent. */
-static double number_at(const cJSON *object, const char *key) {
-    const cJSON *value = member(object, key);
-    return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
-}
-
 static int read_text(const struct reading *reading, const cJSON *object, const char *key,
                      const char **out) {
-    const char *text = cJSON_GetStringValue(member(object, key));
+    const char *text = cJSON_GetStringValue(field_at(object, key));
     if (text == NULL)
         return fault(reading, key, "a string");
     *out = result_text(reading->result, text);
@@ -39,7 +30,7 @@ static int read_text(const struct reading *reading, const cJSON *object, const c
 /* The array of `n` numbers or nulls under a key. */
 static int read_numbers(const struct reading *reading, const cJSON *object, const char *key,
                         size_t n, const double **out) {
-    const cJSON *array = member(object, key);
+    const cJSON *array = field_at(object, key);
     if (!cJSON_IsArray(array) || (size_t)cJSON_GetArraySize(array) != n)
         return fault(reading, key, "an array as long as x");
     double *numbers = result_numbers(reading->result, n);
@@ -57,7 +48,7 @@ static int read_numbers(const struct reading *reading, const cJSON *object, cons
 /* All cells of an array of rows, dense. */
 static int read_dense(const struct reading *reading, const cJSON *object, const char *key,
                       const struct curve *curve, double **out) {
-    const cJSON *rows = member(object, key);
+    const cJSON *rows = field_at(object, key);
     if (!cJSON_IsArray(rows) || (size_t)cJSON_GetArraySize(rows) != curve->n)
         return fault(reading, key, "an array of as many rows as x");
     double *cells = result_numbers(reading->result, curve->n * curve->columns);
@@ -111,14 +102,14 @@ int curve_read_attributes(struct case_result *result, const cJSON *object, struc
     const struct reading reading = {result, err};
     for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++) {
         const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
-        const cJSON *value = member(object, row->key);
+        const cJSON *value = field_at(object, row->key);
         const char *text = cJSON_GetStringValue(value);
         if (value != NULL && row->type == ATTRIBUTE_TEXT && text == NULL)
             return fault(&reading, row->key, "a string");
         const char *copy = result_text(result, text);
         if (text != NULL && copy == NULL)
             return no_memory(&reading);
-        curve_set_attribute(curve, row, copy, number_at(object, row->key));
+        curve_set_attribute(curve, row, copy, field_number(object, row->key));
     }
     return curve->series != NULL ? 0 : fault(&reading, "series", "a string");
 }
@@ -128,22 +119,22 @@ static int read_error(const struct reading *reading, const cJSON *object, enum e
     const struct error_source_row *row = &ERROR_SOURCE_ROWS[source];
     struct curve_error *error = &curve->errors[source];
     *error = (struct curve_error){.order = NAN};
-    if (!cJSON_IsArray(member(object, row->key)))
+    if (!cJSON_IsArray(field_at(object, row->key)))
         return 0;
     int status = read_numbers(reading, object, row->key, curve->n, &error->value);
     if (status == 0)
         status = read_numbers(reading, object, row->standard_error_key, curve->n,
                               &error->standard_error);
     if (row->order_key != NULL) {
-        const char *from = cJSON_GetStringValue(member(object, row->order_from_key));
-        error->order = number_at(object, row->order_key);
+        const char *from = cJSON_GetStringValue(field_at(object, row->order_from_key));
+        error->order = field_number(object, row->order_key);
         error->order_observed = from != NULL && strcmp(from, "levels") == 0;
     }
     return status;
 }
 
 static int read_theories(const struct reading *reading, const cJSON *object, struct curve *curve) {
-    const cJSON *theories = member(object, "theory");
+    const cJSON *theories = field_at(object, "theory");
     for (const cJSON *item = theories != NULL ? theories->child : NULL; item != NULL;
          item = item->next) {
         if (curve->theory_count == THEORIES_MOST || item->string == NULL)
@@ -165,7 +156,7 @@ static int read_theories(const struct reading *reading, const cJSON *object, str
 }
 
 static int read_points(const struct reading *reading, const cJSON *object, struct curve *curve) {
-    const cJSON *x = member(object, "x"), *x2 = member(object, "x2");
+    const cJSON *x = field_at(object, "x"), *x2 = field_at(object, "x2");
     if (!cJSON_IsArray(x) || (x2 != NULL && !cJSON_IsArray(x2)))
         return fault(reading, "x", "an array");
     curve->n = (size_t)cJSON_GetArraySize(x);
@@ -202,11 +193,11 @@ static int read_curve(const struct reading *reading, const cJSON *object) {
         status = read_error(reading, object, (enum error_source)s, &curve);
     if (status == 0)
         status = read_theories(reading, object, &curve);
-    if (status == 0 && member(object, "valueless") != NULL)
+    if (status == 0 && field_at(object, "valueless") != NULL)
         status = read_numbers(reading, object, "valueless", curve.n, &curve.valueless);
-    curve.counted = member(object, "underflow") != NULL;
-    curve.underflow = number_at(object, "underflow");
-    curve.overflow = number_at(object, "overflow");
+    curve.counted = field_at(object, "underflow") != NULL;
+    curve.underflow = field_number(object, "underflow");
+    curve.overflow = field_number(object, "overflow");
     return status != 0 ? status : result_add_curve(reading->result, &curve, reading->err);
 }
 
@@ -217,9 +208,9 @@ static int read_scalars(const struct reading *reading, const cJSON *scalars) {
     for (const cJSON *item = scalars != NULL ? scalars->child : NULL; item != NULL && status == 0;
          item = item->next) {
         struct scalar scalar = {.name = result_text(reading->result, item->string),
-                                .value = number_at(item, "value"),
-                                .standard_error = number_at(item, "standard_error"),
-                                .theory = number_at(item, "theory")};
+                                .value = field_number(item, "value"),
+                                .standard_error = field_number(item, "standard_error"),
+                                .theory = field_number(item, "theory")};
         status = scalar.name != NULL ? result_add_scalar(reading->result, &scalar, reading->err)
                                      : no_memory(reading);
     }
@@ -230,14 +221,14 @@ int result_read_notes(struct case_result *result, const cJSON *notes, struct err
     const struct reading reading = {result, err};
     if (notes == NULL)
         return 0;
-    const cJSON *kept = member(notes, "kept");
+    const cJSON *kept = field_at(notes, "kept");
     size_t count = (size_t)cJSON_GetArraySize(kept), n = 0;
-    double all = number_at(notes, "count");
+    double all = field_number(notes, "count");
     struct result_note *list = result_room(result, count + 1, sizeof *list);
     if (list == NULL)
         return no_memory(&reading);
     for (const cJSON *item = kept != NULL ? kept->child : NULL; item != NULL; item = item->next) {
-        double realisation = number_at(item, "realisation");
+        double realisation = field_number(item, "realisation");
         int status = read_text(&reading, item, "text", &list[n].text);
         if (status != 0)
             return status;
@@ -277,7 +268,7 @@ int result_read_parameters(struct case_result *result, const cJSON *parameters, 
 
 static int read_count(const struct reading *reading, const cJSON *document, const char *key,
                       uint64_t *out) {
-    double number = number_at(document, key);
+    double number = field_number(document, key);
     if (!(number >= 0 && number <= 0x1p53 && number == floor(number)))
         return fault(reading, key, "an integer of 0 to 2^53");
     *out = (uint64_t)number;
@@ -291,15 +282,15 @@ int result_read(const cJSON *document, struct case_result *out, struct error *er
     if (status == 0)
         status = read_count(&reading, document, "realisations", &result.realisations);
     if (status == 0)
-        status = result_read_parameters(&result, member(document, "parameters"), err);
+        status = result_read_parameters(&result, field_at(document, "parameters"), err);
     if (status == 0)
-        status = read_scalars(&reading, member(document, "scalars"));
-    const cJSON *curves = member(document, "curves");
+        status = read_scalars(&reading, field_at(document, "scalars"));
+    const cJSON *curves = field_at(document, "curves");
     for (const cJSON *item = curves != NULL ? curves->child : NULL; item != NULL && status == 0;
          item = item->next)
         status = read_curve(&reading, item);
     if (status == 0)
-        status = result_read_notes(&result, member(document, "notes"), err);
+        status = result_read_notes(&result, field_at(document, "notes"), err);
     if (status != 0) {
         result_clear(&result);
         return status;
@@ -331,7 +322,7 @@ int study_head_read(const cJSON *document, struct study_result *out, struct erro
     } texts[] = {
         {"study", &out->id}, {"name", &out->name}, {"kind", &out->kind}, {"state", &out->state}};
     for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
-        const char *text = cJSON_GetStringValue(member(document, texts[t].key));
+        const char *text = cJSON_GetStringValue(field_at(document, texts[t].key));
         if (text == NULL)
             return error_set(err, ERROR_INPUT, "\"%s\" of a result must be a string", texts[t].key);
         *texts[t].text = strdup(text);
@@ -345,7 +336,7 @@ int study_result_read(const cJSON *document, struct study_result *out, struct er
     struct study_result study = {0};
     int status = study_head_read(document, &study, err);
     if (status == 0)
-        status = read_cases(member(document, "cases"), &study, err);
+        status = read_cases(field_at(document, "cases"), &study, err);
     if (status != 0) {
         study_result_clear(&study);
         return status;

@@ -1,4 +1,5 @@
 /* The JSON Schema of studies, from the same tables that read them. */
+#include "schema/json/field.h"
 #include "schema/study/common.h"
 #include "schema/study/value.h"
 #include <math.h>
@@ -6,26 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Adds value (taken) to object; false, and gone, when out of memory. */
-static bool put(cJSON *object, const char *name, cJSON *value) {
-    if (object && value && cJSON_AddItemToObject(object, name, value))
-        return true;
-    cJSON_Delete(value);
-    return false;
-}
-
-static bool put_text(cJSON *object, const char *name, const char *text) {
-    return put(object, name, cJSON_CreateString(text));
-}
-
 static bool put_bounds(cJSON *schema, const struct parameter *parameter) {
     bool complete = true;
     if (isfinite(parameter->minimum))
-        complete = put(schema, parameter->above_minimum ? "exclusiveMinimum" : "minimum",
-                       cJSON_CreateNumber(parameter->minimum));
+        complete = field_put(schema, parameter->above_minimum ? "exclusiveMinimum" : "minimum",
+                             cJSON_CreateNumber(parameter->minimum));
     if (complete && isfinite(parameter->maximum))
-        complete = put(schema, parameter->below_maximum ? "exclusiveMaximum" : "maximum",
-                       cJSON_CreateNumber(parameter->maximum));
+        complete = field_put(schema, parameter->below_maximum ? "exclusiveMaximum" : "maximum",
+                             cJSON_CreateNumber(parameter->maximum));
     return complete;
 }
 
@@ -39,7 +28,7 @@ static cJSON *checked(cJSON *schema, bool complete) {
 static cJSON *number_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
     bool integer = parameter->type == PARAMETER_INTEGER || parameter->type == PARAMETER_SEED;
-    return checked(schema, put_text(schema, "type", integer ? "integer" : "number") &&
+    return checked(schema, field_put_text(schema, "type", integer ? "integer" : "number") &&
                                put_bounds(schema, parameter));
 }
 
@@ -72,10 +61,10 @@ static cJSON *either(cJSON *first, cJSON *second) {
 /* One choice alone, or an array of different ones. */
 static cJSON *choices_schema(const struct parameter *parameter) {
     cJSON *list = cJSON_CreateObject();
-    bool complete = put_text(list, "type", "array") &&
-                    put(list, "items", choice_schema(parameter)) &&
-                    put(list, "minItems", cJSON_CreateNumber(1)) &&
-                    put(list, "uniqueItems", cJSON_CreateTrue());
+    bool complete = field_put_text(list, "type", "array") &&
+                    field_put(list, "items", choice_schema(parameter)) &&
+                    field_put(list, "minItems", cJSON_CreateNumber(1)) &&
+                    field_put(list, "uniqueItems", cJSON_CreateTrue());
     return either(choice_schema(parameter), checked(list, complete));
 }
 
@@ -84,29 +73,31 @@ static cJSON *measure_schema(const struct parameter *parameter) {
     cJSON *object = cJSON_CreateObject(), *units = cJSON_CreateObject();
     bool complete = units != NULL;
     for (const struct choice *unit = parameter->units; complete && unit->name != NULL; unit++)
-        complete = put(units, unit->name, number_schema(parameter));
+        complete = field_put(units, unit->name, number_schema(parameter));
     units = checked(units, complete);
-    complete = put(object, "properties", units) && put_text(object, "type", "object") &&
-               put(object, "additionalProperties", cJSON_CreateFalse()) &&
-               put(object, "minProperties", cJSON_CreateNumber(1)) &&
-               put(object, "maxProperties", cJSON_CreateNumber(1));
+    complete = field_put(object, "properties", units) && field_put_text(object, "type", "object") &&
+               field_put(object, "additionalProperties", cJSON_CreateFalse()) &&
+               field_put(object, "minProperties", cJSON_CreateNumber(1)) &&
+               field_put(object, "maxProperties", cJSON_CreateNumber(1));
     return either(choice_schema(parameter), checked(object, complete));
 }
 
 static cJSON *numbers_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
-    return checked(schema,
-                   put_text(schema, "type", "array") &&
-                       put(schema, "items", number_schema(parameter)) &&
-                       put(schema, "minItems", cJSON_CreateNumber((double)parameter->items_low)) &&
-                       put(schema, "maxItems", cJSON_CreateNumber((double)parameter->items_high)));
+    return checked(
+        schema,
+        field_put_text(schema, "type", "array") &&
+            field_put(schema, "items", number_schema(parameter)) &&
+            field_put(schema, "minItems", cJSON_CreateNumber((double)parameter->items_low)) &&
+            field_put(schema, "maxItems", cJSON_CreateNumber((double)parameter->items_high)));
 }
 
 static cJSON *text_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
-    return checked(schema, put_text(schema, "type", "string") &&
-                               put(schema, "minLength", cJSON_CreateNumber(parameter->minimum)) &&
-                               put(schema, "maxLength", cJSON_CreateNumber(parameter->maximum)));
+    return checked(schema,
+                   field_put_text(schema, "type", "string") &&
+                       field_put(schema, "minLength", cJSON_CreateNumber(parameter->minimum)) &&
+                       field_put(schema, "maxLength", cJSON_CreateNumber(parameter->maximum)));
 }
 
 /* The decimal numbers up to 2^64 - 1: those of fewer digits, and those which have the first digits
@@ -128,7 +119,8 @@ static cJSON *seed_schema(const struct parameter *parameter) {
     char pattern[1024];
     seed_pattern(pattern, sizeof pattern);
     cJSON *string = cJSON_CreateObject();
-    bool complete = put_text(string, "type", "string") && put_text(string, "pattern", pattern);
+    bool complete =
+        field_put_text(string, "type", "string") && field_put_text(string, "pattern", pattern);
     return either(number_schema(parameter), checked(string, complete));
 }
 
@@ -159,9 +151,9 @@ static bool put_remarks(cJSON *schema, const struct parameter *parameter) {
     char text[600];
     snprintf(text, sizeof text, "%s%s%s%s", parameter->help, parameter->unit != NULL ? " [" : "",
              parameter->unit != NULL ? parameter->unit : "", parameter->unit != NULL ? "]" : "");
-    bool complete = put_text(schema, "description", text);
+    bool complete = field_put_text(schema, "description", text);
     if (complete && parameter->default_json != NULL)
-        complete = put(schema, "default", value_default(parameter));
+        complete = field_put(schema, "default", value_default(parameter));
     cJSON *examples = complete && parameter->example_json != NULL
                           ? cJSON_AddArrayToObject(schema, "examples")
                           : NULL;
@@ -187,8 +179,9 @@ static cJSON *parameter_schema(const struct parameter *parameter) {
     if (!parameter->sweep)
         return schema;
     cJSON *list = cJSON_CreateObject();
-    complete = put_text(list, "type", "array") && put(list, "items", value_schema(parameter)) &&
-               put(list, "minItems", cJSON_CreateNumber(1));
+    complete = field_put_text(list, "type", "array") &&
+               field_put(list, "items", value_schema(parameter)) &&
+               field_put(list, "minItems", cJSON_CreateNumber(1));
     list = checked(list, complete);
     if (!list || !cJSON_AddItemToArray(forms, list))
         return checked(schema, false);
@@ -197,10 +190,10 @@ static cJSON *parameter_schema(const struct parameter *parameter) {
 
 static cJSON *object_schema(void) {
     cJSON *schema = cJSON_CreateObject();
-    bool complete = put_text(schema, "type", "object") &&
-                    put(schema, "properties", cJSON_CreateObject()) &&
-                    put(schema, "required", cJSON_CreateArray()) &&
-                    put(schema, "additionalProperties", cJSON_CreateFalse());
+    bool complete = field_put_text(schema, "type", "object") &&
+                    field_put(schema, "properties", cJSON_CreateObject()) &&
+                    field_put(schema, "required", cJSON_CreateArray()) &&
+                    field_put(schema, "additionalProperties", cJSON_CreateFalse());
     return checked(schema, complete);
 }
 
@@ -224,8 +217,8 @@ static bool place(cJSON *schema, const struct parameter *parameter) {
             return false;
         cJSON *properties = cJSON_GetObjectItemCaseSensitive(schema, "properties");
         if (!at[length])
-            return put(properties, name, parameter_schema(parameter));
-        if (!cJSON_HasObjectItem(properties, name) && !put(properties, name, object_schema()))
+            return field_put(properties, name, parameter_schema(parameter));
+        if (!cJSON_HasObjectItem(properties, name) && !field_put(properties, name, object_schema()))
             return false;
         schema = cJSON_GetObjectItemCaseSensitive(properties, name);
         at += length + 1;
@@ -254,8 +247,8 @@ static cJSON *condition_schema(const struct study_kind *kind) {
     cJSON *schema = cJSON_CreateObject();
     cJSON *properties = schema != NULL ? cJSON_AddObjectToObject(schema, "properties") : NULL;
     cJSON *named = properties != NULL ? cJSON_AddObjectToObject(properties, "kind") : NULL;
-    bool complete = put_text(named, "const", kind->name) &&
-                    put(schema, "required", cJSON_CreateArray()) && require(schema, "kind");
+    bool complete = field_put_text(named, "const", kind->name) &&
+                    field_put(schema, "required", cJSON_CreateArray()) && require(schema, "kind");
     return checked(schema, complete);
 }
 
@@ -268,10 +261,10 @@ static cJSON *kind_schema(const struct study_kind *kind) {
         complete = place(schema, row);
     cJSON *properties = cJSON_GetObjectItemCaseSensitive(schema, "properties");
     for (size_t p = 0; complete && p < COMMON_PARAMETERS.count; p++)
-        complete = put(properties, COMMON_PARAMETERS.rows[p].path + 1, cJSON_CreateObject());
+        complete = field_put(properties, COMMON_PARAMETERS.rows[p].path + 1, cJSON_CreateObject());
     cJSON *count = cJSON_GetObjectItemCaseSensitive(properties, "realisations");
-    complete =
-        complete && put(count, "default", cJSON_CreateNumber((double)kind->default_realisations));
+    complete = complete &&
+               field_put(count, "default", cJSON_CreateNumber((double)kind->default_realisations));
     return checked(schema, complete);
 }
 
@@ -279,16 +272,16 @@ static cJSON *kind_schema(const struct study_kind *kind) {
  * kind that it names, and tell what is wrong with it as such. */
 static cJSON *branch_schema(const struct study_kind *kind) {
     cJSON *schema = cJSON_CreateObject();
-    return checked(schema, put(schema, "if", condition_schema(kind)) &&
-                               put(schema, "then", kind_schema(kind)));
+    return checked(schema, field_put(schema, "if", condition_schema(kind)) &&
+                               field_put(schema, "then", kind_schema(kind)));
 }
 
 cJSON *study_schema(const struct study_kind *const *kinds) {
     cJSON *schema = common_schema(kinds);
     bool complete =
-        put_text(schema, "$schema", "https://json-schema.org/draft/2020-12/schema") &&
-        put_text(schema, "title", "Rugo study") &&
-        put_text(
+        field_put_text(schema, "$schema", "https://json-schema.org/draft/2020-12/schema") &&
+        field_put_text(schema, "title", "Rugo study") &&
+        field_put_text(
             schema, "description",
             "Structure, types and ranges. What no single value shows (a grid too large for memory, "
             "parameters that exclude each other) is told by rugo check.");

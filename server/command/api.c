@@ -1,18 +1,8 @@
 #include "server/command/api.h"
+#include "schema/json/field.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-static bool put(cJSON *object, const char *name, cJSON *value) {
-    if (value && cJSON_AddItemToObject(object, name, value))
-        return true;
-    cJSON_Delete(value);
-    return false;
-}
-
-static bool put_count(cJSON *object, const char *name, uint64_t count) {
-    return put(object, name, cJSON_CreateNumber((double)count));
-}
 
 static int finish(cJSON *document, bool complete, cJSON **out, struct error *err) {
     if (!document || !complete) {
@@ -27,11 +17,11 @@ static int finish(cJSON *document, bool complete, cJSON **out, struct error *err
 
 static cJSON *submitted(const struct study_status *status, bool *complete) {
     cJSON *document = cJSON_CreateObject();
-    *complete = document && put(document, "id", cJSON_CreateString(status->id)) &&
-                put(document, "name", cJSON_CreateString(status->name)) &&
-                put(document, "state", cJSON_CreateString(status->state)) &&
-                put_count(document, "cases", status->cases) &&
-                put_count(document, "jobs", status->jobs);
+    *complete = document && field_put(document, "id", cJSON_CreateString(status->id)) &&
+                field_put(document, "name", cJSON_CreateString(status->name)) &&
+                field_put(document, "state", cJSON_CreateString(status->state)) &&
+                field_put_count(document, "cases", status->cases) &&
+                field_put_count(document, "jobs", status->jobs);
     return document;
 }
 
@@ -54,23 +44,23 @@ int api_submit(struct store *store, const struct study *study, const char *key, 
 
 static bool put_jobs(cJSON *object, const struct study_status *status) {
     cJSON *jobs = cJSON_AddObjectToObject(object, "jobs");
-    return jobs && put_count(jobs, "total", status->jobs) &&
-           put_count(jobs, "done", status->jobs_done) &&
-           put_count(jobs, "failed", status->jobs_failed) &&
-           put_count(jobs, "running", status->jobs_running) &&
-           put_count(jobs, "waiting", status->jobs_waiting) &&
-           put_count(jobs, "cancelled", status->jobs_cancelled);
+    return jobs && field_put_count(jobs, "total", status->jobs) &&
+           field_put_count(jobs, "done", status->jobs_done) &&
+           field_put_count(jobs, "failed", status->jobs_failed) &&
+           field_put_count(jobs, "running", status->jobs_running) &&
+           field_put_count(jobs, "waiting", status->jobs_waiting) &&
+           field_put_count(jobs, "cancelled", status->jobs_cancelled);
 }
 
 static bool put_realisations(cJSON *object, const struct study_status *status) {
     cJSON *realisations = cJSON_AddObjectToObject(object, "realisations");
-    return realisations && put_count(realisations, "total", status->realisations_total) &&
-           put_count(realisations, "done", status->realisations_done) &&
-           put_count(realisations, "failed", status->realisations_failed);
+    return realisations && field_put_count(realisations, "total", status->realisations_total) &&
+           field_put_count(realisations, "done", status->realisations_done) &&
+           field_put_count(realisations, "failed", status->realisations_failed);
 }
 
 static bool put_time(cJSON *object, const char *name, const char *time) {
-    return put(object, name, *time ? cJSON_CreateString(time) : cJSON_CreateNull());
+    return field_put(object, name, *time ? cJSON_CreateString(time) : cJSON_CreateNull());
 }
 
 /* Time left of a study nobody works on is what one worker would need. */
@@ -82,18 +72,18 @@ static cJSON *progress(const struct study_status *status, bool *complete) {
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)status->seed);
     cJSON *document = cJSON_CreateObject();
-    *complete = document && put(document, "id", cJSON_CreateString(status->id)) &&
-                put(document, "name", cJSON_CreateString(status->name)) &&
-                put(document, "kind", cJSON_CreateString(status->kind)) &&
-                put(document, "state", cJSON_CreateString(status->state)) &&
-                put(document, "seed", cJSON_CreateString(seed)) &&
-                put_count(document, "cases", status->cases) &&
-                put_count(document, "cases_failed", status->cases_failed) &&
+    *complete = document && field_put(document, "id", cJSON_CreateString(status->id)) &&
+                field_put(document, "name", cJSON_CreateString(status->name)) &&
+                field_put(document, "kind", cJSON_CreateString(status->kind)) &&
+                field_put(document, "state", cJSON_CreateString(status->state)) &&
+                field_put(document, "seed", cJSON_CreateString(seed)) &&
+                field_put_count(document, "cases", status->cases) &&
+                field_put_count(document, "cases_failed", status->cases_failed) &&
                 put_jobs(document, status) && put_realisations(document, status) &&
-                put_count(document, "workers", status->workers) &&
-                put(document, "seconds", json_number(status->seconds)) &&
-                put(document, "seconds_left", json_number(time_left(status))) &&
-                put_count(document, "revision", status->revision) &&
+                field_put_count(document, "workers", status->workers) &&
+                field_put(document, "seconds", json_number(status->seconds)) &&
+                field_put(document, "seconds_left", json_number(time_left(status))) &&
+                field_put_count(document, "revision", status->revision) &&
                 put_time(document, "created", status->created) &&
                 put_time(document, "finished", status->finished);
     return document;
@@ -105,16 +95,16 @@ static bool put_failures(cJSON *document, const struct failure *failures, size_t
     for (size_t i = 0; complete && i < count; i++) {
         const struct failure *failure = &failures[i];
         cJSON *entry = cJSON_CreateObject();
-        complete =
-            entry && cJSON_AddItemToArray(list, entry) &&
-            put(entry, "job",
-                failure->job ? cJSON_CreateNumber((double)failure->job) : cJSON_CreateNull()) &&
-            put_count(entry, "case", failure->case_number) &&
-            put_count(entry, "first", failure->first) &&
-            put_count(entry, "count", failure->count) &&
-            put_count(entry, "attempts", failure->attempts) &&
-            put(entry, "worker", cJSON_CreateString(failure->worker)) &&
-            put(entry, "reason", cJSON_CreateString(failure->reason));
+        complete = entry && cJSON_AddItemToArray(list, entry) &&
+                   field_put(entry, "job",
+                             failure->job ? cJSON_CreateNumber((double)failure->job)
+                                          : cJSON_CreateNull()) &&
+                   field_put_count(entry, "case", failure->case_number) &&
+                   field_put_count(entry, "first", failure->first) &&
+                   field_put_count(entry, "count", failure->count) &&
+                   field_put_count(entry, "attempts", failure->attempts) &&
+                   field_put(entry, "worker", cJSON_CreateString(failure->worker)) &&
+                   field_put(entry, "reason", cJSON_CreateString(failure->reason));
     }
     return complete;
 }
@@ -153,7 +143,7 @@ int api_list(struct store *store, const char *after, size_t limit, cJSON **out, 
     }
     /* A full page may have a next one. */
     if (complete && count == limit)
-        complete = put(document, "next", cJSON_CreateString(list[count - 1].id));
+        complete = field_put(document, "next", cJSON_CreateString(list[count - 1].id));
     for (size_t i = 0; i < count; i++)
         study_status_clear(&list[i]);
     free(list);
@@ -170,7 +160,7 @@ int api_retry(struct store *store, const char *id, cJSON **out, struct error *er
     int status = store_retry(store, id, &count, err);
     if (!status)
         status = api_status(store, id, out, err);
-    if (!status && !put_count(*out, "retried", count)) {
+    if (!status && !field_put_count(*out, "retried", count)) {
         cJSON_Delete(*out);
         *out = NULL;
         status = error_memory(err, 0, "a document");

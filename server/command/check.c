@@ -1,5 +1,6 @@
 /* `rugo check`: what a study would do, and what it would cost; runs nothing. */
 #include "jobs/kind.h"
+#include "schema/json/field.h"
 #include "server/command/command.h"
 #include "server/command/options.h"
 #include "server/show/summary_cells.h"
@@ -102,24 +103,17 @@ static void print_text(const struct study *study) {
 
 /* --- JSON --- */
 
-static bool put(cJSON *object, const char *name, cJSON *value) {
-    if (value && cJSON_AddItemToObject(object, name, value))
-        return true;
-    cJSON_Delete(value);
-    return false;
-}
-
 static cJSON *case_document(const struct study *study, size_t c) {
     const struct study_case *one = &study->cases[c];
     cJSON *document = cJSON_CreateObject();
-    bool complete = document && put(document, "case", cJSON_CreateNumber((double)c)) &&
-                    put(document, "parameters", cJSON_Duplicate(one->parameters, true)) &&
-                    put(document, "nx", cJSON_CreateNumber((double)one->cost.nx)) &&
-                    put(document, "ny", cJSON_CreateNumber((double)one->cost.ny)) &&
-                    put(document, "memory_bytes", json_number(one->cost.memory_bytes)) &&
-                    put(document, "block", cJSON_CreateNumber((double)one->block)) &&
-                    put(document, "seconds", json_number(case_seconds(study, c))) &&
-                    put(document, "relative_error", json_number(case_error(study, c)));
+    bool complete = document && field_put(document, "case", cJSON_CreateNumber((double)c)) &&
+                    field_put(document, "parameters", cJSON_Duplicate(one->parameters, true)) &&
+                    field_put(document, "nx", cJSON_CreateNumber((double)one->cost.nx)) &&
+                    field_put(document, "ny", cJSON_CreateNumber((double)one->cost.ny)) &&
+                    field_put(document, "memory_bytes", json_number(one->cost.memory_bytes)) &&
+                    field_put(document, "block", cJSON_CreateNumber((double)one->block)) &&
+                    field_put(document, "seconds", json_number(case_seconds(study, c))) &&
+                    field_put(document, "relative_error", json_number(case_error(study, c)));
     if (complete)
         return document;
     cJSON_Delete(document);
@@ -149,13 +143,13 @@ static int print_study_json(const struct study *study, struct error *err) {
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
     bool complete =
-        document && put(document, "name", cJSON_CreateString(study->name)) &&
-        put(document, "kind", cJSON_CreateString(study->kind->name)) &&
-        put(document, "seed", cJSON_CreateString(seed)) &&
-        put(document, "realisations", cJSON_CreateNumber((double)study->realisations)) &&
-        put(document, "seconds", json_number(total_seconds(study))) &&
-        put(document, "memory_bytes", json_number(largest_memory(study))) &&
-        put(document, "cases", cJSON_CreateArray());
+        document && field_put(document, "name", cJSON_CreateString(study->name)) &&
+        field_put(document, "kind", cJSON_CreateString(study->kind->name)) &&
+        field_put(document, "seed", cJSON_CreateString(seed)) &&
+        field_put(document, "realisations", cJSON_CreateNumber((double)study->realisations)) &&
+        field_put(document, "seconds", json_number(total_seconds(study))) &&
+        field_put(document, "memory_bytes", json_number(largest_memory(study))) &&
+        field_put(document, "cases", cJSON_CreateArray());
     cJSON *cases = cJSON_GetObjectItemCaseSensitive(document, "cases");
     for (size_t c = 0; complete && c < study->case_count; c++) {
         cJSON *one = case_document(study, c);

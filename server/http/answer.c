@@ -1,4 +1,5 @@
 /* Answers of the routes: documents, texts, problems. */
+#include "schema/json/field.h"
 #include "server/http/http.h"
 #include "worker/log.h"
 #include <stdlib.h>
@@ -116,10 +117,6 @@ static const char *problem_title(unsigned status) {
     }
 }
 
-static bool put_text(cJSON *object, const char *name, const char *text) {
-    return cJSON_AddStringToObject(object, name, text) != NULL;
-}
-
 static bool put_faults(cJSON *problem, const struct fault_list *faults) {
     cJSON *errors = cJSON_AddArrayToObject(problem, "errors");
     size_t kept = faults->count < FAULTS_KEPT ? faults->count : FAULTS_KEPT;
@@ -128,8 +125,8 @@ static bool put_faults(cJSON *problem, const struct fault_list *faults) {
         const struct fault *fault = &faults->faults[i];
         cJSON *entry = cJSON_CreateObject();
         complete = entry && cJSON_AddItemToArray(errors, entry) &&
-                   put_text(entry, "pointer", fault->pointer ? fault->pointer : "") &&
-                   put_text(entry, "detail", fault->detail ? fault->detail : "");
+                   field_put_text(entry, "pointer", fault->pointer ? fault->pointer : "") &&
+                   field_put_text(entry, "detail", fault->detail ? fault->detail : "");
     }
     return complete;
 }
@@ -137,10 +134,10 @@ static bool put_faults(cJSON *problem, const struct fault_list *faults) {
 void answer_problem(struct exchange *exchange, unsigned status, const char *detail,
                     const struct fault_list *faults) {
     cJSON *problem = cJSON_CreateObject();
-    bool complete = problem && put_text(problem, "type", "about:blank") &&
-                    put_text(problem, "title", problem_title(status)) &&
+    bool complete = problem && field_put_text(problem, "type", "about:blank") &&
+                    field_put_text(problem, "title", problem_title(status)) &&
                     cJSON_AddNumberToObject(problem, "status", status) &&
-                    put_text(problem, "detail", detail) &&
+                    field_put_text(problem, "detail", detail) &&
                     (!faults || !faults->count || put_faults(problem, faults));
     if (!complete) {
         cJSON_Delete(problem);

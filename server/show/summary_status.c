@@ -1,5 +1,5 @@
 #include "server/show/summary_status.h"
-#include "schema/json/wire_field.h"
+#include "schema/json/field.h"
 #include "server/show/summary_cells.h"
 #include <math.h>
 

@@ -5,7 +5,7 @@
 #include "jobs/kind.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
-#include "jobs/value.h"
+#include "schema/json/json.h"
 #include "tests/support/result_tree.h"
 #include <math.h>
 #include <setjmp.h>
@@ -41,7 +41,7 @@ static inline cJSON *solve(const char *study, uint64_t count) {
 }
 
 static inline bool text_is(const cJSON *object, const char *key, const char *text) {
-    const cJSON *value = value_at(object, key);
+    const cJSON *value = json_at(object, key);
     return cJSON_IsString(value) && strcmp(value->valuestring, text) == 0;
 }
 
@@ -49,7 +49,7 @@ static inline bool text_is(const cJSON *object, const char *key, const char *tex
 static inline const cJSON *curve_of(const cJSON *document, const char *quantity, const char *series,
                                     const char *model) {
     const cJSON *curve;
-    cJSON_ArrayForEach(curve, value_at(document, "/curves")) {
+    cJSON_ArrayForEach(curve, json_at(document, "/curves")) {
         if (text_is(curve, "/quantity", quantity) && text_is(curve, "/series", series) &&
             text_is(curve, "/model", model))
             return curve;
@@ -59,11 +59,11 @@ static inline const cJSON *curve_of(const cJSON *document, const char *quantity,
 }
 
 static inline int points(const cJSON *curve) {
-    return cJSON_GetArraySize(value_at(curve, "/x"));
+    return cJSON_GetArraySize(json_at(curve, "/x"));
 }
 
 static inline double at(const cJSON *curve, const char *key, int point) {
-    const cJSON *value = cJSON_GetArrayItem(value_at(curve, key), point);
+    const cJSON *value = cJSON_GetArrayItem(json_at(curve, key), point);
     return cJSON_IsNumber(value) ? value->valuedouble : NAN;
 }
 

@@ -4,7 +4,7 @@
 #include "jobs/kind.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
-#include "jobs/value.h"
+#include "schema/json/json.h"
 #include "schema/result/bytes.h"
 #include "tests/support/result_tree.h"
 #include "tests/support/seed.h"
@@ -129,16 +129,16 @@ static cJSON *document_of(const char *study, uint64_t count) {
 }
 
 static bool text_is(const cJSON *object, const char *key, const char *text) {
-    const cJSON *value = value_at(object, key);
+    const cJSON *value = json_at(object, key);
     return cJSON_IsString(value) && strcmp(value->valuestring, text) == 0;
 }
 
 static const cJSON *curve_of(const cJSON *document, const char *quantity, const char *series,
                              const char *model, double level) {
     const cJSON *curve;
-    cJSON_ArrayForEach(curve, value_at(document, "/curves")) {
+    cJSON_ArrayForEach(curve, json_at(document, "/curves")) {
         if (text_is(curve, "/quantity", quantity) && text_is(curve, "/series", series) &&
-            text_is(curve, "/model", model) && value_at(curve, "/level")->valuedouble == level)
+            text_is(curve, "/model", model) && json_at(curve, "/level")->valuedouble == level)
             return curve;
     }
     fail_msg("no curve %s of %s, %s, %g", quantity, series, model, level);
@@ -146,7 +146,7 @@ static const cJSON *curve_of(const cJSON *document, const char *quantity, const 
 }
 
 static double at(const cJSON *curve, const char *key, int point) {
-    const cJSON *value = cJSON_GetArrayItem(value_at(curve, key), point);
+    const cJSON *value = cJSON_GetArrayItem(json_at(curve, key), point);
     assert_non_null(value);
     return cJSON_IsNumber(value) ? value->valuedouble : NAN;
 }
@@ -327,12 +327,12 @@ static void against_each_realisation(void **state) {
     const cJSON *curve = curve_of(document, "contact_area", "edges", "layered", 8);
     assert_near(at(curve, "/y", point), mean_of(fine, &standard_error), 1e-12);
     assert_near(at(curve, "/standard_error", point), standard_error, 1e-10);
-    assert_null(value_at(curve, "/model_error")); /* it is the most complete model */
+    assert_null(json_at(curve, "/model_error")); /* it is the most complete model */
     for (size_t r = 0; r < REALISATIONS; r++) {
         next[r] = fine[r] - next[r];
         half[r] -= fine[r];
     }
-    double order = value_at(curve, "/discretisation_order")->valuedouble;
+    double order = json_at(curve, "/discretisation_order")->valuedouble;
     double factor = 1 / (pow(2, order) - 1);
     assert_true(order >= 1 && order <= 3);
     assert_true(text_is(curve, "/discretisation_order_from", "levels"));
@@ -345,7 +345,7 @@ static void against_each_realisation(void **state) {
     assert_near(at(curve, "/model_error", point), mean_of(half, &standard_error) + beyond, 1e-10);
     assert_near(at(curve, "/model_error_standard_error", point), standard_error, 1e-10);
     curve = curve_of(document, "contact_area", "edges", "layered", 4);
-    assert_true(cJSON_IsNull(value_at(curve, "/discretisation_error")));
+    assert_true(cJSON_IsNull(json_at(curve, "/discretisation_error")));
     cJSON_Delete(document);
 }
 
@@ -366,9 +366,9 @@ static void failures_are_told(void **state) {
         valueless +=
             at(curve_of(document, "contact_area", "nodes", "full", level), "/valueless", 2);
     assert_true(valueless > 0);
-    assert_near(value_at(document, "/notes/count")->valuedouble, valueless, 0);
+    assert_near(json_at(document, "/notes/count")->valuedouble, valueless, 0);
     const char *text =
-        cJSON_GetStringValue(value_at(value_at(document, "/notes/kept")->child, "/text"));
+        cJSON_GetStringValue(json_at(json_at(document, "/notes/kept")->child, "/text"));
     double level, load, reached, pressure, highest;
     assert_int_equal(sscanf(text,
                             "model full (hencky), level %lf: load %lf, reached %lf: contact on the "
@@ -380,7 +380,7 @@ static void failures_are_told(void **state) {
     assert_true(reached < load);
     cJSON_Delete(document);
     document = document_of(LEVELS, 1);
-    assert_null(value_at(document, "/notes"));
+    assert_null(json_at(document, "/notes"));
     cJSON_Delete(document);
     block_result_clear(&result);
     merger_destroy(&merger);
@@ -409,9 +409,9 @@ static void curves_make_sense(void **state) {
     assert_near(at(stiffness, "/valueless", 1), 0, 0);
     assert_near(at(stiffness, "/valueless", 2), 3, 0);
     const cJSON *pressures = curve_of(document, "contact_pressure_pdf", "", "halfspace", 8);
-    assert_near(value_at(pressures, "/pressure")->valuedouble, 50, 0);
-    assert_near(value_at(pressures, "/overflow")->valuedouble, 3 * 16, 0); /* all points */
-    assert_true(text_is(value_at(document, "/curves")->child, "/series", "edges"));
+    assert_near(json_at(pressures, "/pressure")->valuedouble, 50, 0);
+    assert_near(json_at(pressures, "/overflow")->valuedouble, 3 * 16, 0); /* all points */
+    assert_true(text_is(json_at(document, "/curves")->child, "/series", "edges"));
     cJSON_Delete(document);
 }
 
@@ -421,8 +421,8 @@ static void pressures_are_those_in_contact(void **state) {
     cJSON *document = document_of(LEVELS, 5);
     const cJSON *pressures = curve_of(document, "contact_pressure_pdf", "", "layered", 8);
     const cJSON *nodes = curve_of(document, "contact_area", "nodes", "layered", 8);
-    double outside = value_at(pressures, "/underflow")->valuedouble +
-                     value_at(pressures, "/overflow")->valuedouble;
+    double outside = json_at(pressures, "/underflow")->valuedouble +
+                     json_at(pressures, "/overflow")->valuedouble;
     double share = outside / (5 * 64);
     for (int b = 0; b < 8; b++)
         share += at(pressures, "/y", b) * 0.1;
@@ -436,7 +436,7 @@ static void no_realisation_yet(void **state) {
     (void)state;
     struct job_merger *merger = merger_of(LEVELS);
     cJSON *document = curves_of(merger);
-    assert_true(value_at(document, "/realisations")->valuedouble == 0);
+    assert_true(json_at(document, "/realisations")->valuedouble == 0);
     const cJSON *curve = curve_of(document, "contact_area", "edges", "layered", 8);
     assert_true(isnan(at(curve, "/y", 0)) && isnan(at(curve, "/discretisation_error", 0)));
     assert_true(text_is(curve, "/discretisation_order_from", "assumed"));

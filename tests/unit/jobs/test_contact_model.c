@@ -145,10 +145,10 @@ static void fourth_model_goes_through(void **state) {
         const cJSON *solid = curve_of(document, "contact_area", "nodes", "halfspace");
         assert_true(isfinite(at(area, "/model_error", k)));
         check_relative(at(area, "/y", k) > 0 ? 1 : 0, 1, 0);
-        assert_null(value_at(solid, "/model_error"));
+        assert_null(json_at(solid, "/model_error"));
     }
     assert_true(at(spring, "/y", 1) > at(spring, "/y", 0) && at(spring, "/y", 0) > 0);
-    check_relative(value_at(document, "/scalars/winkler_shortest_spring/value")->valuedouble,
+    check_relative(json_at(document, "/scalars/winkler_shortest_spring/value")->valuedouble,
                    at(spring, "/y", 1), 1e-12);
     cJSON_Delete(document);
 }
@@ -159,13 +159,13 @@ static void table_is_all_that_is_known(void **state) {
     (void)state;
     cJSON *document = solve(STUDY("\"halfspace\""), 1);
     const cJSON *curve;
-    cJSON_ArrayForEach(curve, value_at(document, "/curves"))
+    cJSON_ArrayForEach(curve, json_at(document, "/curves"))
         assert_false(text_is(curve, "/quantity", "shortest_spring"));
-    assert_null(value_at(document, "/scalars/winkler_shortest_spring"));
-    assert_non_null(value_at(document, "/scalars/kappa"));
+    assert_null(json_at(document, "/scalars/winkler_shortest_spring"));
+    assert_non_null(json_at(document, "/scalars/kappa"));
     cJSON_Delete(document);
     document = solve(STUDY("\"winkler\""), 2);
-    assert_non_null(value_at(document, "/scalars/winkler_shortest_spring"));
+    assert_non_null(json_at(document, "/scalars/winkler_shortest_spring"));
     cJSON_Delete(document);
     struct contact_case one_case;
     struct error err = {0};

@@ -163,8 +163,8 @@ static void pressures_carry_the_load(void **state) {
                     sum += width * at(curve, "/y", b);
                     moment += width * at(curve, "/y", b) * at(curve, "/x", b);
                 }
-                assert_near(value_at(curve, "/underflow")->valuedouble, 0, 0, 0);
-                assert_near(value_at(curve, "/overflow")->valuedouble, 0, 0, 0);
+                assert_near(json_at(curve, "/underflow")->valuedouble, 0, 0, 0);
+                assert_near(json_at(curve, "/overflow")->valuedouble, 0, 0, 0);
                 check_relative(sum, at(area, "/y", k), 1e-6);
                 assert_near(moment, at(area, "/x", k), width / 2 * sum, at(area, "/x", k));
             }

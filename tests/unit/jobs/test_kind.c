@@ -1,7 +1,6 @@
-/* Protects: the table of kinds, the rows of their parameters, and the values of JSON that jobs
- * read and write. */
+/* Protects: the table of kinds, and the rows of their parameters. */
 #include "jobs/kind.h"
-#include "jobs/value.h"
+#include "schema/json/json.h"
 #include "schema/study/value.h"
 #include <math.h>
 #include <setjmp.h>
@@ -11,25 +10,6 @@
 #include <string.h>
 
 #include <cmocka.h>
-
-static void values(void **state) {
-    (void)state;
-    cJSON *object = cJSON_Parse("{\"a\": {\"bc\": 1, \"b\": {\"c\": 2}}, \"A\": 3}");
-    assert_true(value_at(object, "/a/b/c")->valuedouble == 2);
-    assert_true(value_at(object, "/a/bc")->valuedouble == 1);
-    assert_true(value_at(object, "/A")->valuedouble == 3);
-    assert_ptr_equal(value_at(object, ""), object);
-    assert_null(value_at(object, "/a/bcd"));
-    assert_null(value_at(object, "/a/bc/d"));
-    cJSON_Delete(object);
-    const double numbers[] = {1, NAN, INFINITY, -2};
-    cJSON *matrix = value_matrix(2, 2, numbers);
-    char *text = cJSON_PrintUnformatted(matrix);
-    assert_string_equal(text, "[[1,null],[null,-2]]");
-    free(text);
-    cJSON_Delete(matrix);
-    assert_false(value_put(NULL, "x", cJSON_CreateNull()));
-}
 
 /* A default or an example in a row is a value of that row; an example may be swept. */
 static void fits(const struct parameter *row, const char *json) {
@@ -143,7 +123,6 @@ static void kinds(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values),
         cmocka_unit_test(rows),
         cmocka_unit_test(readers_and_rows_agree),
         cmocka_unit_test(kinds),

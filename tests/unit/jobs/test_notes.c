@@ -1,7 +1,7 @@
 /* Notes: of a case the same are kept whatever the split and the order of merging, no more than
  * NOTES_MOST of them, all counted; bytes that no honest worker sends are refused. */
 #include "jobs/notes.h"
-#include "jobs/value.h"
+#include "schema/json/json.h"
 #include "tests/support/check.h"
 #include "tests/support/result_tree.h"
 #include <stdio.h>

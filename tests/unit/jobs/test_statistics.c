@@ -5,7 +5,7 @@
 #include "jobs/kind.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
-#include "jobs/value.h"
+#include "schema/json/json.h"
 #include "schema/result/bytes.h"
 #include "schema/study/fault.h"
 #include "tests/support/result_tree.h"
@@ -97,8 +97,8 @@ static char *text_of(struct job_merger *merger) {
 
 static const cJSON *curve_of(const cJSON *document, const char *quantity) {
     const cJSON *curve;
-    cJSON_ArrayForEach(curve, value_at(document, "/curves")) {
-        if (strcmp(value_at(curve, "/quantity")->valuestring, quantity) == 0)
+    cJSON_ArrayForEach(curve, json_at(document, "/curves")) {
+        if (strcmp(json_at(curve, "/quantity")->valuestring, quantity) == 0)
             return curve;
     }
     fail_msg("no curve %s", quantity);
@@ -106,7 +106,7 @@ static const cJSON *curve_of(const cJSON *document, const char *quantity) {
 }
 
 static double at(const cJSON *curve, const char *key, int point) {
-    const cJSON *value = cJSON_GetArrayItem(value_at(curve, key), point);
+    const cJSON *value = cJSON_GetArrayItem(json_at(curve, key), point);
     assert_non_null(value);
     return cJSON_IsNumber(value) ? value->valuedouble : NAN;
 }
@@ -114,7 +114,7 @@ static double at(const cJSON *curve, const char *key, int point) {
 static double scalar(const cJSON *document, const char *name, const char *what) {
     char pointer[100];
     snprintf(pointer, sizeof pointer, "/scalars/%s/%s", name, what);
-    const cJSON *value = value_at(document, pointer);
+    const cJSON *value = json_at(document, pointer);
     return cJSON_IsNumber(value) ? value->valuedouble : NAN;
 }
 
@@ -295,20 +295,20 @@ static void normalisation(void **state) {
     const cJSON *cdf = curve_of(document, "summit_height_cdf");
     const cJSON *joint = curve_of(document, "summit_joint_pdf");
     double summits = scalar(document, "summits", "value") * REALISATIONS, inside = 0, all = 0;
-    double below = value_at(pdf, "/underflow")->valuedouble;
-    double above = value_at(pdf, "/overflow")->valuedouble;
+    double below = json_at(pdf, "/underflow")->valuedouble;
+    double above = json_at(pdf, "/overflow")->valuedouble;
     assert_true(below > 0 && above > 0);
     for (int b = 0; b < 10; b++) {
         inside += at(pdf, "/y", b) * 0.2;
         assert_true(fabs(at(cdf, "/y", b) - inside - below / summits) <= 1e-12);
-        const cJSON *row = cJSON_GetArrayItem(value_at(joint, "/y"), b);
+        const cJSON *row = cJSON_GetArrayItem(json_at(joint, "/y"), b);
         for (int t = 0; t < 16; t++)
             all += cJSON_GetArrayItem(row, t)->valuedouble * 0.2 * 0.5;
     }
     assert_true(fabs(inside + (below + above) / summits - 1) <= 1e-12);
-    assert_true(fabs(all + value_at(joint, "/overflow")->valuedouble / summits - 1) <= 1e-12);
+    assert_true(fabs(all + json_at(joint, "/overflow")->valuedouble / summits - 1) <= 1e-12);
     const cJSON *heights = curve_of(document, "height_pdf");
-    assert_true(value_at(heights, "/underflow")->valuedouble > 0);
+    assert_true(json_at(heights, "/underflow")->valuedouble > 0);
     cJSON_Delete(document);
     block_result_clear(&result);
     merger_destroy(&merger);
@@ -329,7 +329,7 @@ static void bins_that_miss(void **state) {
     cJSON *document = curves_of(merger);
     const cJSON *pdf = curve_of(document, "summit_height_pdf");
     assert_true(at(pdf, "/y", 1) == 0 && at(pdf, "/standard_error", 1) == 0);
-    assert_true(value_at(pdf, "/underflow")->valuedouble ==
+    assert_true(json_at(pdf, "/underflow")->valuedouble ==
                 3 * scalar(document, "summits", "value"));
     cJSON_Delete(document);
     block_result_clear(&result);
@@ -342,7 +342,7 @@ static void no_realisation_yet(void **state) {
     (void)state;
     struct job_merger *merger = merger_of(GAUSSIAN);
     cJSON *document = curves_of(merger);
-    assert_true(value_at(document, "/realisations")->valuedouble == 0);
+    assert_true(json_at(document, "/realisations")->valuedouble == 0);
     assert_true(isnan(at(curve_of(document, "summit_height_pdf"), "/y", 0)));
     assert_true(scalar(document, "nayak_alpha", "value") > 1.5);
     cJSON_Delete(document);

@@ -26,7 +26,7 @@ static void one_wave_is_westergaards(void **state) {
                 assert_near(at(area, "/y", k), exact, 0.01 * exact, load);
             assert_near(at(gap, "/y", k), at(gap, "/theory/westergaard", k), 0.002, load);
         }
-        assert_null(value_at(area, "/theory/persson"));
+        assert_null(json_at(area, "/theory/persson"));
         cJSON_Delete(document);
     }
 }
@@ -86,7 +86,7 @@ static void discretisation_errors_come_true(void **state) {
             assert_true(error > 0);
             assert_near(at(counted, "/y", k) - error, limit, error / 3 + spread, load);
         }
-        double order = value_at(edges, "/discretisation_order")->valuedouble;
+        double order = json_at(edges, "/discretisation_order")->valuedouble;
         assert_true(order >= 0.5 && order <= 3);
     }
     /* a fine layered mesh is the half-space that it stands for: the mesh's own error, 0.5 % */
@@ -129,7 +129,7 @@ static void surfaces_against_theories(void **state) {
             assert_near(y, persson, 0.15 * persson, at(area, "/x", k));
     }
     assert_true(at(area, "/theory/bgt", 0) > 0 && at(area, "/theory/gw_mccool", 0) > 0);
-    const cJSON *kappa = value_at(document, "/scalars/kappa/value");
+    const cJSON *kappa = json_at(document, "/scalars/kappa/value");
     assert_true(kappa->valuedouble > persson_light_load() && kappa->valuedouble < bgt_light_load());
     cJSON_Delete(document);
 }
@@ -208,14 +208,14 @@ static void any_scale(void **state) {
 /* Every curve has numbers, or null where there is no value to be had. */
 static void assert_sound(const cJSON *document, const char *study) {
     const cJSON *curve;
-    cJSON_ArrayForEach(curve, value_at(document, "/curves")) {
+    cJSON_ArrayForEach(curve, json_at(document, "/curves")) {
         bool may_lack = text_is(curve, "/quantity", "stiffness");
         bool area = text_is(curve, "/quantity", "contact_area");
         for (int k = 0; k < points(curve) && !may_lack; k++) {
             double y = at(curve, "/y", k);
             if (!(y >= -1e-9) || (area && !(y <= 1 + 1e-9)))
-                fail_msg("%s: %s %s is %g at %g", study, value_at(curve, "/quantity")->valuestring,
-                         value_at(curve, "/series")->valuestring, y, at(curve, "/x", k));
+                fail_msg("%s: %s %s is %g at %g", study, json_at(curve, "/quantity")->valuestring,
+                         json_at(curve, "/series")->valuestring, y, at(curve, "/x", k));
         }
     }
 }

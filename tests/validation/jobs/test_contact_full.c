@@ -28,8 +28,8 @@ static void small_slopes_are_layered(void **state) {
             const cJSON *linear = curve_of(document, quantities[q][0], quantities[q][1], "layered");
             const cJSON *full = curve_of(document, quantities[q][0], quantities[q][1], "full");
             assert_true(text_is(full, "/kinematics", CASES[c].kinematics));
-            assert_null(value_at(linear, "/kinematics"));
-            assert_null(value_at(full, "/model_error"));
+            assert_null(json_at(linear, "/kinematics"));
+            assert_null(json_at(full, "/model_error"));
             for (int k = 0; k < points(full); k++) {
                 double y = at(full, "/y", k), load = at(full, "/x", k);
                 assert_near(at(linear, "/y", k), y, CASES[c].bound * y, load);
@@ -62,7 +62,7 @@ static void one_low_wave_is_westergaards(void **state) {
 }
 
 static double scalar(const cJSON *document, const char *pointer) {
-    const cJSON *value = value_at(document, pointer);
+    const cJSON *value = json_at(document, pointer);
     return cJSON_IsNumber(value) ? value->valuedouble : NAN;
 }
 

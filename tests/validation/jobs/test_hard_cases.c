@@ -3,7 +3,7 @@
 #include "jobs/kind.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
-#include "jobs/value.h"
+#include "schema/json/json.h"
 #include "schema/study/fault.h"
 #include "tests/support/result_tree.h"
 #include <math.h>
@@ -111,7 +111,7 @@ static cJSON *parameters_of(const struct hard_case *hard) {
 
 static void assert_finite(const struct hard_case *hard, const cJSON *document,
                           const char *pointer) {
-    const cJSON *value = value_at(document, pointer);
+    const cJSON *value = json_at(document, pointer);
     if (!cJSON_IsNumber(value) || !isfinite(value->valuedouble))
         fail_msg("%s: no number at %s", hard->name, pointer);
 }

@@ -5,7 +5,7 @@
 #include "jobs/kind.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
-#include "jobs/value.h"
+#include "schema/json/json.h"
 #include "tests/support/result_tree.h"
 #include <math.h>
 #include <setjmp.h>
@@ -50,7 +50,7 @@ __attribute__((format(printf, 2, 3))) static cJSON *study(uint64_t count, const 
 static double scalar(const cJSON *curves, const char *name, const char *what) {
     char pointer[100];
     snprintf(pointer, sizeof pointer, "/scalars/%s/%s", name, what);
-    const cJSON *value = value_at(curves, pointer);
+    const cJSON *value = json_at(curves, pointer);
     if (!cJSON_IsNumber(value))
         fail_msg("no number at %s", pointer);
     return value->valuedouble;
@@ -58,8 +58,8 @@ static double scalar(const cJSON *curves, const char *name, const char *what) {
 
 static const cJSON *curve_of(const cJSON *curves, const char *quantity) {
     const cJSON *curve;
-    cJSON_ArrayForEach(curve, value_at(curves, "/curves")) {
-        if (strcmp(value_at(curve, "/quantity")->valuestring, quantity) == 0)
+    cJSON_ArrayForEach(curve, json_at(curves, "/curves")) {
+        if (strcmp(json_at(curve, "/quantity")->valuestring, quantity) == 0)
             return curve;
     }
     fail_msg("no curve %s", quantity);
@@ -67,7 +67,7 @@ static const cJSON *curve_of(const cJSON *curves, const char *quantity) {
 }
 
 static double point(const cJSON *curve, const char *key, int a) {
-    const cJSON *value = cJSON_GetArrayItem(value_at(curve, key), a);
+    const cJSON *value = cJSON_GetArrayItem(json_at(curve, key), a);
     return cJSON_IsNumber(value) ? value->valuedouble : NAN;
 }
 
@@ -197,13 +197,13 @@ static void nayak_curves(void **state) {
         const cJSON *curve = curve_of(curves, quantities[q]);
         double largest = 0;
         for (int b = 0; b < 40; b++)
-            largest = fmax(largest, point(value_at(curve, "/theory"), "/nayak", b));
+            largest = fmax(largest, point(json_at(curve, "/theory"), "/nayak", b));
         for (int b = 0; b < 40; b++) {
             bool height = strcmp(quantities[q], "summit_curvature_pdf") != 0;
             if (height && !(point(pdf, "/theory/nayak", b) > 0.01))
                 continue;
             assert_near(quantities[q], point(curve, "/y", b),
-                        point(value_at(curve, "/theory"), "/nayak", b),
+                        point(json_at(curve, "/theory"), "/nayak", b),
                         5 * point(curve, "/standard_error", b) + 0.01 * largest);
         }
     }
@@ -238,7 +238,7 @@ static void profiles(void **state) {
  * heights. */
 static double mode_of(const cJSON *pdf) {
     int best = 0;
-    for (int b = 1; b < cJSON_GetArraySize(value_at(pdf, "/y")); b++)
+    for (int b = 1; b < cJSON_GetArraySize(json_at(pdf, "/y")); b++)
         best = point(pdf, "/y", b) > point(pdf, "/y", best) ? b : best;
     return point(pdf, "/x", best);
 }

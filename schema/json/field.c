@@ -1,4 +1,4 @@
-#include "schema/json/wire_field.h"
+#include "schema/json/field.h"
 
 #include <math.h>
 #include <string.h>
@@ -36,6 +36,11 @@ int field_fault(const char *key, const char *what, struct error *err) {
 
 const cJSON *field_at(const cJSON *object, const char *key) {
     return cJSON_GetObjectItemCaseSensitive(object, key);
+}
+
+double field_number(const cJSON *object, const char *key) {
+    const cJSON *value = field_at(object, key);
+    return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
 }
 
 int field_text(const cJSON *object, const char *key, size_t size, const char **out,

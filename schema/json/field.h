@@ -1,4 +1,5 @@
-/* One field of a JSON object, written or read with its check. Private to worker/. */
+/* One field of a JSON object, written, found, or read with its check: the one set of helpers that
+ * every writer and reader of JSON uses. */
 #ifndef RUGO_SCHEMA_JSON_WIRE_FIELD_H
 #define RUGO_SCHEMA_JSON_WIRE_FIELD_H
 
@@ -14,7 +15,10 @@ bool field_put_count(cJSON *object, const char *key, uint64_t count);
 /* The finished value, or NULL and nothing left behind where it is not complete. */
 cJSON *fields_finish(cJSON *value, bool complete);
 
+/* Borrows; NULL where it is absent, or object is NULL. */
 const cJSON *field_at(const cJSON *object, const char *key);
+/* NaN for what is no number. */
+double field_number(const cJSON *object, const char *key);
 /* Sets "KEY must be WHAT"; ERROR_INPUT, as every reader below that does not like what it finds. */
 int field_fault(const char *key, const char *what, struct error *err);
 /* A non-empty string of less than `size` bytes; *out borrows. */
