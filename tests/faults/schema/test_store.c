@@ -13,7 +13,7 @@
 static const char STUDY[] = "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":20,\"seconds\":6,"
                             "\"box\":{\"width\":1}}";
 
-struct life {
+struct store_life {
     struct store *store;
     struct study *study;
     uint64_t taken; /* results that store_complete said to have */
@@ -34,7 +34,7 @@ static int open_new(void *context, struct error *err) {
     return status;
 }
 
-static int complete_jobs(struct life *life, struct claimed_job *jobs, size_t count,
+static int complete_jobs(struct store_life *life, struct claimed_job *jobs, size_t count,
                          struct error *err) {
     static const char *const NAMES[] = {"a"};
     double scalars[20] = {1, NAN, 3};
@@ -64,7 +64,7 @@ static int count_result(void *context, const struct block_result *result, struct
     return 0;
 }
 
-static int look(struct life *life, const char *id, struct error *err) {
+static int look(struct store_life *life, const char *id, struct error *err) {
     struct study_status status = {0};
     struct case_info info = {0};
     struct case_cost cost;
@@ -88,7 +88,7 @@ static int look(struct life *life, const char *id, struct error *err) {
 
 /* A study from its submission to its last result, on a handle that has seen failures. */
 static int live(void *context, struct error *err) {
-    struct life *life = context;
+    struct store_life *life = context;
     char id[STUDY_ID_SIZE];
     struct claimed_job jobs[4] = {0};
     struct claim claim = {.worker = "w", .host = "h", .study = id, .count = 4};
@@ -106,7 +106,7 @@ static int live(void *context, struct error *err) {
 
 /* The other ways of a job and a study. */
 static int give_up(void *context, struct error *err) {
-    struct life *life = context;
+    struct store_life *life = context;
     char id[STUDY_ID_SIZE];
     struct claimed_job jobs[3] = {0};
     struct claim claim = {.worker = "w", .host = "h", .study = id, .count = 3};
@@ -139,7 +139,7 @@ static int give_up(void *context, struct error *err) {
 }
 
 static int list(void *context, struct error *err) {
-    struct life *life = context;
+    struct store_life *life = context;
     struct study_status *statuses = NULL;
     struct store_metrics metrics;
     size_t count = 0;
@@ -152,13 +152,13 @@ static int list(void *context, struct error *err) {
 }
 
 static int snapshot(void *context, struct error *err) {
-    struct life *life = context;
+    struct store_life *life = context;
     int status = store_snapshot(life->store, "snapshot.db", err);
     unlink("snapshot.db");
     return status;
 }
 
-static struct life life;
+static struct store_life life;
 
 static int open_life(void **state) {
     struct fault_list faults = {0};

@@ -18,7 +18,7 @@ static const size_t WIDEST[] = {4, 2, 1};
 enum { WIDENING_COUNT = 3 };
 static const double TRANSITION = 1, EQUAL = INFINITY;
 
-struct work {
+struct preconditioner_work {
     struct mesh *mesh;
     struct tangent *tangent;
     struct material material;
@@ -39,14 +39,14 @@ static void fill_random(uint64_t draw, size_t n, double *x) {
 }
 
 /* A block of random heights up to rough steps, at rest. */
-static void open_work(struct work *w, struct grid grid, double poisson, double growth, double rough,
-                      double transition) {
+static void open_work(struct preconditioner_work *w, struct grid grid, double poisson,
+                      double growth, double rough, double transition) {
     struct error err = {0};
     struct block block = {.model = MODEL_LAYERED,
                           .poisson = poisson,
                           .height = 4 * grid_dx(&grid),
                           .layer_growth = growth};
-    *w = (struct work){.material = material_of(poisson, KINEMATICS_HENCKY)};
+    *w = (struct preconditioner_work){.material = material_of(poisson, KINEMATICS_HENCKY)};
     if (mesh_create(&w->mesh, &grid, &block, transition, &err) != 0 ||
         tangent_create(&w->tangent, w->mesh, gmres_needs_pressures(&w->material), &err) != 0)
         fail_msg("%s", err.text);
@@ -64,7 +64,7 @@ static void open_work(struct work *w, struct grid grid, double poisson, double g
     assert_true(tangent_evaluate(w->mesh, &w->material, w->x, NULL, w->y, w->tangent));
 }
 
-static void close_work(struct work *w) {
+static void close_work(struct preconditioner_work *w) {
     tangent_destroy(&w->tangent);
     mesh_destroy(&w->mesh);
     free(w->z);
@@ -101,7 +101,7 @@ static void waves_invert_the_flat_block(void **state) {
     (void)state;
     static const double POISSON[] = {0, 0.3, 0.4999};
     for (size_t c = 0; c < 3 * GRIDS_COUNT; c++) {
-        struct work w;
+        struct preconditioner_work w;
         struct error err = {0};
         struct preconditioner *flat = NULL;
         open_work(&w, GRIDS[c % GRIDS_COUNT], POISSON[c / GRIDS_COUNT], 1.3, 0, EQUAL);
@@ -129,8 +129,8 @@ static void waves_invert_the_flat_block(void **state) {
 }
 
 /* Rows of forces where free, of the weighted face where held, on a rough block. */
-static void check_solution(struct work *w, const struct gmres *gmres, const bool *active,
-                           double tolerance) {
+static void check_solution(struct preconditioner_work *w, const struct gmres *gmres,
+                           const bool *active, double tolerance) {
     size_t face = w->mesh->face;
     double *vertical = numbers(face), square = 0, first = 0;
     tangent_apply(w->tangent, w->x, w->y);
@@ -154,7 +154,7 @@ static void rough_blocks_are_solved(void **state) {
     (void)state;
     static const double TOLERANCE = 1e-9;
     for (size_t c = 0; c < 8 * GRIDS_COUNT; c++) {
-        struct work w;
+        struct preconditioner_work w;
         struct error err = {0};
         struct gmres *gmres = NULL;
         struct factorisation *factorisation = NULL;
@@ -192,7 +192,7 @@ static void rough_blocks_are_solved(void **state) {
 static void blocks_of_widening_columns_are_solved(void **state) {
     (void)state;
     for (size_t c = 0; c < 4 * WIDENING_COUNT; c++) {
-        struct work w;
+        struct preconditioner_work w;
         struct error err = {0};
         struct gmres *gmres = NULL;
         size_t iterations = 0;
@@ -246,7 +246,7 @@ static bool inside(const struct level *level, size_t j, size_t i) {
 /* A uniform strain of any direction is in balance within a rough mesh, its hanging corners among
  * it: the patch test of distorted and of transition elements, at strains of a hundredth. Across the
  * periodic sides a uniform vertical stretch alone is one. Rounding is 1e-15 or so. */
-static void check_patch(struct work *w, bool periodic) {
+static void check_patch(struct preconditioner_work *w, bool periodic) {
     const struct mesh *mesh = w->mesh;
     size_t d = (size_t)mesh->dimension, tested = 0;
     double any[3][3] = {{0.005, -0.003, 0.01}, {0.007, -0.01, 0.002}, {-0.004, 0.006, 0.008}};
@@ -269,7 +269,7 @@ static void rough_meshes_pass_the_patch_test(void **state) {
     (void)state;
     static const struct grid WIDE[] = {{32, 1, 32, 1}, {16, 20, 16, 24}};
     for (size_t c = 0; c < GRIDS_COUNT + WIDENING_COUNT; c++) {
-        struct work w;
+        struct preconditioner_work w;
         open_work(&w, c < GRIDS_COUNT ? GRIDS[c] : WIDENING[c - GRIDS_COUNT], 0.3, 1.3, 0.2,
                   TRANSITION);
         check_patch(&w, true);
@@ -277,7 +277,7 @@ static void rough_meshes_pass_the_patch_test(void **state) {
         close_work(&w);
     }
     for (size_t c = 0; c < 2; c++) {
-        struct work w;
+        struct preconditioner_work w;
         open_work(&w, WIDE[c], 0.3, 1.1, 0.2, TRANSITION);
         assert_true(w.mesh->level[w.mesh->layers].width == (c == 0 ? 4 : 2));
         check_patch(&w, false);
@@ -291,7 +291,7 @@ static void tangents_are_those_of_the_energy(void **state) {
     (void)state;
     static const double STEP = 1e-4;
     for (size_t c = 0; c < WIDENING_COUNT; c++) {
-        struct work w;
+        struct preconditioner_work w;
         open_work(&w, WIDENING[c], 0.3, 1.3, 0.2, TRANSITION);
         double energy[2], work = 0, *along = numbers(w.degrees_of_freedom),
                           *u = numbers(w.degrees_of_freedom);
@@ -327,7 +327,7 @@ static void pressures_are_bound_by_the_tangent(void **state) {
     (void)state;
     static const double STEP = 1e-5;
     for (size_t c = 0; c < WIDENING_COUNT; c++) {
-        struct work w;
+        struct preconditioner_work w;
         open_work(&w, WIDENING[c], 0.4999, 1.3, 0.2, TRANSITION);
         size_t n = tangent_unknowns(w.tangent), first = w.degrees_of_freedom;
         assert_int_equal(n, first + w.mesh->elements);
@@ -357,7 +357,7 @@ static void pressures_are_bound_by_the_tangent(void **state) {
 
 static void bad_meshes_are_refused(void **state) {
     (void)state;
-    struct work w;
+    struct preconditioner_work w;
     struct mesh *mesh = NULL;
     struct error err = {0};
     struct grid grid = {8, 1, 8, 1};

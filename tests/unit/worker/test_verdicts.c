@@ -21,7 +21,7 @@ static int check_nothing(const struct study_kind *kind, const cJSON *parameters,
 }
 
 enum { KINDS_MOST = 16, DOCUMENTS_MOST = 10000 };
-struct fixture {
+struct verdict_fixture {
     struct study_kind kinds[KINDS_MOST];
     const struct study_kind *table[KINDS_MOST + 1]; /* of these */
     size_t kind_count, documents, accepted;
@@ -30,7 +30,7 @@ struct fixture {
 };
 
 /* Has the reader judge a document, and writes it down. */
-static void judge(struct fixture *f, const cJSON *document) {
+static void judge(struct verdict_fixture *f, const cJSON *document) {
     char *text = json_print(document);
     struct fault_list faults = {0};
     struct study *study = NULL;
@@ -69,7 +69,7 @@ static void put_at(cJSON *object, const char *path, cJSON *value) {
     assert_true(cJSON_AddItemToObject(object, name, value));
 }
 
-static void judge_value(struct fixture *f, const struct study_kind *kind, const char *path,
+static void judge_value(struct verdict_fixture *f, const struct study_kind *kind, const char *path,
                         const char *json) {
     cJSON *document = document_of(kind), *value = cJSON_Parse(json);
     if (value == NULL)
@@ -80,7 +80,7 @@ static void judge_value(struct fixture *f, const struct study_kind *kind, const 
 }
 
 /* The value alone, in lists, and as a member of an object. */
-static void judge_forms(struct fixture *f, const struct study_kind *kind,
+static void judge_forms(struct verdict_fixture *f, const struct study_kind *kind,
                         const struct parameter *row, const char *json) {
     static const char *const FORMS[] = {"%s", "[%s]", "[%s,%s]", "[[%s],[%s]]", "[%s,null]"};
     for (size_t form = 0; form < sizeof FORMS / sizeof *FORMS; form++) {
@@ -94,7 +94,7 @@ static void judge_forms(struct fixture *f, const struct study_kind *kind,
     }
 }
 
-static void judge_numbers(struct fixture *f, const struct study_kind *kind,
+static void judge_numbers(struct verdict_fixture *f, const struct study_kind *kind,
                           const struct parameter *row, const char *unit) {
     const double step = row->type == PARAMETER_INTEGER ? 1 : 0.5;
     const double numbers[] = {
@@ -114,7 +114,7 @@ static void judge_numbers(struct fixture *f, const struct study_kind *kind,
     }
 }
 
-static void judge_row(struct fixture *f, const struct study_kind *kind,
+static void judge_row(struct verdict_fixture *f, const struct study_kind *kind,
                       const struct parameter *row) {
     static const char *const ODD[] = {"null",
                                       "true",
@@ -156,7 +156,7 @@ static void judge_row(struct fixture *f, const struct study_kind *kind,
     judge_value(f, kind, beside, "1");
 }
 
-static void judge_common(struct fixture *f) {
+static void judge_common(struct verdict_fixture *f) {
     static const char *const TEXTS[] = {"{}",
                                         "[]",
                                         "3",
@@ -181,7 +181,7 @@ static void judge_common(struct fixture *f) {
         }
 }
 
-static void write_schema(const struct fixture *f) {
+static void write_schema(const struct verdict_fixture *f) {
     cJSON *schema = study_schema(f->table);
     char *text = json_print(schema);
     FILE *file = fopen("schema.json", "w");
@@ -197,7 +197,7 @@ static const char PROGRAM[] =
     "judge.check_schema(judge.schema)\n"
     "for line in open(\"documents\"): print(int(judge.is_valid(json.loads(line))))'";
 
-static void compare(const struct fixture *f) {
+static void compare(const struct verdict_fixture *f) {
     FILE *pipe = popen(PROGRAM, "r"), *documents = fopen("documents", "r");
     assert_true(pipe != NULL && documents != NULL);
     size_t differing = 0, read = 0;
@@ -224,7 +224,7 @@ static void verdicts_agree(void **state) {
         skip();
     }
     remove("no-validator");
-    static struct fixture f;
+    static struct verdict_fixture f;
     for (; JOB_KINDS[f.kind_count] != NULL; f.kind_count++) {
         assert_true(f.kind_count < KINDS_MOST);
         f.kinds[f.kind_count] = *JOB_KINDS[f.kind_count];
