@@ -31,7 +31,7 @@ static double gaussian_pdf(double shape, double raw, double factor) {
 
 /* --- Weibull, scale 1: a minimum lies above 0, a maximum is its mirror image below 0 --- */
 
-/* Central moments of a Weibull minimum of scale 1 in units of its mean, F4.2 With
+/* Central moments of a Weibull minimum of scale 1 in units of its mean, F4.2. With
  * e_k = Gamma(1 + k/C)/Gamma(1 + 1/C)^k - 1 the large equal terms cancel on paper, not in digits.
  */
 static void weibull_min_moments(double shape, struct height_moments *out) {
