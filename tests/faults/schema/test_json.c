@@ -75,8 +75,7 @@ static int read_study(void *context, struct error *err) {
     struct study *study = NULL;
     struct fault_list faults = {0};
     (void)context;
-    int status =
-        study_read(&study, STUDY, strlen(STUDY), OVERRIDES, &FAKE_KIND, 1, 0, &faults, err);
+    int status = study_read(&study, STUDY, strlen(STUDY), OVERRIDES, FAKE_KINDS, 0, &faults, err);
     assert_int_equal(faults.count, 0);
     if (status == 0)
         assert_int_equal(study->case_count, 6);
@@ -90,7 +89,7 @@ static int refuse_study(void *context, struct error *err) {
     const char *wrong = context;
     struct study *study = NULL;
     struct fault_list faults = {0};
-    int status = study_read(&study, wrong, strlen(wrong), NULL, &FAKE_KIND, 1, 0, &faults, err);
+    int status = study_read(&study, wrong, strlen(wrong), NULL, FAKE_KINDS, 0, &faults, err);
     assert_null(study);
     fault_list_clear(&faults);
     assert_int_not_equal(status, 0);
@@ -99,7 +98,7 @@ static int refuse_study(void *context, struct error *err) {
 
 static int make_schema(void *context, struct error *err) {
     (void)context;
-    cJSON *schema = study_schema(&FAKE_KIND, 1);
+    cJSON *schema = study_schema(FAKE_KINDS);
     if (schema == NULL)
         return error_memory(err, 0, "a schema");
     cJSON_Delete(schema);

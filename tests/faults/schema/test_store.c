@@ -165,8 +165,7 @@ static int open_life(void **state) {
     struct error err = {0};
     (void)state;
     return store_open(&life.store, "life.db", &(struct store_options){0}, &err) != 0 ||
-           study_read(&life.study, STUDY, strlen(STUDY), NULL, &FAKE_KIND, 1, 0, &faults, &err) !=
-               0;
+           study_read(&life.study, STUDY, strlen(STUDY), NULL, FAKE_KINDS, 0, &faults, &err) != 0;
 }
 
 static int close_life(void **state) {
