@@ -43,31 +43,32 @@ double conjugate_gradient_bytes(const struct grid *grid) {
     return sizeof(double) * (ARRAYS * (double)padded(grid_points(grid)) + 4 * waves);
 }
 
-static int arrays_create(struct conjugate_gradient *d, struct error *err) {
-    double **const arrays[ARRAYS] = {&d->z, &d->p, &d->u, &d->q, &d->r, &d->old, &d->t, &d->w};
+static int arrays_create(struct conjugate_gradient *solver, struct error *err) {
+    double **const arrays[ARRAYS] = {&solver->z, &solver->p,   &solver->u, &solver->q,
+                                     &solver->r, &solver->old, &solver->t, &solver->w};
     for (size_t a = 0; a < ARRAYS; a++) {
-        *arrays[a] = fftw_alloc_real(d->padded);
+        *arrays[a] = fftw_alloc_real(solver->padded);
         if (*arrays[a] == NULL)
-            return error_memory(err, d->padded * sizeof(double), "a contact");
-        memset(*arrays[a], 0, d->padded * sizeof(double));
+            return error_memory(err, solver->padded * sizeof(double), "a contact");
+        memset(*arrays[a], 0, solver->padded * sizeof(double));
     }
-    for (size_t i = d->n; i < d->padded; i++)
-        d->z[i] = -FAR;
+    for (size_t i = solver->n; i < solver->padded; i++)
+        solver->z[i] = -FAR;
     return 0;
 }
 
-static int symbols_create(struct conjugate_gradient *d, const struct compliance *compliance,
+static int symbols_create(struct conjugate_gradient *solver, const struct compliance *compliance,
                           struct error *err) {
-    d->soft = array_create(compliance->waves, sizeof *d->soft);
-    d->stiff = array_create(compliance->waves, sizeof *d->stiff);
-    if (d->soft == NULL || d->stiff == NULL)
+    solver->soft = array_create(compliance->waves, sizeof *solver->soft);
+    solver->stiff = array_create(compliance->waves, sizeof *solver->stiff);
+    if (solver->soft == NULL || solver->stiff == NULL)
         return error_memory(err, compliance->waves * sizeof(double), "a contact");
     for (size_t k = 0; k < compliance->waves; k++)
-        d->largest = fmax(d->largest, compliance->length[k]);
+        solver->largest = fmax(solver->largest, compliance->length[k]);
     for (size_t k = 0; k < compliance->waves; k++) {
         double weight = compliance->weight != NULL ? compliance->weight[k] : 1;
-        d->soft[k] = compliance->length[k] / d->largest * weight;
-        d->stiff[k] = d->soft[k] > 0 ? 1 / d->soft[k] : 0;
+        solver->soft[k] = compliance->length[k] / solver->largest * weight;
+        solver->stiff[k] = solver->soft[k] > 0 ? 1 / solver->soft[k] : 0;
     }
     return 0;
 }
@@ -86,20 +87,21 @@ int conjugate_gradient_create(struct conjugate_gradient *out, const struct compl
     return status;
 }
 
-void conjugate_gradient_clear(struct conjugate_gradient *d) {
-    double *const arrays[ARRAYS] = {d->z, d->p, d->u, d->q, d->r, d->old, d->t, d->w};
+void conjugate_gradient_clear(struct conjugate_gradient *solver) {
+    double *const arrays[ARRAYS] = {solver->z, solver->p,   solver->u, solver->q,
+                                    solver->r, solver->old, solver->t, solver->w};
     for (size_t a = 0; a < ARRAYS; a++)
         fftw_free(arrays[a]);
-    free(d->soft);
-    free(d->stiff);
-    transform_destroy(&d->transform);
-    *d = (struct conjugate_gradient){0};
+    free(solver->soft);
+    free(solver->stiff);
+    transform_destroy(&solver->transform);
+    *solver = (struct conjugate_gradient){0};
 }
 
-static void filter(struct conjugate_gradient *d, const double *symbol, const double *in,
+static void filter(struct conjugate_gradient *solver, const double *symbol, const double *in,
                    double *out) {
-    transform_filter(d->transform, symbol, 1, in, out);
-    d->transforms += 2;
+    transform_filter(solver->transform, symbol, 1, in, out);
+    solver->transforms += 2;
 }
 
 static double lanes_sum(const double *lanes) {
@@ -259,52 +261,52 @@ struct step_memory {
 };
 
 /* Computes the next direction t, and w = S t. */
-static void direct(struct conjugate_gradient *d, struct step_memory *memory) {
-    filter(d, d->stiff, d->r, d->w);
-    struct products s = multiply(d->padded, d->r, d->w, d->old, d->t);
+static void direct(struct conjugate_gradient *solver, struct step_memory *memory) {
+    filter(solver, solver->stiff, solver->r, solver->w);
+    struct products s = multiply(solver->padded, solver->r, solver->w, solver->old, solver->t);
     double mean = s.w / s.members;
     double energy = s.w_r - mean * s.r, change = energy - (s.w_old - mean * s.old);
     double beta = memory->energy > 0 ? fmax(0, change / memory->energy) : 0;
-    redirect(d->padded, d->r, d->w, mean, beta, s.t / s.members, d->t);
+    redirect(solver->padded, solver->r, solver->w, mean, beta, s.t / s.members, solver->t);
     memory->energy = energy;
-    double *last = d->old;
-    d->old = d->r;
-    d->r = last;
-    filter(d, d->soft, d->t, d->w);
+    double *last = solver->old;
+    solver->old = solver->r;
+    solver->r = last;
+    filter(solver, solver->soft, solver->t, solver->w);
 }
 
 /* Replaces p by the pressures nearest to p - STRIDE gap among those >= 0 of this mean (Michelot
  * 1986: the level to subtract is raised until no more of them become negative). Where p is not the
  * solution, the energy falls by at least the square of the change times 1/STRIDE - 1/2. */
-static void project(struct conjugate_gradient *d, double mean) {
+static void project(struct conjugate_gradient *solver, double mean) {
     double top = -INFINITY, level = -INFINITY, sum = 0;
-    size_t count = d->n + 1, last;
-    for (size_t i = 0; i < d->n; i++) {
-        d->t[i] = d->p[i] - STRIDE * (d->u[i] - d->z[i]);
-        top = fmax(top, d->t[i]);
+    size_t count = solver->n + 1, last;
+    for (size_t i = 0; i < solver->n; i++) {
+        solver->t[i] = solver->p[i] - STRIDE * (solver->u[i] - solver->z[i]);
+        top = fmax(top, solver->t[i]);
     }
     do {
         last = count;
         count = 0;
         sum = 0;
-        for (size_t i = 0; i < d->n; i++)
-            if (d->t[i] - top > level) {
-                sum += d->t[i] - top; /* from the top, so that the lightest load is not lost */
+        for (size_t i = 0; i < solver->n; i++)
+            if (solver->t[i] - top > level) {
+                sum += solver->t[i] - top; /* from the top, so that the lightest load is not lost */
                 count++;
             }
-        level = (sum - mean * (double)d->n) / (double)count;
+        level = (sum - mean * (double)solver->n) / (double)count;
     } while (count != last);
     sum = 0;
-    for (size_t i = 0; i < d->n; i++)
-        sum += d->p[i] = fmax(0, d->t[i] - top - level);
-    scale(d->n, mean * (double)d->n / sum, d->p);
+    for (size_t i = 0; i < solver->n; i++)
+        sum += solver->p[i] = fmax(0, solver->t[i] - top - level);
+    scale(solver->n, mean * (double)solver->n / sum, solver->p);
 }
 
 /* The longest step along t that leaves no pressure negative. */
-static double feasible_step(const struct conjugate_gradient *d, double step) {
-    for (size_t i = 0; i < d->n; i++)
-        if (d->t[i] > 0 && d->p[i] > 0 && d->p[i] < step * d->t[i])
-            step = d->p[i] / d->t[i];
+static double feasible_step(const struct conjugate_gradient *solver, double step) {
+    for (size_t i = 0; i < solver->n; i++)
+        if (solver->t[i] > 0 && solver->p[i] > 0 && solver->p[i] < step * solver->t[i])
+            step = solver->p[i] / solver->t[i];
     return step;
 }
 
@@ -322,37 +324,37 @@ static bool stalled(struct stall_watch *progress, double violation, size_t itera
 }
 
 /* One iteration from r; *stale says whether u must be computed anew from p. */
-static void iterate(struct conjugate_gradient *d, double mean, bool careful,
+static void iterate(struct conjugate_gradient *solver, double mean, bool careful,
                     struct step_memory *memory, bool *stale) {
-    direct(d, memory);
-    double step = step_length(d->padded, d->old, d->t, d->w);
+    direct(solver, memory);
+    double step = step_length(solver->padded, solver->old, solver->t, solver->w);
     if (careful) {
-        double longest = feasible_step(d, step);
+        double longest = feasible_step(solver, step);
         memory->blocked = longest < step;
         step = memory->blocked ? longest * (1 + 4 * DBL_EPSILON) : step; /* that pressure: 0 */
     }
-    double sum = advance(d->padded, step, d->t, d->w, d->p, d->u, stale);
+    double sum = advance(solver->padded, step, solver->t, solver->w, solver->p, solver->u, stale);
     if (*stale)
-        scale(d->n, mean * (double)d->n / sum, d->p);
+        scale(solver->n, mean * (double)solver->n / sum, solver->p);
 }
 
-void conjugate_gradient_run(struct conjugate_gradient *d, double mean, double tolerance,
+void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, double tolerance,
                             size_t stall_iterations, size_t max_iterations,
                             struct conjugate_gradient_end *end) {
     struct step_memory memory = {0};
     struct stall_watch progress = {.best = INFINITY};
     bool careful = false, stale = true;
     *end = (struct conjugate_gradient_end){0};
-    for (size_t i = 0; i < d->padded; i++)
-        d->t[i] = d->old[i] = 0;
+    for (size_t i = 0; i < solver->padded; i++)
+        solver->t[i] = solver->old[i] = 0;
     double highest = 0;
-    for (size_t i = 0; i < d->n; i++)
-        highest = fmax(highest, fabs(d->z[i]));
+    for (size_t i = 0; i < solver->n; i++)
+        highest = fmax(highest, fabs(solver->z[i]));
     for (;; end->iterations++) {
         if (stale || end->iterations % REFRESH == 0)
-            filter(d, d->soft, d->p, d->u);
-        end->approach = mean_approach(d->padded, d->p, d->u, d->z);
-        residual(d->padded, d->p, d->u, d->z, careful ? 0 : 1, d->r, end);
+            filter(solver, solver->soft, solver->p, solver->u);
+        end->approach = mean_approach(solver->padded, solver->p, solver->u, solver->z);
+        residual(solver->padded, solver->p, solver->u, solver->z, careful ? 0 : 1, solver->r, end);
         double violation = fmax(end->inside, end->penetration);
         bool number = isfinite(end->approach); /* the largest of numbers and NaNs is a number */
         end->converged = number && violation <= fmax(tolerance * end->deepest, ROUNDING * highest);
@@ -363,43 +365,44 @@ void conjugate_gradient_run(struct conjugate_gradient *d, double mean, double to
             memory.energy = 0;
         }
         if (careful && (memory.blocked || end->penetration >= end->inside)) {
-            project(d, mean);
+            project(solver, mean);
             memory = (struct step_memory){0};
             stale = true;
         } else {
-            iterate(d, mean, careful, &memory, &stale);
+            iterate(solver, mean, careful, &memory, &stale);
         }
     }
 }
 
-double conjugate_gradient_tangent(struct conjugate_gradient *d) {
+double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
     struct step_memory memory = {0};
     double sum = 0, slope = 0;
-    for (size_t i = 0; i < d->padded; i++) {
-        d->q[i] = d->p[i] > 0 ? d->q[i] : 0;
-        d->t[i] = d->old[i] = 0;
-        sum += d->q[i];
+    for (size_t i = 0; i < solver->padded; i++) {
+        solver->q[i] = solver->p[i] > 0 ? solver->q[i] : 0;
+        solver->t[i] = solver->old[i] = 0;
+        sum += solver->q[i];
     }
     if (!(sum > 0))
-        for (size_t i = 0; i < d->padded; i++)
-            sum += d->q[i] = d->p[i];
-    scale(d->n, (double)d->n / sum, d->q);
-    filter(d, d->soft, d->q, d->u);
+        for (size_t i = 0; i < solver->padded; i++)
+            sum += solver->q[i] = solver->p[i];
+    scale(solver->n, (double)solver->n / sum, solver->q);
+    filter(solver, solver->soft, solver->q, solver->u);
     for (size_t iteration = 0;; iteration++) {
         double approach = 0, energy = 0;
         size_t members = 0;
-        for (size_t i = 0; i < d->n; i++) {
-            approach -= d->p[i] > 0 ? d->u[i] : 0;
-            members += d->p[i] > 0;
-            energy += d->q[i] * d->u[i];
+        for (size_t i = 0; i < solver->n; i++) {
+            approach -= solver->p[i] > 0 ? solver->u[i] : 0;
+            members += solver->p[i] > 0;
+            energy += solver->q[i] * solver->u[i];
         }
         approach /= (double)members;
-        slope = energy / (double)d->n;
-        double most = tangent_residual(d->padded, d->p, d->u, approach, d->r);
+        slope = energy / (double)solver->n;
+        double most = tangent_residual(solver->padded, solver->p, solver->u, approach, solver->r);
         if (most <= TANGENT_TOLERANCE * fabs(approach) || iteration == TANGENT_MOST)
             return slope;
-        direct(d, &memory);
-        advance_tangent(d->padded, step_length(d->padded, d->old, d->t, d->w), d->t, d->w, d->q,
-                        d->u);
+        direct(solver, &memory);
+        advance_tangent(solver->padded,
+                        step_length(solver->padded, solver->old, solver->t, solver->w), solver->t,
+                        solver->w, solver->q, solver->u);
     }
 }

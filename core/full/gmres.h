@@ -25,7 +25,7 @@ struct gmres;
 
 int gmres_create(struct gmres **out, const struct mesh *mesh, const struct material *material,
                  enum gap_weighting weighting, struct error *err);
-void gmres_destroy(struct gmres **gmres);
+void gmres_destroy(struct gmres **handle);
 
 /* Bytes that this many iterations a linear step touch. */
 double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations);

@@ -28,17 +28,20 @@ struct preconditioner {
     double *plane; /* scratch for one component of one level, as large as the face */
 };
 
-static size_t waves_at(const struct preconditioner *f, size_t level) {
-    return level_waves(&f->mesh->level[level]);
+static size_t waves_at(const struct preconditioner *preconditioner, size_t level) {
+    return level_waves(&preconditioner->mesh->level[level]);
 }
-static double *inverse_at(const struct preconditioner *f, size_t level) {
-    return f->inverse + f->before[level] * f->d * f->d;
+static double *inverse_at(const struct preconditioner *preconditioner, size_t level) {
+    return preconditioner->inverse +
+           preconditioner->before[level] * preconditioner->d * preconditioner->d;
 }
-static double *coupling_at(const struct preconditioner *f, size_t level) {
-    return f->coupling + f->before[level] * f->d * f->d;
+static double *coupling_at(const struct preconditioner *preconditioner, size_t level) {
+    return preconditioner->coupling +
+           preconditioner->before[level] * preconditioner->d * preconditioner->d;
 }
-static double *field_at(const struct preconditioner *f, size_t level, size_t i) {
-    return f->field + 2 * (f->before[level] * f->d + i * waves_at(f, level));
+static double *field_at(const struct preconditioner *preconditioner, size_t level, size_t i) {
+    return preconditioner->field + 2 * (preconditioner->before[level] * preconditioner->d +
+                                        i * waves_at(preconditioner, level));
 }
 static size_t zone_of(const struct level *level) {
     size_t zone = 0;
@@ -46,8 +49,8 @@ static size_t zone_of(const struct level *level) {
         zone++;
     return zone;
 }
-static struct transform *transform_at(const struct preconditioner *f, size_t level) {
-    return f->transform[zone_of(&f->mesh->level[level])];
+static struct transform *transform_at(const struct preconditioner *preconditioner, size_t level) {
+    return preconditioner->transform[zone_of(&preconditioner->mesh->level[level])];
 }
 
 /* --- elimination --- */
@@ -87,10 +90,10 @@ static void hold_far_side(int d, bool mean, double pivot[3][3]) {
 
 /* Adds the stiffness of the lower side of the layer above a level, for all aliases of the wave; the
  * layer has `share` times as many nodes. */
-static void add_above(const struct preconditioner *f, struct layer_stiffness *layer, size_t level,
-                      size_t mx, size_t row, double share, double pivot[3][3]) {
-    int d = f->mesh->dimension;
-    const struct level *above = &f->mesh->level[level - 1], *here = above + 1;
+static void add_above(const struct preconditioner *preconditioner, struct layer_stiffness *layer,
+                      size_t level, size_t mx, size_t row, double share, double pivot[3][3]) {
+    int d = preconditioner->mesh->dimension;
+    const struct level *above = &preconditioner->mesh->level[level - 1], *here = above + 1;
     for (size_t y = row; y < above->ny; y += here->ny)
         for (size_t x = mx; x < above->nx; x += here->nx) {
             struct wave_phases phases = wave_phases_of(above, x, y);
@@ -104,12 +107,13 @@ static void add_above(const struct preconditioner *f, struct layer_stiffness *la
  * have the same columns. Where columns widen, the aliases of a wave are treated as independent
  * although the level below couples them; that is accurate because short waves have decayed at such
  * depths. */
-static void couple(const struct preconditioner *f, struct layer_stiffness *layer, size_t level,
-                   size_t wave, double share, double pivot[3][3]) {
-    int d = f->mesh->dimension;
-    const struct level *here = &f->mesh->level[level];
-    size_t n = waves_at(f, level), next = waves_at(f, level + 1), below = wave;
-    bool mirrored = false, wide = mesh_widens(f->mesh, level);
+static void couple(const struct preconditioner *preconditioner, struct layer_stiffness *layer,
+                   size_t level, size_t wave, double share, double pivot[3][3]) {
+    int d = preconditioner->mesh->dimension;
+    const struct level *here = &preconditioner->mesh->level[level];
+    size_t n = waves_at(preconditioner, level), next = waves_at(preconditioner, level + 1),
+           below = wave;
+    bool mirrored = false, wide = mesh_widens(preconditioner->mesh, level);
     struct wave_phases phases = wave_phases_of(here, wave / here->ny, wave % here->ny);
     double between[3][3] = {{0}};
     if (wide)
@@ -117,16 +121,17 @@ static void couple(const struct preconditioner *f, struct layer_stiffness *layer
     layer_stiffness_add_symbol(d, layer->block[0][0], &phases, 1, pivot);
     layer_stiffness_add_symbol(d, layer->block[0][1], &phases,
                                wide ? wave_phases_hanging(d, &phases) : 1, between);
-    for (int i = 0; level + 1 == f->mesh->layers && below != 0 && i < d; i++)
+    for (int i = 0; level + 1 == preconditioner->mesh->layers && below != 0 && i < d; i++)
         between[i][d - 1] = 0; /* all nodes of the far side move together */
     for (int i = 0; i < d; i++)
         for (int j = 0; j < d; j++) {
-            coupling_at(f, level)[(size_t)(i * d + j) * n + wave] = between[i][j];
+            coupling_at(preconditioner, level)[(size_t)(i * d + j) * n + wave] = between[i][j];
             for (int k = 0; k < d; k++)
                 for (int l = 0; l < d; l++) {
                     bool turned = mirrored && (k == d - 1) != (l == d - 1);
-                    pivot[i][j] -= (turned ? -share : share) * between[i][k] * between[j][l] *
-                                   inverse_at(f, level + 1)[(size_t)(k * d + l) * next + below];
+                    pivot[i][j] -=
+                        (turned ? -share : share) * between[i][k] * between[j][l] *
+                        inverse_at(preconditioner, level + 1)[(size_t)(k * d + l) * next + below];
                 }
         }
 }
@@ -136,17 +141,17 @@ static double share_of(const struct mesh *mesh, size_t level) {
     return mesh_widens(mesh, level) ? 1 << (mesh->dimension - 1) : 1;
 }
 
-static void eliminate(struct preconditioner *f, struct layer_stiffness *layers, size_t level,
-                      size_t wave) {
-    const struct mesh *mesh = f->mesh;
+static void eliminate(struct preconditioner *preconditioner, struct layer_stiffness *layers,
+                      size_t level, size_t wave) {
+    const struct mesh *mesh = preconditioner->mesh;
     int d = mesh->dimension;
-    size_t last = mesh->layers, n = waves_at(f, level), rows = mesh->level[level].ny;
+    size_t last = mesh->layers, n = waves_at(preconditioner, level), rows = mesh->level[level].ny;
     double pivot[3][3] = {{0}}, inverse[3][3];
     if (level < last)
-        couple(f, &layers[level], level, wave, share_of(mesh, level), pivot);
+        couple(preconditioner, &layers[level], level, wave, share_of(mesh, level), pivot);
     if (level > 0)
-        add_above(f, &layers[level - 1], level, wave / rows, wave % rows, share_of(mesh, level - 1),
-                  pivot);
+        add_above(preconditioner, &layers[level - 1], level, wave / rows, wave % rows,
+                  share_of(mesh, level - 1), pivot);
     if (level == last)
         hold_far_side(d, wave == 0, pivot);
     bool floats =
@@ -158,12 +163,12 @@ static void eliminate(struct preconditioner *f, struct layer_stiffness *layers, 
         inverse[d - 1][d - 1] = 0;
     for (int i = 0; i < d; i++)
         for (int j = 0; j < d; j++)
-            inverse_at(f, level)[(size_t)(i * d + j) * n + wave] = inverse[i][j];
+            inverse_at(preconditioner, level)[(size_t)(i * d + j) * n + wave] = inverse[i][j];
 }
 
-static int eliminate_all(struct preconditioner *f, const struct material *material,
+static int eliminate_all(struct preconditioner *preconditioner, const struct material *material,
                          struct volumetric *volumetric, struct error *err) {
-    const struct mesh *mesh = f->mesh;
+    const struct mesh *mesh = preconditioner->mesh;
     struct layer_stiffness *layers = array_create(mesh->layers, sizeof *layers);
     if (layers == NULL)
         return error_memory(err, mesh->layers * sizeof *layers, "the flat block");
@@ -171,8 +176,8 @@ static int eliminate_all(struct preconditioner *f, const struct material *materi
         layer_stiffness_make(mesh, material, k, &layers[k],
                              volumetric != NULL ? &volumetric->element[k] : NULL);
     for (size_t level = mesh->layers + 1; level-- > 0;)
-        for (size_t wave = 0; wave < waves_at(f, level); wave++)
-            eliminate(f, layers, level, wave);
+        for (size_t wave = 0; wave < waves_at(preconditioner, level); wave++)
+            eliminate(preconditioner, layers, level, wave);
     free(layers);
     return 0;
 }
@@ -191,32 +196,35 @@ double preconditioner_bytes(const struct mesh *mesh) {
                              (double)mesh->face + 2 * one);
 }
 
-static int arrays_create(struct preconditioner *f, struct error *err) {
-    const struct mesh *mesh = f->mesh;
-    size_t d = f->d, waves = all_waves(mesh), one = level_waves(&mesh->level[0]);
-    f->before = array_create(mesh->layers + 2, sizeof *f->before);
-    f->inverse = array_create(waves * d * d, sizeof *f->inverse);
-    f->coupling = array_create(waves * d * d, sizeof *f->coupling);
-    f->field = array_create(waves * d * 2, sizeof *f->field);
-    f->passed = array_create(one * d * 2, sizeof *f->passed);
-    f->folded = array_create(one * d * 2, sizeof *f->folded);
-    f->plane = array_create(mesh->face, sizeof *f->plane);
-    if (f->before == NULL || f->inverse == NULL || f->coupling == NULL || f->field == NULL ||
-        f->passed == NULL || f->folded == NULL || f->plane == NULL)
+static int arrays_create(struct preconditioner *preconditioner, struct error *err) {
+    const struct mesh *mesh = preconditioner->mesh;
+    size_t d = preconditioner->d, waves = all_waves(mesh), one = level_waves(&mesh->level[0]);
+    preconditioner->before = array_create(mesh->layers + 2, sizeof *preconditioner->before);
+    preconditioner->inverse = array_create(waves * d * d, sizeof *preconditioner->inverse);
+    preconditioner->coupling = array_create(waves * d * d, sizeof *preconditioner->coupling);
+    preconditioner->field = array_create(waves * d * 2, sizeof *preconditioner->field);
+    preconditioner->passed = array_create(one * d * 2, sizeof *preconditioner->passed);
+    preconditioner->folded = array_create(one * d * 2, sizeof *preconditioner->folded);
+    preconditioner->plane = array_create(mesh->face, sizeof *preconditioner->plane);
+    if (preconditioner->before == NULL || preconditioner->inverse == NULL ||
+        preconditioner->coupling == NULL || preconditioner->field == NULL ||
+        preconditioner->passed == NULL || preconditioner->folded == NULL ||
+        preconditioner->plane == NULL)
         return error_memory(err, (size_t)preconditioner_bytes(mesh), "the flat block");
     for (size_t level = 0; level <= mesh->layers; level++)
-        f->before[level + 1] = f->before[level] + waves_at(f, level);
+        preconditioner->before[level + 1] =
+            preconditioner->before[level] + waves_at(preconditioner, level);
     return 0;
 }
 
-static int transforms_create(struct preconditioner *f, struct error *err) {
-    const struct mesh *mesh = f->mesh;
+static int transforms_create(struct preconditioner *preconditioner, struct error *err) {
+    const struct mesh *mesh = preconditioner->mesh;
     int status = 0;
     for (size_t k = 0; status == 0 && k <= mesh->layers; k++) {
         const struct level *level = &mesh->level[k];
         struct grid grid = {level->nx, level->ny, (double)level->nx,
                             (double)level->ny * mesh->across};
-        struct transform **transform = &f->transform[zone_of(level)];
+        struct transform **transform = &preconditioner->transform[zone_of(level)];
         if (*transform == NULL)
             status = transform_create(transform, &grid, level->nx / 2, level->ny / 2, err);
     }
@@ -227,67 +235,68 @@ int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
                           const struct material *material, struct volumetric *volumetric,
                           struct error *err) {
     *out = NULL;
-    struct preconditioner *f = array_create(1, sizeof *f);
-    if (f == NULL)
-        return error_memory(err, sizeof *f, "the flat block");
-    f->mesh = mesh;
-    f->d = (size_t)mesh->dimension;
-    int status = arrays_create(f, err);
+    struct preconditioner *preconditioner = array_create(1, sizeof *preconditioner);
+    if (preconditioner == NULL)
+        return error_memory(err, sizeof *preconditioner, "the flat block");
+    preconditioner->mesh = mesh;
+    preconditioner->d = (size_t)mesh->dimension;
+    int status = arrays_create(preconditioner, err);
     if (status == 0)
-        status = transforms_create(f, err);
+        status = transforms_create(preconditioner, err);
     if (status == 0)
-        status = eliminate_all(f, material, volumetric, err);
+        status = eliminate_all(preconditioner, material, volumetric, err);
     if (status != 0)
-        preconditioner_destroy(&f);
-    *out = f;
+        preconditioner_destroy(&preconditioner);
+    *out = preconditioner;
     return status;
 }
 
-void preconditioner_destroy(struct preconditioner **preconditioner) {
-    struct preconditioner *f = *preconditioner;
-    if (f == NULL)
+void preconditioner_destroy(struct preconditioner **handle) {
+    struct preconditioner *preconditioner = *handle;
+    if (preconditioner == NULL)
         return;
     for (size_t zone = 0; zone < ZONES_MOST; zone++)
-        transform_destroy(&f->transform[zone]);
-    free(f->before);
-    free(f->inverse);
-    free(f->coupling);
-    free(f->field);
-    free(f->passed);
-    free(f->folded);
-    free(f->plane);
-    free(f);
-    *preconditioner = NULL;
+        transform_destroy(&preconditioner->transform[zone]);
+    free(preconditioner->before);
+    free(preconditioner->inverse);
+    free(preconditioner->coupling);
+    free(preconditioner->field);
+    free(preconditioner->passed);
+    free(preconditioner->folded);
+    free(preconditioner->plane);
+    free(preconditioner);
+    *handle = NULL;
 }
 
-const double *preconditioner_compliance(const struct preconditioner *f) {
-    return inverse_at(f, 0) + (f->d * f->d - 1) * waves_at(f, 0);
+const double *preconditioner_compliance(const struct preconditioner *preconditioner) {
+    return inverse_at(preconditioner, 0) +
+           (preconditioner->d * preconditioner->d - 1) * waves_at(preconditioner, 0);
 }
 
 /* --- waves in and out --- */
 
 /* Transforms one component of a level's forces from plane into the field. A spectrum s of a
  * sideways component is stored as -i s. */
-static void plane_in(struct preconditioner *f, size_t level, size_t i) {
-    size_t n = waves_at(f, level);
-    double *re = field_at(f, level, i), *im = re + n;
-    transform_forward(transform_at(f, level), f->plane);
-    const double complex *s = transform_spectrum(transform_at(f, level));
-    bool vertical = i == f->d - 1;
+static void plane_in(struct preconditioner *preconditioner, size_t level, size_t i) {
+    size_t n = waves_at(preconditioner, level);
+    double *re = field_at(preconditioner, level, i), *im = re + n;
+    transform_forward(transform_at(preconditioner, level), preconditioner->plane);
+    const double complex *s = transform_spectrum(transform_at(preconditioner, level));
+    bool vertical = i == preconditioner->d - 1;
     for (size_t k = 0; k < n; k++) {
         re[k] = vertical ? creal(s[k]) : cimag(s[k]);
         im[k] = vertical ? cimag(s[k]) : -creal(s[k]);
     }
 }
 
-static void plane_out(struct preconditioner *f, size_t level, size_t i) {
-    size_t n = waves_at(f, level);
-    const double *re = field_at(f, level, i), *im = re + n;
-    double complex *s = transform_spectrum(transform_at(f, level));
-    bool vertical = i == f->d - 1;
+static void plane_out(struct preconditioner *preconditioner, size_t level, size_t i) {
+    size_t n = waves_at(preconditioner, level);
+    const double *re = field_at(preconditioner, level, i), *im = re + n;
+    double complex *s = transform_spectrum(transform_at(preconditioner, level));
+    bool vertical = i == preconditioner->d - 1;
     for (size_t k = 0; k < n; k++)
         s[k] = vertical ? re[k] + im[k] * I : -im[k] + re[k] * I;
-    transform_inverse(transform_at(f, level), f->plane);
+    transform_inverse(transform_at(preconditioner, level), preconditioner->plane);
 }
 
 /* y -= a x, with one real value a for each wave; x and y are real and imaginary parts. */
@@ -318,57 +327,58 @@ WIDE_VECTORS static void pivot_three(size_t n, const double *a, double *x, doubl
         }
 }
 
-static void pivot_apply(struct preconditioner *f, size_t level, double *field) {
-    size_t n = waves_at(f, level);
-    if (f->d == 2)
-        pivot_two(n, inverse_at(f, level), field, field + 2 * n);
+static void pivot_apply(struct preconditioner *preconditioner, size_t level, double *field) {
+    size_t n = waves_at(preconditioner, level);
+    if (preconditioner->d == 2)
+        pivot_two(n, inverse_at(preconditioner, level), field, field + 2 * n);
     else
-        pivot_three(n, inverse_at(f, level), field, field + 2 * n, field + 4 * n);
+        pivot_three(n, inverse_at(preconditioner, level), field, field + 2 * n, field + 4 * n);
 }
 
-void preconditioner_load(struct preconditioner *f, const double *forces) {
-    const struct mesh *mesh = f->mesh;
-    size_t d = f->d, last = mesh->layers;
+void preconditioner_load(struct preconditioner *preconditioner, const double *forces) {
+    const struct mesh *mesh = preconditioner->mesh;
+    size_t d = preconditioner->d, last = mesh->layers;
     for (size_t level = 0; level <= last; level++)
         for (size_t i = 0; i < d; i++) {
             const double *force = forces + mesh->level[level].first * d + i;
             for (size_t node = 0; node < level_nodes(&mesh->level[level]); node++)
-                f->plane[node] = force[node * d];
-            plane_in(f, level, i);
+                preconditioner->plane[node] = force[node * d];
+            plane_in(preconditioner, level, i);
         }
-    double *far_side = field_at(f, last, d - 1);
-    size_t wide = waves_at(f, last);
+    double *far_side = field_at(preconditioner, last, d - 1);
+    size_t wide = waves_at(preconditioner, last);
     for (size_t k = 1; k < wide; k++)
         far_side[k] = far_side[wide + k] = 0;
     for (size_t level = last; level > 0; level--) {
         /* The field of the level below keeps the displacements under the forces stored there. */
-        size_t n = waves_at(f, level - 1);
-        const double *field = field_at(f, level, 0);
-        pivot_apply(f, level, field_at(f, level, 0));
+        size_t n = waves_at(preconditioner, level - 1);
+        const double *field = field_at(preconditioner, level, 0);
+        pivot_apply(preconditioner, level, field_at(preconditioner, level, 0));
         if (mesh_widens(mesh, level - 1)) {
-            aliasing_unfold(&mesh->level[level - 1], d, field, f->passed);
-            field = f->passed;
+            aliasing_unfold(&mesh->level[level - 1], d, field, preconditioner->passed);
+            field = preconditioner->passed;
         }
         for (size_t i = 0; i < d; i++)
             for (size_t j = 0; j < d; j++)
-                subtract(n, coupling_at(f, level - 1) + (i * d + j) * n, field + 2 * j * n,
-                         field_at(f, level - 1, i));
+                subtract(n, coupling_at(preconditioner, level - 1) + (i * d + j) * n,
+                         field + 2 * j * n, field_at(preconditioner, level - 1, i));
     }
 }
 
 /* Only the vertical row of the inverse pivot is needed; the field itself is kept for
  * preconditioner_displace. */
-void preconditioner_face(struct preconditioner *f, double *vertical) {
-    size_t n = waves_at(f, 0), d = f->d;
-    double complex *s = transform_spectrum(f->transform[0]);
+void preconditioner_face(struct preconditioner *preconditioner, double *vertical) {
+    size_t n = waves_at(preconditioner, 0), d = preconditioner->d;
+    double complex *s = transform_spectrum(preconditioner->transform[0]);
     for (size_t k = 0; k < n; k++)
         s[k] = 0;
     for (size_t j = 0; j < d; j++) {
-        const double *a = inverse_at(f, 0) + ((d - 1) * d + j) * n, *x = field_at(f, 0, j);
+        const double *a = inverse_at(preconditioner, 0) + ((d - 1) * d + j) * n,
+                     *x = field_at(preconditioner, 0, j);
         for (size_t k = 0; k < n; k++)
             s[k] += a[k] * x[k] + a[k] * x[n + k] * I;
     }
-    transform_inverse(f->transform[0], vertical);
+    transform_inverse(preconditioner->transform[0], vertical);
 }
 
 /* Subtracts pivot times coupling^T times this level's displacements from those of the next level.
@@ -410,40 +420,44 @@ WIDE_VECTORS static void pull(size_t d, size_t n, const double *coupling, const 
 }
 
 /* The next level's displacements where its columns are wider. */
-static void descend_wider(struct preconditioner *f, size_t level) {
-    size_t n = 2 * f->d * waves_at(f, level + 1);
-    double share = share_of(f->mesh, level), *below = field_at(f, level + 1, 0);
-    pull(f->d, waves_at(f, level), coupling_at(f, level), field_at(f, level, 0), f->passed);
-    aliasing_fold(&f->mesh->level[level], f->d, f->passed, f->folded);
-    pivot_apply(f, level + 1, f->folded);
+static void descend_wider(struct preconditioner *preconditioner, size_t level) {
+    size_t n = 2 * preconditioner->d * waves_at(preconditioner, level + 1);
+    double share = share_of(preconditioner->mesh, level),
+           *below = field_at(preconditioner, level + 1, 0);
+    pull(preconditioner->d, waves_at(preconditioner, level), coupling_at(preconditioner, level),
+         field_at(preconditioner, level, 0), preconditioner->passed);
+    aliasing_fold(&preconditioner->mesh->level[level], preconditioner->d, preconditioner->passed,
+                  preconditioner->folded);
+    pivot_apply(preconditioner, level + 1, preconditioner->folded);
     for (size_t k = 0; k < n; k++)
-        below[k] -= share * f->folded[k];
+        below[k] -= share * preconditioner->folded[k];
 }
 
-void preconditioner_displace(struct preconditioner *f, const double *vertical,
+void preconditioner_displace(struct preconditioner *preconditioner, const double *vertical,
                              double *displacements) {
-    const struct mesh *mesh = f->mesh;
-    size_t d = f->d, n = waves_at(f, 0);
-    double *re = field_at(f, 0, d - 1);
-    transform_forward(f->transform[0], vertical);
-    const double complex *s = transform_spectrum(f->transform[0]);
+    const struct mesh *mesh = preconditioner->mesh;
+    size_t d = preconditioner->d, n = waves_at(preconditioner, 0);
+    double *re = field_at(preconditioner, 0, d - 1);
+    transform_forward(preconditioner->transform[0], vertical);
+    const double complex *s = transform_spectrum(preconditioner->transform[0]);
     for (size_t k = 0; k < n; k++) {
         re[k] += creal(s[k]);
         re[n + k] += cimag(s[k]);
     }
-    pivot_apply(f, 0, field_at(f, 0, 0));
+    pivot_apply(preconditioner, 0, field_at(preconditioner, 0, 0));
     for (size_t level = 0; level < mesh->layers; level++)
         if (mesh_widens(mesh, level))
-            descend_wider(f, level);
+            descend_wider(preconditioner, level);
         else
-            (d == 2 ? descend_two : descend_three)(waves_at(f, level), inverse_at(f, level + 1),
-                                                   coupling_at(f, level), field_at(f, level, 0),
-                                                   field_at(f, level + 1, 0));
+            (d == 2 ? descend_two : descend_three)(
+                waves_at(preconditioner, level), inverse_at(preconditioner, level + 1),
+                coupling_at(preconditioner, level), field_at(preconditioner, level, 0),
+                field_at(preconditioner, level + 1, 0));
     for (size_t level = 0; level <= mesh->layers; level++)
         for (size_t i = 0; i < d; i++) {
             double *displacement = displacements + mesh->level[level].first * d + i;
-            plane_out(f, level, i);
+            plane_out(preconditioner, level, i);
             for (size_t node = 0; node < level_nodes(&mesh->level[level]); node++)
-                displacement[node * d] = f->plane[node];
+                displacement[node * d] = preconditioner->plane[node];
         }
 }

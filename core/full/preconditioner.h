@@ -21,7 +21,7 @@ struct preconditioner;
 int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
                           const struct material *material, struct volumetric *volumetric,
                           struct error *err);
-void preconditioner_destroy(struct preconditioner **preconditioner);
+void preconditioner_destroy(struct preconditioner **handle);
 double preconditioner_bytes(const struct mesh *mesh);
 
 /* Vertical displacement of the face over the force on each node, one value a wave in the layout of

@@ -133,9 +133,10 @@ static int add_curvature(struct curve_maker *maker, struct error *err) {
 
 /* --- the joint density of summit heights and curvatures --- */
 
-/* Cell of the tally, which has cells for under- and overflow around the bins. */
+/* Cell of the tally, which has cells for under- and overflow around the bins. There is at least one
+ * bin. */
 static size_t joint_cell(const struct statistics_case *one_case, size_t cell) {
-    size_t columns = one_case->equivalent.count;
+    size_t columns = one_case->equivalent.count > 0 ? one_case->equivalent.count : 1;
     return (cell / columns + 1) * (columns + 2) + cell % columns + 1;
 }
 

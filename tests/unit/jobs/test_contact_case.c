@@ -82,7 +82,8 @@ static void models_bear_their_names(void **state) {
     for (; CONTACT_MODELS[m] != NULL; m++)
         assert_string_equal(CONTACT_MODELS[m]->name, choice_name(CONTACT_MODEL_CHOICES, (int)m));
     assert_null(CONTACT_MODEL_CHOICES[m].name);
-    assert_true(m == 3 && m <= CONTACT_MODELS_MOST);
+    assert_int_equal(m, 3);
+    assert_true(m <= CONTACT_MODELS_MOST);
 }
 
 /* Errors are counted from full, wherever it stands. */

@@ -101,6 +101,9 @@ static void bytes_come_back(void **state) {
         assert_int_equal(curve_decode(&again, data, size, NULL), 0);
         free(data);
     }
+    assert_int_equal(again.curve_count, 3);
+    if (again.curves == NULL)
+        fail();
     assert_string_equal(again.curves[1].theories[0].name, "nayak");
     assert_null(again.curves[1].theories[0].y); /* named, and made on demand */
     again.case_number = sample.case_number;
