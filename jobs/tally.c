@@ -62,6 +62,8 @@ void tally_clear(struct tally *tally) {
 
 void tally_merge(struct tally *into, const struct tally *from) {
     for (size_t cell = 0; cell < into->size; cell++) {
+        if (from->count[cell] == 0) /* then all three are; most cells of a sparse tally */
+            continue;
         into->count[cell] += from->count[cell];
         into->square[cell] += from->square[cell];
         into->cross[cell] += from->cross[cell];

@@ -41,9 +41,13 @@ void bin_averages_summits(int dimension, double alpha, const struct bins *bins, 
         double density = 0, moment = 0, edge = upper_edge(bins, b);
         for (int q = 0; q < GAUSS_4; q++) {
             double z = node_in(bins, b, q);
-            double p = surface ? nayak_summit_pdf(z, alpha) : profile_peak_pdf(z, alpha);
-            double kappa =
-                surface ? nayak_mean_curvature(z, alpha) : profile_mean_curvature(z, alpha);
+            double p, kappa;
+            if (surface) {
+                p = nayak_summit_pdf(z, alpha);
+                kappa = nayak_mean_curvature(z, alpha);
+            } else {
+                profile_peak(z, alpha, &p, &kappa);
+            }
             density += GAUSS_4_WEIGHTS[q] / 2 * p;
             moment += GAUSS_4_WEIGHTS[q] / 2 * p * kappa;
         }

@@ -22,6 +22,8 @@ double nayak_overall_curvature(void);
 /* Peaks of profiles, alpha = m0 m4/m2^2 > 1 (F7.1, F7.2; Rice 1945; Cartwright & Longuet-Higgins
  * 1956): density of peak heights, its integral, joint density with t1 = z''/sqrt(m4) < 0, expected
  * curvature -z''/sqrt(m4) of peaks at height z, and peaks per length. */
+/* Density and mean curvature at a height together, for the work of one. */
+void profile_peak(double z, double alpha, double *pdf, double *curvature);
 double profile_peak_pdf(double z, double alpha);
 double profile_peak_cdf(double z, double alpha);
 double profile_peak_joint_pdf(double z, double t1, double alpha);

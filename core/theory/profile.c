@@ -11,24 +11,25 @@ static bool in_domain(double alpha) {
 }
 
 struct conditional {
-    double mean, deviation,
-        peak; /* of s at the height; exponent less its largest value for s > 0 */
-    int order;
+    double mean, deviation; /* of s at the height */
+    double peak;            /* exponent less its largest value for s > 0 */
 };
 
-static double conditional_weight(double s, const void *context) {
+/* s and s^2, times the exponential. */
+static void conditional_weights(double s, const void *context, double out[2]) {
     const struct conditional *c = context;
-    double t = (s - c->mean) / c->deviation;
-    return (c->order == 1 ? s : s * s) * exp(c->peak - t * t / 2);
+    double t = (s - c->mean) / c->deviation, weight = exp(c->peak - t * t / 2);
+    out[0] = s * weight;
+    out[1] = s * s * weight;
 }
 
 static const double DEPTH = 80;
 enum { PANELS = 24 };
 
-/* Integral over s > 0 of s^order exp(-(s - r z)^2/(2 (1 - r^2)) + peak). */
-static double conditional_moment(double z, double alpha, int order) {
+/* Integrals over s > 0 of s and s^2, times exp(-(s - r z)^2/(2 (1 - r^2)) + peak). */
+static void conditional_moments(double z, double alpha, double out[2]) {
     double r = 1 / sqrt(alpha), deviation = sqrt((alpha - 1) / alpha);
-    struct conditional c = {r * z, deviation, 0, order};
+    struct conditional c = {r * z, deviation, 0};
     double start = -c.mean / deviation; /* of s = 0 */
     double reach = deviation * sqrt(2 * DEPTH);
     double low = fmax(c.mean - reach, 0), high = c.mean + reach;
@@ -36,17 +37,24 @@ static double conditional_moment(double z, double alpha, int order) {
         c.peak = start * start / 2;
         high = deviation * 2 * DEPTH / (sqrt(start * start + 2 * DEPTH) + start);
     }
-    return quadrature(conditional_weight, &c, low, high, PANELS);
+    quadrature_pair(conditional_weights, &c, low, high, PANELS, out);
+}
+
+void profile_peak(double z, double alpha, double *pdf, double *curvature) {
+    *pdf = *curvature = NAN;
+    if (!in_domain(alpha) || isnan(z))
+        return;
+    double variance = (alpha - 1) / alpha, moments[2];
+    double exponent = z > 0 ? -z * z / 2 : -z * z / (2 * variance);
+    conditional_moments(z, alpha, moments);
+    *pdf = exponent < -700 ? 0 : exp(exponent) * moments[0] / sqrt(2 * M_PI * variance);
+    *curvature = isfinite(z) ? moments[1] / moments[0] : (double)NAN;
 }
 
 double profile_peak_pdf(double z, double alpha) {
-    if (!in_domain(alpha) || isnan(z))
-        return NAN;
-    double variance = (alpha - 1) / alpha;
-    double exponent = z > 0 ? -z * z / 2 : -z * z / (2 * variance);
-    if (exponent < -700)
-        return 0;
-    return exp(exponent) * conditional_moment(z, alpha, 1) / sqrt(2 * M_PI * variance);
+    double pdf, curvature;
+    profile_peak(z, alpha, &pdf, &curvature);
+    return pdf;
 }
 
 static double normal_below(double x) {
@@ -73,9 +81,9 @@ double profile_peak_joint_pdf(double z, double t1, double alpha) {
 }
 
 double profile_mean_curvature(double z, double alpha) {
-    if (!in_domain(alpha) || !isfinite(z))
-        return NAN;
-    return conditional_moment(z, alpha, 2) / conditional_moment(z, alpha, 1);
+    double pdf, curvature;
+    profile_peak(z, alpha, &pdf, &curvature);
+    return curvature;
 }
 
 double profile_peak_density(double m2, double m4) {

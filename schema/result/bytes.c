@@ -138,7 +138,6 @@ struct byte_reader bytes_open(const unsigned char *data, size_t size) {
 }
 
 void bytes_get_counts(struct byte_reader *reader, size_t n, uint64_t *counts) {
-    memset(counts, 0, n * sizeof *counts);
     for (size_t a = 0; a < n && !reader->failed;) {
         uint64_t zeros = bytes_get_unsigned(reader);
         uint64_t others = bytes_get_unsigned(reader);

@@ -30,6 +30,7 @@ struct byte_reader bytes_open(const unsigned char *data, size_t size);
 uint64_t bytes_get_unsigned(struct byte_reader *reader);
 fixed_point bytes_get_fixed(struct byte_reader *reader);
 double bytes_get_double(struct byte_reader *reader);
+/* counts[n] must be zero: of a large sparse array only the parts in use are touched. */
 void bytes_get_counts(struct byte_reader *reader, size_t n, uint64_t *counts);
 
 /* FNV-1a, 64 bits: a seal against damage, not against intent. Start from HASH_START. */

@@ -77,6 +77,7 @@ static void counts_round_trip(void **state) {
         struct bytes bytes = {0};
         bytes_put_counts(&bytes, n, counts);
         struct byte_reader reader = reader_of(&bytes);
+        memset(read, 0, sizeof read);
         bytes_get_counts(&reader, n, read);
         assert_false(reader.failed);
         assert_ptr_equal(reader.at, reader.end);
@@ -107,7 +108,7 @@ static void malformed(void **state) {
     assert_true(get_unsigned_fails("\xff\xff\xff\xff\xff\xff\xff\xff\xff\x02", 10));
     assert_true(get_unsigned_fails("\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\x01", 11));
     const unsigned char past[] = {2, 9, 1}, stuck[] = {0, 0, 0, 0}, zero[] = {1, 1, 0};
-    uint64_t counts[4];
+    uint64_t counts[4] = {0};
     struct byte_reader reader = {past, past + 3, 0};
     bytes_get_counts(&reader, 4, counts);
     assert_true(reader.failed);
