@@ -3,10 +3,22 @@
 #include "jobs/contact/contact_case.h"
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/contact_tally.h"
+#include "jobs/publishing_cost.h"
 #include <math.h>
 
 /* The program, its libraries, and tables that do not grow with the grid. */
 static const double PROCESS_BYTES = 1.2e7;
+
+/* Curves of a model and level: areas by four estimators or five, and eight other quantities. */
+enum { LEVEL_CURVES = 13 };
+
+static double case_seconds(const struct contact_case *one_case) {
+    size_t solved = one_case->model_count * one_case->level_count;
+    size_t densities = one_case->model_count * one_case->pdf_count;
+    return publishing_cost(LEVEL_CURVES * solved + densities,
+                           LEVEL_CURVES * solved * one_case->load_count +
+                               densities * one_case->pressure.count);
+}
 
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
@@ -22,6 +34,7 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
     for (size_t l = 0; l < one_case->level_count; l++)
         for (size_t m = 0; m < one_case->model_count; m++)
             out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);
+    out->case_seconds = case_seconds(one_case);
     bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
     out->relative_error = cost_area_scatter(surface->dimension, surface->length_ratio,
                                             affine ? surface->spectrum.hurst : NAN);

@@ -14,6 +14,7 @@ struct study_cost {
     size_t nx, ny;         /* grid of one realisation (the finest) */
     double memory_bytes;   /* peak of one worker thread */
     double seconds;        /* CPU seconds a realisation on a 3 GHz core */
+    double case_seconds;   /* the same of a case besides: merging and publishing it */
     double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
 };
 

@@ -10,7 +10,8 @@
 #include <string.h>
 
 static double case_seconds(const struct study *study, size_t c) {
-    return study->cases[c].cost.seconds * (double)study->realisations;
+    return study->cases[c].cost.seconds * (double)study->realisations +
+           study->cases[c].cost.case_seconds;
 }
 
 static double case_error(const struct study *study, size_t c) {

@@ -373,6 +373,7 @@ static void checking(void **state) {
     struct study_cost estimate;
     cJSON *parameters = parse(GAUSSIAN);
     assert_int_equal(kind_check(&kind()->study, parameters, &faults, &estimate, NULL), 0);
+    assert_true(estimate.case_seconds > 0); /* publishing costs something, whatever it is of */
     assert_int_equal(faults.count, 0);
     assert_int_equal(estimate.nx, 32);
     assert_true(estimate.memory_bytes > 1e5 && estimate.memory_bytes < 1e8);
