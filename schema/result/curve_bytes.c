@@ -1,5 +1,6 @@
 #include "schema/result/curve_bytes.h"
 #include "schema/result/bytes.h"
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +14,7 @@ static void put_text(struct bytes *bytes, const char *text) {
     size_t length = strlen(text);
     bytes_put_unsigned(bytes, length);
     for (size_t a = 0; a < length; a++)
-        bytes_put_unsigned(bytes, (unsigned char)text[a] & 0x7f);
+        bytes_put_unsigned(bytes, (unsigned char)text[a]);
 }
 
 static void put_numbers(struct bytes *bytes, size_t n, const double *numbers) {
@@ -137,8 +138,11 @@ static const char *get_text(struct decoding *decoding) {
     if (length > TEXT_MOST)
         decoding->reader.failed = 1;
     char *text = room_for(decoding, (size_t)length + 1, 1, 1);
-    for (uint64_t a = 0; text != NULL && a < length; a++)
-        text[a] = (char)(bytes_get_unsigned(&decoding->reader) & 0x7f);
+    for (uint64_t a = 0; text != NULL && a < length; a++) {
+        uint64_t byte = bytes_get_unsigned(&decoding->reader);
+        decoding->reader.failed = decoding->reader.failed || byte == 0 || byte > UCHAR_MAX;
+        text[a] = (char)(unsigned char)byte;
+    }
     return text;
 }
 

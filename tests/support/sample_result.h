@@ -16,7 +16,7 @@ static inline void sample_result(struct case_result *out) {
     static const double mesh[] = {0.25, NAN}, mesh_error[] = {0.01, 0.02};
     static const double model[] = {NAN, -2}, model_error[] = {0.03, 0.04}, valueless[] = {0, 3};
     static struct result_note notes[] = {{7, "why"}};
-    struct curve plain = curve_named("q", "z", "density");
+    struct curve plain = curve_named("q", "z/\302\265m", "density");
     struct curve matrix = curve_named("joint", "z", "density");
     struct curve full = curve_named("area", "load", "A/A0");
     *out = (struct case_result){.case_number = 3, .realisations = 24, .notes = notes};

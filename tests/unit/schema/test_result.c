@@ -23,7 +23,7 @@ static const char PRINTED[] =
     "\"standard_error\":0.5},\"alpha\":{\"value\":5,\"standard_error\":null,\"theory\":6}},"
     "\"curves\":[{\"quantity\":\"q\",\"series\":\"x, \\\"y\\\"\",\"x\":[0.1,2],\"y\":[3,null],"
     "\"standard_error\":[0.1,null],\"discretisation_error\":null,\"theory\":{\"nayak\":[1.5,2.5]},"
-    "\"x_label\":\"z\",\"underflow\":4,\"overflow\":0,\"y_label\":\"density\"},"
+    "\"x_label\":\"z/\302\265m\",\"underflow\":4,\"overflow\":0,\"y_label\":\"density\"},"
     "{\"quantity\":\"joint\",\"series\":\"\",\"x\":[0.1,2],\"x2\":[7,8,9],"
     "\"y\":[[0,2,0],[0,0,6]],\"standard_error\":[[0,0.25,0],[0,0,1]],"
     "\"discretisation_error\":null,\"theory\":{},\"x_label\":\"z\",\"x2_label\":\"t\","
