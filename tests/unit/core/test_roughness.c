@@ -25,7 +25,7 @@ static void differences_have_their_bias(void **state) {
     (void)state;
     static const double M2[] = {0.957, 0.989, 0.997}, M4[] = {0.832, 0.954, 0.988};
     for (size_t p = 0; p < 3; p++) {
-        size_t n = 256 << p;
+        size_t n = (size_t)256 << p;
         struct grid grid = {n, n, 64, 64};
         struct generator *generator = NULL;
         struct roughness measured;
