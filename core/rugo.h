@@ -89,7 +89,9 @@ RUGO_API int rugo_spectrum_moments(const struct rugo_spectrum *spectrum,
 /* Nayak's alpha of a continuous self-affine spectrum; dimension 1 (profile) or 2, ratio the longest
  * over the shortest wavelength, rolloff the longest over that of the roll-off, at least 1. */
 RUGO_API double rugo_alpha_of_ratio(int dimension, double hurst, double ratio, double rolloff);
-/* Its inverse: the ratio that gives alpha. NUMERIC, with the range, where none does. */
+/* Its inverse: the ratio that gives alpha. INPUT for another dimension, hurst outside [0, 1],
+ * rolloff below 1 or an alpha that is not finite; NUMERIC, with the range, where no ratio gives
+ * alpha. */
 RUGO_API int rugo_ratio_of_alpha(int dimension, double hurst, double rolloff, double alpha,
                                  double *ratio, struct rugo_error *err);
 
@@ -136,12 +138,13 @@ RUGO_API void rugo_generator_destroy(struct rugo_generator **generator);
 /* Fills z, nx*ny heights. The surface depends on (seed, case_number, realisation) alone, by counted
  * random words (Salmon et al. 2011), with uniform phases (Wu 2000); a Gaussian one is the same on
  * every grid that resolves it. `rugo generate --case` counts the cases of a study. report: NULL
- * where not wanted. */
+ * where not wanted. z is filled in place: what it holds after a failure has no meaning. */
 RUGO_API int rugo_generator_run(struct rugo_generator *generator, uint64_t seed,
                                 uint64_t case_number, uint64_t realisation, double *z,
                                 struct rugo_surface_report *report, struct rugo_error *err);
 /* The map z of the grid `from`, sampled on the grid `to` of the same cell: exact for waves up to
- * mode_x, mode_y a cell, at most half the points of either grid; others are left out. */
+ * mode_x, mode_y a cell, at most half the points of either grid; others are left out. Everything
+ * that can fail does so before out is written, which may not overlap z. */
 RUGO_API int rugo_resample(const struct rugo_grid *from, const double *z,
                            const struct rugo_grid *to, size_t mode_x, size_t mode_y, double *out,
                            struct rugo_error *err);
@@ -211,7 +214,7 @@ RUGO_API double rugo_nayak_summit_cdf(double z, double alpha);
 RUGO_API double rugo_nayak_joint_pdf(double z, double t1, double alpha);
 /* Mean curvature of the summits at height z, over sqrt(m4). */
 RUGO_API double rugo_nayak_mean_curvature(double z, double alpha);
-/* Summits per area, from the isotropic moments. */
+/* Summits per area, from the isotropic moments; NaN unless both are finite, m2 > 0 and m4 >= 0. */
 RUGO_API double rugo_nayak_summit_density(double m2, double m4);
 
 /* --- theories of contact; load = p/(E* h') --- */
@@ -270,16 +273,19 @@ RUGO_API int rugo_contact_create(struct rugo_contact **out, const struct rugo_gr
                                  const struct rugo_block *block, struct rugo_error *err);
 RUGO_API void rugo_contact_destroy(struct rugo_contact **contact);
 /* Takes a surface (copies; any mean) that is not in contact yet: highest points touch first. INPUT
- * for a height that is not finite, and for the full model where the surface is too steep. */
+ * for a height that is not finite, and for the full model where the surface is too steep; there is
+ * then no surface to press. */
 RUGO_API int rugo_contact_begin(struct rugo_contact *contact, const double *z,
                                 struct rugo_error *err);
 /* Presses to a mean pressure >= 0 over E*, without friction or adhesion, by constrained conjugate
  * gradients (Polonsky & Keer 1999), the full model by Newton's method with an active set. Loads may
- * rise and fall. NUMERIC, with what was reached, where there is no convergence; linear models then
- * begin the next load anew. */
+ * rise and fall. INPUT where rugo_contact_begin has not succeeded before. NUMERIC, with what was
+ * reached, where there is no convergence; linear models then begin the next load anew. */
 RUGO_API int rugo_contact_press(struct rugo_contact *contact, double pressure,
                                 struct rugo_contact_state *out, struct rugo_error *err);
-/* The least mean pressure of full contact of the surface begun; NaN for the full model. */
+/* The least mean pressure of full contact of the surface begun; NaN without one, and for the full
+ * model.
+ */
 RUGO_API double rugo_contact_full_pressure(const struct rugo_contact *contact);
 
 #ifdef __cplusplus

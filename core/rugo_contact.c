@@ -4,6 +4,7 @@
 #include "core/full/full.h"
 #include "core/rugo_shared.h"
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 struct rugo_contact {
@@ -12,6 +13,7 @@ struct rugo_contact {
     struct full *full;
     struct area_workspace *areas;
     struct patch_finder *patches;
+    bool begun; /* a surface has been taken */
 };
 
 struct rugo_block rugo_block_defaults(enum rugo_model model, const struct rugo_grid *grid) {
@@ -86,6 +88,7 @@ int rugo_contact_begin(struct rugo_contact *contact, const double *z, struct rug
     struct error why = {0};
     int status = contact->full != NULL ? full_begin(contact->full, z, &why)
                                        : contact_begin(contact->linear, z, &why);
+    contact->begun = status == 0;
     return error_give(status, &why, err);
 }
 
@@ -98,6 +101,9 @@ int rugo_contact_press(struct rugo_contact *contact, double pressure,
     if (!(pressure >= 0 && isfinite(pressure)))
         status =
             error_set(&why, ERROR_INPUT, "the mean pressure must be 0 or more, not %g", pressure);
+    else if (!contact->begun)
+        status = error_set(&why, ERROR_INPUT,
+                           "no surface to press: rugo_contact_begin must have succeeded before");
     else if (contact->full != NULL)
         status = full_press(contact->full, pressure, &state, &report, &why);
     else
@@ -125,5 +131,6 @@ int rugo_contact_press(struct rugo_contact *contact, double pressure,
 }
 
 double rugo_contact_full_pressure(const struct rugo_contact *contact) {
-    return contact->linear != NULL ? contact_full_pressure(contact->linear) : (double)NAN;
+    return contact->linear != NULL && contact->begun ? contact_full_pressure(contact->linear)
+                                                     : (double)NAN;
 }

@@ -11,7 +11,7 @@ static int read_file(const char *path, char **text, size_t *size, struct error *
     char *bytes = NULL;
     long end = -1;
     if (file == NULL)
-        return error_set(err, errno == ENOENT ? ERROR_INPUT : ERROR_SYSTEM, "%s", strerror(errno));
+        return error_set(err, ERROR_SYSTEM, "%s", strerror(errno));
     int status = 0;
     if (fseek(file, 0, SEEK_END) != 0 || (end = ftell(file)) < 0 || fseek(file, 0, SEEK_SET) != 0)
         status = error_set(err, ERROR_SYSTEM, "%s", strerror(errno));

@@ -1,6 +1,7 @@
 /* Spectra and random surfaces of rugo.h. */
 #include "core/rugo_shared.h"
 #include "core/surface/surface.h"
+#include <math.h>
 #include <stdlib.h>
 
 struct rugo_generator {
@@ -70,10 +71,25 @@ double rugo_alpha_of_ratio(int dimension, double hurst, double ratio, double rol
     return spectrum_alpha_continuous(dimension, hurst, ratio, rolloff);
 }
 
+static int ratio_arguments_check(int dimension, double hurst, double rolloff, double alpha,
+                                 struct error *err) {
+    if (dimension != 1 && dimension != 2)
+        return error_set(err, ERROR_INPUT, "the dimension must be 1 or 2, not %d", dimension);
+    if (!(hurst >= 0 && hurst <= 1))
+        return error_set(err, ERROR_INPUT, "hurst must be in [0, 1], not %g", hurst);
+    if (!(rolloff >= 1 && isfinite(rolloff)))
+        return error_set(err, ERROR_INPUT, "rolloff must be finite and 1 or more, not %g", rolloff);
+    if (!isfinite(alpha))
+        return error_set(err, ERROR_INPUT, "alpha must be finite, not %g", alpha);
+    return 0;
+}
+
 int rugo_ratio_of_alpha(int dimension, double hurst, double rolloff, double alpha, double *ratio,
                         struct rugo_error *err) {
     struct error why = {0};
-    int status = spectrum_ratio_continuous(dimension, hurst, rolloff, alpha, ratio, &why);
+    int status = ratio_arguments_check(dimension, hurst, rolloff, alpha, &why);
+    if (status == 0)
+        status = spectrum_ratio_continuous(dimension, hurst, rolloff, alpha, ratio, &why);
     return error_give(status, &why, err);
 }
 

@@ -104,6 +104,8 @@ double nayak_summit_cdf(double z, double alpha) {
 }
 
 double nayak_summit_density(double m2, double m4) {
+    if (!(m2 > 0 && m4 >= 0 && isfinite(m2) && isfinite(m4)))
+        return NAN;
     return m4 / (6 * M_PI * sqrt(3) * m2);
 }
 

@@ -11,7 +11,8 @@ double nayak_summit_cdf(double z, double alpha);
 double nayak_joint_pdf(double z, double t1, double alpha);
 /* Expected mean curvature of summits at height z over sqrt(m4) (F6.5). */
 double nayak_mean_curvature(double z, double alpha);
-/* Summits per area (F6.7); m2 and m4 are the isotropic moments. */
+/* Summits per area (F6.7); m2 and m4 are the isotropic moments. NaN unless both are finite, m2 > 0
+ * and m4 >= 0. */
 double nayak_summit_density(double m2, double m4);
 /* Mean and variance of summit heights z* (F6.4); mean of kappa_m/sqrt(m4) over all summits (F6.5).
  */

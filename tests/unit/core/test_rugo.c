@@ -148,6 +148,16 @@ static void a_map_tells_what_it_is_made_of(void **state) {
     assert_null(map.z);
 }
 
+/* Pressing without a surface is refused, and tells how to give one. */
+static void check_nothing_begun(struct rugo_contact *contact) {
+    struct rugo_contact_state now = {.area = 7};
+    struct rugo_error err = {0};
+    assert_int_equal(rugo_contact_press(contact, 0.01, &now, &err), RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "rugo_contact_begin"));
+    assert_true(now.area == 7);
+    assert_true(isnan(rugo_contact_full_pressure(contact)));
+}
+
 /* One wave on a half-space is Westergaard's; a finite block is stiffer in its face's waves. */
 static void models_are_those_named(void **state) {
     (void)state;
@@ -156,12 +166,17 @@ static void models_are_those_named(void **state) {
     struct rugo_error err = {0};
     for (int i = 0; i < 128; i++)
         z[i] = 0.01 * cos(2 * M_PI * i / 128);
-    double full = M_PI * 0.01;
+    double full = M_PI * 0.01, height = z[5];
     for (int model = RUGO_HALFSPACE; model <= RUGO_FULL; model++) {
         struct rugo_block block = rugo_block_defaults((enum rugo_model)model, &line);
         struct rugo_contact *contact = NULL;
         struct rugo_contact_state now;
         assert_int_equal(rugo_contact_create(&contact, &line, &block, &err), 0);
+        check_nothing_begun(contact);
+        z[5] = NAN;
+        assert_int_equal(rugo_contact_begin(contact, z, &err), RUGO_ERROR_INPUT);
+        check_nothing_begun(contact);
+        z[5] = height;
         assert_int_equal(rugo_contact_begin(contact, z, &err), 0);
         assert_int_equal(rugo_contact_press(contact, 0.3 * full, &now, &err), 0);
         area[model] = now.area;
@@ -197,6 +212,11 @@ static void theories_are_those_named(void **state) {
     check_close(rugo_nayak_mean_curvature(2, 5), 1.72353316, 1e-8);
     check_close(rugo_nayak_summit_cdf(20, 5), 1, 1e-12);
     assert_true(isnan(rugo_bgt_area(0.1, 1)));
+    check_relative(rugo_nayak_summit_density(1, 1), 1 / (6 * M_PI * sqrt(3)), 1e-15);
+    static const double OUTSIDE[][2] = {{-1, 1},  {0, 1},   {1, -1},
+                                        {NAN, 1}, {1, NAN}, {1, INFINITY}};
+    for (size_t m = 0; m < sizeof OUTSIDE / sizeof *OUTSIDE; m++)
+        assert_true(isnan(rugo_nayak_summit_density(OUTSIDE[m][0], OUTSIDE[m][1])));
     assert_string_equal(rugo_version(), RUGO_VERSION);
 }
 
@@ -232,13 +252,51 @@ static void wrong_arguments_are_told(void **state) {
     assert_int_equal(rugo_summits_find(&summits, &empty, z, RUGO_NINE_POINT, &err),
                      RUGO_ERROR_INPUT);
     assert_int_equal(rugo_psd_size(&empty), 0);
-    assert_int_equal(rugo_map_read(&map, "absent.npy", 0, &err), RUGO_ERROR_INPUT);
+    assert_int_equal(rugo_map_read(&map, "absent.npy", 0, &err), RUGO_ERROR_SYSTEM);
     assert_non_null(strstr(err.text, "absent.npy: No such file"));
     assert_int_equal(rugo_map_read(&map, "map.txt", 0, NULL), RUGO_ERROR_INPUT);
     assert_int_equal(rugo_map_write("no/such/folder/z.csv", &SQUARE, z, &err), RUGO_ERROR_SYSTEM);
     assert_null(generator);
     assert_null(contact);
     assert_null(map.z);
+}
+
+static void a_ratio_is_not_sought_for_wrong_arguments(void **state) {
+    (void)state;
+    static const struct {
+        int dimension, code;
+        double hurst, rolloff, alpha;
+        const char *text;
+    } WRONG[] = {
+        {3, RUGO_ERROR_INPUT, 0.8, 1, 10, "the dimension must be 1 or 2, not 3"},
+        {2, RUGO_ERROR_INPUT, NAN, 1, 10, "hurst must be in [0, 1], not nan"},
+        {2, RUGO_ERROR_INPUT, 1.5, 1, 10, "hurst must be in [0, 1], not 1.5"},
+        {2, RUGO_ERROR_INPUT, 0.8, 0.5, 10, "rolloff must be finite and 1 or more, not 0.5"},
+        {2, RUGO_ERROR_INPUT, 0.8, 1, NAN, "alpha must be finite, not nan"},
+        {2, RUGO_ERROR_NUMERIC, 0.8, 1, 1.2, "allowed: 1.5 to "},
+    };
+    for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
+        double ratio = 7;
+        struct rugo_error err = {0};
+        assert_int_equal(rugo_ratio_of_alpha(WRONG[w].dimension, WRONG[w].hurst, WRONG[w].rolloff,
+                                             WRONG[w].alpha, &ratio, &err),
+                         WRONG[w].code);
+        assert_int_equal(err.code, WRONG[w].code);
+        assert_non_null(strstr(err.text, WRONG[w].text));
+        assert_true(ratio == 7);
+    }
+}
+
+/* rugo.h promises it: a failure comes before the first height is written. */
+static void a_map_that_cannot_be_sampled_is_left_alone(void **state) {
+    (void)state;
+    static const double Z[64];
+    static const struct rugo_grid GRID = {64, 1, 1, 1}, COARSE = {8, 1, 1, 1};
+    double out[8] = {7, 7, 7, 7, 7, 7, 7, 7};
+    struct rugo_error err = {0};
+    assert_int_equal(rugo_resample(&GRID, Z, &COARSE, 5, 0, out, &err), RUGO_ERROR_INPUT);
+    for (size_t i = 0; i < 8; i++)
+        assert_true(out[i] == 7);
 }
 
 int main(void) {
@@ -250,6 +308,8 @@ int main(void) {
         cmocka_unit_test(models_are_those_named),
         cmocka_unit_test(theories_are_those_named),
         cmocka_unit_test(wrong_arguments_are_told),
+        cmocka_unit_test(a_ratio_is_not_sought_for_wrong_arguments),
+        cmocka_unit_test(a_map_that_cannot_be_sampled_is_left_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
