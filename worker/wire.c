@@ -94,13 +94,13 @@ static cJSON *wire_job(const struct claimed_job *job) {
         field_put_count(value, "attempt", job->attempt) &&
         field_put_text(value, "token", job->token) &&
         field_put(value, "lease_seconds", cJSON_CreateNumber((double)job->lease_ms / 1000.0)) &&
-        cJSON_AddItemReferenceToObject(value, "parameters", job->parameters);
+        field_put(value, "parameters", cJSON_CreateObjectReference(job->parameters->child));
     return fields_finish(value, complete);
 }
 
 cJSON *wire_jobs(const struct claimed_job *jobs, size_t count) {
     cJSON *value = cJSON_CreateObject(), *array = cJSON_CreateArray();
-    bool complete = value != NULL && field_put(value, "jobs", array);
+    bool complete = field_put(value, "jobs", array); /* takes the array, whatever comes of it */
     for (size_t n = 0; complete && n < count; n++) {
         cJSON *job = wire_job(&jobs[n]);
         complete = job != NULL && cJSON_AddItemToArray(array, job);
@@ -194,7 +194,7 @@ cJSON *wire_result(const char *token, const struct block_result *result) {
         return NULL;
     cJSON *value = cJSON_CreateObject(), *scalars = cJSON_CreateObject();
     bool complete =
-        value != NULL && field_put(value, "scalars", scalars) &&
+        field_put(value, "scalars", scalars) && /* takes them, whatever comes of it */
         field_put(scalars, "names", names_of(result)) &&
         field_put(scalars, "rows", scalar_rows(result)) && field_put_text(value, "token", token) &&
         field_put(value, "seconds", json_number(result->seconds)) &&
