@@ -283,9 +283,8 @@ RUGO_API int rugo_contact_begin(struct rugo_contact *contact, const double *z,
  * reached, where there is no convergence; linear models then begin the next load anew. */
 RUGO_API int rugo_contact_press(struct rugo_contact *contact, double pressure,
                                 struct rugo_contact_state *out, struct rugo_error *err);
-/* The least mean pressure of full contact of the surface begun; NaN without one, and for the full
- * model.
- */
+/* The least mean pressure of full contact of the surface begun; NaN where none is, and for the full
+ * model. */
 RUGO_API double rugo_contact_full_pressure(const struct rugo_contact *contact);
 
 #ifdef __cplusplus

@@ -23,6 +23,8 @@ int json_parse(const char *text, size_t size, const struct json_limits *limits, 
 /* Compact text, numbers so that they read back to the same double, NaN and infinities as null;
  * caller frees. NULL when out of memory. */
 char *json_print(const cJSON *value);
+/* The same for people: a line a value, indented by two spaces a level, and a newline at the end. */
+char *json_print_pretty(const cJSON *value);
 /* The fewest digits that read back to the same double; null for NaN and infinities. */
 void json_print_number(FILE *file, double number);
 /* The string in quotes, escaped; false when out of memory. */

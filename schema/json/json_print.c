@@ -41,41 +41,62 @@ bool json_print_text(FILE *file, const char *text) {
     return done;
 }
 
-static bool put_key(FILE *file, const char *key) {
+/* Indentation of a text on one line. */
+enum { COMPACT = -1 };
+
+/* Starts a line of `depth` steps of two spaces; nothing in a text on one line. */
+static void put_line(FILE *file, int depth) {
+    if (depth != COMPACT)
+        fprintf(file, "\n%*s", 2 * depth, "");
+}
+
+static bool put_key(FILE *file, const char *key, int depth) {
     bool done = json_print_text(file, key);
-    fputc(':', file);
+    fputs(depth == COMPACT ? ":" : ": ", file);
     return done;
 }
 
-static bool put_value(FILE *file, const cJSON *value) {
+static bool put_value(FILE *file, const cJSON *value, int depth) {
     if (cJSON_IsNumber(value)) {
         json_print_number(file, value->valuedouble);
         return true;
     }
     bool object = cJSON_IsObject(value), done = true;
-    if (!object && !cJSON_IsArray(value)) {
+    if (!object && !cJSON_IsArray(value))
         return put_plain(file, value);
-    }
+    int inside = depth == COMPACT ? COMPACT : depth + 1;
     const cJSON *item;
     fputc(object ? '{' : '[', file);
     cJSON_ArrayForEach(item, value) {
-        if (item != value->child) {
+        if (item != value->child)
             fputc(',', file);
-        }
-        done = done && (!object || put_key(file, item->string)) && put_value(file, item);
+        put_line(file, inside);
+        done = done && (!object || put_key(file, item->string, inside)) &&
+               put_value(file, item, inside);
     }
+    if (value->child != NULL)
+        put_line(file, depth);
     fputc(object ? '}' : ']', file);
     return done;
 }
 
-char *json_print(const cJSON *value) {
+static char *print(const cJSON *value, int depth, const char *end) {
     struct memory_file memory;
     if (!memory_file_open(&memory))
         return NULL;
-    bool done = put_value(memory.file, value);
+    bool done = put_value(memory.file, value, depth);
+    fputs(end, memory.file);
     char *text = memory_file_close(&memory, NULL);
     if (done)
         return text;
     free(text);
     return NULL;
+}
+
+char *json_print(const cJSON *value) {
+    return print(value, COMPACT, "");
+}
+
+char *json_print_pretty(const cJSON *value) {
+    return print(value, 0, "\n");
 }

@@ -13,11 +13,16 @@ void value_describe(const cJSON *value, char *text, size_t size) {
     free(printed);
 }
 
+/* The fewest digits, of 15 or more, that read back to the bound. */
 static void bound_print(double bound, char *text, size_t size) {
-    if (isinf(bound))
+    if (isinf(bound)) {
         snprintf(text, size, "%sinfinity", bound < 0 ? "-" : "");
-    else
-        snprintf(text, size, "%.15g", bound);
+        return;
+    }
+    int digits = 15;
+    do
+        snprintf(text, size, "%.*g", digits, bound);
+    while (strtod(text, NULL) != bound && ++digits <= 17);
 }
 
 void value_range(const struct parameter *parameter, char *text, size_t size) {

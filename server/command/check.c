@@ -127,15 +127,15 @@ static int print_document(cJSON *document, struct error *err) {
     return status;
 }
 
-/* On many lines, for people; validators do not mind. */
+/* As the service gives it (GET /v1/study.schema.json). */
 static int print_schema(struct error *err) {
     cJSON *schema = study_schema(JOB_KINDS);
-    char *text = schema != NULL ? cJSON_Print(schema) : NULL;
+    char *text = schema != NULL ? json_print_pretty(schema) : NULL;
     cJSON_Delete(schema);
     if (text == NULL)
         return error_memory(err, 0, "the schema of studies");
-    puts(text);
-    cJSON_free(text);
+    fputs(text, stdout);
+    free(text);
     return output_flush(err);
 }
 

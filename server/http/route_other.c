@@ -43,7 +43,10 @@ void handle_style(struct exchange *exchange, const char *id) {
 
 void handle_schema(struct exchange *exchange, const char *id) {
     (void)id;
-    answer_json(exchange, 200, study_schema(JOB_KINDS));
+    cJSON *schema = study_schema(JOB_KINDS);
+    char *text = schema != NULL ? json_print_pretty(schema) : NULL;
+    cJSON_Delete(schema);
+    answer_text(exchange, 200, "application/json", text);
 }
 
 void handle_health(struct exchange *exchange, const char *id) {

@@ -212,7 +212,8 @@ static void descriptions_and_page(void **state) {
     check_answer("GET", "/app.js", NULL, 200, "textContent");
     check_answer("GET", "/style.css", NULL, 200, "body");
     check_answer("GET", "/v1/openapi.yaml", NULL, 200, "openapi: 3.1");
-    check_answer("GET", "/v1/study.schema.json", NULL, 200, "\"hurst\"");
+    check_answer("GET", "/v1/study.schema.json", NULL, 200, "\"hurst\": {\n");
+    check_answer("GET", "/v1/study.schema.json", NULL, 200, "\"maximum\": 9007199254740992\n");
     check_answer("GET", "/metrics", NULL, 200, "rugo_jobs{state=\"waiting\"}");
     char *answer;
     int status = http_exchange(port, "GET", "/v1/snapshot", NULL, NULL, &answer);

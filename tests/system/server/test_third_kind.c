@@ -55,6 +55,7 @@ static void is_run_and_shown(void **state) {
     assert_true(contains("bad.err", "/needle/throws"));
     assert_int_equal(run_rugo("schema", (const char *const[]){"check", "--schema", NULL}), 0);
     assert_true(contains("schema.out", "needles a realisation"));
+    assert_true(contains("schema.out", "\"maximum\": 9007199254740992\n"));
     assert_true(contains("out/curves.json", "\"crossings\""));
     assert_true(contains("out/case-0-crossings.csv", "buffon"));
     assert_true(contains("out/crossings.svg", "</svg>"));

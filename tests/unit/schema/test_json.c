@@ -133,6 +133,28 @@ static void numbers_come_back_with_their_bits(void **state) {
     cJSON_Delete(array);
 }
 
+static void a_text_for_people_has_a_line_a_value(void **state) {
+    (void)state;
+    static const char TEXT[] = "{\"a\":[9007199254740992,{}],\"b\":{\"c\":null,\"d\":[]}}";
+    cJSON *value = NULL;
+    assert_int_equal(json_parse(TEXT, strlen(TEXT), NULL, &value, NULL), 0);
+    char *pretty = json_print_pretty(value), *compact = json_print(value);
+    assert_string_equal(pretty, "{\n"
+                                "  \"a\": [\n"
+                                "    9007199254740992,\n"
+                                "    {}\n"
+                                "  ],\n"
+                                "  \"b\": {\n"
+                                "    \"c\": null,\n"
+                                "    \"d\": []\n"
+                                "  }\n"
+                                "}\n");
+    assert_string_equal(compact, TEXT);
+    free(pretty);
+    free(compact);
+    cJSON_Delete(value);
+}
+
 static void pointers_lead_where_they_say(void **state) {
     (void)state;
     const char *text = "{\"a\":[10,{\"b/c\":1,\"d~e\":2}],\"\":3}";
@@ -176,6 +198,7 @@ int main(void) {
         cmocka_unit_test(well_formed_texts_pass),
         cmocka_unit_test(bounds_hold),
         cmocka_unit_test(numbers_come_back_with_their_bits),
+        cmocka_unit_test(a_text_for_people_has_a_line_a_value),
         cmocka_unit_test(pointers_lead_where_they_say),
         cmocka_unit_test(base64_of_every_length),
     };

@@ -82,6 +82,9 @@ static void faults_are_told_with_pointer_and_range(void **state) {
         {STUDY("\"seed\":-1,\"box\":{\"width\":1}"), "/seed", "-1 is not an integer of 0 or more"},
         {STUDY("\"seed\":1.5,\"box\":{\"width\":1}"), "/seed",
          "1.5 is not an integer of 0 or more"},
+        {STUDY("\"seed\":1.5e16,\"box\":{\"width\":1}"), "/seed",
+         "1.50000000000000e+16 is not in [0, 9007199254740992]; write a larger seed as a decimal "
+         "string"},
         {STUDY("\"seed\":\"18446744073709551616\",\"box\":{\"width\":1}"), "/seed",
          "\"18446744073709551616\" is not a decimal number up to 18446744073709551615"},
         {STUDY("\"seed\":\"0x10\",\"box\":{\"width\":1}"), "/seed",
