@@ -33,26 +33,26 @@ static void shared_clear(void *shared) {
     contact_compliances_clear(shared);
 }
 
-struct workspace {
+struct contact_workspace {
     struct contact_scene *scene;
 };
 
 static int workspace_create(void *workspace, const void *one_case,
                             const struct surface_basis *basis, const void *shared,
                             struct error *err) {
-    struct workspace *work = workspace;
+    struct contact_workspace *work = workspace;
     return contact_scene_create(&work->scene, one_case, &basis->moments, shared, err);
 }
 
 static void workspace_clear(void *workspace) {
-    struct workspace *work = workspace;
+    struct contact_workspace *work = workspace;
     contact_scene_destroy(&work->scene);
 }
 
 /* Whether to stop is asked between and within loads, which may take minutes. */
 static int realise(void *workspace, const struct realisation *realisation, void *tally,
                    double *scalars, struct error *err) {
-    struct workspace *work = workspace;
+    struct contact_workspace *work = workspace;
     struct contact_tally *contact = tally;
     contact->realisation = realisation->key.realisation;
     int status = contact_scene_solve(work->scene, realisation->z, contact, realisation->stop,
@@ -152,7 +152,7 @@ const struct job_kind CONTACT_KIND = {
     .shared_size = sizeof(struct contact_compliances),
     .shared_create = shared_create,
     .shared_clear = shared_clear,
-    .workspace_size = sizeof(struct workspace),
+    .workspace_size = sizeof(struct contact_workspace),
     .workspace_create = workspace_create,
     .workspace_clear = workspace_clear,
     .tally_size = sizeof(struct contact_tally),

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* What all curves of a case are made from. */
-struct curve_maker {
+struct contact_curve_maker {
     const struct contact_case *one_case;
     const struct modes *modes;
     const struct contact_tally *tally;
@@ -25,7 +25,7 @@ struct row {
 };
 
 /* Room for one source's errors at each load. */
-static int error_create(struct curve_maker *maker, double **value, double **standard_error,
+static int error_create(struct contact_curve_maker *maker, double **value, double **standard_error,
                         struct curve_error *out, struct error *err) {
     size_t n = maker->one_case->load_count;
     *value = result_numbers(maker->result, 2 * n);
@@ -37,8 +37,8 @@ static int error_create(struct curve_maker *maker, double **value, double **stan
 }
 
 /* Finest minus limit. */
-static int put_discretisation(struct curve_maker *maker, const struct row *row, size_t model,
-                              struct curve_error *out, struct error *err) {
+static int put_discretisation(struct contact_curve_maker *maker, const struct row *row,
+                              size_t model, struct curve_error *out, struct error *err) {
     struct contact_extrapolation rule = contact_extrapolate(maker->tally, row->measure, model);
     double factor = rule.factor * row->factor, *value, *standard_error;
     int status = error_create(maker, &value, &standard_error, out, err);
@@ -56,7 +56,7 @@ static int put_discretisation(struct curve_maker *maker, const struct row *row, 
 
 /* Of a model against the most complete one, on the same realisations: of the limits where levels
  * tell them, or else of the finest level, whose own error is then in it. */
-static int put_model(struct curve_maker *maker, const struct row *row, size_t model,
+static int put_model(struct contact_curve_maker *maker, const struct row *row, size_t model,
                      struct curve_error *out, struct error *err) {
     size_t complete = contact_case_complete(maker->one_case);
     bool limits = maker->one_case->level_count > 1;
@@ -81,7 +81,7 @@ static int put_model(struct curve_maker *maker, const struct row *row, size_t mo
     return 0;
 }
 
-static void add_theories(const struct curve_maker *maker, const struct row *row,
+static void add_theories(const struct contact_curve_maker *maker, const struct row *row,
                          struct curve *curve) {
     const struct contact_theories *theories = &maker->theories;
     switch (row->measure) {
@@ -119,7 +119,7 @@ static struct curve curve_of(const struct contact_case *one_case, size_t model, 
     return curve;
 }
 
-static int add_errors(struct curve_maker *maker, const struct row *row, size_t model,
+static int add_errors(struct contact_curve_maker *maker, const struct row *row, size_t model,
                       struct curve *curve, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
     int status = 0;
@@ -130,8 +130,8 @@ static int add_errors(struct curve_maker *maker, const struct row *row, size_t m
     return status;
 }
 
-static int append(struct curve_maker *maker, const struct row *row, size_t model, size_t level,
-                  struct error *err) {
+static int append(struct contact_curve_maker *maker, const struct row *row, size_t model,
+                  size_t level, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
     struct curve curve =
         curve_of(one_case, model, level, row->quantity, "p/(E* h'_rms)", row->y_label);
@@ -163,7 +163,7 @@ static int append(struct curve_maker *maker, const struct row *row, size_t model
 }
 
 /* Every level of a model, the finest first. */
-static int append_model(struct curve_maker *maker, const struct row *row, size_t model,
+static int append_model(struct contact_curve_maker *maker, const struct row *row, size_t model,
                         struct error *err) {
     int status = 0;
     for (size_t l = maker->one_case->level_count; l > 0 && status == 0; l--)
@@ -171,7 +171,7 @@ static int append_model(struct curve_maker *maker, const struct row *row, size_t
     return status;
 }
 
-static int append_rows(struct curve_maker *maker, size_t count, const struct row *rows,
+static int append_rows(struct contact_curve_maker *maker, size_t count, const struct row *rows,
                        struct error *err) {
     int status = 0;
     for (size_t a = 0; a < count && status == 0; a++)
@@ -180,7 +180,7 @@ static int append_rows(struct curve_maker *maker, size_t count, const struct row
     return status;
 }
 
-static int append_areas(struct curve_maker *maker, struct error *err) {
+static int append_areas(struct contact_curve_maker *maker, struct error *err) {
     static const struct row EDGES = {"contact_area", "edges", "A/A0", MEASURE_EDGES, 1};
     static const struct row NODES[] = {
         {"contact_area", "nodes", "A/A0", MEASURE_NODES, 1},
@@ -194,7 +194,7 @@ static int append_areas(struct curve_maker *maker, struct error *err) {
     return status != 0 ? status : append_rows(maker, one_case->perimeter ? 1 : 0, &PERIMETER, err);
 }
 
-static int append_others(struct curve_maker *maker, struct error *err) {
+static int append_others(struct contact_curve_maker *maker, struct error *err) {
     bool surface = maker->one_case->surface.dimension == 2;
     double waves = pow(maker->one_case->surface.length_ratio, maker->one_case->surface.dimension);
     const struct row rows[] = {
@@ -211,7 +211,7 @@ static int append_others(struct curve_maker *maker, struct error *err) {
 }
 
 /* Curves that a model alone has. */
-static int append_own(struct curve_maker *maker, size_t m, struct error *err) {
+static int append_own(struct contact_curve_maker *maker, size_t m, struct error *err) {
     const struct contact_model *model = maker->one_case->models[m];
     int status = 0;
     for (size_t a = 0; a < model->curve_count && status == 0; a++) {
@@ -225,7 +225,8 @@ static int append_own(struct curve_maker *maker, size_t m, struct error *err) {
 
 /* Density over the nominal area: its integral is the fraction in contact, its first moment the
  * load. Under- and overflow in undeformed areas of nodes. */
-static int append_pressures(struct curve_maker *maker, size_t model, size_t at, struct error *err) {
+static int append_pressures(struct contact_curve_maker *maker, size_t model, size_t at,
+                            struct error *err) {
     const struct contact_case *one_case = maker->one_case;
     const struct bins *bins = &one_case->pressure;
     size_t n = bins->count, finest = one_case->level_count - 1;
@@ -263,7 +264,7 @@ static int append_pressures(struct curve_maker *maker, size_t model, size_t at, 
 int contact_curves(const struct contact_case *one_case, const struct modes *modes,
                    const struct moments *moments, const struct contact_tally *tally,
                    struct case_result *out, struct error *err) {
-    struct curve_maker maker = {
+    struct contact_curve_maker maker = {
         .one_case = one_case, .modes = modes, .tally = tally, .result = out};
     int status = contact_theories_make(&maker.theories, one_case, modes, moments, out, err);
     if (status == 0)

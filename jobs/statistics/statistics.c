@@ -24,7 +24,7 @@ static const struct surface_case *surface_of(const void *one_case) {
 
 /* --- realisations --- */
 
-struct workspace {
+struct statistics_workspace {
     const struct statistics_case *one_case; /* borrowed */
     struct moments moments;                 /* of the prescribed spectrum */
     struct summit_finder *finder;
@@ -35,7 +35,7 @@ struct workspace {
 static int workspace_create(void *workspace, const void *one_case,
                             const struct surface_basis *basis, const void *shared,
                             struct error *err) {
-    struct workspace *work = workspace;
+    struct statistics_workspace *work = workspace;
     const struct statistics_case *statistics = one_case;
     const struct grid *grid = &statistics->surface.grid;
     const struct modes *modes = basis->modes;
@@ -50,7 +50,7 @@ static int workspace_create(void *workspace, const void *one_case,
 }
 
 static void workspace_clear(void *workspace) {
-    struct workspace *work = workspace;
+    struct statistics_workspace *work = workspace;
     summit_finder_destroy(&work->finder);
     spectra_clear(&work->spectra);
     summit_list_clear(&work->summits);
@@ -58,7 +58,7 @@ static void workspace_clear(void *workspace) {
 
 static int realise(void *workspace, const struct realisation *realisation, void *tally,
                    double *scalars, struct error *err) {
-    struct workspace *work = workspace;
+    struct statistics_workspace *work = workspace;
     const struct grid *grid = &work->one_case->surface.grid;
     int status = summits_find(work->finder, realisation->z, &work->summits, err);
     if (status == 0)
@@ -139,7 +139,7 @@ const struct job_kind STATISTICS_KIND = {
     .clear = clear_case,
     .estimate = estimate,
     .surface = surface_of,
-    .workspace_size = sizeof(struct workspace),
+    .workspace_size = sizeof(struct statistics_workspace),
     .workspace_create = workspace_create,
     .workspace_clear = workspace_clear,
     .tally_size = sizeof(struct statistics_tally),

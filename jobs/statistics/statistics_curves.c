@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* What all curves of a case are made from. */
-struct curve_maker {
+struct statistics_curve_maker {
     const struct statistics_case *one_case;
     const struct statistics_tally *tally;
     const char *theory_name;       /* of summits; NULL: does not apply */
@@ -18,20 +18,20 @@ static int no_room(struct error *err) {
 }
 
 /* A curve over n points with room for its numbers; NULL in y when out of memory. */
-struct columns {
+struct curve_points {
     double *x, *y, *standard_error;
 };
-static int columns_create(struct curve_maker *maker, size_t n, struct columns *out,
-                          struct error *err) {
+static int curve_points_create(struct statistics_curve_maker *maker, size_t n,
+                               struct curve_points *out, struct error *err) {
     double *x = result_numbers(maker->result, 3 * n);
     if (x == NULL)
         return no_room(err);
-    *out = (struct columns){x, x + n, x + 2 * n};
+    *out = (struct curve_points){x, x + n, x + 2 * n};
     return 0;
 }
 
 /* Room for theories of the heights of the next curves. */
-static int theories_create(struct curve_maker *maker, struct error *err) {
+static int theories_create(struct statistics_curve_maker *maker, struct error *err) {
     size_t n = maker->one_case->height.count;
     maker->pdf = result_numbers(maker->result, 3 * n);
     if (maker->pdf == NULL)
@@ -50,7 +50,7 @@ static const char *height_label(void) {
     return "z/sqrt(m0)";
 }
 
-static const char *equivalent_label(const struct curve_maker *maker) {
+static const char *equivalent_label(const struct statistics_curve_maker *maker) {
     return maker->one_case->surface.dimension == 2 ? "-sqrt(3/m4) kappa_m" : "z''/sqrt(m4)";
 }
 
@@ -64,23 +64,23 @@ struct histogram {
     const double *theory;
 };
 
-static int add_density(struct curve_maker *maker, const struct histogram *histogram,
+static int add_density(struct statistics_curve_maker *maker, const struct histogram *histogram,
                        struct error *err) {
     const struct bins *bins = histogram->bins;
     double width = bins_width(bins);
     struct curve curve =
         curve_named(histogram->quantity, histogram->x_label, "probability density");
-    struct columns columns;
-    int status = columns_create(maker, bins->count, &columns, err);
+    struct curve_points points;
+    int status = curve_points_create(maker, bins->count, &points, err);
     if (status != 0)
         return status;
     for (size_t b = 0; b < bins->count; b++) {
         struct estimate share = tally_share(histogram->cells, b + 1, histogram->total);
-        columns.x[b] = bins_centre(bins, b);
-        columns.y[b] = share.value / width;
-        columns.standard_error[b] = share.standard_error / width;
+        points.x[b] = bins_centre(bins, b);
+        points.y[b] = share.value / width;
+        points.standard_error[b] = share.standard_error / width;
     }
-    curve_set_points(&curve, bins->count, columns.x, columns.y, columns.standard_error);
+    curve_set_points(&curve, bins->count, points.x, points.y, points.standard_error);
     add_theory(&curve, histogram->theory_name, histogram->theory);
     curve.counted = true;
     curve.underflow = (double)histogram->cells->count[0];
@@ -89,44 +89,44 @@ static int add_density(struct curve_maker *maker, const struct histogram *histog
 }
 
 /* Cumulative probability at the upper edges of the bins. */
-static int add_cumulative(struct curve_maker *maker, const char *quantity,
+static int add_cumulative(struct statistics_curve_maker *maker, const char *quantity,
                           const struct tally *below, const struct tally_total *total,
                           const char *theory_name, struct error *err) {
     const struct bins *bins = &maker->one_case->height;
     struct curve curve = curve_named(quantity, height_label(), "cumulative probability");
-    struct columns columns;
-    int status = columns_create(maker, bins->count, &columns, err);
+    struct curve_points points;
+    int status = curve_points_create(maker, bins->count, &points, err);
     if (status != 0)
         return status;
     for (size_t b = 0; b < bins->count; b++) {
         struct estimate share = tally_share(below, b + 1, total);
-        columns.x[b] = bins->low + (double)(b + 1) * bins_width(bins);
-        columns.y[b] = share.value;
-        columns.standard_error[b] = share.standard_error;
+        points.x[b] = bins->low + (double)(b + 1) * bins_width(bins);
+        points.y[b] = share.value;
+        points.standard_error[b] = share.standard_error;
     }
-    curve_set_points(&curve, bins->count, columns.x, columns.y, columns.standard_error);
+    curve_set_points(&curve, bins->count, points.x, points.y, points.standard_error);
     add_theory(&curve, theory_name, maker->cdf);
     return result_add_curve(maker->result, &curve, err);
 }
 
-static int add_curvature(struct curve_maker *maker, struct error *err) {
+static int add_curvature(struct statistics_curve_maker *maker, struct error *err) {
     const struct bins *bins = &maker->one_case->height;
     const struct statistics_tally *tally = maker->tally;
     bool surface = maker->one_case->surface.dimension == 2;
     struct curve curve = curve_named("summit_mean_curvature", height_label(),
                                      surface ? "kappa_m/sqrt(m4)" : "-z''/sqrt(m4)");
-    struct columns columns;
-    int status = columns_create(maker, bins->count, &columns, err);
+    struct curve_points points;
+    int status = curve_points_create(maker, bins->count, &points, err);
     if (status != 0)
         return status;
     for (size_t b = 0; b < bins->count; b++) {
         struct estimate mean =
             tally_sums_ratio(&tally->curvature, &tally->summit, b + 1, tally->summits.realisations);
-        columns.x[b] = bins_centre(bins, b);
-        columns.y[b] = mean.value;
-        columns.standard_error[b] = mean.standard_error;
+        points.x[b] = bins_centre(bins, b);
+        points.y[b] = mean.value;
+        points.standard_error[b] = mean.standard_error;
     }
-    curve_set_points(&curve, bins->count, columns.x, columns.y, columns.standard_error);
+    curve_set_points(&curve, bins->count, points.x, points.y, points.standard_error);
     add_theory(&curve, maker->theory_name, maker->curvature);
     return result_add_curve(maker->result, &curve, err);
 }
@@ -141,7 +141,7 @@ static size_t joint_cell(const struct statistics_case *one_case, size_t cell) {
 }
 
 /* Only the cells that summits fell into; their theory is made where it is asked for. */
-static int add_joint(struct curve_maker *maker, struct error *err) {
+static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
     const struct statistics_case *one_case = maker->one_case;
     const struct bins *height = &one_case->height, *equivalent = &one_case->equivalent;
     const struct tally *tally = &maker->tally->joint;
@@ -206,7 +206,7 @@ int statistics_curves_complete(const struct statistics_case *one_case, double al
 
 /* --- all curves --- */
 
-static int add_heights(struct curve_maker *maker, struct error *err) {
+static int add_heights(struct statistics_curve_maker *maker, struct error *err) {
     const struct statistics_case *one_case = maker->one_case;
     const struct statistics_tally *tally = maker->tally;
     const char *name = heights_distribution(one_case->surface.options.heights.type)->family;
@@ -224,7 +224,8 @@ static int add_heights(struct curve_maker *maker, struct error *err) {
     return status;
 }
 
-static int add_summit_heights(struct curve_maker *maker, double alpha, struct error *err) {
+static int add_summit_heights(struct statistics_curve_maker *maker, double alpha,
+                              struct error *err) {
     const struct statistics_case *one_case = maker->one_case;
     const struct statistics_tally *tally = maker->tally;
     int status = theories_create(maker, err);
@@ -242,7 +243,7 @@ static int add_summit_heights(struct curve_maker *maker, double alpha, struct er
     return status != 0 ? status : add_curvature(maker, err);
 }
 
-static int add_summit_curvatures(struct curve_maker *maker, struct error *err) {
+static int add_summit_curvatures(struct statistics_curve_maker *maker, struct error *err) {
     const struct statistics_case *one_case = maker->one_case;
     double *theory = result_numbers(maker->result, one_case->equivalent.count);
     if (theory == NULL)
@@ -263,10 +264,11 @@ int statistics_curves(const struct statistics_case *one_case, const struct modes
                       const struct moments *moments, const struct statistics_tally *tally,
                       struct case_result *out, struct error *err) {
     bool applies = statistics_theory_applies(one_case, moments);
-    struct curve_maker maker = {.one_case = one_case,
-                                .tally = tally,
-                                .result = out,
-                                .theory_name = applies ? statistics_theory_name(one_case) : NULL};
+    struct statistics_curve_maker maker = {.one_case = one_case,
+                                           .tally = tally,
+                                           .result = out,
+                                           .theory_name =
+                                               applies ? statistics_theory_name(one_case) : NULL};
     int status = add_heights(&maker, err);
     if (status == 0)
         status = add_summit_heights(&maker, moments->nayak_alpha, err);

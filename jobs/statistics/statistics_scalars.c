@@ -98,16 +98,16 @@ void statistics_scalars_measure(const struct statistics_case *one_case,
 }
 
 /* Columns of the scalars, n values each, and the estimates made of them. */
-struct columns {
+struct scalar_columns {
     size_t n;
     double *values; /* SCALAR_COUNT x n */
 };
-static const double *column(const struct columns *columns, enum statistics_scalar scalar) {
+static const double *column(const struct scalar_columns *columns, enum statistics_scalar scalar) {
     return columns->values + (size_t)scalar * columns->n;
 }
 
 /* Over all summits of the case; the variance about the common mean, which it replaces. */
-static struct estimate summit_estimate(const struct columns *columns,
+static struct estimate summit_estimate(const struct scalar_columns *columns,
                                        enum statistics_scalar scalar) {
     const double *number = column(columns, SCALAR_SUMMITS);
     if (scalar != SCALAR_SUMMIT_HEIGHT_VARIANCE)
@@ -128,7 +128,8 @@ static int add_scalar(struct case_result *out, const char *name, struct estimate
 }
 
 static int add_scalars(struct case_result *out, const struct statistics_case *one_case,
-                       const struct moments *moments, struct columns *columns, struct error *err) {
+                       const struct moments *moments, struct scalar_columns *columns,
+                       struct error *err) {
     double theory[SCALAR_COUNT];
     statistics_theory_scalars(one_case, moments, theory);
     bool exact = surface_case_exact(&one_case->surface);
@@ -154,7 +155,7 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
 int statistics_scalars(const struct statistics_case *one_case, const struct moments *moments,
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err) {
-    struct columns columns = {.n = (size_t)realisations->count};
+    struct scalar_columns columns = {.n = (size_t)realisations->count};
     columns.values = array_create(columns.n + 1, SCALAR_COUNT * sizeof(double));
     if (columns.values == NULL)
         return error_memory(err, columns.n * SCALAR_COUNT * sizeof(double), "scalars");

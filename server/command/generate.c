@@ -34,19 +34,19 @@ static const struct option_row OPTIONS[] = {
     {0}};
 
 /* What to do, from the options. */
-struct order {
+struct generate_order {
     const struct generate_options *options;
     const char *study, *output; /* output NULL: standard output */
     enum height_map_format format;
 };
 
 /* A mesh takes the place of a surface on standard output. */
-static bool writes_surface(const struct order *order) {
+static bool writes_surface(const struct generate_order *order) {
     return order->options->mesh == NULL || order->output != NULL;
 }
 
 /* The format asked for, or that of the output's name, or npy; 0 or EXIT_USAGE. */
-static int choose_format(struct order *order) {
+static int choose_format(struct generate_order *order) {
     const char *name = order->options->format;
     order->format = HEIGHT_MAP_FORMATS;
     if (name != NULL) {
@@ -65,9 +65,9 @@ static int choose_format(struct order *order) {
     return 0;
 }
 
-static int read_order(struct order *order, const struct generate_options *options,
+static int read_order(struct generate_order *order, const struct generate_options *options,
                       const char *study) {
-    *order = (struct order){.options = options, .study = study, .output = options->output};
+    *order = (struct generate_order){.options = options, .study = study, .output = options->output};
     if (order->output != NULL && strcmp(order->output, "-") == 0)
         order->output = NULL;
     if (options->mesh == NULL && options->pressure > 0)
@@ -75,8 +75,8 @@ static int read_order(struct order *order, const struct generate_options *option
     return choose_format(order);
 }
 
-static int write_output(const struct order *order, const struct grid *grid, const double *z,
-                        struct error *err) {
+static int write_output(const struct generate_order *order, const struct grid *grid,
+                        const double *z, struct error *err) {
     if (order->output == NULL)
         return height_map_write(stdout, order->format, grid, z, err);
     FILE *file = fopen(order->output, "wb");
@@ -95,7 +95,7 @@ static const char *end_name(enum surface_end end) {
 }
 
 /* Beside the surface on standard output, the characterisation goes to standard error. */
-static int characterise(const struct order *order, const struct surface_case *surface,
+static int characterise(const struct generate_order *order, const struct surface_case *surface,
                         const struct surface_report *report, const double *z, struct error *err) {
     bool beside = writes_surface(order) && order->output == NULL;
     FILE *file = beside ? stderr : stdout;
@@ -120,7 +120,7 @@ static int characterise(const struct order *order, const struct surface_case *su
     return 0;
 }
 
-static int write_case_mesh(const struct order *order, const struct job_kind *kind,
+static int write_case_mesh(const struct generate_order *order, const struct job_kind *kind,
                            const cJSON *parameters, const double *z, struct error *err) {
     void *study = NULL;
     int status = kind_case_create(&study, kind, parameters, NULL, err);
@@ -130,8 +130,8 @@ static int write_case_mesh(const struct order *order, const struct job_kind *kin
     return status;
 }
 
-static int write_mesh(const struct order *order, const struct study *study, const double *z,
-                      struct error *err) {
+static int write_mesh(const struct generate_order *order, const struct study *study,
+                      const double *z, struct error *err) {
     const struct job_kind *kind = kind_of(study->kind);
     size_t other = 0;
     if (kind->write_mesh != NULL)
@@ -144,7 +144,8 @@ static int write_mesh(const struct order *order, const struct study *study, cons
                      study->kind->name);
 }
 
-static int generate(const struct order *order, const struct study *study, struct error *err) {
+static int generate(const struct generate_order *order, const struct study *study,
+                    struct error *err) {
     struct surface_case surface;
     struct surface_report report = {0};
     struct generator *generator = NULL;
@@ -177,7 +178,7 @@ static int generate(const struct order *order, const struct study *study, struct
 }
 
 static int run(const void *values, const char *const *arguments) {
-    struct order order;
+    struct generate_order order;
     struct fault_list faults = {0};
     struct study *study = NULL;
     struct error err = {0};

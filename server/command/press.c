@@ -4,6 +4,7 @@
 #include "core/contact/patches.h"
 #include "core/statistics/roughness.h"
 #include "schema/json/json.h"
+#include "schema/study/parameter.h"
 #include "server/command/command.h"
 #include "server/command/map_file.h"
 #include "server/show/text_table.h"
@@ -14,19 +15,21 @@
 
 enum { LOADS_MOST = 1000 };
 
-enum { HALFSPACE, LAYERED };
+/* What --model may name. */
+static const struct choice MODELS[] = {
+    {"halfspace", MODEL_HALFSPACE}, {"layered", MODEL_LAYERED}, {NULL, 0}};
 
 struct press_options {
-    const char *loads, *output;
+    const char *loads, *output, *model;
     double dx, poisson, lengths; /* dx, height of the block in lengths of the map: 0: not given */
-    int model, json;
+    int json;
 };
 #define AT(member) offsetof(struct press_options, member)
 static const struct option_row OPTIONS[] = {
     {"dx", 0, OPTION_NUMBER, 0, 0, AT(dx), "D", NULL, MAP_SPACING_HELP},
     {"loads", 0, OPTION_TEXT, 0, 0, AT(loads), "LIST", "0.01,0.02,0.05,0.1,0.2,0.3",
      "rising loads p/(E* h')"},
-    {"model", 0, OPTION_CHOICE, 0, 0, AT(model), "halfspace|layered", "halfspace",
+    {"model", 0, OPTION_TEXT, 0, 0, AT(model), "halfspace|layered", "halfspace",
      "what the block is made of"},
     {"poisson", 0, OPTION_NUMBER, 0, 0.4999, AT(poisson), "NU", "0.3", "Poisson's ratio, layered"},
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
@@ -37,7 +40,7 @@ static const struct option_row OPTIONS[] = {
     {0}};
 
 /* What to do, from the options. */
-struct order {
+struct press_order {
     const char *path, *output;
     struct block block;
     double lengths; /* 0: infinite */
@@ -87,7 +90,7 @@ static void press_clear(struct press *press) {
     free(press->pressure);
 }
 
-static int press_create(struct press *press, const struct order *order,
+static int press_create(struct press *press, const struct press_order *order,
                         const struct height_map *map, struct error *err) {
     const struct grid *grid = &map->grid;
     struct block block = order->block;
@@ -144,7 +147,7 @@ static int press_load(struct press *press, double load, double *row, struct erro
     return 0;
 }
 
-static void print_table(const struct press *press, const struct order *order) {
+static void print_table(const struct press *press, const struct press_order *order) {
     struct text_table table = {.columns = COLUMNS};
     for (size_t c = 0; c < COLUMNS; c++)
         table_cell(&table, "%s", COLUMN_NAMES[c]);
@@ -157,7 +160,8 @@ static void print_table(const struct press *press, const struct order *order) {
     table_clear(&table);
 }
 
-static int print_json(const struct press *press, const struct order *order, struct error *err) {
+static int print_json(const struct press *press, const struct press_order *order,
+                      struct error *err) {
     double column[LOADS_MOST];
     cJSON *document = cJSON_CreateObject();
     bool complete =
@@ -177,7 +181,7 @@ static int print_json(const struct press *press, const struct order *order, stru
     return status;
 }
 
-static int write_pressures(const struct press *press, const struct order *order,
+static int write_pressures(const struct press *press, const struct press_order *order,
                            struct error *err) {
     enum height_map_format format = height_map_format_of(order->output);
     FILE *file = fopen(order->output, "wb");
@@ -191,7 +195,8 @@ static int write_pressures(const struct press *press, const struct order *order,
     return status;
 }
 
-static int press_map(const struct order *order, const struct height_map *map, struct error *err) {
+static int press_map(const struct press_order *order, const struct height_map *map,
+                     struct error *err) {
     struct press press;
     int status = press_create(&press, order, map, err);
     if (status == 0)
@@ -212,23 +217,23 @@ static int press_map(const struct order *order, const struct height_map *map, st
 
 static int run(const void *values, const char *const *arguments) {
     const struct press_options *options = values;
-    struct order order = {.path = arguments[0],
-                          .output = options->output,
-                          .lengths = options->lengths,
-                          .json = options->json == 1,
-                          .block = {.poisson = options->poisson,
-                                    .layer_growth = 1.1,
-                                    .weighting = GAP_STANDARD,
-                                    .model = MODEL_HALFSPACE}};
+    struct press_order order = {
+        .path = arguments[0],
+        .output = options->output,
+        .lengths = options->lengths,
+        .json = options->json == 1,
+        .block = {.poisson = options->poisson, .layer_growth = 1.1, .weighting = GAP_STANDARD}};
     struct height_map map = {0};
     struct error err = {0};
+    const struct choice *model = choice_find(MODELS, options->model);
+    if (model == NULL)
+        return usage_error("press", "--model %.40s is not halfspace or layered", options->model);
     if (!rising_numbers(options->loads, LOADS_MOST, order.load, &order.loads))
         return usage_error("press", "--loads %.40s: not up to %d rising numbers above 0",
                            options->loads, LOADS_MOST);
-    if (options->model == LAYERED) {
-        order.block.model = MODEL_LAYERED;
-        order.lengths = options->lengths > 0 ? options->lengths : 1.5;
-    }
+    order.block.model = (enum block_model)model->value;
+    if (order.block.model == MODEL_LAYERED && !(options->lengths > 0))
+        order.lengths = 1.5;
     int status = map_file_read(&map, order.path, options->dx, &err);
     if (status == 0)
         status = press_map(&order, &map, &err);

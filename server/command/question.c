@@ -25,3 +25,16 @@ int show_progress(const cJSON *document, const char *id, const void *options, st
     summary_of_status(document, stdout);
     return output_flush(err);
 }
+
+const struct option_row CHANGE_OPTIONS[] = {ACCESS_ROWS(struct change_options), {0}};
+
+static int ask_change(struct access *access, const char *id, const void *change, cJSON **out,
+                      struct error *err) {
+    return ((const struct change_question *)change)->make(access, id, out, err);
+}
+
+int change_answer(const struct change_question *change, const struct change_options *options,
+                  const char *id) {
+    const struct question question = {change->command, ACCESS_WRITE, ask_change, show_progress};
+    return question_answer(&question, &options->place, id, change);
+}

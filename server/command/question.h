@@ -15,6 +15,18 @@ struct question {
 /* Checks the place, asks, shows; an exit status. */
 int question_answer(const struct question *question, const struct access_options *place,
                     const char *id, const void *options);
+/* A command that changes one study and shows its progress then; its only options are the place. */
+struct change_question {
+    const char *command;
+    int (*make)(struct access *access, const char *id, cJSON **progress, struct error *err);
+};
+struct change_options {
+    struct access_options place;
+};
+extern const struct option_row CHANGE_OPTIONS[];
+/* An exit status. */
+int change_answer(const struct change_question *change, const struct change_options *options,
+                  const char *id);
 /* A study's progress, as text. */
 int show_progress(const cJSON *document, const char *id, const void *options, struct error *err);
 

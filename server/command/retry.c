@@ -1,21 +1,9 @@
 /* `rugo retry`: queues the failed jobs of a study again. */
 #include "server/command/question.h"
 
-struct options {
-    struct access_options place;
-};
-static const struct option_row OPTIONS[] = {ACCESS_ROWS(struct options), {0}};
-
-static int ask(struct access *access, const char *id, const void *options, cJSON **out,
-               struct error *err) {
-    (void)options;
-    return access_retry(access, id, out, err);
-}
-
-static int run(const void *values, const char *const *arguments) {
-    static const struct question QUESTION = {"retry", ACCESS_WRITE, ask, show_progress};
-    const struct options *options = values;
-    return question_answer(&QUESTION, &options->place, arguments[0], options);
+static int run(const void *options, const char *const *arguments) {
+    static const struct change_question CHANGE = {"retry", access_retry};
+    return change_answer(&CHANGE, options, arguments[0]);
 }
 
 const struct command COMMAND_RETRY = {
@@ -24,7 +12,7 @@ const struct command COMMAND_RETRY = {
     .summary = "queue the failed jobs of a study again",
     .least = 1,
     .most = 1,
-    .options = OPTIONS,
-    .options_size = sizeof(struct options),
+    .options = CHANGE_OPTIONS,
+    .options_size = sizeof(struct change_options),
     .run = run,
 };
