@@ -87,7 +87,8 @@ struct job_kind {
     void (*put)(struct bytes *bytes, const void *tally);
     /* Into a new tally. Fails the reader for what put cannot have made. */
     void (*get)(struct byte_reader *reader, void *tally);
-    /* Whether a tally that was read can be (NULL: always), and whether of these scalars. */
+    /* Whether a tally that was read can be, and whether it is of these scalars. Either may be NULL:
+     * then any tally will do. */
     bool (*adds_up)(const void *tally);
     bool (*belongs)(const void *tally, const struct block_result *result);
 

@@ -87,7 +87,7 @@ static int block_read(const struct job_merger *merger, const struct block_result
         status = tally_make(merger, &tally, err);
     if (status == 0)
         status = partial_decode(kind, merger->fingerprint, result->data, result->size, tally, err);
-    if (status == 0 && !kind->belongs(tally, result))
+    if (status == 0 && kind->belongs != NULL && !kind->belongs(tally, result))
         status = error_set(err, ERROR_INPUT,
                            "the partial result does not belong to the scalars beside it");
     if (status != 0)

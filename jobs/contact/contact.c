@@ -134,7 +134,8 @@ static int write_mesh(const char *path, const void *one_case, const double *z, d
     while (CONTACT_MODELS[t] != NULL && CONTACT_MODELS[t]->write_mesh == NULL)
         t++;
     return error_set(err, ERROR_INPUT, "--mesh needs \"%s\" among /contact/model",
-                     CONTACT_MODELS[t] != NULL ? CONTACT_MODELS[t]->name : "a model with a mesh");
+                     CONTACT_MODELS[t] != NULL ? contact_model_name(CONTACT_MODELS[t])
+                                               : "a model with a mesh");
 }
 
 const struct job_kind CONTACT_KIND = {

@@ -112,7 +112,7 @@ static const char *kinematics_of(const struct contact_case *one_case, size_t mod
 static struct curve curve_of(const struct contact_case *one_case, size_t model, size_t level,
                              const char *quantity, const char *x_label, const char *y_label) {
     struct curve curve = curve_named(quantity, x_label, y_label);
-    curve.model = one_case->models[model]->name;
+    curve.model = contact_model_name(one_case->models[model]);
     curve.kinematics = kinematics_of(one_case, model);
     curve.level = one_case->levels[level].points;
     curve.points = (double)grid_points(&one_case->levels[level].grid);

@@ -211,10 +211,10 @@ static void name_model(const struct contact_case *one_case, size_t m, size_t lev
     const struct contact_model *model = one_case->models[m];
     double points = one_case->levels[level].points;
     if (model->kinematics != NULL)
-        error_context(err, "model %s (%s), level %g", model->name, model->kinematics(one_case),
-                      points);
+        error_context(err, "model %s (%s), level %g", contact_model_name(model),
+                      model->kinematics(one_case), points);
     else
-        error_context(err, "model %s, level %g", model->name, points);
+        error_context(err, "model %s, level %g", contact_model_name(model), points);
 }
 
 /* Where a model that may fail finds no answer, a note tells why. */

@@ -14,3 +14,10 @@ double model_largest(size_t n, const double *values) {
         largest = fmax(largest, values[k]);
     return largest;
 }
+
+const char *contact_model_name(const struct contact_model *model) {
+    size_t m = 0;
+    while (CONTACT_MODELS[m] != NULL && CONTACT_MODELS[m] != model)
+        m++;
+    return CONTACT_MODEL_CHOICES[m].name;
+}

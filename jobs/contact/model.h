@@ -42,7 +42,6 @@ double model_sum(size_t n, const double *values);
 double model_largest(size_t n, const double *values);
 
 struct contact_model {
-    const char *name; /* in studies and curves */
     int rank; /* of completeness: the errors of others are counted from the highest in a case */
     enum block_model block; /* whose compliance tells where edges of contact lie between nodes */
     bool elements;          /* finite elements: layers of them, and mortar functions for the gap */
@@ -91,6 +90,8 @@ struct contact_model {
  * there, at most CONTACT_MODELS_MOST. */
 extern const struct contact_model *const CONTACT_MODELS[];
 extern const struct choice CONTACT_MODEL_CHOICES[];
+/* In studies and curves; NULL for a model outside of the table. */
+const char *contact_model_name(const struct contact_model *model);
 
 /* Defines both from a list of structs with their names:
  * #define LIST(MODEL) MODEL(HALFSPACE_MODEL, "halfspace") MODEL(LAYERED_MODEL, "layered") */
@@ -101,6 +102,7 @@ extern const struct choice CONTACT_MODEL_CHOICES[];
 #define CONTACT_MODEL_TABLES(LIST)                                                                 \
     LIST(CONTACT_MODEL_DECLARE)                                                                    \
     enum { LIST(CONTACT_MODEL_PLACE) CONTACT_MODEL_PLACES };                                       \
+    _Static_assert((int)CONTACT_MODEL_PLACES <= (int)CONTACT_MODELS_MOST, "too many models");      \
     const struct contact_model *const CONTACT_MODELS[] = {LIST(CONTACT_MODEL_ADDRESS) NULL};       \
     const struct choice CONTACT_MODEL_CHOICES[] = {LIST(CONTACT_MODEL_CHOICE){0}};
 

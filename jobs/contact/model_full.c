@@ -191,7 +191,6 @@ static void measure(const struct model_values *values, double *out) {
 }
 
 const struct contact_model FULL_MODEL = {
-    .name = "full",
     .rank = 2,
     .block = MODEL_LAYERED,
     .elements = true,

@@ -3,7 +3,6 @@
 #include <math.h>
 
 const struct contact_model HALFSPACE_MODEL = {
-    .name = "halfspace",
     .rank = 0,
     .block = MODEL_HALFSPACE,
     .default_height = INFINITY,

@@ -2,7 +2,6 @@
 #include "jobs/contact/model_linear.h"
 
 const struct contact_model LAYERED_MODEL = {
-    .name = "layered",
     .rank = 1,
     .block = MODEL_LAYERED,
     .elements = true,

@@ -81,9 +81,11 @@ static int needle_result(const void *study, const struct surface_basis *basis, c
     uint64_t n = realisations->count, throws = (uint64_t) * (const double *)study;
     const struct tally_total total = {n, n * throws, (fixed_point)n * throws * throws};
     struct curve curve = curve_named("crossings", "length", "share");
-    double *x = result_numbers(out, 4 * LENGTHS), pi[100];
+    double *x = result_numbers(out, 4 * LENGTHS), *pi = result_numbers(out, n);
+    if (x == NULL || pi == NULL)
+        return error_memory(err, n * sizeof *pi, "curves of needles");
     double *y = x + LENGTHS, *error = y + LENGTHS, *theory = error + LENGTHS;
-    for (int k = 0; x != NULL && k < LENGTHS; k++) {
+    for (int k = 0; k < LENGTHS; k++) {
         struct estimate share = tally_share(tally, (size_t)k, &total);
         x[k] = 0.1 * (k + 1), theory[k] = 2 * x[k] / M_PI;
         y[k] = share.value, error[k] = share.standard_error;
@@ -114,5 +116,4 @@ static const struct job_kind NEEDLE_KIND = {
     .belongs = needle_belongs,
     .result = needle_result,
 };
-
 #endif

@@ -103,7 +103,6 @@ static void measure(const struct model_values *values, double *scalars) {
 }
 
 const struct contact_model WINKLER_MODEL = {
-    .name = "winkler",
     .rank = -1,
     .block = MODEL_HALFSPACE,
     .default_height = INFINITY,
