@@ -86,16 +86,6 @@ static bool has_quantity(const struct case_result *result, const char *quantity)
     return result_curve(result, quantity) != NULL;
 }
 
-/* Leaves the curves that were asked for. */
-static void keep_part(struct case_result *result, const struct published_part *part) {
-    size_t kept = 0;
-    for (size_t a = 0; a < result->curve_count; a++)
-        if (!part->scalars_only &&
-            (part->quantity == NULL || strcmp(result->curves[a].quantity, part->quantity) == 0))
-            result->curves[kept++] = result->curves[a];
-    result->curve_count = kept;
-}
-
 /* Names what there is; several curves of one quantity follow each other. */
 static int quantity_absent(const struct case_result *result, const char *quantity,
                            struct error *err) {
@@ -131,7 +121,7 @@ static int finish_result(struct store *store, const struct aggregate *aggregate,
                          struct error *err) {
     const char *quantity = filter->part.quantity;
     result->case_number = case_number;
-    keep_part(result, &filter->part);
+    result_keep(result, quantity, filter->part.scalars_only);
     int status = result_set_parameters(result, info->parameters, err);
     bool begun = info->realisations_done > 0;
     if (status == 0 && begun && quantity != NULL && !has_quantity(result, quantity))

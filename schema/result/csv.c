@@ -1,13 +1,13 @@
 #include "schema/result/csv.h"
 #include "schema/json/json.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Theories of any of the curves printed: a column each. Names are borrowed. */
-enum { COLUMNS_MOST = 16 };
 struct theory_columns {
     size_t count;
-    const char *names[COLUMNS_MOST];
+    const char **names; /* owned: room for every theory of every curve */
 };
 
 static void collect_theories(struct theory_columns *columns, const struct curve *curve) {
@@ -15,7 +15,7 @@ static void collect_theories(struct theory_columns *columns, const struct curve 
         size_t n = 0;
         while (n < columns->count && strcmp(columns->names[n], curve->theories[t].name) != 0)
             n++;
-        if (n == columns->count && n < COLUMNS_MOST)
+        if (n == columns->count)
             columns->names[columns->count++] = curve->theories[t].name;
     }
 }
@@ -94,9 +94,20 @@ static void print_heading(FILE *file, const struct theory_columns *theories) {
     fputc('\n', file);
 }
 
-void csv_print(FILE *file, size_t case_count, const struct case_result *cases,
+static size_t theories_most(size_t case_count, const struct case_result *cases) {
+    size_t most = 1;
+    for (size_t c = 0; c < case_count; c++)
+        for (size_t a = 0; a < cases[c].curve_count; a++)
+            most += cases[c].curves[a].theory_count;
+    return most;
+}
+
+bool csv_print(FILE *file, size_t case_count, const struct case_result *cases,
                const struct curve *only) {
-    struct theory_columns theories = {0};
+    struct theory_columns theories = {
+        .names = array_create(theories_most(case_count, cases), sizeof *theories.names)};
+    if (theories.names == NULL)
+        return false;
     for (size_t c = 0; c < case_count; c++)
         for (size_t a = 0; a < cases[c].curve_count; a++)
             if (only == NULL || only == &cases[c].curves[a])
@@ -109,4 +120,6 @@ void csv_print(FILE *file, size_t case_count, const struct case_result *cases,
             for (size_t n = 0; n < count && (only == NULL || only == curve); n++)
                 print_line(file, cases[c].case_number, curve, n, &theories);
         }
+    free(theories.names);
+    return true;
 }

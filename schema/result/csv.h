@@ -9,9 +9,9 @@
 #include "schema/result/result.h"
 #include <stdio.h>
 
-/* All curves of the cases, or only the one pointed to, which must be one of theirs. Write errors
- * are left to the file's own flag. */
-void csv_print(FILE *file, size_t case_count, const struct case_result *cases,
+/* All curves of the cases, or only the one pointed to, which must be one of theirs. False
+ * and nothing printed when out of memory; write errors are left to the file's own flag. */
+bool csv_print(FILE *file, size_t case_count, const struct case_result *cases,
                const struct curve *only);
 
 #endif

@@ -181,6 +181,15 @@ int result_add_scalar(struct case_result *result, const struct scalar *scalar, s
     return 0;
 }
 
+void result_keep(struct case_result *result, const char *quantity, bool scalars_only) {
+    size_t kept = 0;
+    for (size_t a = 0; a < result->curve_count; a++)
+        if (!scalars_only &&
+            (quantity == NULL || strcmp(result->curves[a].quantity, quantity) == 0))
+            result->curves[kept++] = result->curves[a];
+    result->curve_count = kept;
+}
+
 /* --- finding --- */
 
 const struct scalar *result_scalar(const struct case_result *result, const char *name) {
@@ -205,11 +214,11 @@ const struct result_parameter *result_parameter(const struct case_result *result
     return NULL;
 }
 
-static bool same_text(const char *a, const char *b) {
+bool same_text(const char *a, const char *b) {
     return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-static bool same_number(double a, double b) {
+bool same_number(double a, double b) {
     return a == b || (isnan(a) && isnan(b));
 }
 

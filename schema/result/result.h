@@ -154,6 +154,8 @@ const char *result_text(struct case_result *result, const char *text); /* NULL f
  * lists of curves and scalars may move. */
 int result_add_curve(struct case_result *result, const struct curve *curve, struct error *err);
 int result_add_scalar(struct case_result *result, const struct scalar *scalar, struct error *err);
+/* Leaves the curves of a quantity (NULL: of all), or no curves at all. */
+void result_keep(struct case_result *result, const char *quantity, bool scalars_only);
 
 const struct scalar *result_scalar(const struct case_result *result,
                                    const char *name); /* or NULL */
@@ -163,6 +165,9 @@ const struct curve *result_curve(const struct case_result *result, const char *q
 const struct result_parameter *result_parameter(const struct case_result *result,
                                                 const char *pointer);
 
+/* Also where both are NULL, or both NaN. */
+bool same_text(const char *a, const char *b);
+bool same_number(double a, double b);
 /* Whether two curves are of the same quantity and of the same series (attributes that tell it). */
 bool curve_same_series(const struct curve *a, const struct curve *b);
 

@@ -21,17 +21,6 @@ static int read_curves(struct store *store, int64_t study, uint64_t case_number,
     return status;
 }
 
-/* What an older program published: the whole result in one document, without the case's number. */
-static void keep_quantity(struct case_result *result, const char *quantity, bool scalars_only) {
-    size_t kept = 0;
-    for (size_t a = 0; a < result->curve_count; a++) {
-        const struct curve *curve = &result->curves[a];
-        if (!scalars_only && (quantity == NULL || strcmp(curve->quantity, quantity) == 0))
-            result->curves[kept++] = *curve;
-    }
-    result->curve_count = kept;
-}
-
 static int read_document(sqlite3_stmt *row, uint64_t case_number, struct case_result *out,
                          struct error *err) {
     cJSON *document = NULL;
@@ -72,8 +61,8 @@ int store_published(struct store *store, const char *study, uint64_t case_number
     bool whole = sqlite3_column_type(row, 1) == SQLITE_NULL;
     status = read_document(row, case_number, &result, err);
     sqlite3_reset(row);
-    if (status == 0 && whole)
-        keep_quantity(&result, part->quantity, part->scalars_only);
+    if (status == 0 && whole) /* an older program published the whole result in one document */
+        result_keep(&result, part->quantity, part->scalars_only);
     else if (status == 0 && !part->scalars_only)
         status = read_curves(store, id, case_number, part->quantity, &result, err);
     if (status != 0) {

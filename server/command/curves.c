@@ -22,10 +22,10 @@ static const struct option_row OPTIONS[] = {
 static int show(const struct study_result *study, bool csv, struct error *err) {
     bool done = true;
     if (csv)
-        csv_print(stdout, study->case_count, study->cases, NULL);
+        done = csv_print(stdout, study->case_count, study->cases, NULL);
     else
         done = study_print(stdout, study) && putchar('\n') != EOF;
-    return done ? output_flush(err) : error_memory(err, 0, "a document");
+    return done ? output_flush(err) : error_memory(err, 0, "curves");
 }
 
 static int run(const void *values, const char *const *arguments) {

@@ -182,8 +182,7 @@ static int send_csv(struct exchange *exchange, const char *id, const struct resu
     service_give_back(exchange->service, reader);
     FILE *file = status == 0 ? open_memstream(&text, &size) : NULL;
     if (file != NULL) {
-        csv_print(file, study.case_count, study.cases, NULL);
-        bool failed = ferror(file) != 0;
+        bool failed = !csv_print(file, study.case_count, study.cases, NULL) || ferror(file) != 0;
         if (fclose(file) != 0 || failed)
             status = error_memory(err, size, "a table");
     } else if (status == 0) {

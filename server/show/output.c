@@ -65,10 +65,10 @@ static int write_case(const struct case_result *one, const char *folder, struct 
         int status = open_file(&file, folder, name, err);
         if (status != 0)
             return status;
-        csv_print(file, 1, one, &one->curves[a]);
+        bool printed = csv_print(file, 1, one, &one->curves[a]);
         status = close_file(file, folder, name, err);
-        if (status != 0)
-            return status;
+        if (status != 0 || !printed)
+            return status != 0 ? status : error_memory(err, 0, "a table");
     }
     return 0;
 }

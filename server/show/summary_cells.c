@@ -91,14 +91,6 @@ void duration_cell(struct text_table *table, double seconds) {
     table_cell(table, "%s", text);
 }
 
-bool same_text(const char *a, const char *b) {
-    return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
-}
-
-bool same_number(double a, double b) {
-    return a == b || (isnan(a) && isnan(b));
-}
-
 const struct case_report *report_of(const struct study_report *report,
                                     const struct case_result *one) {
     size_t c = one->case_number;

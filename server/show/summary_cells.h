@@ -22,9 +22,6 @@ bool is_bracket(const char *series);
 /* "2 h 5 min", "12 s", "-" for NaN. */
 void duration_text(double seconds, char *out, size_t size);
 void duration_cell(struct text_table *table, double seconds);
-/* Also where both are NULL, or both NaN. */
-bool same_text(const char *a, const char *b);
-bool same_number(double a, double b);
 /* The report of a case, or NULL where the report, which may be NULL, has none. */
 const struct case_report *report_of(const struct study_report *report,
                                     const struct case_result *one);

@@ -4,11 +4,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { TABLES_MOST = 4, PLACES_SHOWN = 10, MODELS_MOST = 4, NOTES_SHOWN = 3 };
+enum { TABLES_MOST = 4, PLACES_SHOWN = 10, MODELS_MOST = 8, NOTES_SHOWN = 3 };
 
 /* The finest curve of each model, of the first estimator of the case. */
 struct finest_curves {
     size_t model_count, theory_count;
+    bool more_models; /* than there is room for: told below the table */
     const struct curve *curves[MODELS_MOST];
     const struct theory *theories[THEORIES_MOST]; /* of the first model, those of the table */
 };
@@ -23,8 +24,8 @@ static void add_curve(struct finest_curves *finest, const struct curve *curve) {
            strcmp(text_or(finest->curves[m]->model, ""), text_or(curve->model, "")) != 0)
         m++;
     if (m == MODELS_MOST)
-        return;
-    if (m == finest->model_count)
+        finest->more_models = true;
+    else if (m == finest->model_count)
         finest->curves[finest->model_count++] = curve;
     else if (curve->level > finest->curves[m]->level)
         finest->curves[m] = curve;
@@ -186,6 +187,8 @@ static void print_case(const struct quantity_table *words, const struct shown_ca
         fprintf(file, "; %s by %s at %.4g points a shortest wave\n", words->title,
                 text_or(finest.curves[0]->series, "-"), finest.curves[0]->level);
         print_table(words, one, &finest, file);
+        if (finest.more_models)
+            fprintf(file, "Only the first %d models are shown.\n", MODELS_MOST);
     } else {
         fputc('\n', file);
     }

@@ -21,7 +21,7 @@ static char *print(const struct case_result *result) {
 static void tabulate(const struct case_result *result) {
     struct memory_file memory;
     MUST(memory_file_open(&memory));
-    csv_print(memory.file, 1, result, NULL);
+    (void)csv_print(memory.file, 1, result, NULL);
     char *text = memory_file_close(&memory, NULL);
     MUST(text != NULL);
     free(text);

@@ -144,7 +144,7 @@ static char *table_of(const struct case_result *result, const struct curve *only
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
-    csv_print(file, 1, result, only);
+    assert_true(csv_print(file, 1, result, only));
     assert_int_equal(fclose(file), 0);
     return text;
 }
@@ -172,6 +172,32 @@ static void csv_is_one_table(void **state) {
     free(all);
     free(one);
     result_clear(&sample);
+}
+
+/* However many theories the curves have together, each has its column. */
+static void csv_has_all_theories(void **state) {
+    (void)state;
+    enum { CURVES = 5 };
+    static const double one[] = {1};
+    char names[CURVES * THEORIES_MOST][16], last[32];
+    struct case_result result = {0};
+    struct error err = {0};
+    for (size_t a = 0; a < CURVES; a++) {
+        struct curve curve = curve_named("q", "x", "y");
+        curve_set_points(&curve, 1, one, one, one);
+        for (size_t t = 0; t < THEORIES_MOST; t++) {
+            char *name = names[a * THEORIES_MOST + t];
+            snprintf(name, sizeof names[0], "t%zu", a * THEORIES_MOST + t);
+            curve.theories[curve.theory_count++] = (struct theory){name, one};
+        }
+        assert_int_equal(result_add_curve(&result, &curve, &err), 0);
+    }
+    char *text = table_of(&result, NULL);
+    snprintf(last, sizeof last, ",theory_t%d\n", CURVES * THEORIES_MOST - 1);
+    assert_non_null(strstr(text, last));
+    assert_non_null(strstr(text, ",theory_t16,theory_t17,"));
+    free(text);
+    result_clear(&result);
 }
 
 static char *print_report(const struct case_report *report) {
@@ -242,6 +268,7 @@ int main(void) {
         cmocka_unit_test(bytes_come_back),
         cmocka_unit_test(damaged_bytes_are_refused),
         cmocka_unit_test(csv_is_one_table),
+        cmocka_unit_test(csv_has_all_theories),
         cmocka_unit_test(report_measures_and_comes_back),
         cmocka_unit_test(parameters_are_told_by_pointer),
     };
