@@ -69,8 +69,11 @@ char *column_copy(sqlite3_stmt *statement, int column) {
 
 int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err) {
     static const struct json_limits limits = {.bytes = SIZE_MAX, .depth = 32, .values = SIZE_MAX};
+    bool held = sqlite3_column_type(row, column) != SQLITE_NULL;
     const char *text = (const char *)sqlite3_column_text(row, column);
     size_t size = (size_t)sqlite3_column_bytes(row, column);
+    if (held && text == NULL)
+        return error_set(err, ERROR_MEMORY, "no memory left to read a document of the database");
     int status = json_parse(text != NULL ? text : "", size, &limits, out, err);
     return status != 0 ? error_context(err, "the database holds malformed JSON") : 0;
 }

@@ -1,5 +1,6 @@
 /* Curves and reports over HTTP. A study of ten thousand cases has gigabytes of them: as JSON they
  * are read and sent case by case, and end early when the server does. */
+#include "core/memory_file.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/http/accept.h"
@@ -170,8 +171,8 @@ static int send_csv(struct exchange *exchange, const char *id, const struct resu
                     uint64_t cases, struct error *err) {
     struct store *reader;
     struct study_result study = {0};
+    struct memory_file table;
     char *text = NULL;
-    size_t size = 0;
     if (filter->case_number < 0 && cases > CSV_CASES_MOST)
         return error_set(err, ERROR_INPUT,
                          "%llu cases are too many for one table; ask for each with ?case=",
@@ -180,13 +181,13 @@ static int send_csv(struct exchange *exchange, const char *id, const struct resu
     if (status == 0)
         status = aggregate_study(reader, id, filter, &study, err);
     service_give_back(exchange->service, reader);
-    FILE *file = status == 0 ? open_memstream(&text, &size) : NULL;
-    if (file != NULL) {
-        bool failed = !csv_print(file, study.case_count, study.cases, NULL) || ferror(file) != 0;
-        if (fclose(file) != 0 || failed)
-            status = error_memory(err, size, "a table");
+    if (status == 0 && memory_file_open(&table)) {
+        bool printed = csv_print(table.file, study.case_count, study.cases, NULL);
+        text = memory_file_close(&table, NULL);
+        if (!printed || text == NULL)
+            status = error_memory(err, 0, "a table");
     } else if (status == 0) {
-        status = error_memory(err, size, "a table");
+        status = error_memory(err, 0, "a table");
     }
     study_result_clear(&study);
     if (status == 0)
