@@ -24,15 +24,12 @@ static bool is_stopped(void *context) {
     return caller->stop != NULL && caller->stop(caller->context);
 }
 
-int publish_due(struct store *store, bool (*stop)(void *context), void *context, uint64_t *left,
-                struct error *err) {
+int publish_due(struct store *store, bool (*stop)(void *context), void *context,
+                struct publish_counts *counts, struct error *err) {
     struct caller caller = {stop, context};
     struct publication publication = {.publish = publish_one, .stop = is_stopped, &caller};
-    struct publish_counts counts;
-    int status = store_publish_due(store, &publication, &counts, err);
-    if (left != NULL)
-        *left = counts.postponed;
-    return status;
+    struct publish_counts own;
+    return store_publish_due(store, &publication, counts != NULL ? counts : &own, err);
 }
 
 int publish_case(struct store *store, const char *study, uint64_t case_number, struct error *err) {

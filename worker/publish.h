@@ -5,10 +5,10 @@
 #include "schema/store/store.h"
 
 /* Merges and publishes every case that is due, of all studies, and logs those that cannot be. The
- * store marks these; what may pass, such as a full disk, leaves a case due: *left, which may be
- * NULL, counts such cases. stop (may be NULL) is asked between cases; then ERROR_STOPPED. */
-int publish_due(struct store *store, bool (*stop)(void *context), void *context, uint64_t *left,
-                struct error *err);
+ * store marks these; what may pass, such as a full disk, leaves a case due: counts, which may be
+ * NULL, says how many and why. stop (may be NULL) is asked between cases; then ERROR_STOPPED. */
+int publish_due(struct store *store, bool (*stop)(void *context), void *context,
+                struct publish_counts *counts, struct error *err);
 /* The same for one case, if it is due. */
 int publish_case(struct store *store, const char *study, uint64_t case_number, struct error *err);
 

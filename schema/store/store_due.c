@@ -129,7 +129,13 @@ int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t
             "UPDATE study SET cases_failed = cases_failed - 1, state = CASE WHEN state = 'failed' "
             "THEN 'running' ELSE state END WHERE id = ?",
             "i", study);
-    return status == 0 && marked ? study_settle(store, study, err) : status;
+    int64_t ends = 0; /* nothing is left to run: this may have been what the study waited for */
+    if (status == 0)
+        status = store_integer(store, &ends, err,
+                               "SELECT state = 'running' AND jobs_waiting + jobs_running = 0 FROM "
+                               "study WHERE id = ?",
+                               "i", study);
+    return status == 0 && (marked || ends) ? study_settle(store, study, err) : status;
 }
 
 int marks_clear(struct store *store, int64_t study, struct error *err) {

@@ -12,16 +12,21 @@ int study_row(struct store *store, const char *id, int64_t *row, struct error *e
     return status;
 }
 
+/* Whether a case of the study is yet to be published, or to be found impossible to publish. */
+#define STUDY_DUE                                                                                  \
+    "EXISTS (SELECT 1 FROM study_case c WHERE c.study_id = study.id AND c.jobs_left = 0 AND "      \
+    "c.revision > c.settled)"
+
 int study_settle(struct store *store, int64_t study, struct error *err) {
-    return store_run(
-        store, err,
-        "UPDATE study SET revision = revision + 1,"
-        " state = CASE WHEN state IN ('cancelled', 'queued') OR jobs_waiting + "
-        "jobs_running > 0 THEN state WHEN jobs_failed + cases_failed > 0 THEN 'failed' ELSE 'done' "
-        "END,"
-        " finished = CASE WHEN jobs_waiting + jobs_running > 0 THEN NULL"
-        " ELSE coalesce(finished, ?) END WHERE id = ?",
-        "ti", store_time(store), study);
+    return store_run(store, err,
+                     "UPDATE study SET revision = revision + 1,"
+                     " state = CASE WHEN state IN ('cancelled', 'queued') OR jobs_waiting + "
+                     "jobs_running > 0 THEN state WHEN " STUDY_DUE " THEN 'running'"
+                     " WHEN jobs_failed + cases_failed > 0 THEN 'failed' ELSE 'done' END,"
+                     " finished = CASE WHEN jobs_waiting + jobs_running > 0 OR (state <> "
+                     "'cancelled' AND " STUDY_DUE
+                     ") THEN NULL ELSE coalesce(finished, ?) END WHERE id = ?",
+                     "ti", store_time(store), study);
 }
 
 /* --- submission --- */
@@ -295,7 +300,8 @@ int store_cancel(struct store *store, const char *id, struct error *err) {
     if (status == 0)
         status = store_integer(
             store, &ended, err,
-            "SELECT state IN ('done', 'failed', 'cancelled') FROM study WHERE id = ?", "i", row);
+            "SELECT state = 'cancelled' OR jobs_waiting + jobs_running = 0 FROM study WHERE id = ?",
+            "i", row);
     if (status == 0 && ended)
         status = error_set(err, ERROR_STATE, "study %s has already ended", id);
     if (status == 0)

@@ -1,5 +1,6 @@
 #include "server/command/api.h"
 #include "schema/json/field.h"
+#include "worker/publish.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -158,7 +159,9 @@ int api_cancel(struct store *store, const char *id, cJSON **out, struct error *e
 int api_retry(struct store *store, const char *id, cJSON **out, struct error *err) {
     uint64_t count;
     int status = store_retry(store, id, &count, err);
-    if (!status)
+    if (status == 0) /* cases whose mark is gone: no worker may come to publish them */
+        status = publish_due(store, NULL, NULL, NULL, err);
+    if (status == 0)
         status = api_status(store, id, out, err);
     if (!status && !field_put_count(*out, "retried", count)) {
         cJSON_Delete(*out);

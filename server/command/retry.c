@@ -1,4 +1,4 @@
-/* `rugo retry`: queues the failed jobs of a study again. */
+/* `rugo retry`: queues failed jobs of a study again, and publishes cases that could not be. */
 #include "server/command/question.h"
 
 static int run(const void *options, const char *const *arguments) {
@@ -9,7 +9,7 @@ static int run(const void *options, const char *const *arguments) {
 const struct command COMMAND_RETRY = {
     .name = "retry",
     .arguments = "ID",
-    .summary = "queue the failed jobs of a study again",
+    .summary = "queue failed jobs of a study again, publish what could not be",
     .least = 1,
     .most = 1,
     .options = CHANGE_OPTIONS,

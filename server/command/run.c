@@ -101,6 +101,17 @@ static int check_end(struct run *run, const struct study_status *now, struct err
     return status;
 }
 
+/* What may pass, such as a full disk, leaves cases without rows in the store: that is not done. */
+static int check_published(const struct run *run, const struct study_status *now,
+                           const struct publish_counts *counts, struct error *err) {
+    if (strcmp(now->state, "running") != 0 || now->jobs_waiting + now->jobs_running > 0)
+        return 0;
+    return error_set(err, ERROR_SYSTEM,
+                     "study %s: cases are computed but not published (%.300s); the same command "
+                     "tries again",
+                     run->id, counts->postponed > 0 ? counts->reason.text : "?");
+}
+
 /* What the table needs: all curves only where files are written. */
 static struct result_filter filter_of(const struct run *run, const char *kind) {
     const struct job_kind *found = kind_find(kind);
@@ -132,13 +143,14 @@ static int present(struct run *run, const char *kind, struct error *err) {
 
 static int perform(struct run *run, struct error *err) {
     struct study_status now = {0};
+    struct publish_counts counts = {0};
     int status = submit(run, err);
-    if (!status)
+    if (status == 0)
         status = store_status(run->store, run->id, &now, err);
     if (status == 0 && now.jobs_waiting + now.jobs_running > 0)
         status = work(run, err);
     if (status == 0)
-        status = publish_due(run->store, NULL, NULL, NULL, err);
+        status = publish_due(run->store, NULL, NULL, &counts, err);
     study_status_clear(&now);
     if (status == 0)
         status = store_status(run->store, run->id, &now, err);
@@ -147,6 +159,8 @@ static int perform(struct run *run, struct error *err) {
     status = present(run, now.kind, err);
     if (status == 0 || now.cases_failed > 0) /* these are why it cannot be presented */
         status = check_end(run, &now, err);
+    if (status == 0)
+        status = check_published(run, &now, &counts, err);
     study_status_clear(&now);
     return status;
 }

@@ -26,11 +26,11 @@ static bool is_stopping(void *context) {
 /* True when cases stay due that are to be tried again. */
 static bool publish_all(struct publisher *publisher) {
     struct error err = {0};
-    uint64_t left = 0;
-    int status = publish_due(publisher->store, is_stopping, publisher, &left, &err);
+    struct publish_counts counts = {0};
+    int status = publish_due(publisher->store, is_stopping, publisher, &counts, &err);
     if (status != 0 && status != ERROR_STOPPED)
         log_line(LEVEL_ERROR, NULL, "publishing: %s", err.text);
-    return status != 0 || left > 0;
+    return status != 0 || counts.postponed > 0;
 }
 
 /* Sleeps until there is work; with cases left, at most until the time to try them again. */

@@ -164,6 +164,9 @@ const char *life_study_state(const struct life *life, int study) {
         return "cancelled";
     if (is_open(life, study))
         return one->begun ? "running" : "queued";
+    for (int c = 0; c < one->cases; c++)
+        if (life_is_due(life, study, c))
+            return "running";
     return life_count(life, study, LIFE_FAILED) + life_marks(life, study) > 0 ? "failed" : "done";
 }
 
