@@ -1,4 +1,5 @@
 /* Jobs from a server, over HTTP; wire.h says what crosses. */
+#include "schema/json/field.h"
 #include "worker/client.h"
 #include "worker/source_backend.h"
 #include "worker/wire.h"
@@ -106,9 +107,12 @@ static int remote_release(void *self, const struct claimed_job *job, struct erro
     return remote_report(self, job, "release", wire_release(job->token), HEARTBEAT_MS, err);
 }
 
+/* By its jobs, for its state is "running" until the server has published it, which no worker waits
+ * for. */
 static bool study_goes_on(const cJSON *study) {
-    const char *state = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(study, "state"));
-    return state != NULL && (strcmp(state, "queued") == 0 || strcmp(state, "running") == 0);
+    const cJSON *jobs = field_at(study, "jobs");
+    return cJSON_GetNumberValue(field_at(jobs, "waiting")) > 0 ||
+           cJSON_GetNumberValue(field_at(jobs, "running")) > 0;
 }
 
 /* Pages through the server's list of studies until one goes on. */

@@ -86,7 +86,26 @@ static int look(struct store_life *life, const char *id, struct error *err) {
     return result;
 }
 
-/* A study from its submission to its last result, on a handle that has seen failures. */
+static int publish_empty(void *context, struct store *store, const struct due_case *due,
+                         struct error *err) {
+    const struct case_result empty = {.case_number = due->case_number};
+    (void)context;
+    return store_publish(store, due->study, due->case_number, due->revision, &empty, err);
+}
+
+static int publish(struct store_life *life, const char *id, struct error *err) {
+    const struct publication publication = {.publish = publish_empty, .study = id};
+    struct publish_counts counts;
+    int status = store_publish_due(life->store, &publication, &counts, err);
+    if (status == 0 && counts.postponed > 0) {
+        *err = counts.reason;
+        status = counts.reason.code;
+    }
+    return status;
+}
+
+/* A study from its submission to the publication of its case, on a handle that has seen failures.
+ */
 static int live(void *context, struct error *err) {
     struct store_life *life = context;
     char id[STUDY_ID_SIZE];
@@ -99,6 +118,8 @@ static int live(void *context, struct error *err) {
         status = store_claim(life->store, &claim, jobs, &count, err);
     if (status == 0)
         status = complete_jobs(life, jobs, count, err);
+    if (status == 0)
+        status = publish(life, id, err);
     for (size_t n = 0; n < count; n++)
         claimed_job_clear(&jobs[n]);
     return status == 0 ? look(life, id, err) : status;
