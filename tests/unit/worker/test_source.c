@@ -165,7 +165,11 @@ static void result_arrives(void **state) {
 }
 
 /* Whether more jobs may come: as far as the token may see. */
-static void studies_under_way_are_left(void **state) {
+#define STUDY(id, waiting, running)                                                                \
+    "{\"studies\":[{\"id\":\"" id "\",\"state\":\"running\",\"jobs\":{\"waiting\":" #waiting       \
+    ",\"running\":" #running "}}]}"
+
+static void studies_with_jobs_are_left(void **state) {
     (void)state;
     static const struct {
         const char *status, *body;
@@ -173,9 +177,9 @@ static void studies_under_way_are_left(void **state) {
     } table[] = {
         {"200 OK", "{\"studies\":[]}", 0, 0},
         {"200 OK", "{\"studies\":[{\"id\":\"a\",\"state\":\"done\"}]}", 0, 0},
-        {"200 OK",
-         "{\"studies\":[{\"id\":\"a\",\"state\":\"done\"},{\"id\":\"b\",\"state\":\"running\"}]}",
-         0, 1},
+        {"200 OK", STUDY("a", 0, 0), 0, 0}, /* being published, which is the server's */
+        {"200 OK", STUDY("a", 1, 0), 0, 1},
+        {"200 OK", STUDY("a", 0, 1), 0, 1},
         {"403 Forbidden", "{}", 0, 0},
         {"500 Internal Server Error", "{}", ERROR_SYSTEM, -1},
     };
@@ -210,7 +214,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(claims_mean_what_they_say),  cmocka_unit_test(no_content_is_no_job),
         cmocka_unit_test(lost_leases_are_told_apart), cmocka_unit_test(result_arrives),
-        cmocka_unit_test(studies_under_way_are_left),
+        cmocka_unit_test(studies_with_jobs_are_left),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
