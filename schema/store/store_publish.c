@@ -1,4 +1,5 @@
 /* Publication: a case's result as rows for the views, its curves as bytes, its report as JSON. */
+#include "core/memory_file.h"
 #include "schema/result/curve_bytes.h"
 #include "schema/result/result_json.h"
 #include "schema/store/store_internal.h"
@@ -115,19 +116,25 @@ struct case_texts {
 static int case_texts_print(struct case_texts *out, struct error *err) {
     struct case_result head = *out->result;
     struct case_report report;
-    size_t document_size = 0, report_size = 0;
+    struct memory_file file;
     int status = case_report_make(&report, out->result, 1, err);
     if (status != 0)
         return status;
     head.curve_count = head.parameter_count = report.about.parameter_count = 0;
-    FILE *document = open_memstream(&out->document, &document_size);
-    FILE *measured = open_memstream(&out->report, &report_size);
-    bool done = document != NULL && measured != NULL && result_print(document, &head) &&
-                case_report_print(measured, &report);
-    done = document != NULL && fclose(document) == 0 && done;
-    done = measured != NULL && fclose(measured) == 0 && done;
+    bool done = memory_file_open(&file);
+    if (done) {
+        done = result_print(file.file, &head);
+        out->document = memory_file_close(&file, NULL);
+    }
+    done = done && memory_file_open(&file);
+    if (done) {
+        done = case_report_print(file.file, &report);
+        out->report = memory_file_close(&file, NULL);
+    }
     case_report_clear(&report);
-    return done ? 0 : error_set(err, ERROR_MEMORY, "no memory left to publish a case");
+    return done && out->document != NULL && out->report != NULL
+               ? 0
+               : error_set(err, ERROR_MEMORY, "no memory left to publish a case");
 }
 
 static int write_case(const struct target *target, const struct case_texts *texts,

@@ -36,27 +36,28 @@ static void stream_free(void *context) {
 /* What print writes to a file, as text behind what waits already; NULL there when out of memory. */
 struct printing {
     struct stream *stream;
-    char *text;
-    size_t size;
-    FILE *file;
+    struct memory_file memory;
+    bool begun;
 };
 static bool printing_begin(struct printing *printing, struct stream *stream) {
-    *printing = (struct printing){.stream = stream};
-    printing->file = open_memstream(&printing->text, &printing->size);
-    if (printing->file != NULL && stream->text != NULL)
-        fputs(stream->text, printing->file);
-    return printing->file != NULL;
+    printing->stream = stream;
+    printing->begun = memory_file_open(&printing->memory);
+    if (printing->begun && stream->text != NULL)
+        fputs(stream->text, printing->memory.file);
+    return printing->begun;
 }
 
 static int printing_end(struct printing *printing, bool done, struct error *err) {
     struct stream *stream = printing->stream;
-    done = printing->file != NULL && fclose(printing->file) == 0 && done;
+    char *text = printing->begun ? memory_file_close(&printing->memory, NULL) : NULL;
     free(stream->text);
-    stream->text = done ? printing->text : NULL;
+    stream->text = NULL;
     stream->sent = 0;
-    if (done)
+    if (done && text != NULL) {
+        stream->text = text;
         return 0;
-    free(printing->text);
+    }
+    free(text);
     return error_set(err, ERROR_MEMORY, "no memory left for an answer");
 }
 
@@ -65,7 +66,7 @@ static int print_head(struct stream *stream, struct error *err) {
     double seconds = stream->report ? stream->study.about.seconds : (double)NAN;
     struct printing printing;
     bool done =
-        printing_begin(&printing, stream) && study_print_head(printing.file, &head, seconds);
+        printing_begin(&printing, stream) && study_print_head(printing.memory.file, &head, seconds);
     return printing_end(&printing, done, err);
 }
 
@@ -76,12 +77,12 @@ static int append_case(struct stream *stream, const struct case_result *result,
     bool follows = stream->text == NULL;
     bool done = printing_begin(&printing, stream);
     if (done && follows)
-        fputc(',', printing.file);
+        fputc(',', printing.memory.file);
     if (done)
-        done = stream->report ? case_report_print(printing.file, report)
-                              : result_print(printing.file, result);
+        done = stream->report ? case_report_print(printing.memory.file, report)
+                              : result_print(printing.memory.file, result);
     if (done && stream->next + 1 == stream->end)
-        fputs("]}", printing.file);
+        fputs("]}", printing.memory.file);
     stream->next++;
     return printing_end(&printing, done, err);
 }
