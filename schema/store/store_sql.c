@@ -184,9 +184,19 @@ int store_execute(struct store *store, const char *sql, struct error *err) {
     return sqlite3_exec(store->db, sql, NULL, NULL, NULL) ? store_error(store, err) : 0;
 }
 
+static const char ROLL_BACK[] = "ROLLBACK";
+
+/* The statement that undoes is prepared before there is anything to undo: where memory is short, a
+ * change that could not be undone would keep others from writing. */
 int change_begin(struct store *store, struct error *err) {
+    sqlite3_stmt *undo;
     if (store->options.read_only)
         return error_set(err, ERROR_SYSTEM, "database %s was opened for reading only", store->path);
+    int status = find_statement(store, ROLL_BACK, &undo, err);
+    if (status == 0 && !store->batch && !sqlite3_get_autocommit(store->db))
+        status = store_run(store, err, ROLL_BACK, ""); /* which failed after the last change */
+    if (status != 0)
+        return status;
     return store_run(store, err, store->batch ? "SAVEPOINT change" : "BEGIN IMMEDIATE", "");
 }
 
@@ -198,7 +208,7 @@ int change_end(struct store *store, int status, struct error *err) {
     if (status != 0 && !sqlite3_get_autocommit(store->db)) {
         if (store->batch)
             store_run(store, NULL, "ROLLBACK TO change", "");
-        store_run(store, NULL, store->batch ? "RELEASE change" : "ROLLBACK", "");
+        store_run(store, NULL, store->batch ? "RELEASE change" : ROLL_BACK, "");
     }
     return status;
 }
