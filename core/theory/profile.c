@@ -2,7 +2,6 @@
  * -z''/sqrt(m4), z* and s are unit normals of correlation r = 1/sqrt(alpha), and peaks have the
  * density s exp(-(z^2 - 2 r z s + s^2)/(2 (1 - r^2))) / sqrt(2 pi (1 - r^2)). */
 #include "core/theory/nayak.h"
-#include "core/theory/quadrature.h"
 #include <math.h>
 #include <stdbool.h>
 
@@ -10,45 +9,40 @@ static bool in_domain(double alpha) {
     return alpha > 1 && isfinite(alpha);
 }
 
-struct conditional {
-    double mean, deviation; /* of s at the height */
-    double peak;            /* exponent less its largest value for s > 0 */
-};
+/* The continued fraction starts at this term, which gives it 2e-14 at x = 1 and 1e-15 beyond. */
+enum { TERMS = 200 };
 
-/* s and s^2, times the exponential. */
-static void conditional_weights(double s, const void *context, double out[2]) {
-    const struct conditional *c = context;
-    double t = (s - c->mean) / c->deviation, weight = exp(c->peak - t * t / 2);
-    out[0] = s * weight;
-    out[1] = s * s * weight;
-}
-
-static const double DEPTH = 80;
-enum { PANELS = 24 };
-
-/* Integrals over s > 0 of s and s^2, times exp(-(s - r z)^2/(2 (1 - r^2)) + peak). */
-static void conditional_moments(double z, double alpha, double out[2]) {
-    double r = 1 / sqrt(alpha), deviation = sqrt((alpha - 1) / alpha);
-    struct conditional c = {r * z, deviation, 0};
-    double start = -c.mean / deviation; /* of s = 0 */
-    double reach = deviation * sqrt(2 * DEPTH);
-    double low = fmax(c.mean - reach, 0), high = c.mean + reach;
-    if (start > 0) {
-        c.peak = start * start / 2;
-        high = deviation * 2 * DEPTH / (sqrt(start * start + 2 * DEPTH) + start);
+/* Integrals over u > 0 of u and u^2, times exp(-u^2/2 - x u) and, for x < 0, times exp(-x^2/2).
+ * By parts, J_(n+1) = n J_(n-1) - x J_n with J_1 = 1 - x J_0: upwards where nothing cancels, and
+ * from x = 1 on downwards, as the continued fraction J_n/J_(n-1) = n/(x + J_(n+1)/J_n) of positive
+ * terms (Gautschi 1967). */
+static void half_normal_moments(double x, double out[2]) {
+    if (x < 1) {
+        double peak = x > 0 ? 1 : exp(-x * x / 2);
+        double j0 = sqrt(M_PI / 2) * erfc(x / sqrt(2)) * (x > 0 ? exp(x * x / 2) : 1);
+        out[0] = peak - x * j0;
+        out[1] = j0 - x * out[0];
+        return;
     }
-    quadrature_pair(conditional_weights, &c, low, high, PANELS, out);
+    double ratio = (sqrt(x * x + 4 * (double)TERMS) - x) / 2, above = ratio;
+    for (int n = TERMS - 1; n > 0; n--) {
+        above = ratio;
+        ratio = n / (x + above);
+    }
+    out[0] = ratio / (x + ratio);
+    out[1] = above * out[0];
 }
 
 void profile_peak(double z, double alpha, double *pdf, double *curvature) {
     *pdf = *curvature = NAN;
     if (!in_domain(alpha) || isnan(z))
         return;
-    double variance = (alpha - 1) / alpha, moments[2];
-    double exponent = z > 0 ? -z * z / 2 : -z * z / (2 * variance);
-    conditional_moments(z, alpha, moments);
-    *pdf = exponent < -700 ? 0 : exp(exponent) * moments[0] / sqrt(2 * M_PI * variance);
-    *curvature = isfinite(z) ? moments[1] / moments[0] : (double)NAN;
+    /* At the height, s is a normal of this mean and deviation; u is s over the deviation. */
+    double variance = (alpha - 1) / alpha, deviation = sqrt(variance), mean = z / sqrt(alpha);
+    double exponent = z > 0 ? -z * z / 2 : -z * z / (2 * variance), moments[2];
+    half_normal_moments(-mean / deviation, moments);
+    *pdf = exponent < -700 ? 0 : exp(exponent) * moments[0] * sqrt(variance / (2 * M_PI));
+    *curvature = isfinite(z) ? deviation * moments[1] / moments[0] : (double)NAN;
 }
 
 double profile_peak_pdf(double z, double alpha) {

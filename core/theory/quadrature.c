@@ -28,24 +28,6 @@ double quadrature(integrand *f, const void *context, double low, double high, si
     return total;
 }
 
-void quadrature_pair(integrand_pair *f, const void *context, double low, double high, size_t panels,
-                     double out[2]) {
-    double half = (high - low) / (2 * (double)panels);
-    out[0] = out[1] = 0;
-    for (size_t panel = 0; panel < panels && high > low; panel++) {
-        double centre = low + (2 * (double)panel + 1) * half, sum[2] = {0, 0};
-        for (size_t node = 0; node < 8; node++) {
-            double offset = half * NODES[node], left[2], right[2];
-            f(centre - offset, context, left);
-            f(centre + offset, context, right);
-            for (int a = 0; a < 2; a++)
-                sum[a] += WEIGHTS[node] * (left[a] + right[a]);
-        }
-        for (int a = 0; a < 2; a++)
-            out[a] += sum[a] * half;
-    }
-}
-
 void quadrature_panel(double low, double high, double node[QUADRATURE_NODES],
                       double weight[QUADRATURE_NODES]) {
     double centre = (low + high) / 2, half = (high - low) / 2;

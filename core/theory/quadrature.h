@@ -10,11 +10,6 @@ typedef double integrand(double s, const void *context);
 /* Integral of f from low to high over equal panels; 0 when high <= low. */
 double quadrature(integrand *f, const void *context, double low, double high, size_t panels);
 
-/* The same of two integrands that share most of their work, such as an exponential. */
-typedef void integrand_pair(double s, const void *context, double out[2]);
-void quadrature_pair(integrand_pair *f, const void *context, double low, double high, size_t panels,
-                     double out[2]);
-
 /* One panel's rule, for sums that share their nodes: the nodes in rising order, their weights. */
 enum { QUADRATURE_NODES = 16 };
 void quadrature_panel(double low, double high, double node[QUADRATURE_NODES],
