@@ -11,7 +11,8 @@
 #ifndef RUGO_CORE_STATISTICS_REFINED_H
 #define RUGO_CORE_STATISTICS_REFINED_H
 
-#include "core/statistics/summits.h"
+#include "core/statistics/summit_list.h"
+#include "core/surface/grid.h"
 
 enum { REFINED_POINTS = 16, REFINED_PROFILE_POINTS = 64 };
 

@@ -3,7 +3,6 @@
 #include "core/statistics/refined.h"
 #include "core/surface/transform.h"
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 
 struct summit_finder {
@@ -15,26 +14,6 @@ struct summit_finder {
     double *curvature;           /* of every point, likewise */
     struct refined *refined;     /* SUMMITS_REFINED, NULL otherwise */
 };
-
-void summit_list_clear(struct summit_list *list) {
-    free(list->summits);
-    *list = (struct summit_list){0};
-}
-
-int summit_list_add(struct summit_list *list, const struct summit *summit, struct error *err) {
-    if (list->count == list->capacity) {
-        size_t capacity = list->capacity ? 2 * list->capacity : 1024;
-        size_t bytes = capacity * sizeof *list->summits;
-        struct summit *larger =
-            capacity < SIZE_MAX / sizeof *larger ? realloc(list->summits, bytes) : NULL;
-        if (larger == NULL)
-            return error_memory(err, bytes, "summits");
-        list->summits = larger;
-        list->capacity = capacity;
-    }
-    list->summits[list->count++] = *summit;
-    return 0;
-}
 
 static int finder_fill(struct summit_finder *f, enum summit_curvature curvature,
                        struct error *err) {

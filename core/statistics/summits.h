@@ -7,23 +7,11 @@
 #ifndef RUGO_CORE_STATISTICS_SUMMITS_H
 #define RUGO_CORE_STATISTICS_SUMMITS_H
 
+#include "core/statistics/summit_list.h"
 #include "core/surface/grid.h"
 
 enum summit_stencil { SUMMITS_NINE_POINT, SUMMITS_FIVE_POINT, SUMMITS_REFINED };
 enum summit_curvature { CURVATURE_FINITE_DIFFERENCE, CURVATURE_SPECTRAL };
-
-struct summit {
-    double x, y;      /* position, units of the cell; [0, lx) x [0, ly) */
-    double height;    /* same unit as z */
-    double curvature; /* mean curvature -(z_xx + z_yy)/2, profile -z_xx; positive at a summit */
-};
-/* A list that grows and is reused from realisation to realisation. Initialise with {0}. */
-struct summit_list {
-    struct summit *summits; /* owned */
-    size_t count, capacity;
-};
-void summit_list_clear(struct summit_list *list);
-int summit_list_add(struct summit_list *list, const struct summit *summit, struct error *err);
 
 struct summit_finder;
 /* Workspace, made once a case. mode_x, mode_y bound the band of the surfaces to come (spectral
