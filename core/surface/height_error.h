@@ -4,9 +4,8 @@
 #ifndef RUGO_CORE_SURFACE_HEIGHT_ERROR_H
 #define RUGO_CORE_SURFACE_HEIGHT_ERROR_H
 
-#include "core/surface/heights.h"
 #include "core/surface/spectrum.h"
-#include "core/surface/surface.h"
+#include "core/surface/surface_options.h"
 #include <complex.h>
 
 struct height_error;

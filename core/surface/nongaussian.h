@@ -4,7 +4,9 @@
 #ifndef RUGO_CORE_SURFACE_NONGAUSSIAN_H
 #define RUGO_CORE_SURFACE_NONGAUSSIAN_H
 
-#include "core/surface/surface.h"
+#include "core/random.h"
+#include "core/surface/spectrum.h"
+#include "core/surface/surface_options.h"
 #include "core/surface/transform.h"
 
 struct nongaussian;

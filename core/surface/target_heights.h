@@ -5,7 +5,7 @@
 
 #include "core/random.h"
 #include "core/surface/rank.h"
-#include "core/surface/surface.h"
+#include "core/surface/surface_options.h"
 
 /* DRAW_RANDOM: n draws, by quantiles of words 0..n-1 of STREAM_HEIGHTS; DRAW_QUANTILES: the
  * quantiles at (i + 1/2)/n. ranker is one for n values. ERROR_NUMERIC when all heights are equal,

@@ -1,0 +1,40 @@
+/* How a surface is to be made, and what came of it. */
+#ifndef RUGO_CORE_SURFACE_SURFACE_OPTIONS_H
+#define RUGO_CORE_SURFACE_SURFACE_OPTIONS_H
+
+#include "core/surface/heights.h"
+
+enum surface_keep { KEEP_SPECTRUM, KEEP_HEIGHTS };
+enum surface_iteration { ITERATION_RELAXED, ITERATION_PLAIN };
+enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
+
+/* The iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4). Gaussian heights need
+ * none of it. */
+struct surface_options {
+    struct heights heights;
+    enum surface_keep keep;           /* which of the two last iterates is returned */
+    enum surface_iteration iteration; /* accelerated and relaxed (F5.4), or plain alternation (F5.1)
+                                         as in the reference */
+    enum surface_draw draw;           /* target heights drawn at random, or exact quantiles */
+    double
+        tolerance; /* on eps_h, eps_s and eps_s0 (F5.2); default 1e-3; 0 iterates until it stalls */
+    double stall_gain;         /* default 0.05: stuck when the worst error has not gained this */
+    size_t stall_iterations;   /* default 10: ... in so many iterations */
+    size_t max_iterations;     /* default 1000, of both kinds together */
+    size_t relaxed_iterations; /* default 40; nongaussian.c says why */
+    double relaxation;         /* default 0.8 */
+};
+extern const struct surface_options SURFACE_DEFAULTS; /* Gaussian, and the defaults above */
+
+/* END_DIRECT: Gaussian. END_LIMIT: the schedule of the relaxed iteration, or max_iterations, ended
+ * it; the errors say how near it came. */
+enum surface_end { END_DIRECT, END_CONVERGED, END_STALLED, END_LIMIT };
+/* What one generation did. Errors are of the returned pair of iterates. */
+struct surface_report {
+    size_t iterations;
+    enum surface_end end;
+    double eps_h, eps_s, eps_s0;              /* PSD form (the one that stops) */
+    double eps_s_amplitude, eps_s0_amplitude; /* amplitude form, as the authors' code */
+};
+
+#endif
