@@ -15,23 +15,7 @@
 #ifndef RUGO_CORE_CONTACT_COMPLIANCE_H
 #define RUGO_CORE_CONTACT_COMPLIANCE_H
 
-#include "core/surface/grid.h"
-
-/* The linear models. The finite elements of core/full use all of a block but its model. */
-enum block_model { MODEL_HALFSPACE, MODEL_LAYERED };
-/* Weighting of the gap by the mortar functions of the finite elements (F10.5): the standard ones
- * (Petrov-Galerkin, as in the reference, core/theory/BIBLIOGRAPHY.md) average it over neighbours by
- * (1, 4, 1)/6 along each axis; the dual ones take the gap at the node. */
-enum gap_weighting { GAP_STANDARD, GAP_DUAL };
-
-struct block {
-    enum block_model model;
-    double poisson;               /* in [0, 0.5); without influence on a half-space */
-    double height;                /* unit of the grid's lengths; INFINITY: MODEL_HALFSPACE alone */
-    double layer_growth;          /* layered: thickness of a layer over that above it, in [1, 2] */
-    enum gap_weighting weighting; /* layered; a half-space takes the gap at the node */
-};
-enum { LAYERS_MOST = 4096 };
+#include "core/contact/block.h"
 
 /* Immutable once made: share it between threads. Arrays hold a value a wave vector in the layout of
  * transform.h: [mx*ny + row], mx = 0 .. nx/2, row = my for my >= 0 and ny + my below. */
@@ -44,12 +28,8 @@ struct compliance {
     size_t layers;  /* of the mesh; 0 for a half-space */
 };
 
-/* Thicknesses of the layers of a block from the face down, at most LAYERS_MOST into thickness: the
- * first is as the finer of dx and dy, all are scaled down by one factor so that they fill the
- * block. How many, or 0 when too many are needed. */
-size_t block_layers(const struct grid *grid, const struct block *block, double *thickness);
-
-/* ERROR_INPUT for a block out of the ranges above; ERROR_MEMORY. Time: about waves x layers. */
+/* ERROR_INPUT for a block out of its ranges (block_check); ERROR_MEMORY. Time: about waves x
+ * layers. */
 int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,
                       struct error *err);
 void compliance_destroy(struct compliance **compliance);

@@ -206,18 +206,20 @@ WIDE_VECTORS static void face(struct wave_lanes *w) {
 
 /* A mesh being solved. Lengths are in units of dx, so that no unit of the user's can overflow. */
 struct layered_mesh {
-    struct compliance *compliance;
+    const struct grid *grid;
     struct layered_material material;
-    double *thickness;     /* layers, from the face down */
+    double *length;    /* what is filled, as in struct compliance */
+    double *thickness; /* layers, from the face down */
+    size_t layers;
     struct symbols *x, *y; /* nx/2 + 1, ny/2 + 1 */
     bool square;           /* x and y may be swapped */
     struct wave_lanes waves;
 };
 
 /* |mx| and |my| stand for all signs, and on a square grid for both orders. */
-static void length_store(struct compliance *compliance, size_t mx, size_t my, double length) {
-    size_t ny = compliance->grid.ny;
-    double *column = compliance->length + mx * ny;
+static void length_store(const struct layered_mesh *mesh, size_t mx, size_t my, double length) {
+    size_t ny = mesh->grid->ny;
+    double *column = mesh->length + mx * ny;
     column[my] = length;
     column[my ? ny - my : 0] = length;
 }
@@ -225,22 +227,22 @@ static void length_store(struct compliance *compliance, size_t mx, size_t my, do
 /* Eliminates the layers for the waves collected, and stores their compliances. */
 static void waves_solve(struct layered_mesh *mesh) {
     struct wave_lanes *w = &mesh->waves;
-    size_t layers = mesh->compliance->layers;
+    size_t layers = mesh->layers;
     far_layer(w, mesh->thickness[layers - 1]);
     for (size_t k = layers - 1; k-- > 0;)
         next_layer(w, mesh->thickness[k]);
     face(w);
-    double unit = grid_dx(&mesh->compliance->grid);
+    double unit = grid_dx(mesh->grid);
     for (size_t l = 0; l < w->count; l++) {
-        length_store(mesh->compliance, w->mx[l], w->my[l], unit * w->compliance[l]);
+        length_store(mesh, w->mx[l], w->my[l], unit * w->compliance[l]);
         if (mesh->square)
-            length_store(mesh->compliance, w->my[l], w->mx[l], unit * w->compliance[l]);
+            length_store(mesh, w->my[l], w->mx[l], unit * w->compliance[l]);
     }
     w->count = 0;
 }
 
 static void mesh_solve(struct layered_mesh *mesh) {
-    const struct grid *grid = &mesh->compliance->grid;
+    const struct grid *grid = mesh->grid;
     struct wave_lanes *w = &mesh->waves;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
         for (size_t my = mx == 0; my <= (mesh->square ? mx : grid->ny / 2); my++) {
@@ -255,29 +257,28 @@ static void mesh_solve(struct layered_mesh *mesh) {
 }
 
 /* Layers and symbols; the block's height is checked, so that only its ratio to dx can fail. */
-static int mesh_prepare(struct layered_mesh *mesh, struct error *err) {
-    struct compliance *compliance = mesh->compliance;
-    const struct grid *grid = &compliance->grid;
+static int mesh_prepare(struct layered_mesh *mesh, const struct block *block, struct error *err) {
+    const struct grid *grid = mesh->grid;
     double dx = grid_dx(grid), dy = grid_is_profile(grid) ? dx : grid_dy(grid);
-    compliance->layers = block_layers(grid, &compliance->block, mesh->thickness);
-    if (compliance->layers == 0)
+    mesh->layers = block_layers(grid, block, mesh->thickness);
+    if (mesh->layers == 0)
         return error_set(err, ERROR_INPUT,
                          "a block of height %g needs more than %d layers that grow by %g; allowed: "
                          "a lower block, a larger growth, fewer points",
-                         compliance->block.height, LAYERS_MOST, compliance->block.layer_growth);
-    for (size_t k = 0; k < compliance->layers; k++)
+                         block->height, LAYERS_MOST, block->layer_growth);
+    for (size_t k = 0; k < mesh->layers; k++)
         mesh->thickness[k] /= dx;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
         mesh->x[mx] = symbols_of(mx, grid->nx, 1);
     for (size_t my = 0; my <= grid->ny / 2; my++)
         mesh->y[my] = symbols_of(my, grid->ny, dy / dx);
     mesh->square = grid->nx == grid->ny && dx == dy;
-    mesh->material = layered_material(compliance->block.poisson);
+    mesh->material = layered_material(block->poisson);
     return 0;
 }
 
-int layered_lengths(struct compliance *compliance, struct error *err) {
-    const struct grid *grid = &compliance->grid;
+int layered_lengths(const struct grid *grid, const struct block *block, double *length,
+                    size_t *layers, struct error *err) {
     size_t symbols = grid->nx / 2 + 1 + grid->ny / 2 + 1;
     struct layered_mesh *mesh = array_create(1, sizeof *mesh);
     double *thickness = array_create(LAYERS_MOST, sizeof *thickness);
@@ -286,13 +287,15 @@ int layered_lengths(struct compliance *compliance, struct error *err) {
     if (mesh == NULL || thickness == NULL || directions == NULL) {
         status = error_memory(err, symbols * sizeof *directions, "the mesh of the block");
     } else {
-        *mesh = (struct layered_mesh){.compliance = compliance,
+        *mesh = (struct layered_mesh){.grid = grid,
+                                      .length = length,
                                       .thickness = thickness,
                                       .x = directions,
                                       .y = directions + grid->nx / 2 + 1};
-        status = mesh_prepare(mesh, err);
+        status = mesh_prepare(mesh, block, err);
         if (status == 0)
             mesh_solve(mesh);
+        *layers = mesh->layers;
     }
     free(directions);
     free(thickness);

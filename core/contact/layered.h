@@ -2,7 +2,7 @@
 #ifndef RUGO_CORE_CONTACT_LAYERED_H
 #define RUGO_CORE_CONTACT_LAYERED_H
 
-#include "core/contact/compliance.h"
+#include "core/contact/block.h"
 
 /* Elasticity with E* = E/(1 - nu^2) = 1: shear modulus, and the parts of lambda that see the local
  * and the element's mean dilatation (layered.c says why). */
@@ -11,8 +11,9 @@ struct layered_material {
 };
 struct layered_material layered_material(double poisson);
 
-/* Fills length and layers of a compliance whose block was checked. ERROR_INPUT when the block needs
- * more than LAYERS_MOST layers; ERROR_MEMORY. */
-int layered_lengths(struct compliance *compliance, struct error *err);
+/* Fills length (S E*, laid out as in struct compliance) and the number of layers of a block that
+ * was checked. ERROR_INPUT when it needs more than LAYERS_MOST layers; ERROR_MEMORY. */
+int layered_lengths(const struct grid *grid, const struct block *block, double *length,
+                    size_t *layers, struct error *err);
 
 #endif
