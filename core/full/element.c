@@ -1,5 +1,4 @@
 #include "core/full/element.h"
-#include "core/full/material_law.h"
 #include "core/vectors.h"
 #include <math.h>
 #include <stddef.h>

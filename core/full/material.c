@@ -1,6 +1,5 @@
 #include "core/full/material.h"
 #include "core/contact/layered.h"
-#include "core/full/material_law.h"
 
 static const struct material_law *const LAWS[] = {
     [KINEMATICS_HENCKY] = &MATERIAL_HENCKY,

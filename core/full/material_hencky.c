@@ -1,6 +1,6 @@
 /* Hencky's material: energy shear sum e_p^2 + (local/2) (ln J)^2 per reference volume, e_p the
  * logarithms of the principal stretches. */
-#include "core/full/material_law.h"
+#include "core/full/material.h"
 #include "core/full/principal_axes.h"
 #include "core/vectors.h"
 

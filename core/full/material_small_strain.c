@@ -1,6 +1,6 @@
 /* Linear elasticity in small strains: energy shear e:e + (local/2) (tr e)^2 per volume, e the
  * symmetric part of the displacement gradient. */
-#include "core/full/material_law.h"
+#include "core/full/material.h"
 #include "core/full/principal_axes.h"
 #include "core/vectors.h"
 

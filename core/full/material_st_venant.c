@@ -1,6 +1,6 @@
 /* St. Venant and Kirchhoff's material: energy shear sum E_p^2 + (local/2) (sum E_p)^2 per reference
  * volume, E_p = (square of the principal stretch - 1)/2 Green's strain. */
-#include "core/full/material_law.h"
+#include "core/full/material.h"
 #include "core/full/principal_axes.h"
 #include "core/vectors.h"
 
