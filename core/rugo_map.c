@@ -1,5 +1,5 @@
 /* Height maps in files, of rugo.h. */
-#include "core/map/height_map.h"
+#include "core/map/height_map_file.h"
 #include "core/rugo_shared.h"
 #include <errno.h>
 #include <stdlib.h>

@@ -1,11 +1,9 @@
-/* NumPy's npy format, as far as height maps go. Private to height_map.c. */
+/* NumPy's npy format, as far as height maps go. Private to height_map_file.c. */
 #ifndef RUGO_CORE_MAP_HEIGHT_MAP_NPY_H
 #define RUGO_CORE_MAP_HEIGHT_MAP_NPY_H
 
 #include "core/map/height_map.h"
-
-/* Checks the counts and sets the grid of a map with spacing dx. */
-int height_map_shape(struct height_map *map, size_t ny, size_t nx, double dx, struct error *err);
+#include <stdio.h>
 
 int height_map_npy_parse(struct height_map *map, const char *data, size_t size, double dx,
                          struct error *err);

@@ -1,6 +1,6 @@
 /* rugo generate STUDY.json: one surface of a study, or a block meshed on it, to look at or to use
  * elsewhere. */
-#include "core/map/height_map.h"
+#include "core/map/height_map_file.h"
 #include "jobs/kind.h"
 #include "jobs/surface_case.h"
 #include "server/command/command.h"

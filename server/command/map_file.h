@@ -2,7 +2,7 @@
 #ifndef RUGO_SERVER_COMMAND_MAP_FILE_H
 #define RUGO_SERVER_COMMAND_MAP_FILE_H
 
-#include "core/map/height_map.h"
+#include "core/map/height_map_file.h"
 
 #define MAP_SPACING_HELP "distance of points (what the file says, or 1)"
 

@@ -2,7 +2,7 @@
  * allocation fails; nothing leaks, and the next attempt gives the same. */
 #include "tests/support/check.h"
 
-#include "core/map/height_map.h"
+#include "core/map/height_map_file.h"
 #include "core/statistics/roughness.h"
 #include "core/statistics/summits.h"
 #include "core/surface/surface.h"

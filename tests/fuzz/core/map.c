@@ -1,6 +1,6 @@
 /* Height maps out of files, the format by the first byte: what is read is written and read again as
  * the same heights. */
-#include "core/map/height_map.h"
+#include "core/map/height_map_file.h"
 #include "core/memory_file.h"
 #include "tests/support/fuzz/fuzz.h"
 

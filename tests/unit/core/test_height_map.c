@@ -1,6 +1,6 @@
 /* Height maps in files: what is written reads back bit for bit, NumPy's own headers are taken, and
  * everything else is refused with words that name the place. */
-#include "core/map/height_map.h"
+#include "core/map/height_map_file.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
