@@ -120,6 +120,51 @@ static struct estimate summit_estimate(const struct scalar_columns *columns,
     return estimate_weighted(columns->n, variance, number);
 }
 
+/* What theory expects of the summits. */
+static void theory_of_summits(const struct statistics_case *one_case, const struct moments *moments,
+                              double *out) {
+    int dimension = one_case->surface.dimension;
+    double ratio = one_case->surface.wavelength_ratio, lx = one_case->surface.grid.lx;
+    struct summit_expectation expected =
+        summit_expectation(dimension, moments->m2, moments->m4, moments->nayak_alpha);
+    out[SCALAR_SUMMIT_DENSITY] = expected.density;
+    out[SCALAR_SUMMIT_DENSITY_PER_AREA] = expected.density * ratio;
+    out[SCALAR_SUMMITS] = expected.density * lx;
+    if (dimension == 2) {
+        out[SCALAR_SUMMIT_DENSITY_PER_AREA] *= ratio;
+        out[SCALAR_SUMMITS] *= one_case->surface.grid.ly;
+    }
+    out[SCALAR_SUMMIT_HEIGHT_MEAN] = expected.height_mean;
+    out[SCALAR_SUMMIT_HEIGHT_VARIANCE] = expected.height_variance;
+    out[SCALAR_SUMMIT_CURVATURE_MEAN] = expected.curvature;
+}
+
+/* What theory expects of each scalar, NaN where there is none. */
+static void theory_of_scalars(const struct statistics_case *one_case, const struct moments *moments,
+                              double out[SCALAR_COUNT]) {
+    struct height_moments heights;
+    for (size_t a = 0; a < SCALAR_COUNT; a++)
+        out[a] = NAN;
+    out[SCALAR_RMS_HEIGHT] = moments->rms_height;
+    out[SCALAR_RMS_SLOPE] = moments->rms_slope;
+    out[SCALAR_RMS_CURVATURE] = moments->rms_curvature;
+    if (heights_moments(&one_case->surface.options.heights, &heights, NULL) == 0) {
+        out[SCALAR_SKEWNESS] = heights.skewness;
+        out[SCALAR_KURTOSIS] = heights.kurtosis;
+    }
+    out[SCALAR_M2_DIFFERENCE] = moments->m2;
+    out[SCALAR_M4_DIFFERENCE] = moments->m4;
+    out[SCALAR_NAYAK_ALPHA_DIFFERENCE] = moments->nayak_alpha;
+    if (!surface_case_exact(&one_case->surface)) {
+        out[SCALAR_M0] = moments->m0;
+        out[SCALAR_M2] = moments->m2;
+        out[SCALAR_M4] = moments->m4;
+        out[SCALAR_NAYAK_ALPHA] = moments->nayak_alpha;
+    }
+    if (statistics_theory_applies(one_case, moments))
+        theory_of_summits(one_case, moments, out);
+}
+
 /* A scalar with a fixed name. */
 static int add_scalar(struct case_result *out, const char *name, struct estimate estimate,
                       double theory, struct error *err) {
@@ -131,7 +176,7 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
                        const struct moments *moments, struct scalar_columns *columns,
                        struct error *err) {
     double theory[SCALAR_COUNT];
-    statistics_theory_scalars(one_case, moments, theory);
+    theory_of_scalars(one_case, moments, theory);
     bool exact = surface_case_exact(&one_case->surface);
     const double prescribed[] = {moments->m0, moments->m2, moments->m4, moments->nayak_alpha};
     int status = 0;

@@ -10,10 +10,6 @@ bool statistics_theory_applies(const struct statistics_case *one_case,
 /* Its name: "nayak", and for profiles "longuet_higgins" (Cartwright & Longuet-Higgins 1956). */
 const char *statistics_theory_name(const struct statistics_case *one_case);
 
-/* Of each scalar, NaN where there is none; out has SCALAR_COUNT entries. */
-void statistics_theory_scalars(const struct statistics_case *one_case,
-                               const struct moments *moments, double *out);
-
 /* Prescribed height distribution: mean density of each bin; cumulative at its upper edge. */
 int statistics_theory_heights(const struct statistics_case *one_case, double *pdf, double *cdf,
                               struct error *err);

@@ -1,0 +1,59 @@
+/* What a statistics case costs, before anything ran. */
+#include "core/cost.h"
+#include "core/surface/spectrum_estimate.h"
+#include "jobs/publishing_cost.h"
+#include "jobs/statistics/statistics_case.h"
+#include "jobs/statistics/statistics_tally.h"
+#include <math.h>
+
+/* CPU seconds of one realisation. */
+static double expected_seconds(const struct statistics_case *one_case) {
+    double points = (double)grid_points(&one_case->surface.grid);
+    double nanoseconds = cost_generation(&one_case->surface.options);
+    nanoseconds += cost_summits(one_case->stencil, one_case->curvature);
+    if (!surface_case_exact(&one_case->surface))
+        nanoseconds += cost_spectra();
+    return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points);
+}
+
+/* CPU seconds of the theories of a bin of summit heights, as publishing_cost.h. */
+static const double PROFILE_BIN_SECONDS = 1.3e-5, SURFACE_BIN_SECONDS = 8.4e-5;
+enum { CURVES = 9, HEIGHT_CURVES = 5 };
+
+/* The joint density is taken to have as many cells as ten realisations have summits, acf and psd
+ * together a point for each point of a side. */
+static double expected_case_seconds(const struct statistics_case *one_case, double summits) {
+    size_t heights = one_case->height.count, side = one_case->surface.grid.nx;
+    size_t points = HEIGHT_CURVES * heights + one_case->equivalent.count + side;
+    double cells = fmin(10 * summits, (double)(heights * one_case->equivalent.count) / 4);
+    double theories = (double)heights * (one_case->surface.dimension == 1 ? PROFILE_BIN_SECONDS
+                                                                          : SURFACE_BIN_SECONDS);
+    return theories + publishing_cost(CURVES, points + (size_t)cells);
+}
+
+void statistics_case_estimate(const struct statistics_case *one_case, struct study_cost *out) {
+    const struct surface_case *surface = &one_case->surface;
+    const struct grid *grid = &surface->grid;
+    size_t mode_x = surface_case_band(surface);
+    size_t mode_y = surface->dimension == 1 ? 0 : mode_x;
+    double points = (double)grid_points(grid), alpha;
+    double summits =
+        fmax(1, spectrum_expected_summits(&surface->spectrum, grid, surface->length_ratio,
+                                          (double)mode_x, &alpha));
+    double spread = sqrt(fmax(0.05, 1 - 0.8968 / fmax(alpha, 1))); /* of summit heights */
+    bool exact = surface_case_exact(surface);
+    out->nx = grid->nx;
+    out->ny = grid->ny;
+    /* a list of summits doubles as it grows; spectra of height maps take a transform of the grid */
+    out->memory_bytes =
+        generator_bytes(grid, mode_x, mode_y, &surface->options) +
+        (exact ? summit_finder_bytes(grid, one_case->stencil, one_case->curvature, mode_x, mode_y)
+               : summit_finder_bytes(grid, one_case->stencil, one_case->curvature, grid->nx / 2,
+                                     grid->ny / 2)) +
+        statistics_tally_bytes(one_case) + 2 * summits * sizeof(struct summit) +
+        (exact ? 0 : 24 * points) + 6e6;
+    out->seconds = expected_seconds(one_case);
+    out->case_seconds = expected_case_seconds(one_case, summits);
+    /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */
+    out->relative_error = 2.239 * sqrt(spread / (summits * bins_width(&one_case->height)));
+}
