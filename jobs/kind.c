@@ -1,6 +1,7 @@
 #include "jobs/kind.h"
 #include "jobs/fingerprint.h"
 #include "jobs/memory.h"
+#include "schema/study/study_reader.h"
 #include <stdlib.h>
 #include <string.h>
 

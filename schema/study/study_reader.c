@@ -1,4 +1,4 @@
-#include "schema/study/study.h"
+#include "schema/study/study_reader.h"
 #include "schema/study/common.h"
 #include "schema/study/override.h"
 #include "schema/study/sweep.h"
@@ -233,20 +233,4 @@ int study_read(struct study **out, const char *text, size_t size, const char *co
     }
     *out = study;
     return 0;
-}
-
-void study_destroy(struct study **study) {
-    struct study *s = *study;
-    if (!s)
-        return;
-    for (size_t c = 0; s->cases && c < s->case_count; c++)
-        cJSON_Delete(s->cases[c].parameters);
-    for (size_t p = 0; s->swept && s->swept[p]; p++)
-        free(s->swept[p]);
-    free(s->swept);
-    free(s->cases);
-    free(s->name);
-    free(s->source);
-    free(s);
-    *study = NULL;
 }

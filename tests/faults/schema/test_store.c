@@ -3,6 +3,7 @@
 #include "tests/support/check.h"
 
 #include "schema/store/store.h"
+#include "schema/study/study_reader.h"
 #include "tests/support/failing/each_allocation.h"
 #include "tests/support/fake_kind.h"
 #include <stdio.h>

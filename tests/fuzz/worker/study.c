@@ -1,7 +1,7 @@
 /* Studies of the real kinds: one that is taken has cases of finite cost, and what is kept of it is
  * read as the same study; one that is refused says why. */
-#include "schema/study/study.h"
 #include "jobs/kind.h"
+#include "schema/study/study_reader.h"
 #include "tests/support/fuzz/fuzz.h"
 #include <math.h>
 

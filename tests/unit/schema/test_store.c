@@ -2,6 +2,7 @@
  * sets: what a lease allows, that nothing is done twice or lost, and what people read of it. */
 #include "schema/store/store.h"
 #include "schema/study/fault.h"
+#include "schema/study/study_reader.h"
 #include "tests/support/check.h"
 #include "tests/support/fake_kind.h"
 #include "tests/support/sample_result.h"

@@ -1,6 +1,7 @@
 /* Protects: a study is read as it was meant, or every fault of it is told with its pointer, what is
  * there and what is allowed; sweeps are numbered in the order of the file. */
 #include "schema/study/fault.h"
+#include "schema/study/study_reader.h"
 #include "tests/support/check.h"
 #include "tests/support/fake_kind.h"
 #include <stdio.h>

@@ -3,6 +3,7 @@
  * beside names that do not exist. An independent validator (python3-jsonschema) judges them by the
  * schema; without it the test is skipped. */
 #include "jobs/kind.h"
+#include "schema/study/study_reader.h"
 #include "schema/study/value.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
