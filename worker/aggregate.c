@@ -82,6 +82,29 @@ static int fresh_result(struct store *store, const struct aggregate *aggregate,
     return merge_case(store, aggregate, case_number, info->parameters, out, err);
 }
 
+/* Whether it is the case's stored results that are at fault: trying again does not help, and other
+ * cases may well be read. */
+static bool is_final(int status) {
+    return status == ERROR_INPUT || status == ERROR_NUMERIC;
+}
+
+/* fresh_result, whose result says why where what is stored cannot be read or merged. */
+static int result_or_error(struct store *store, const struct aggregate *aggregate,
+                           uint64_t case_number, const struct case_info *info,
+                           const struct published_part *part, struct case_result *out,
+                           struct error *err) {
+    struct error reason = {0};
+    int status = fresh_result(store, aggregate, case_number, info, part, out, &reason);
+    if (status == 0)
+        return 0;
+    if (!is_final(status))
+        return error_set(err, status, "%s", reason.text);
+    result_clear(out); /* merging may have begun to fill it */
+    out->realisations = info->realisations_done;
+    out->error = result_text(out, reason.text);
+    return out->error != NULL ? 0 : error_memory(err, sizeof reason.text, "the fault of a case");
+}
+
 static bool has_quantity(const struct case_result *result, const char *quantity) {
     return result_curve(result, quantity) != NULL;
 }
@@ -102,9 +125,10 @@ static int quantity_absent(const struct case_result *result, const char *quantit
                      names[0] != '\0' ? names : "none");
 }
 
-/* A quantity that is not there: reads all curves, to tell which there are. */
-static int tell_absent(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
-                       const struct case_info *info, const char *quantity, struct error *err) {
+/* Refuses a quantity that is not there: reads all curves, to name those that are. */
+static int refuse_quantity(struct store *store, const struct aggregate *aggregate,
+                           uint64_t case_number, const struct case_info *info, const char *quantity,
+                           struct error *err) {
     const struct published_part all = {0};
     struct case_result result = {0};
     int status = fresh_result(store, aggregate, case_number, info, &all, &result, err);
@@ -124,8 +148,10 @@ static int finish_result(struct store *store, const struct aggregate *aggregate,
     result_keep(result, quantity, filter->part.scalars_only);
     int status = result_set_parameters(result, info->parameters, err);
     bool begun = info->realisations_done > 0;
-    if (status == 0 && begun && quantity != NULL && !has_quantity(result, quantity))
-        status = tell_absent(store, aggregate, case_number, info, quantity, err);
+    if (status != 0 || result->error != NULL)
+        return status;
+    if (begun && quantity != NULL && !has_quantity(result, quantity))
+        status = refuse_quantity(store, aggregate, case_number, info, quantity, err);
     if (status == 0 && filter->complete)
         status = merger_complete(aggregate->kind, info->parameters, result, err);
     return status;
@@ -138,7 +164,7 @@ int aggregate_case(struct store *store, const struct aggregate *aggregate, uint6
     int status = store_case(store, aggregate->about.id, case_number, &info, err);
     if (status != 0)
         return status;
-    status = fresh_result(store, aggregate, case_number, &info, &filter->part, &result, err);
+    status = result_or_error(store, aggregate, case_number, &info, &filter->part, &result, err);
     if (status == 0)
         status = finish_result(store, aggregate, case_number, filter, &info, &result, err);
     case_info_clear(&info);
@@ -192,7 +218,7 @@ static int read_report(struct store *store, const struct aggregate *aggregate, u
                                         out, &found, err);
     if (status != 0 || found)
         return status;
-    status = fresh_result(store, aggregate, case_number, info, &all, &result, err);
+    status = result_or_error(store, aggregate, case_number, info, &all, &result, err);
     if (status == 0)
         status = case_report_make(out, &result, 1, err);
     result_clear(&result);
@@ -235,20 +261,29 @@ static int copy_head(const struct aggregate *aggregate, char **id, char **name, 
     return done ? 0 : error_memory(err, STUDY_ID_SIZE, "the head of a study");
 }
 
+int aggregate_refuse(const struct case_result *result, struct error *err) {
+    return error_set(err, ERROR_INPUT, "%s", result->error);
+}
+
 static int read_cases(struct store *store, const struct aggregate *aggregate,
                       const struct result_filter *filter, struct study_result *study,
                       struct error *err) {
     bool one = filter->case_number >= 0;
     uint64_t first = one ? (uint64_t)filter->case_number : 0;
     uint64_t end = one ? first + 1 : aggregate->about.cases;
+    bool answered = false;
     study->cases = array_create((size_t)(end - first), sizeof *study->cases);
     int status = copy_head(aggregate, &study->id, &study->name, &study->kind, &study->state, err);
     if (status == 0 && study->cases == NULL)
         status = error_memory(err, (size_t)(end - first) * sizeof *study->cases, "results");
     for (uint64_t c = first; c < end && status == 0; c++) {
-        status = aggregate_case(store, aggregate, c, filter, &study->cases[study->case_count], err);
+        struct case_result *result = &study->cases[study->case_count];
+        status = aggregate_case(store, aggregate, c, filter, result, err);
         study->case_count += status == 0;
+        answered = answered || (status == 0 && result->error == NULL);
     }
+    if (status == 0 && study->case_count > 0 && !answered)
+        status = aggregate_refuse(&study->cases[0], err);
     return status;
 }
 
@@ -272,6 +307,7 @@ int aggregate_report(struct store *store, const char *study, struct study_report
                      struct error *err) {
     struct aggregate aggregate;
     struct study_report report = {0};
+    bool answered = false;
     int status = aggregate_begin(store, study, &aggregate, err);
     if (status != 0)
         return status;
@@ -281,9 +317,13 @@ int aggregate_report(struct store *store, const char *study, struct study_report
     if (status == 0 && report.cases == NULL)
         status = error_memory(err, (size_t)aggregate.about.cases * sizeof *report.cases, "reports");
     for (uint64_t c = 0; c < aggregate.about.cases && status == 0; c++) {
-        status = aggregate_case_report(store, &aggregate, c, &report.cases[report.case_count], err);
+        struct case_report *one = &report.cases[report.case_count];
+        status = aggregate_case_report(store, &aggregate, c, one, err);
         report.case_count += status == 0;
+        answered = answered || (status == 0 && one->about.error == NULL);
     }
+    if (status == 0 && report.case_count > 0 && !answered)
+        status = aggregate_refuse(&report.cases[0].about, err);
     aggregate_end(&aggregate);
     if (status != 0)
         study_report_clear(&report);

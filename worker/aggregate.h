@@ -26,8 +26,9 @@ struct result_filter {
     bool complete; /* with the theories that are made on demand */
 };
 /* The result of a case at its present state, with its parameters: what is published, or merged
- * anew. A case that has not begun has no scalars and no curves. ERROR_INPUT for a quantity that a
- * case which has begun does not have. */
+ * anew. A case that has not begun has no scalars and no curves; neither has one whose stored
+ * results cannot be read or merged, whose `error` says why. ERROR_INPUT for a quantity that a case
+ * which has begun does not have. */
 int aggregate_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
                    const struct result_filter *filter, struct case_result *out, struct error *err);
 int aggregate_case_report(struct store *store, const struct aggregate *aggregate,
@@ -37,7 +38,11 @@ int aggregate_case_report(struct store *store, const struct aggregate *aggregate
 int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
                       struct error *err);
 
-/* All cases asked for; ERROR_ABSENT for an unknown study or case. */
+/* Fails with the error of a result that has one; the value is ERROR_INPUT. */
+int aggregate_refuse(const struct case_result *result, struct error *err);
+
+/* All cases asked for; ERROR_ABSENT for an unknown study or case. Where each of them has an error,
+ * the first one's fails the whole. */
 int aggregate_study(struct store *store, const char *study, const struct result_filter *filter,
                     struct study_result *out, struct error *err);
 int aggregate_report(struct store *store, const char *study, struct study_report *out,

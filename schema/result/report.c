@@ -250,6 +250,8 @@ static int copy_about(struct case_result *out, const struct case_result *result)
         done = to->text != NULL;
     }
     out->notes_all = result->notes_all;
+    out->error = result_text(out, result->error);
+    done = done && (result->error == NULL || out->error != NULL);
     return done ? 0 : ERROR_MEMORY;
 }
 

@@ -32,8 +32,8 @@ struct scalar_report {
     bool has_theory;
 };
 struct case_report {
-    struct case_result about; /* number, realisations, parameters, notes, and the arena of all
-                                 texts: no curves and no scalars */
+    struct case_result about; /* number, realisations, parameters, notes, error, and the arena of
+                                 all texts: no curves and no scalars */
     uint64_t realisations_total, jobs, attempts;
     double seconds; /* of completed jobs, over all workers */
     size_t curve_count, scalar_count;
@@ -50,8 +50,8 @@ struct study_report {
 void case_report_clear(struct case_report *report);
 void study_report_clear(struct study_report *report);
 
-/* Measures the curves and scalars of a result whose case took `seconds`; copies parameters and
- * notes too. Realisations in all, jobs and attempts are the caller's to fill in. */
+/* Measures the curves and scalars of a result whose case took `seconds`; copies parameters,
+ * notes and error too. Realisations in all, jobs and attempts are the caller's to fill in. */
 int case_report_make(struct case_report *out, const struct case_result *result, double seconds,
                      struct error *err);
 /* Statistical errors fall with the square root of the realisations: half the error costs three

@@ -92,6 +92,7 @@ bool case_report_print(FILE *file, const struct case_report *report) {
         fputs(",\"notes\":", file);
         done = done && result_print_notes(file, about->notes_all, about->note_count, about->notes);
     }
+    done = done && result_print_error(file, about);
     fputs(",\"curves\":[", file);
     for (size_t a = 0; a < report->curve_count && done; a++) {
         fputs(a > 0 ? "," : "", file);
@@ -215,6 +216,8 @@ int case_report_read(const cJSON *document, struct case_report *out, struct erro
     int status = result_read_parameters(&report.about, field_at(document, "parameters"), err);
     if (status == 0)
         status = result_read_notes(&report.about, field_at(document, "notes"), err);
+    if (status == 0)
+        status = result_read_error(&report.about, field_at(document, "error"), err);
     if (status == 0)
         status = read_lists(document, &report, err);
     if (status != 0) {

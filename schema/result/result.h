@@ -133,6 +133,7 @@ struct case_result {
     struct curve *curves; /* those of one quantity together, in the order of the kind */
     struct result_note *notes;
     uint64_t notes_all; /* kept or not */
+    const char *error;  /* why there are no results though there are realisations; NULL: none */
     struct arena *arena;
 };
 /* Of a whole study, or of those of its cases that were asked for. Owns its texts and cases. */

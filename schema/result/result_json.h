@@ -6,7 +6,7 @@
  *       {"case", "parameters": {pointer: value}, "realisations",
  *        "scalars": {name: {"value", "standard_error", "theory"?}},
  *        "curves": [{"quantity", attributes, "x", "y", "standard_error", errors, "theory", ...}],
- *        "notes": {"count", "kept": [{"realisation", "text"}]}?}]}
+ *        "notes": {"count", "kept": [{"realisation", "text"}]}?, "error"?}]}
  *
  * A matrix is printed whole, as an array of rows; empty cells are those without counts. */
 #ifndef RUGO_SCHEMA_RESULT_RESULT_JSON_H
@@ -28,13 +28,16 @@ bool study_print(FILE *file, const struct study_result *study);
 bool curve_print_attributes(FILE *file, const struct curve *curve, bool all);
 bool result_print_parameters(FILE *file, size_t count, const struct result_parameter *parameters);
 bool result_print_notes(FILE *file, uint64_t all, size_t count, const struct result_note *notes);
+/* `, "error": ...` where the case has one. */
+bool result_print_error(FILE *file, const struct case_result *result);
 
 /* Fills what tells the curve apart; texts are copied into the result's arena. */
 int curve_read_attributes(struct case_result *result, const cJSON *object, struct curve *curve,
                           struct error *err);
-/* Likewise the parameters and notes of a case, which may be missing. */
+/* Likewise the parameters, notes and error of a case, which may be missing. */
 int result_read_parameters(struct case_result *result, const cJSON *parameters, struct error *err);
 int result_read_notes(struct case_result *result, const cJSON *notes, struct error *err);
+int result_read_error(struct case_result *result, const cJSON *error, struct error *err);
 /* *out is untouched on failure: ERROR_INPUT names what is missing or of another type. */
 int result_read(const cJSON *document, struct case_result *out, struct error *err);
 /* Fills id, name, kind and state alone, which the caller clears also on failure. */

@@ -202,6 +202,11 @@ static bool print_scalars(FILE *file, const struct case_result *result) {
     return done;
 }
 
+bool result_print_error(FILE *file, const struct case_result *result) {
+    bool first = false;
+    return result->error == NULL || put_text(file, &first, "error", result->error);
+}
+
 bool result_print(FILE *file, const struct case_result *result) {
     fprintf(file, "{\"case\":%llu,\"parameters\":", (unsigned long long)result->case_number);
     bool done = result_print_parameters(file, result->parameter_count, result->parameters);
@@ -218,6 +223,7 @@ bool result_print(FILE *file, const struct case_result *result) {
         fputs(",\"notes\":", file);
         done = result_print_notes(file, result->notes_all, result->note_count, result->notes);
     }
+    done = done && result_print_error(file, result);
     fputc('}', file);
     return done;
 }

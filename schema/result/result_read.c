@@ -241,6 +241,13 @@ int result_read_notes(struct case_result *result, const cJSON *notes, struct err
     return 0;
 }
 
+int result_read_error(struct case_result *result, const cJSON *error, struct error *err) {
+    const struct reading reading = {result, err};
+    const char *text = cJSON_GetStringValue(error);
+    result->error = result_text(result, text);
+    return text == NULL || result->error != NULL ? 0 : no_memory(&reading);
+}
+
 /* A flat object of parameters, as it was printed. */
 int result_read_parameters(struct case_result *result, const cJSON *parameters, struct error *err) {
     const struct reading reading = {result, err};
@@ -291,6 +298,8 @@ int result_read(const cJSON *document, struct case_result *out, struct error *er
         status = read_curve(&reading, item);
     if (status == 0)
         status = result_read_notes(&result, field_at(document, "notes"), err);
+    if (status == 0)
+        status = result_read_error(&result, field_at(document, "error"), err);
     if (status != 0) {
         result_clear(&result);
         return status;

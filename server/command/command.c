@@ -32,6 +32,11 @@ int command_fail(const char *command, const struct error *err) {
     return err->code == ERROR_INPUT ? EXIT_USAGE : EXIT_FAILED;
 }
 
+void command_warn_missing(const char *command, const struct case_result *result) {
+    if (result->error != NULL)
+        fprintf(stderr, "rugo %s: no results: %s\n", command, result->error);
+}
+
 static const char *name_of(const char *path) {
     return strcmp(path, "-") == 0 ? "standard input" : path;
 }

@@ -3,6 +3,7 @@
 #define RUGO_SERVER_COMMAND_COMMAND_H
 
 #include "core/rugo.h"
+#include "schema/result/result.h"
 #include "schema/study/fault.h"
 #include "schema/study/study.h"
 #include "server/command/options.h"
@@ -38,6 +39,8 @@ void signals_catch(void);
 int command_fail(const char *command, const struct error *err);
 /* The same for what is wrong in a file: "FILE: pointer: detail", one a line. */
 int command_fail_faults(const char *file, const struct fault_list *faults);
+/* Prints "rugo COMMAND: no results: error" to standard error where a result has an error. */
+void command_warn_missing(const char *command, const struct case_result *result);
 /* What was printed to standard output must arrive: ERROR_SYSTEM with the reason when it did not.
  * To be called right after printing, while errno tells of it. */
 int output_flush(struct error *err);

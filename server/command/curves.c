@@ -43,6 +43,8 @@ static int run(const void *values, const char *const *arguments) {
         status = access_results(access, arguments[0], &filter, &study, &err);
     if (status == 0)
         status = show(&study, options->csv, &err);
+    for (size_t c = 0; c < study.case_count && status == 0; c++)
+        command_warn_missing("curves", &study.cases[c]);
     study_result_clear(&study);
     access_close(&access);
     return status != 0 ? command_fail("curves", &err) : EXIT_DONE;

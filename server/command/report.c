@@ -34,6 +34,8 @@ static int run(const void *values, const char *const *arguments) {
         status = access_report(access, arguments[0], &report, &err);
     if (status == 0)
         status = show(&report, options->json, &err);
+    for (size_t c = 0; c < report.case_count && status == 0; c++)
+        command_warn_missing("report", &report.cases[c].about);
     study_report_clear(&report);
     access_close(&access);
     return status != 0 ? command_fail("report", &err) : EXIT_DONE;

@@ -46,8 +46,7 @@ static size_t character_length(const unsigned char *s) {
     return overlong || beyond ? 0 : length;
 }
 
-/* What a peer sent is quoted in details as it came, or cut within a character; JSON is UTF-8. */
-static void mend_characters(char *text) {
+void answer_mend(char *text) {
     for (size_t length; text && *text; text += length ? length : 1)
         if ((length = character_length((unsigned char *)text)) == 0)
             *text = '?';
@@ -57,7 +56,7 @@ static void answer_document(struct exchange *exchange, unsigned status, const ch
                             cJSON *document) {
     char *text = document ? json_print(document) : NULL;
     cJSON_Delete(document);
-    mend_characters(text);
+    answer_mend(text);
     answer_text(exchange, status, type, text);
 }
 

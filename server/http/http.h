@@ -54,6 +54,9 @@ void answer_static(struct exchange *exchange, const char *type, const char *data
 void answer_empty(struct exchange *exchange, unsigned status);
 /* Adds a header to the answer. */
 void answer_header(struct exchange *exchange, const char *name, const char *value);
+/* Makes well-formed UTF-8 of a text, which JSON must be: messages quote what a peer sent as it
+ * came, or cut within a character. Accepts NULL. */
+void answer_mend(char *text);
 /* RFC 9457. */
 void answer_problem(struct exchange *exchange, unsigned status, const char *detail,
                     const struct fault_list *faults);

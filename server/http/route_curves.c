@@ -21,6 +21,9 @@ struct stream {
     bool report;               /* rather than curves */
     char *quantity;            /* owned; NULL: all */
     uint64_t next, end;        /* cases */
+    bool follows;              /* the next case stands behind another one */
+    bool answered;             /* a case was read that has results, or has not begun */
+    struct error missing;      /* of the first case read that has an error; code 0: none yet */
     char *text;                /* owned: not yet taken; NULL where nothing waits */
     size_t sent;
 };
@@ -74,9 +77,8 @@ static int print_head(struct stream *stream, struct error *err) {
 static int append_case(struct stream *stream, const struct case_result *result,
                        const struct case_report *report, struct error *err) {
     struct printing printing;
-    bool follows = stream->text == NULL;
     bool done = printing_begin(&printing, stream);
-    if (done && follows)
+    if (done && stream->follows)
         fputc(',', printing.memory.file);
     if (done)
         done = stream->report ? case_report_print(printing.memory.file, report)
@@ -84,6 +86,7 @@ static int append_case(struct stream *stream, const struct case_result *result,
     if (done && stream->next + 1 == stream->end)
         fputs("]}", printing.memory.file);
     stream->next++;
+    stream->follows = true;
     return printing_end(&printing, done, err);
 }
 
@@ -99,8 +102,16 @@ static int read_case(struct stream *stream, struct error *err) {
                      ? aggregate_case_report(reader, &stream->study, stream->next, &report, err)
                      : aggregate_case(reader, &stream->study, stream->next, &filter, &result, err);
     service_give_back(service, reader);
-    if (status == 0)
+    if (status == 0) {
+        const struct case_result *about = stream->report ? &report.about : &result;
+        if (about->error == NULL)
+            stream->answered = true;
+        else if (stream->missing.code == 0)
+            aggregate_refuse(about, &stream->missing);
         status = append_case(stream, &result, &report, err);
+        if (about->error != NULL)
+            answer_mend(stream->text);
+    }
     result_clear(&result);
     case_report_clear(&report);
     return status;
@@ -130,7 +141,8 @@ static ssize_t next_part(void *context, uint64_t position, char *buffer, size_t 
     return (ssize_t)part;
 }
 
-/* The first case is read before the answer begins: what is wrong is mostly wrong with it. */
+/* Cases are read up to the first one that has no error before the answer begins: what is wrong is
+ * mostly wrong with the first one, and an answer in which each case has an error is none. */
 static int open_stream(struct stream *stream, const char *id, const struct result_filter *filter,
                        struct error *err) {
     struct service *service = stream->exchange->service;
@@ -149,7 +161,13 @@ static int open_stream(struct stream *stream, const char *id, const struct resul
     if (quantity != NULL && stream->quantity == NULL)
         return error_memory(err, strlen(quantity), "an answer");
     status = print_head(stream, err);
-    return status != 0 ? status : read_case(stream, err);
+    do {
+        if (status == 0)
+            status = read_case(stream, err);
+    } while (status == 0 && !stream->answered && stream->next < stream->end);
+    if (status == 0 && !stream->answered)
+        status = error_set(err, ERROR_INPUT, "%s", stream->missing.text);
+    return status;
 }
 
 static int send_json(struct exchange *exchange, const char *id, const struct result_filter *filter,
@@ -166,6 +184,19 @@ static int send_json(struct exchange *exchange, const char *id, const struct res
         answer_stream(exchange, "application/json", MHD_SIZE_UNKNOWN, next_part, stream,
                       stream_free);
     return status;
+}
+
+/* A table has no place for errors: a header lists the cases that have one. */
+static void list_missing(struct exchange *exchange, const struct study_result *study) {
+    char text[CSV_CASES_MOST * 6] = "";
+    size_t used = 0;
+    for (size_t c = 0; c < study->case_count && used < sizeof text; c++)
+        if (study->cases[c].error != NULL)
+            used +=
+                (size_t)snprintf(text + used, sizeof text - used, "%s%llu", used > 0 ? ", " : "",
+                                 (unsigned long long)study->cases[c].case_number);
+    if (used > 0)
+        answer_header(exchange, "Rugo-Missing-Cases", text);
 }
 
 static int send_csv(struct exchange *exchange, const char *id, const struct result_filter *filter,
@@ -190,11 +221,13 @@ static int send_csv(struct exchange *exchange, const char *id, const struct resu
     } else if (status == 0) {
         status = error_memory(err, 0, "a table");
     }
-    study_result_clear(&study);
-    if (status == 0)
+    if (status == 0) {
         answer_text(exchange, 200, "text/csv; charset=utf-8", text);
-    else
+        list_missing(exchange, &study);
+    } else {
         free(text);
+    }
+    study_result_clear(&study);
     return status;
 }
 

@@ -126,6 +126,16 @@ void print_notes(const struct shown_cases *shown, size_t most, FILE *file) {
         fprintf(file, "and %llu more\n", (unsigned long long)(all - printed));
 }
 
+void print_missing(const struct shown_cases *shown, FILE *file) {
+    bool first = true;
+    for (size_t c = 0; c < shown->count; c++) {
+        if (shown->list[c]->error == NULL)
+            continue;
+        fprintf(file, "%sno results: %s\n", first ? "\n" : "", shown->list[c]->error);
+        first = false;
+    }
+}
+
 void print_partial(const struct shown_cases *shown, const char *x, FILE *file) {
     if (shown->partial)
         fprintf(file,

@@ -36,6 +36,8 @@ const char *last_name(const char *pointer);
 void print_swept(const struct shown_cases *shown, size_t c, FILE *file);
 /* Notes of all cases, at most so many of them; nothing where there are none. */
 void print_notes(const struct shown_cases *shown, size_t most, FILE *file);
+/* Why cases have no results, a line each; nothing where all have. */
+void print_missing(const struct shown_cases *shown, FILE *file);
 /* What "(n of N)" means, where some case is partial. x: what the values are at, "load". */
 void print_partial(const struct shown_cases *shown, const char *x, FILE *file);
 

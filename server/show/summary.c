@@ -150,5 +150,6 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
             plan.compared[s] = has_scalar(&shown, plan.scalars[s], true);
         print_scalars(&plan, file);
     }
+    print_missing(&shown, file);
     shown_clear(&shown);
 }

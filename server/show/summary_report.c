@@ -186,5 +186,6 @@ void summary_of_report(const struct study_report *report, FILE *file) {
     print_all_series(report, &shown, file);
     print_partial(&shown, words != NULL ? words->x : "point", file);
     print_notes(&shown, NOTES_SHOWN, file);
+    print_missing(&shown, file);
     shown_clear(&shown);
 }

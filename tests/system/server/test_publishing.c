@@ -1,6 +1,7 @@
 /* Protects: publishing that ends. Whatever becomes of a study under a server (cancelled within a
  * case, a block failed for good, results that no program can merge), every other case is published,
- * what cannot be says why, and a server with nothing to do uses no processor. */
+ * what cannot be says why and hides no other case, and a server with nothing to do uses no
+ * processor. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
@@ -198,10 +199,102 @@ static void what_cannot_be_merged_is_marked(void **state) {
     free(other);
 }
 
+/* Two cases, of which the first one's blocks are given the scalars of an older program. */
+static char *spoil_one_case(const char *database) {
+    assert_int_equal(run_rugo("two", (const char *[]){"run", "--db", database, "--set",
+                                                      "surface.hurst=[0.5,0.8]", "one.json", NULL}),
+                     0);
+    change(database,
+           "INSERT INTO scalar_names (names) VALUES (json_array('colour')); UPDATE result SET "
+           "names_id = (SELECT max(id) FROM scalar_names) WHERE job_id IN (SELECT id FROM job "
+           "WHERE case_number = 0); DELETE FROM published WHERE case_number = 0; UPDATE study_case "
+           "SET settled = 0 WHERE number = 0");
+    return ask(database, "SELECT public FROM study", NULL);
+}
+
+/* The document has both cases: the first one with its fault alone, the second one with results. */
+static void check_told(unsigned port, const char *study, const char *what) {
+    char request[120]; /* of HTTP/1.0: the body comes in one piece */
+    int size = snprintf(request, sizeof request,
+                        "GET /v1/studies/%s/%s HTTP/1.0\r\nHost: localhost\r\n\r\n", study, what);
+    char *text = http_raw(port, request, (size_t)size);
+    assert_non_null(strstr(text, " 200 OK\r\n"));
+    cJSON *document = cJSON_Parse(strchr(text, '{'));
+    const cJSON *cases = cJSON_GetObjectItem(document, "cases");
+    assert_int_equal(cJSON_GetArraySize(cases), 2);
+    const cJSON *first = cJSON_GetArrayItem(cases, 0), *second = cJSON_GetArrayItem(cases, 1);
+    const char *error = cJSON_GetStringValue(cJSON_GetObjectItem(first, "error"));
+    assert_non_null(error);
+    assert_non_null(strstr(error, "case 0: "));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(first, "curves")), 0);
+    assert_null(cJSON_GetObjectItem(second, "error"));
+    assert_true(cJSON_GetArraySize(cJSON_GetObjectItem(second, "curves")) > 3);
+    cJSON_Delete(document);
+    free(text);
+}
+
+static void check_told_in_csv(unsigned port, const char *study) {
+    char request[200];
+    int size = snprintf(request, sizeof request,
+                        "GET /v1/studies/%s/curves HTTP/1.1\r\nHost: localhost\r\nAccept: "
+                        "text/csv\r\nConnection: close\r\n\r\n",
+                        study);
+    char *answer = http_raw(port, request, (size_t)size);
+    assert_non_null(strstr(answer, "HTTP/1.1 200"));
+    assert_non_null(strstr(answer, "Rugo-Missing-Cases: 0\r\n"));
+    assert_null(strstr(answer, "\n0,"));
+    assert_non_null(strstr(answer, "\n1,"));
+    free(answer);
+}
+
+/* One case that cannot be merged hides no other: curves and report tell of both, over HTTP and on
+ * the command line, which says so where people see it. */
+static void the_other_cases_are_answered(void **state) {
+    (void)state;
+    struct process server;
+    char path[80], url[64], *text = NULL;
+    spit("one.json", ONE_CASE);
+    char *study = spoil_one_case("part.db");
+    unsigned port = serve_start(&server, (const char *[]){"--db", "part.db", NULL});
+    wait_for("part.db", "SELECT group_concat(state, ' ') FROM case_progress WHERE study = ?", study,
+             "failed published");
+    check_told(port, study, "curves");
+    check_told(port, study, "report");
+    check_told_in_csv(port, study);
+    snprintf(path, sizeof path, "/v1/studies/%s/curves?case=0", study);
+    assert_int_equal(http_exchange(port, "GET", path, NULL, NULL, &text), 422);
+    assert_non_null(strstr(text, "case 0: "));
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    const char *const places[][2] = {{"--db", "part.db"}, {"--server", url}};
+    for (int p = 0; p < 2; p++) {
+        assert_int_equal(run_rugo("told", (const char *[]){"curves", places[p][0], places[p][1],
+                                                           "--format", "csv", study, NULL}),
+                         0);
+        assert_true(contains("told.err", "rugo curves: no results: case 0: "));
+        assert_true(contains("told.out", "\n1,"));
+        assert_int_equal(
+            run_rugo("told", (const char *[]){"report", places[p][0], places[p][1], study, NULL}),
+            0);
+        assert_true(contains("told.err", "rugo report: no results: case 0: "));
+        assert_true(contains("told.out", "\nno results: case 0: "));
+    }
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, PATIENCE_S), 0);
+    assert_int_equal(
+        run_rugo("rerun", (const char *[]){"run", "--db", "part.db", "--set",
+                                           "surface.hurst=[0.5,0.8]", "one.json", NULL}),
+        1);
+    assert_true(contains("rerun.out", "\nno results: case 0: "));
+    assert_true(contains("rerun.err", "cases that cannot be published: 1"));
+    free(text);
+    free(study);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_server_publishes_what_there_is),
         cmocka_unit_test(what_cannot_be_merged_is_marked),
+        cmocka_unit_test(the_other_cases_are_answered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

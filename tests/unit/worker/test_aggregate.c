@@ -6,6 +6,7 @@
 #include "worker/worker.h"
 
 #include <math.h>
+#include <sqlite3.h>
 
 static int read_curves(struct fixture *fixture, const char *study, int64_t case_number,
                        const char *quantity, cJSON **out, struct error *err) {
@@ -385,6 +386,70 @@ static void cases_not_begun_are_empty(void **state) {
     fixture_close(&fixture);
 }
 
+/* Gives the blocks of a case, or of all (-1), the scalars of another program, unpublished. */
+static void spoil(struct fixture *fixture, int case_number) {
+    char sql[600], *fault = NULL;
+    sqlite3 *db = NULL;
+    snprintf(sql, sizeof sql,
+             "INSERT OR IGNORE INTO scalar_names (names) VALUES (json_array('colour'));"
+             "UPDATE result SET names_id = (SELECT id FROM scalar_names WHERE names = "
+             "json_array('colour')) WHERE job_id IN (SELECT id FROM job WHERE %d IN (-1, "
+             "case_number));"
+             "DELETE FROM published WHERE %d IN (-1, case_number);"
+             "UPDATE study_case SET settled = 0 WHERE %d IN (-1, number);",
+             case_number, case_number, case_number);
+    assert_int_equal(sqlite3_open(fixture->database, &db), SQLITE_OK);
+    if (sqlite3_exec(db, sql, NULL, NULL, &fault) != SQLITE_OK)
+        fail_msg("%s", fault);
+    sqlite3_close(db);
+}
+
+/* A case whose stored results cannot be merged says why, in its own place; the others are as they
+ * would be without it. Asked for alone, or with none beside it that can be had, it is a failure. */
+static void a_case_that_cannot_be_merged_is_told(void **state) {
+    (void)state;
+    struct fixture fixture;
+    struct error err = {0};
+    cJSON *none = NULL;
+    fixture_open(&fixture);
+    fixture_submit(&fixture, SMALL_STUDY, 6, NULL, 0);
+    run_all(&fixture);
+    cJSON *before = curves(&fixture, -1, NULL), *before_report = report_of(&fixture);
+    spoil(&fixture, 0);
+    cJSON *after = curves(&fixture, -1, NULL), *after_report = report_of(&fixture);
+    assert_true(cJSON_Compare(json_at(before, "/cases/1"), json_at(after, "/cases/1"), 1));
+    assert_true(
+        cJSON_Compare(json_at(before_report, "/cases/1"), json_at(after_report, "/cases/1"), 1));
+    assert_null(json_at(after, "/cases/1/error"));
+    const cJSON *documents[] = {after, after_report};
+    for (int d = 0; d < 2; d++) {
+        const char *error = cJSON_GetStringValue(json_at(documents[d], "/cases/0/error"));
+        assert_non_null(error);
+        assert_non_null(strstr(error, "case 0: "));
+        assert_non_null(strstr(error, "scalars"));
+        assert_true(number_at(documents[d], "/cases/0/case") == 0);
+        assert_true(number_at(documents[d], "/cases/0/realisations") == 24);
+        assert_true(number_at(documents[d], "/cases/0/parameters/~1surface~1hurst") == 0.2);
+        assert_int_equal(cJSON_GetArraySize(json_at(documents[d], "/cases/0/curves")), 0);
+        assert_int_equal(cJSON_GetArraySize(json_at(documents[d], "/cases/0/scalars")), 0);
+    }
+    assert_true(number_at(after_report, "/cases/0/seconds") > 0);
+    assert_int_equal(read_curves(&fixture, fixture.study, 0, NULL, &none, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "case 0: "));
+    assert_int_equal(read_curves(&fixture, fixture.study, -1, "colour", &none, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "no quantity 'colour'"));
+    spoil(&fixture, -1);
+    assert_int_equal(read_curves(&fixture, fixture.study, -1, NULL, &none, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "case 0: "));
+    struct study_report report = {0};
+    assert_int_equal(aggregate_report(fixture.store, fixture.study, &report, &err), ERROR_INPUT);
+    cJSON_Delete(before);
+    cJSON_Delete(before_report);
+    cJSON_Delete(after);
+    cJSON_Delete(after_report);
+    fixture_close(&fixture);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(document_has_the_form_of_the_contract),
@@ -395,6 +460,7 @@ int main(void) {
         cmocka_unit_test(report_of_an_empty_study_is_null),
         cmocka_unit_test(report_tells_levels_and_models_apart),
         cmocka_unit_test(cases_not_begun_are_empty),
+        cmocka_unit_test(a_case_that_cannot_be_merged_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
