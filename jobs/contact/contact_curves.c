@@ -32,7 +32,8 @@ static int error_create(struct contact_curve_maker *maker, double **value, doubl
     if (*value == NULL)
         return no_room(err);
     *standard_error = *value + n;
-    *out = (struct curve_error){.value = *value, .standard_error = *standard_error, .order = NAN};
+    *out = (struct curve_error){
+        .applies = true, .value = *value, .standard_error = *standard_error, .order = NAN};
     return 0;
 }
 
@@ -119,6 +120,22 @@ static struct curve curve_of(const struct contact_case *one_case, size_t model, 
     return curve;
 }
 
+/* Marks the sources that bear on what is measured of contact: not on what it cost. A model that
+ * leaves out finite slopes errs by them, unless the surface has no lengths of its own: then it is
+ * the limit of small slopes that is asked for. */
+static void mark_sources(const struct contact_case *one_case, size_t model, double valueless,
+                         struct curve *curve) {
+    bool complete = true;
+    for (size_t m = 0; CONTACT_MODELS[m] != NULL; m++)
+        complete = complete && one_case->models[model]->rank >= CONTACT_MODELS[m]->rank;
+    curve->errors[ERROR_DISCRETISATION].applies = true;
+    curve->errors[ERROR_CELL].applies = true;
+    curve->errors[ERROR_BLOCK].applies = isfinite(one_case->blocks[model].height);
+    curve->errors[ERROR_MODEL].applies = !complete && contact_case_has_scale(one_case);
+    curve->errors[ERROR_SOLVER].applies = true;
+    curve->errors[ERROR_MISSING].applies = valueless > 0;
+}
+
 static int add_errors(struct contact_curve_maker *maker, const struct row *row, size_t model,
                       struct curve *curve, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
@@ -133,6 +150,7 @@ static int add_errors(struct contact_curve_maker *maker, const struct row *row, 
 static int append(struct contact_curve_maker *maker, const struct row *row, size_t model,
                   size_t level, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
+    double valueless_most = 0;
     struct curve curve =
         curve_of(one_case, model, level, row->quantity, "p/(E* h'_rms)", row->y_label);
     size_t n = one_case->load_count;
@@ -149,12 +167,15 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
         y[k] = factor * mean.value;
         standard_error[k] = factor * mean.standard_error;
         valueless[k] = (double)contact_tally_valueless(maker->tally, row->measure, cell);
+        valueless_most = fmax(valueless_most, valueless[k]);
     }
     curve.series = row->series != NULL ? row->series : "";
     curve_set_points(&curve, n, x, y, standard_error);
     if (row->measure == MEASURE_STIFFNESS || one_case->models[model]->may_fail)
         curve.valueless = valueless;
     add_theories(maker, row, &curve);
+    if (row->measure <= MEASURE_PATCH_LARGEST)
+        mark_sources(one_case, model, valueless_most, &curve);
     bool finest = level + 1 == one_case->level_count;
     int status = 0;
     if (finest && row->measure < MEASURE_PAIRED)
@@ -250,6 +271,7 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     struct curve curve = curve_of(one_case, model, finest, "contact_pressure_pdf",
                                   "local p/(E* h'_rms)", "probability density");
     curve.pressure = load;
+    mark_sources(one_case, model, valueless[0], &curve);
     curve_set_points(&curve, n, x, y, standard_error);
     if (contact_theory_pressures(one_case, maker->modes, load, pdf))
         curve.theories[curve.theory_count++] = (struct theory){"persson", pdf};

@@ -181,16 +181,20 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
             surface_case_exact(&one_case->surface))
             mean = (struct estimate){moments->nayak_alpha, 0};
         status = result_add_scalar(out,
-                                   &(struct scalar){contact_scalar_name(a), mean.value,
-                                                    mean.standard_error,
-                                                    own ? (double)NAN : theory[place.at]},
+                                   &(struct scalar){.name = contact_scalar_name(a),
+                                                    .value = mean.value,
+                                                    .standard_error = mean.standard_error,
+                                                    .theory = own ? (double)NAN : theory[place.at]},
                                    err);
     }
     if (status != 0)
         return status;
     /* as given, or as solved for nayak_alpha */
-    return result_add_scalar(
-        out, &(struct scalar){"wavelength_ratio", one_case->surface.wavelength_ratio, 0, NAN}, err);
+    return result_add_scalar(out,
+                             &(struct scalar){.name = "wavelength_ratio",
+                                              .value = one_case->surface.wavelength_ratio,
+                                              .theory = NAN},
+                             err);
 }
 
 int contact_scalars(const struct contact_case *one_case, const struct moments *moments,

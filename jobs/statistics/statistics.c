@@ -117,9 +117,12 @@ static int result(const void *one_case, const struct surface_basis *basis, const
                   const struct realisations *realisations, struct case_result *out,
                   struct error *err) {
     int status = statistics_scalars(one_case, &basis->moments, realisations, out, err);
-    return status != 0
-               ? status
-               : statistics_curves(one_case, basis->modes, &basis->moments, tally, out, err);
+    if (status == 0)
+        status = statistics_curves(one_case, basis->modes, &basis->moments, tally, out, err);
+    /* All are of a surface sampled on a grid, and what that changes is not known. */
+    for (size_t a = 0; a < out->curve_count && status == 0; a++)
+        out->curves[a].errors[ERROR_DISCRETISATION].applies = true;
+    return status;
 }
 
 static int complete(const void *one_case, const struct surface_basis *basis,

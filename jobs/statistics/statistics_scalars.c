@@ -168,7 +168,10 @@ static void theory_of_scalars(const struct statistics_case *one_case, const stru
 /* A scalar with a fixed name. */
 static int add_scalar(struct case_result *out, const char *name, struct estimate estimate,
                       double theory, struct error *err) {
-    const struct scalar scalar = {name, estimate.value, estimate.standard_error, theory};
+    const struct scalar scalar = {.name = name,
+                                  .value = estimate.value,
+                                  .standard_error = estimate.standard_error,
+                                  .theory = theory};
     return result_add_scalar(out, &scalar, err);
 }
 

@@ -72,7 +72,9 @@ static void print_line(FILE *file, uint64_t case_number, const struct curve *cur
     print_field(file, curve->standard_error[n]);
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         const double *error = matrix ? NULL : curve->errors[s].value;
+        const double *bound = matrix ? NULL : curve->errors[s].bound;
         print_field(file, error != NULL ? error[n] : (double)NAN);
+        print_field(file, bound != NULL ? bound[n] : (double)NAN);
     }
     print_field(file, curve->valueless != NULL && !matrix ? curve->valueless[n] : (double)NAN);
     for (size_t t = 0; t < theories->count; t++)
@@ -87,7 +89,7 @@ static void print_heading(FILE *file, const struct theory_columns *theories) {
         fprintf(file, ",%s", row->key);
     fputs(",x,x2,y,standard_error", file);
     for (size_t s = 0; s < ERROR_SOURCES; s++)
-        fprintf(file, ",%s", ERROR_SOURCE_ROWS[s].key);
+        fprintf(file, ",%s,%s", ERROR_SOURCE_ROWS[s].key, ERROR_SOURCE_ROWS[s].bound_key);
     fputs(",valueless", file);
     for (size_t t = 0; t < theories->count; t++)
         fprintf(file, ",theory_%s", theories->names[t]);

@@ -8,7 +8,15 @@
 /* Marks of what follows: lists of named parts end with PART_END, so that a row more in a table of
  * attributes or sources leaves older bytes readable. */
 enum { FORMAT_CURVE = 0x4355, FORMAT_VERSION = 1, TEXT_MOST = 4096 };
-enum part { PART_END, PART_TEXT, PART_NUMBER, PART_ERROR, PART_THEORY };
+enum part {
+    PART_END,
+    PART_TEXT,
+    PART_NUMBER,
+    PART_ERROR,
+    PART_THEORY,
+    PART_BOUND,   /* of the error before it */
+    PART_UNKNOWN, /* a source that applies, and of which nothing is known */
+};
 
 static void put_text(struct bytes *bytes, const char *text) {
     size_t length = strlen(text);
@@ -71,14 +79,21 @@ static void put_values(struct bytes *bytes, const struct curve *curve) {
 static void put_parts(struct bytes *bytes, const struct curve *curve) {
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         const struct curve_error *error = &curve->errors[s];
+        if (!error->applies)
+            continue;
+        bytes_put_unsigned(bytes, error->value != NULL ? PART_ERROR : PART_UNKNOWN);
+        put_text(bytes, ERROR_SOURCE_ROWS[s].name);
         if (error->value == NULL)
             continue;
-        bytes_put_unsigned(bytes, PART_ERROR);
-        put_text(bytes, ERROR_SOURCE_ROWS[s].name);
         bytes_put_double(bytes, error->order);
         bytes_put_unsigned(bytes, error->order_observed);
         put_numbers(bytes, curve->n, error->value);
         put_numbers(bytes, curve->n, error->standard_error);
+        if (error->bound == NULL)
+            continue;
+        bytes_put_unsigned(bytes, PART_BOUND);
+        put_text(bytes, ERROR_SOURCE_ROWS[s].name);
+        put_numbers(bytes, curve->n, error->bound);
     }
     for (size_t t = 0; t < curve->theory_count; t++) {
         const struct theory *theory = &curve->theories[t];
@@ -209,16 +224,29 @@ static void get_values(struct decoding *decoding, struct curve *curve) {
     curve->overflow = bytes_get_double(reader);
 }
 
-/* A source that this program does not know is read and left out. */
-static void get_error(struct decoding *decoding, struct curve *curve) {
+/* The error of the source named next; of one that this program does not know, *unknown. */
+static struct curve_error *get_source(struct decoding *decoding, struct curve *curve,
+                                      struct curve_error *unknown) {
     const char *name = get_text(decoding);
-    struct curve_error error = {.order = bytes_get_double(&decoding->reader)};
-    error.order_observed = bytes_get_unsigned(&decoding->reader) != 0;
-    error.value = get_numbers(decoding, curve->n);
-    error.standard_error = get_numbers(decoding, curve->n);
     for (size_t s = 0; name != NULL && s < ERROR_SOURCES; s++)
         if (strcmp(ERROR_SOURCE_ROWS[s].name, name) == 0)
-            curve->errors[s] = error;
+            return &curve->errors[s];
+    return unknown;
+}
+
+static void get_error(struct decoding *decoding, struct curve *curve, enum part part) {
+    struct curve_error unknown = {0}, *error = get_source(decoding, curve, &unknown);
+    if (part == PART_BOUND) {
+        error->bound = get_numbers(decoding, curve->n);
+        return;
+    }
+    *error = (struct curve_error){.applies = true, .order = NAN};
+    if (part == PART_UNKNOWN)
+        return;
+    error->order = bytes_get_double(&decoding->reader);
+    error->order_observed = bytes_get_unsigned(&decoding->reader) != 0;
+    error->value = get_numbers(decoding, curve->n);
+    error->standard_error = get_numbers(decoding, curve->n);
 }
 
 static void get_theory(struct decoding *decoding, struct curve *curve) {
@@ -238,8 +266,8 @@ static void get_parts(struct decoding *decoding, struct curve *curve) {
         uint64_t part = bytes_get_unsigned(&decoding->reader);
         if (decoding->reader.failed || part == PART_END)
             return;
-        if (part == PART_ERROR)
-            get_error(decoding, curve);
+        if (part == PART_ERROR || part == PART_BOUND || part == PART_UNKNOWN)
+            get_error(decoding, curve, (enum part)part);
         else if (part == PART_THEORY)
             get_theory(decoding, curve);
         else

@@ -68,79 +68,40 @@ static const struct curve *finest_with(const struct case_result *result, const s
     return NULL;
 }
 
-/* A curve of the most complete model: the one without a model error beside one that has it. NULL
- * with one model. */
-static const struct curve *complete_model(const struct case_result *result) {
-    const struct curve *partial = NULL;
-    for (size_t a = 0; a < result->curve_count && partial == NULL; a++)
-        if (result->curves[a].errors[ERROR_MODEL].value != NULL)
-            partial = &result->curves[a];
-    for (size_t a = 0; a < result->curve_count && partial != NULL; a++) {
-        const struct curve *other = &result->curves[a];
-        if (other->errors[ERROR_MODEL].value == NULL && curve_same_series(other, partial) &&
-            same_level(other, partial))
-            return other;
-    }
-    return NULL;
-}
-
-/* The curve of the most complete model on the same level; NULL where it is this one itself. */
-static const struct curve *complete_of(const struct case_result *result,
-                                       const struct curve *curve) {
-    const struct curve *complete = complete_model(result);
-    if (complete == NULL || same_model(complete, curve))
-        return NULL;
-    for (size_t a = 0; a < result->curve_count; a++) {
-        const struct curve *other = &result->curves[a];
-        if (same_model(complete, other) && curve_same_series(other, curve) &&
-            same_level(other, curve))
-            return other;
-    }
-    return NULL;
-}
-
 /* --- errors by source --- */
 
-/* The limit at a point: the finest level less its own discretisation error. */
-static double limit_at(const struct curve *finest, size_t point) {
-    const double *error = finest->errors[ERROR_DISCRETISATION].value;
-    return finest->y[point] - (error != NULL ? error[point] : 0);
+/* Of every level from the limit, which is the finest level less its own error; within the bound of
+ * that. */
+static void discretisation_sizes(const struct curve *finest, const struct curve *curve,
+                                 double *limit, double *size) {
+    const struct curve_error *error = &finest->errors[ERROR_DISCRETISATION];
+    for (size_t a = 0; a < curve->n; a++) {
+        limit[a] = finest->y[a] - error->value[a];
+        size[a] = fabs(curve->y[a] - limit[a]) + (error->bound != NULL ? error->bound[a] : 0);
+    }
 }
 
-static double discretisation_error(const struct case_result *result, const struct curve *curve,
-                                   double *scratch) {
-    const struct curve *finest = finest_with(result, curve, ERROR_DISCRETISATION);
+/* The size of what a curve owes to a source; NaN where it is not known at every point that has a
+ * value. scratch has room for twice
+ * the longest curve. */
+static double source_error(const struct case_result *result, const struct curve *curve,
+                           enum error_source source, double *scratch) {
+    const struct curve *finest = finest_with(result, curve, source);
+    double *below = scratch, *size = scratch + curve->n;
     if (finest == NULL || finest->n != curve->n || curve->columns > 0)
         return NAN;
     for (size_t a = 0; a < curve->n; a++)
-        scratch[a] = limit_at(finest, a);
-    return relative_size(curve->n, curve->y, scratch, scratch);
-}
-
-/* Of the finest level, which counts it between limits; where it does not, between curves of one
- * level. */
-static double model_error(const struct case_result *result, const struct curve *curve,
-                          double *scratch) {
-    const struct curve *finest = finest_with(result, curve, ERROR_MODEL);
-    if (finest != NULL) {
-        const double *error = finest->errors[ERROR_MODEL].value;
-        for (size_t a = 0; a < finest->n; a++)
-            scratch[a] = limit_at(finest, a) - error[a];
-        return relative_size(finest->n, error, NULL, scratch);
+        if (isnan(finest->errors[source].value[a]) && !isnan(finest->y[a]))
+            return NAN;
+    if (source == ERROR_DISCRETISATION) {
+        discretisation_sizes(finest, curve, below, size);
+        return relative_size(curve->n, size, NULL, below);
     }
-    const struct curve *complete = complete_of(result, curve);
-    if (complete == NULL || complete->n != curve->n || curve->columns > 0)
-        return NAN;
-    return relative_size(curve->n, curve->y, complete->y, complete->y);
+    const struct curve_error *error = &finest->errors[source];
+    for (size_t a = 0; a < curve->n; a++)
+        size[a] = fabs(error->value[a]) + (error->bound != NULL ? error->bound[a] : 0);
+    return relative_size(curve->n, size, NULL, finest->y);
 }
-
-typedef double measure_error(const struct case_result *result, const struct curve *curve,
-                             double *scratch);
-/* A row a source; scratch has room for the longest curve. */
-static measure_error *const MEASURES[ERROR_SOURCES] = {
-    [ERROR_DISCRETISATION] = discretisation_error,
-    [ERROR_MODEL] = model_error,
-};
 
 /* --- cost --- */
 
@@ -169,11 +130,12 @@ static double share_of(const struct case_result *result, const struct curve *cur
 
 /* --- together --- */
 
+/* Errors that are the same in every realisation add up, and stand beside the statistical one. */
 static double total_of(const struct curve_report *report) {
-    double squares = report->statistical * report->statistical;
+    double systematic = 0;
     for (size_t s = 0; s < ERROR_SOURCES; s++)
-        squares += isnan(report->errors[s]) ? 0 : report->errors[s] * report->errors[s];
-    return sqrt(squares);
+        systematic += report->applies[s] ? report->errors[s] : 0;
+    return hypot(report->statistical, systematic);
 }
 
 static double most_valueless(const struct curve *curve) {
@@ -201,8 +163,10 @@ static int curve_report_make(struct case_report *report, const struct case_resul
     int status = place_of(&report->about, curve, &out->place);
     out->seconds = report->seconds * share_of(result, curve);
     out->statistical = statistical_error(curve);
-    for (size_t s = 0; s < ERROR_SOURCES; s++)
-        out->errors[s] = MEASURES[s](result, curve, scratch);
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        out->errors[s] = source_error(result, curve, (enum error_source)s, scratch);
+        out->applies[s] = curve->errors[s].applies || !isnan(out->errors[s]);
+    }
     out->total = total_of(out);
     out->valueless = most_valueless(curve);
     for (size_t t = 0; t < curve->theory_count && status == 0; t++) {
@@ -278,7 +242,7 @@ static int make_curves(struct case_report *report, const struct case_result *res
     size_t longest = 1;
     for (size_t a = 0; a < result->curve_count; a++)
         longest = result->curves[a].n > longest ? result->curves[a].n : longest;
-    double *scratch = array_create(longest, sizeof *scratch);
+    double *scratch = array_create(longest, 2 * sizeof *scratch);
     report->curves = result_room(&report->about, result->curve_count + 1, sizeof *report->curves);
     int status = scratch != NULL && report->curves != NULL ? 0 : ERROR_MEMORY;
     for (size_t a = 0; a < result->curve_count && status == 0; a++)

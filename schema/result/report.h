@@ -2,11 +2,11 @@
  *
  * The errors of a curve are sizes over all its points: the statistical one is |standard error|/|y|,
  * the deviation from a theory |y - theory|/|theory|, |.| being the root of the sum of squares over
- * the points where both are known. The discretisation error is that of every mesh level from the
- * limit, which is the finest level less its own error; the model error that of the model's limit
- * from the limit of the most complete model, or, where there are no limits, of the curve from the
- * most complete model's on the same level. A case's errors are those of its main curve: the first
- * one that has a statistical error and a theory beside it, or else the first one with an error. */
+ * the points where both are known. That of a source is of |value| + bound. The discretisation error
+ * is that of every mesh level from the limit, the others are those of the finest level. A case's
+ * errors are those of its main curve: the first one that has a statistical error and a theory
+ * beside it, or else the first one with an error.
+ */
 #ifndef RUGO_SCHEMA_RESULT_REPORT_H
 #define RUGO_SCHEMA_RESULT_REPORT_H
 
@@ -18,7 +18,9 @@ struct curve_report {
     struct curve place; /* quantity and attributes alone, without points */
     double seconds;     /* of the solves behind the curve: the case's time, shared by their work */
     double statistical, errors[ERROR_SOURCES];
-    double total;     /* root of the sum of squares of those known; NaN without a statistical one */
+    bool applies[ERROR_SOURCES]; /* the source bears on the curve */
+    double total;     /* the statistical one and the sum of the others, root of the sum of squares;
+                         NaN where one that bears on the curve is not known */
     double valueless; /* realisations without a value, at the point with most; NaN: not told */
     size_t theory_count;
     struct {

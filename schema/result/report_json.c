@@ -23,7 +23,8 @@ static bool put_errors(FILE *file, const struct curve_report *report) {
         put_number(file, "valueless", report->valueless);
     put_number(file, "statistical_error", report->statistical);
     for (size_t s = 0; s < ERROR_SOURCES; s++)
-        put_number(file, ERROR_SOURCE_ROWS[s].key, report->errors[s]);
+        if (report->applies[s])
+            put_number(file, ERROR_SOURCE_ROWS[s].key, report->errors[s]);
     put_number(file, "total_error", report->total);
     fputs(",\"theory_deviation\":{", file);
     for (size_t t = 0; t < report->theory_count && done; t++) {
@@ -42,10 +43,9 @@ static bool put_main(FILE *file, const struct case_report *report) {
         return put_text(file, "main_curve", report->main->place.quantity) &&
                curve_print_attributes(file, &report->main->place, false) &&
                put_errors(file, report->main);
-    fputs(",\"main_curve\":null,\"statistical_error\":null", file);
-    for (size_t s = 0; s < ERROR_SOURCES; s++)
-        put_number(file, ERROR_SOURCE_ROWS[s].key, NAN);
-    fputs(",\"total_error\":null,\"theory_deviation\":null", file);
+    fputs(",\"main_curve\":null,\"statistical_error\":null,\"total_error\":null,"
+          "\"theory_deviation\":null",
+          file);
     return true;
 }
 
@@ -141,8 +141,10 @@ static int read_curve(struct case_result *about, const cJSON *object, struct cur
     int status = curve_read_attributes(about, object, &out->place, err);
     out->seconds = field_number(object, "seconds");
     out->statistical = field_number(object, "statistical_error");
-    for (size_t s = 0; s < ERROR_SOURCES; s++)
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        out->applies[s] = field_at(object, ERROR_SOURCE_ROWS[s].key) != NULL;
         out->errors[s] = field_number(object, ERROR_SOURCE_ROWS[s].key);
+    }
     out->total = field_number(object, "total_error");
     out->valueless = field_number(object, "valueless");
     const cJSON *deviations = field_at(object, "theory_deviation");

@@ -4,16 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define SOURCE_KEYS(word)                                                                          \
+    .name = (word), .key = word "_error", .bound_key = word "_bound",                              \
+    .standard_error_key = word "_standard_error"
 const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES] = {
-    [ERROR_DISCRETISATION] = {.name = "discretisation",
-                              .key = "discretisation_error",
-                              .standard_error_key = "discretisation_standard_error",
-                              .order_key = "discretisation_order",
-                              .order_from_key = "discretisation_order_from",
-                              .null_if_unknown = true},
+    [ERROR_DISCRETISATION] = {SOURCE_KEYS("discretisation"), .order_key = "discretisation_order",
+                              .order_from_key = "discretisation_order_from"},
+    [ERROR_CELL] = {SOURCE_KEYS("cell")},
+    [ERROR_BLOCK] = {SOURCE_KEYS("block")},
     [ERROR_MODEL] = {.name = "model",
                      .key = "model_error",
+                     .bound_key = "model_bound",
                      .standard_error_key = "model_error_standard_error"},
+    [ERROR_SOLVER] = {SOURCE_KEYS("solver")},
+    [ERROR_MISSING] = {SOURCE_KEYS("missing")},
 };
 
 const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT] = {

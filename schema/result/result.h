@@ -19,25 +19,38 @@
 /* The statistical error stands beside each value as its standard error; these are the others. */
 enum error_source {
     ERROR_DISCRETISATION, /* this mesh less the limit of the levels */
+    ERROR_CELL,           /* this cell less one of very many long waves */
+    ERROR_BLOCK,          /* this block less an infinitely high one */
     ERROR_MODEL,          /* this model less the most complete one */
+    ERROR_SOLVER,         /* an answer to a tolerance less the exact one */
+    ERROR_MISSING,        /* a mean over the realisations that have a value less one over all */
     ERROR_SOURCES
 };
 struct error_source_row {
     const char *name;               /* "discretisation": in reports */
     const char *key;                /* in JSON, CSV and reports: "discretisation_error" */
+    const char *bound_key;          /* in JSON and CSV */
     const char *standard_error_key; /* in JSON */
     const char *order_key;          /* in JSON; NULL: a source without an order */
     const char *order_from_key;     /* in JSON: "levels" or "assumed" */
-    bool null_if_unknown;           /* in JSON, rather than left out */
 };
 extern const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES];
 
-/* What a curve owes to one source: told less true, in the units of y and as long as it. */
+/* What a curve owes to one source, in the units of y and as long as it: what is told less what is
+ * true lies within value +- bound, where value has the standard error. A bound alone has values of
+ * 0. */
 struct curve_error {
+    bool applies;        /* the source bears on the curve; where it does not, the rest is empty */
     const double *value; /* NULL: not known */
+    const double *bound; /* NULL: none is told */
     const double *standard_error;
     double order;        /* of convergence; NaN: none */
     bool order_observed; /* on three levels; else assumed */
+};
+/* The same of a single number. */
+struct scalar_error {
+    bool applies, known;
+    double value, bound, standard_error;
 };
 
 /* --- curves --- */
@@ -110,6 +123,7 @@ struct scalar {
     const char *name;
     double value, standard_error; /* NaN: none */
     double theory;                /* NaN: none */
+    struct scalar_error errors[ERROR_SOURCES];
 };
 
 struct result_note {

@@ -91,15 +91,15 @@ static bool put_error(FILE *file, bool *first, const struct curve *curve,
                       enum error_source source) {
     const struct error_source_row *row = &ERROR_SOURCE_ROWS[source];
     const struct curve_error *error = &curve->errors[source];
-    if (error->value == NULL) {
-        bool done = !row->null_if_unknown || put_key(file, first, row->key);
-        if (row->null_if_unknown)
-            fputs("null", file);
-        return done;
-    }
+    if (!error->applies)
+        return true;
+    if (error->value == NULL)
+        return put_number(file, first, row->key, NAN);
     bool done = put_numbers(file, first, row->key, curve->n, error->value) &&
+                (error->bound == NULL ||
+                 put_numbers(file, first, row->bound_key, curve->n, error->bound)) &&
                 put_numbers(file, first, row->standard_error_key, curve->n, error->standard_error);
-    if (done && row->order_key != NULL)
+    if (done && row->order_key != NULL && !isnan(error->order))
         done = put_number(file, first, row->order_key, error->order) &&
                put_text(file, first, row->order_from_key,
                         error->order_observed ? "levels" : "assumed");
@@ -182,12 +182,25 @@ bool result_print_notes(FILE *file, uint64_t all, size_t count, const struct res
     return done;
 }
 
+static bool put_scalar_error(FILE *file, bool *first, const struct scalar_error *error,
+                             const struct error_source_row *row) {
+    if (!error->applies)
+        return true;
+    if (!error->known)
+        return put_number(file, first, row->key, NAN);
+    return put_number(file, first, row->key, error->value) &&
+           put_number(file, first, row->bound_key, error->bound) &&
+           put_number(file, first, row->standard_error_key, error->standard_error);
+}
+
 static bool print_scalar(FILE *file, const struct scalar *scalar) {
     bool first = true;
     fputc('{', file);
     bool done = put_number(file, &first, "value", scalar->value) &&
                 put_number(file, &first, "standard_error", scalar->standard_error) &&
                 (isnan(scalar->theory) || put_number(file, &first, "theory", scalar->theory));
+    for (size_t s = 0; s < ERROR_SOURCES && done; s++)
+        done = put_scalar_error(file, &first, &scalar->errors[s], &ERROR_SOURCE_ROWS[s]);
     fputc('}', file);
     return done;
 }

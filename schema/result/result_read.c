@@ -118,10 +118,13 @@ static int read_error(const struct reading *reading, const cJSON *object, enum e
                       struct curve *curve) {
     const struct error_source_row *row = &ERROR_SOURCE_ROWS[source];
     struct curve_error *error = &curve->errors[source];
-    *error = (struct curve_error){.order = NAN};
-    if (!cJSON_IsArray(field_at(object, row->key)))
+    const cJSON *values = field_at(object, row->key);
+    *error = (struct curve_error){.applies = values != NULL, .order = NAN};
+    if (!cJSON_IsArray(values))
         return 0;
     int status = read_numbers(reading, object, row->key, curve->n, &error->value);
+    if (status == 0 && field_at(object, row->bound_key) != NULL)
+        status = read_numbers(reading, object, row->bound_key, curve->n, &error->bound);
     if (status == 0)
         status = read_numbers(reading, object, row->standard_error_key, curve->n,
                               &error->standard_error);
@@ -203,6 +206,19 @@ static int read_curve(const struct reading *reading, const cJSON *object) {
 
 /* --- a case --- */
 
+static void read_scalar_errors(const cJSON *object, struct scalar *scalar) {
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        const struct error_source_row *row = &ERROR_SOURCE_ROWS[s];
+        double value = field_number(object, row->key);
+        scalar->errors[s] =
+            (struct scalar_error){.applies = field_at(object, row->key) != NULL,
+                                  .known = !isnan(value),
+                                  .value = value,
+                                  .bound = field_number(object, row->bound_key),
+                                  .standard_error = field_number(object, row->standard_error_key)};
+    }
+}
+
 static int read_scalars(const struct reading *reading, const cJSON *scalars) {
     int status = 0;
     for (const cJSON *item = scalars != NULL ? scalars->child : NULL; item != NULL && status == 0;
@@ -211,6 +227,7 @@ static int read_scalars(const struct reading *reading, const cJSON *scalars) {
                                 .value = field_number(item, "value"),
                                 .standard_error = field_number(item, "standard_error"),
                                 .theory = field_number(item, "theory")};
+        read_scalar_errors(item, &scalar);
         status = scalar.name != NULL ? result_add_scalar(reading->result, &scalar, reading->err)
                                      : no_memory(reading);
     }

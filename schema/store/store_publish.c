@@ -28,7 +28,17 @@ static int insert_scalar(const struct target *target, const struct scalar *scala
                              "standard_error, theory) VALUES (?, ?, ?, ?, ?, ?)",
                              "iitddd", target->study, target->case_number, scalar->name,
                              scalar->value, scalar->standard_error, scalar->theory);
-    return status != 0 ? status : run_bound(target->store, statement, err);
+    if (status == 0)
+        status = run_bound(target->store, statement, err);
+    for (size_t s = 0; s < ERROR_SOURCES && status == 0; s++)
+        if (scalar->errors[s].known)
+            status = store_run(target->store, err,
+                               "INSERT INTO scalar_error (study_id, case_number, name, source, "
+                               "value, bound, standard_error) VALUES (?, ?, ?, ?, ?, ?, ?)",
+                               "iittddd", target->study, target->case_number, scalar->name,
+                               ERROR_SOURCE_ROWS[s].name, scalar->errors[s].value,
+                               scalar->errors[s].bound, scalar->errors[s].standard_error);
+    return status;
 }
 
 /* NaN becomes NULL, as SQLite has it. x2 is NaN but in a matrix. */
@@ -50,9 +60,10 @@ static int insert_error(struct store *store, int64_t curve, size_t number, const
     sqlite3_stmt *statement = NULL;
     int status = store_query(store, &statement, err,
                              "INSERT INTO point_error (curve_id, number, source, value, "
-                             "standard_error) VALUES (?, ?, ?, ?, ?)",
-                             "iitdd", curve, (int64_t)number, source, error->value[number],
-                             error->standard_error[number]);
+                             "standard_error, bound) VALUES (?, ?, ?, ?, ?, ?)",
+                             "iitddd", curve, (int64_t)number, source, error->value[number],
+                             error->standard_error[number],
+                             error->bound != NULL ? error->bound[number] : (double)NAN);
     return status != 0 ? status : run_bound(store, statement, err);
 }
 
@@ -100,6 +111,10 @@ static int clear_case(const struct target *target, struct error *err) {
     if (status == 0)
         status = store_run(target->store, err,
                            "DELETE FROM scalar WHERE study_id = ? AND case_number = ?", "ii",
+                           target->study, target->case_number);
+    if (status == 0)
+        status = store_run(target->store, err,
+                           "DELETE FROM scalar_error WHERE study_id = ? AND case_number = ?", "ii",
                            target->study, target->case_number);
     return status;
 }

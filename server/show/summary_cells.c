@@ -53,6 +53,20 @@ void percent_cell(struct text_table *table, double share) {
         table_cell(table, "%.2g", 100 * share);
 }
 
+const char *source_word(const char *const *words, enum error_source source) {
+    return words != NULL && words[source] != NULL ? words[source] : ERROR_SOURCE_ROWS[source].name;
+}
+
+void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file) {
+    size_t told = 0;
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        if (unknown[s])
+            fprintf(file, "%s%s", told++ > 0 ? ", " : "Errors not known: ",
+                    source_word(words, (enum error_source)s));
+    if (told > 0)
+        fputs(".\n", file);
+}
+
 const char *model_text(const char *model, const char *kinematics, char *out, size_t size) {
     model = model != NULL ? model : "-";
     if (kinematics != NULL)

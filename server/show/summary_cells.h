@@ -15,6 +15,10 @@ void measured_cell(struct text_table *table, double value, double error);
 const char *partial_text(double realisations, double valueless, char *out, size_t size);
 /* A share of one in percent, with two digits; "-" for NaN. */
 void percent_cell(struct text_table *table, double share);
+/* Headings of sources of error: what `words` calls it (NULL: its own name). */
+const char *source_word(const char *const *words, enum error_source source);
+/* "Not known: cell, block." in a line of its own; nothing where none is unknown. */
+void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file);
 /* "layered", or "full (hencky)" where the model has several kinematics; "-" without one. */
 const char *model_text(const char *model, const char *kinematics, char *out, size_t size);
 /* Whether a series is a bracket of another one, and no estimate: nodes_lower, nodes_upper. */

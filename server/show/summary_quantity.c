@@ -61,14 +61,14 @@ static double number_at(const double *numbers, const struct curve *curve, size_t
 
 /* --- cells --- */
 
-static const char *error_word(const struct quantity_table *words, enum error_source source) {
-    return text_or(words->error_words[source], ERROR_SOURCE_ROWS[source].name);
-}
-
-/* With its sign: above or below what it is counted from. */
-static void error_cell(struct text_table *table, double error, double value) {
+/* In percent of the value, with its sign: above or below what is true, and within which bound. */
+static void error_cell(struct text_table *table, double error, double bound, double value) {
     if (isnan(error / value))
         table_cell(table, "-");
+    else if (error == 0 && bound > 0)
+        table_cell(table, "+-%.2g", 100 * bound / value);
+    else if (bound > 0)
+        table_cell(table, "%+.2g+-%.2g", 100 * error / value, 100 * bound / value);
     else
         table_cell(table, "%+.2g", 100 * error / value);
 }
@@ -100,9 +100,21 @@ static void print_scalar(const struct case_result *one, const char *name, FILE *
 
 /* --- a table a case --- */
 
-/* One model owes nothing to another one. */
+/* Whether anything is known of the source. */
 static bool has_column(const struct finest_curves *finest, enum error_source source) {
-    return source != ERROR_MODEL || finest->model_count > 1;
+    bool known = false;
+    for (size_t m = 0; m < finest->model_count; m++)
+        known = known || finest->curves[m]->errors[source].value != NULL;
+    return known;
+}
+
+/* Sources that bear on a curve and of which nothing is known. */
+static void find_unknown(const struct finest_curves *finest, bool unknown[ERROR_SOURCES]) {
+    for (size_t m = 0; m < finest->model_count; m++)
+        for (size_t s = 0; s < ERROR_SOURCES; s++) {
+            const struct curve_error *error = &finest->curves[m]->errors[s];
+            unknown[s] = unknown[s] || (error->applies && error->value == NULL);
+        }
 }
 
 static size_t column_count(const struct finest_curves *finest) {
@@ -122,7 +134,8 @@ static void put_heading(const struct quantity_table *words, const struct finest_
         table_cell(table, "%s", model_text(curve->model, curve->kinematics, model, sizeof model));
         for (int source = 0; source < ERROR_SOURCES; source++)
             if (has_column(finest, (enum error_source)source))
-                table_cell(table, "%s %%", error_word(words, (enum error_source)source));
+                table_cell(table, "%s %%",
+                           source_word(words->error_words, (enum error_source)source));
     }
     if (finest->theory_count > 0)
         table_fold(table);
@@ -139,6 +152,7 @@ static void put_place(const struct case_result *one, const struct finest_curves 
         for (int source = 0; source < ERROR_SOURCES; source++)
             if (has_column(finest, (enum error_source)source))
                 error_cell(table, number_at(curve->errors[source].value, curve, k),
+                           number_at(curve->errors[source].bound, curve, k),
                            number_at(curve->y, curve, k));
     }
     for (size_t t = 0; t < finest->theory_count; t++) {
@@ -167,6 +181,9 @@ static void print_table(const struct quantity_table *words, const struct case_re
         print_scalar(one, words->scalars[s], file);
     }
     fputc('\n', file);
+    bool unknown[ERROR_SOURCES] = {false};
+    find_unknown(finest, unknown);
+    print_unknown(unknown, words->error_words, file);
 }
 
 static void print_case(const struct quantity_table *words, const struct shown_cases *shown,
@@ -218,8 +235,18 @@ static void find_samples(const struct quantity_table *words, const struct shown_
     }
 }
 
+/* Sources that are known of a case's main curve. */
+static void find_known(const struct study_report *report, const struct shown_cases *shown,
+                       bool known[ERROR_SOURCES]) {
+    for (size_t c = 0; c < shown->count; c++) {
+        const struct case_report *cost = report_of(report, shown->list[c]);
+        for (size_t s = 0; s < ERROR_SOURCES && cost != NULL && cost->main != NULL; s++)
+            known[s] = known[s] || !isnan(cost->main->errors[s]);
+    }
+}
+
 static void put_row_heading(const struct quantity_table *words, const struct shown_cases *shown,
-                            struct text_table *table) {
+                            const bool known[ERROR_SOURCES], struct text_table *table) {
     static const char *const SAMPLE_NAMES[SAMPLES] = {"lowest", "middle", "highest"};
     double x[SAMPLES] = {NAN, NAN, NAN};
     find_samples(words, shown, x);
@@ -233,7 +260,8 @@ static void put_row_heading(const struct quantity_table *words, const struct sho
         else
             table_cell(table, "%s at %.4g", words->value, x[n]);
     for (int source = 0; source < ERROR_SOURCES; source++)
-        table_cell(table, "%s %%", error_word(words, (enum error_source)source));
+        if (known[source])
+            table_cell(table, "%s %%", source_word(words->error_words, (enum error_source)source));
     table_fold(table);
     for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++)
         table_cell(table, "%s", *name);
@@ -241,7 +269,8 @@ static void put_row_heading(const struct quantity_table *words, const struct sho
 }
 
 static void put_row(const struct quantity_table *words, const struct shown_cases *shown, size_t c,
-                    const struct case_report *cost, struct text_table *table) {
+                    const struct case_report *cost, const bool known[ERROR_SOURCES],
+                    struct text_table *table) {
     const struct case_result *one = shown->list[c];
     struct finest_curves finest;
     find_finest(&finest, words, one);
@@ -251,8 +280,9 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
     for (size_t n = 0; n < SAMPLES; n++)
         value_cell(table, one, finest.curves[0], sample_place(&finest, n));
     for (int source = 0; source < ERROR_SOURCES; source++)
-        percent_cell(table,
-                     cost != NULL && cost->main != NULL ? cost->main->errors[source] : (double)NAN);
+        if (known[source])
+            percent_cell(table, cost != NULL && cost->main != NULL ? cost->main->errors[source]
+                                                                   : (double)NAN);
     for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++) {
         const struct scalar *scalar = result_scalar(one, *name);
         measured_cell(table, scalar != NULL ? scalar->value : (double)NAN,
@@ -263,17 +293,26 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
 
 static void print_rows(const struct quantity_table *words, const struct shown_cases *shown,
                        const struct study_report *report, FILE *file) {
-    size_t scalars = 0;
+    bool known[ERROR_SOURCES] = {false}, unknown[ERROR_SOURCES] = {false};
+    size_t scalars = 0, sources = 0;
+    find_known(report, shown, known);
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        sources += known[s];
     while (words->scalars != NULL && words->scalars[scalars] != NULL)
         scalars++;
-    struct text_table table = {.columns = 1 + shown->varied_count + 1 + SAMPLES +
-                                          (size_t)ERROR_SOURCES + scalars + 1};
-    put_row_heading(words, shown, &table);
-    for (size_t c = 0; c < shown->count; c++)
-        put_row(words, shown, c, report_of(report, shown->list[c]), &table);
+    struct text_table table = {.columns =
+                                   1 + shown->varied_count + 1 + SAMPLES + sources + scalars + 1};
+    put_row_heading(words, shown, known, &table);
+    for (size_t c = 0; c < shown->count; c++) {
+        struct finest_curves finest;
+        find_finest(&finest, words, shown->list[c]);
+        find_unknown(&finest, unknown);
+        put_row(words, shown, c, report_of(report, shown->list[c]), known, &table);
+    }
     fputc('\n', file);
     table_print(&table, file);
     table_clear(&table);
+    print_unknown(unknown, words->error_words, file);
 }
 
 void summary_of_quantity(const struct quantity_table *words, const struct shown_cases *shown,

@@ -11,11 +11,46 @@ enum { TABLES_MOST = 4, SERIES_MOST = 64, NOTES_SHOWN = 40 };
 
 enum { ERROR_COLUMNS = ERROR_SOURCES + 2 };
 
-static void error_headings(struct text_table *table) {
+/* Which columns a table has: sources of which anything is known. */
+struct error_columns {
+    bool shown[ERROR_COLUMNS], unknown[ERROR_SOURCES];
+    size_t count;
+};
+
+static void find_columns(const struct curve_report *curve, struct error_columns *columns) {
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        columns->shown[1 + s] = columns->shown[1 + s] || !isnan(curve->errors[s]);
+        columns->unknown[s] = columns->unknown[s] || (curve->applies[s] && isnan(curve->errors[s]));
+    }
+}
+
+/* Of all curves of the main quantities. */
+static struct error_columns columns_of(const struct study_report *report) {
+    struct error_columns columns = {.shown = {[0] = true, [ERROR_COLUMNS - 1] = true}};
+    for (size_t c = 0; c < report->case_count; c++) {
+        const struct case_report *one = &report->cases[c];
+        for (size_t a = 0; a < one->curve_count && one->main != NULL; a++)
+            if (strcmp(one->curves[a].place.quantity, one->main->place.quantity) == 0)
+                find_columns(&one->curves[a], &columns);
+    }
+    for (size_t e = 0; e < ERROR_COLUMNS; e++)
+        columns.count += columns.shown[e];
+    return columns;
+}
+
+static void error_headings(const struct error_columns *columns, struct text_table *table) {
     table_cell(table, "statistical %%");
     for (int source = 0; source < ERROR_SOURCES; source++)
-        table_cell(table, "%s %%", ERROR_SOURCE_ROWS[source].name);
+        if (columns->shown[1 + source])
+            table_cell(table, "%s %%", ERROR_SOURCE_ROWS[source].name);
     table_cell(table, "total %%");
+}
+
+static void error_cells(const struct error_columns *columns, const double errors[ERROR_COLUMNS],
+                        struct text_table *table) {
+    for (size_t e = 0; e < ERROR_COLUMNS; e++)
+        if (columns->shown[e])
+            percent_cell(table, errors[e]);
 }
 
 /* NaN without a curve. */
@@ -29,7 +64,7 @@ static void errors_of(const struct curve_report *curve, double errors[ERROR_COLU
 /* --- a row a case --- */
 
 static void put_case(const struct shown_cases *shown, size_t c, const struct case_report *one,
-                     struct text_table *table) {
+                     const struct error_columns *columns, struct text_table *table) {
     double realisations = (double)one->about.realisations, errors[ERROR_COLUMNS];
     char partial[48];
     table_number(table, (double)one->about.case_number);
@@ -40,23 +75,22 @@ static void put_case(const struct shown_cases *shown, size_t c, const struct cas
     table_number(table, one->seconds);
     table_number(table, realisations > 0 ? one->seconds / realisations : (double)NAN);
     errors_of(one->main, errors);
-    for (size_t e = 0; e < ERROR_COLUMNS; e++)
-        percent_cell(table, errors[e]);
+    error_cells(columns, errors, table);
     table_number(table, case_report_seconds_to_halve(one));
 }
 
 static void print_cases(const struct study_report *report, const struct shown_cases *shown,
-                        FILE *file) {
-    struct text_table table = {.columns = 1 + shown->varied_count + 3 + (size_t)ERROR_COLUMNS + 1};
+                        const struct error_columns *columns, FILE *file) {
+    struct text_table table = {.columns = 1 + shown->varied_count + 3 + columns->count + 1};
     table_cell(&table, "case");
     varied_headings(&table, shown);
     table_cell(&table, "realisations");
     table_cell(&table, "seconds");
     table_cell(&table, "s/realisation");
-    error_headings(&table);
+    error_headings(columns, &table);
     table_cell(&table, "s to halve");
     for (size_t c = 0; c < report->case_count; c++)
-        put_case(shown, c, &report->cases[c], &table);
+        put_case(shown, c, &report->cases[c], columns, &table);
     table_print(&table, file);
     table_clear(&table);
 }
@@ -116,7 +150,9 @@ static void add_case(struct series_list *list, const struct case_report *one) {
     }
 }
 
-static void put_series(const struct series_cost *series, struct text_table *table) {
+static void put_series(const struct series_cost *series, const struct error_columns *columns,
+                       struct text_table *table) {
+    double errors[ERROR_COLUMNS];
     char model[64], partial[48];
     model_text(series->place->model, series->place->kinematics, model, sizeof model);
     partial_text(series->realisations, series->valueless, partial, sizeof partial);
@@ -125,17 +161,18 @@ static void put_series(const struct series_cost *series, struct text_table *tabl
     table_cell(table, "%s", series->place->series != NULL ? series->place->series : "-");
     table_cell(table, "%.3g", series->seconds / series->realisations);
     for (size_t e = 0; e < ERROR_COLUMNS; e++)
-        percent_cell(table, series->known[e] > 0
-                                ? sqrt(series->squares[e] / (double)series->known[e])
-                                : (double)NAN);
+        errors[e] =
+            series->known[e] > 0 ? sqrt(series->squares[e] / (double)series->known[e]) : NAN;
+    error_cells(columns, errors, table);
 }
 
 /* Of the cases `first` to `end` - 1 together. */
 static void print_series(const struct study_report *report, size_t first, size_t end,
-                         const char *title, const struct shown_cases *swept, FILE *file) {
+                         const char *title, const struct shown_cases *swept,
+                         const struct error_columns *columns, FILE *file) {
     static const char *const HEADINGS[] = {"model", "level", "estimator", "s/realisation"};
     enum { HEADING_COUNT = sizeof HEADINGS / sizeof *HEADINGS };
-    struct text_table table = {.columns = HEADING_COUNT + ERROR_COLUMNS};
+    struct text_table table = {.columns = HEADING_COUNT + columns->count};
     struct series_list list = {0};
     const char *quantity = NULL;
     for (size_t c = first; c < end; c++) {
@@ -151,23 +188,24 @@ static void print_series(const struct study_report *report, size_t first, size_t
     fprintf(file, "%s by model, level and estimator\n", quantity);
     for (size_t h = 0; h < HEADING_COUNT; h++)
         table_cell(&table, "%s", HEADINGS[h]);
-    error_headings(&table);
+    error_headings(columns, &table);
     for (size_t s = 0; s < list.count; s++)
-        put_series(&list.rows[s], &table);
+        put_series(&list.rows[s], columns, &table);
     table_print(&table, file);
     table_clear(&table);
 }
 
 static void print_all_series(const struct study_report *report, const struct shown_cases *shown,
-                             FILE *file) {
+                             const struct error_columns *columns, FILE *file) {
     char title[32];
     if (report->case_count > TABLES_MOST)
-        print_series(report, 0, report->case_count, "all cases, root mean square", NULL, file);
+        print_series(report, 0, report->case_count, "all cases, root mean square", NULL, columns,
+                     file);
     else
         for (size_t c = 0; c < report->case_count; c++) {
             snprintf(title, sizeof title, "case %llu",
                      (unsigned long long)report->cases[c].about.case_number);
-            print_series(report, c, c + 1, title, shown, file);
+            print_series(report, c, c + 1, title, shown, columns, file);
         }
 }
 
@@ -182,8 +220,10 @@ void summary_of_report(const struct study_report *report, FILE *file) {
         fputs("(no memory for a table)\n", file);
         return;
     }
-    print_cases(report, &shown, file);
-    print_all_series(report, &shown, file);
+    const struct error_columns columns = columns_of(report);
+    print_cases(report, &shown, &columns, file);
+    print_all_series(report, &shown, &columns, file);
+    print_unknown(columns.unknown, NULL, file);
     print_partial(&shown, words != NULL ? words->x : "point", file);
     print_notes(&shown, NOTES_SHOWN, file);
     print_missing(&shown, file);

@@ -13,12 +13,16 @@ static inline void sample_result(struct case_result *out) {
     static const double x2[] = {7, 8, 9}, cell_y[] = {2, 6}, cell_error[] = {0.25, 1};
     static const uint32_t cells[] = {1, 5};
     static const double area[] = {1e-300, 0.5}, zero[] = {0, 0}, persson[] = {3, 4};
-    static const double mesh[] = {0.25, NAN}, mesh_error[] = {0.01, 0.02};
+    static const double mesh[] = {0.25, 0.5}, mesh_error[] = {0.01, 0.02}, bound[] = {0.125, 0};
     static const double model[] = {NAN, -2}, model_error[] = {0.03, 0.04}, valueless[] = {0, 3};
     static struct result_note notes[] = {{7, "why"}};
     struct curve plain = curve_named("q", "z/\302\265m", "density");
     struct curve matrix = curve_named("joint", "z", "density");
     struct curve full = curve_named("area", "load", "A/A0");
+    struct scalar m0 = {.name = "m0", .value = 1, .standard_error = 0.5, .theory = NAN};
+    const struct scalar alpha = {.name = "alpha", .value = 5, .standard_error = NAN, .theory = 6};
+    m0.errors[ERROR_CELL].applies = true;
+    m0.errors[ERROR_MODEL] = (struct scalar_error){true, true, -0.5, 0.25, 0.125};
     *out = (struct case_result){.case_number = 3, .realisations = 24, .notes = notes};
     out->note_count = 1;
     out->notes_all = 2;
@@ -41,15 +45,18 @@ static inline void sample_result(struct case_result *out) {
     full.level = 8;
     full.points = 64;
     full.pressure = 0.5;
-    full.errors[ERROR_DISCRETISATION] = (struct curve_error){mesh, mesh_error, 1.5, true};
-    full.errors[ERROR_MODEL] = (struct curve_error){model, model_error, NAN, false};
+    full.errors[ERROR_DISCRETISATION] =
+        (struct curve_error){true, mesh, bound, mesh_error, 1.5, true};
+    full.errors[ERROR_MODEL] = (struct curve_error){true, model, NULL, model_error, NAN, false};
+    full.errors[ERROR_BLOCK].applies = true;
+    plain.errors[ERROR_DISCRETISATION].applies = true;
     full.valueless = valueless;
     full.theories[full.theory_count++] = (struct theory){"persson", persson};
     assert_int_equal(result_add_curve(out, &plain, NULL), 0);
     assert_int_equal(result_add_curve(out, &matrix, NULL), 0);
     assert_int_equal(result_add_curve(out, &full, NULL), 0);
-    assert_int_equal(result_add_scalar(out, &(struct scalar){"m0", 1, 0.5, NAN}, NULL), 0);
-    assert_int_equal(result_add_scalar(out, &(struct scalar){"alpha", 5, NAN, 6}, NULL), 0);
+    assert_int_equal(result_add_scalar(out, &m0, NULL), 0);
+    assert_int_equal(result_add_scalar(out, &alpha, NULL), 0);
 }
 
 #endif

@@ -20,19 +20,22 @@ static char *print(const struct case_result *result) {
 
 static const char PRINTED[] =
     "{\"case\":3,\"parameters\":{},\"realisations\":24,\"scalars\":{\"m0\":{\"value\":1,"
-    "\"standard_error\":0.5},\"alpha\":{\"value\":5,\"standard_error\":null,\"theory\":6}},"
+    "\"standard_error\":0.5,\"cell_error\":null,\"model_error\":-0.5,\"model_bound\":0.25,"
+    "\"model_error_standard_error\":0.125},\"alpha\":{\"value\":5,\"standard_error\":null,"
+    "\"theory\":6}},"
     "\"curves\":[{\"quantity\":\"q\",\"series\":\"x, \\\"y\\\"\",\"x\":[0.1,2],\"y\":[3,null],"
     "\"standard_error\":[0.1,null],\"discretisation_error\":null,\"theory\":{\"nayak\":[1.5,2.5]},"
     "\"x_label\":\"z/\302\265m\",\"underflow\":4,\"overflow\":0,\"y_label\":\"density\"},"
     "{\"quantity\":\"joint\",\"series\":\"\",\"x\":[0.1,2],\"x2\":[7,8,9],"
     "\"y\":[[0,2,0],[0,0,6]],\"standard_error\":[[0,0.25,0],[0,0,1]],"
-    "\"discretisation_error\":null,\"theory\":{},\"x_label\":\"z\",\"x2_label\":\"t\","
+    "\"theory\":{},\"x_label\":\"z\",\"x2_label\":\"t\","
     "\"y_label\":\"density\"},"
     "{\"quantity\":\"area\",\"series\":\"edges\",\"model\":\"full\",\"level\":8,\"points\":64,"
     "\"kinematics\":\"hencky\",\"pressure\":0.5,\"x\":[0.1,2],\"y\":[1e-300,0.5],"
-    "\"standard_error\":[0,0],\"discretisation_error\":[0.25,null],"
+    "\"standard_error\":[0,0],\"discretisation_error\":[0.25,0.5],\"discretisation_bound\":[0.125,"
+    "0],"
     "\"discretisation_standard_error\":[0.01,0.02],\"discretisation_order\":1.5,"
-    "\"discretisation_order_from\":\"levels\",\"model_error\":[null,-2],"
+    "\"discretisation_order_from\":\"levels\",\"block_error\":null,\"model_error\":[null,-2],"
     "\"model_error_standard_error\":[0.03,0.04],\"theory\":{\"persson\":[3,4]},"
     "\"x_label\":\"load\",\"valueless\":[0,3],\"y_label\":\"A/A0\"}],"
     "\"notes\":{\"count\":2,\"kept\":[{\"realisation\":7,\"text\":\"why\"}]}}";
@@ -153,21 +156,27 @@ static char *table_of(const struct case_result *result, const struct curve *only
 static void csv_is_one_table(void **state) {
     (void)state;
     static const char HEADING[] = "case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
-                                  "standard_error,discretisation_error,model_error,valueless";
-    static const char POINTS[] = "3,q,\"x, \"\"y\"\"\",,,,,0.1,,3,0.1,,,,1.5,\n"
-                                 "3,q,\"x, \"\"y\"\"\",,,,,2,,,,,,,2.5,\n"
-                                 "3,joint,,,,,,0.1,8,2,0.25,,,,,\n"
-                                 "3,joint,,,,,,2,9,6,1,,,,,\n"
-                                 "3,area,edges,full,hencky,8,0.5,0.1,,1e-300,0,0.25,,0,,3\n"
-                                 "3,area,edges,full,hencky,8,0.5,2,,0.5,0,,-2,3,,4\n";
+                                  "standard_error,discretisation_error,discretisation_bound,"
+                                  "cell_error,cell_bound,block_error,block_bound,model_error,"
+                                  "model_bound,solver_error,solver_bound,missing_error,"
+                                  "missing_bound,valueless";
+    static const char POINTS[] =
+        "3,q,\"x, \"\"y\"\"\",,,,,0.1,,3,0.1,,,,,,,,,,,,,,1.5,\n"
+        "3,q,\"x, \"\"y\"\"\",,,,,2,,,,,,,,,,,,,,,,,2.5,\n"
+        "3,joint,,,,,,0.1,8,2,0.25,,,,,,,,,,,,,,,\n"
+        "3,joint,,,,,,2,9,6,1,,,,,,,,,,,,,,,\n"
+        "3,area,edges,full,hencky,8,0.5,0.1,,1e-300,0,0.25,0.125,,,,,,,,,,,0,,3\n"
+        "3,area,edges,full,hencky,8,0.5,2,,0.5,0,0.5,0,,,,,-2,,,,,,3,,4\n";
     struct case_result sample;
-    char expected[1024];
+    char expected[2048];
     sample_result(&sample);
     char *all = table_of(&sample, NULL), *one = table_of(&sample, &sample.curves[1]);
     snprintf(expected, sizeof expected, "%s,theory_nayak,theory_persson\n%s", HEADING, POINTS);
     assert_string_equal(all, expected);
     snprintf(expected, sizeof expected,
-             "%s,theory_nayak\n3,joint,,,,,,0.1,8,2,0.25,,,,\n3,joint,,,,,,2,9,6,1,,,,\n", HEADING);
+             "%s,theory_nayak\n3,joint,,,,,,0.1,8,2,0.25,,,,,,,,,,,,,,\n"
+             "3,joint,,,,,,2,9,6,1,,,,,,,,,,,,,,\n",
+             HEADING);
     assert_string_equal(one, expected);
     free(all);
     free(one);
@@ -224,8 +233,14 @@ static void report_measures_and_comes_back(void **state) {
     assert_true(fabs(report.curves[0].theories[0].deviation - 1) <= 1e-15);
     /* cells 2 +- 0.25 and 6 +- 1 */
     assert_true(fabs(report.curves[1].statistical - sqrt((0.0625 + 1) / 40)) <= 1e-15);
-    /* y = 1e-300 less 0.25 is the limit at the one point where both are known */
-    assert_true(fabs(report.curves[2].errors[ERROR_DISCRETISATION] - 1) <= 1e-12);
+    /* the limits are 1e-300 - 0.25 and 0.5 - 0.5, the bounds 0.125 and 0 */
+    assert_true(fabs(report.curves[2].errors[ERROR_DISCRETISATION] - 2.5) <= 1e-12);
+    /* of one point, or at all, not known: so there is no total */
+    assert_true(isnan(report.curves[2].errors[ERROR_MODEL]) &&
+                report.curves[2].applies[ERROR_MODEL]);
+    assert_true(report.curves[2].applies[ERROR_BLOCK] && isnan(report.curves[2].total));
+    assert_true(report.curves[1].total == report.curves[1].statistical);
+    assert_false(report.curves[2].applies[ERROR_CELL]);
     assert_true(report.curves[2].valueless == 3);
     assert_true(isnan(report.curves[0].valueless));
     assert_true(report.scalars[0].statistical == 0.5);

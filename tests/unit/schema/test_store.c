@@ -403,7 +403,14 @@ static void results_and_views(void **state) {
         "coalesce(discretisation_error, 'none') || ':' || coalesce(model_error, 'none') || ':' || "
         "valueless) "
         "FROM curve_points WHERE quantity = 'area'",
-        "fullhencky8.0@0.5:0.25:none:0,fullhencky8.0@0.5:none:-2.0:3");
+        "fullhencky8.0@0.5:0.25:none:0,fullhencky8.0@0.5:0.5:-2.0:3");
+    check_text("copy.db",
+               "SELECT group_concat(x || source || value || ':' || coalesce(bound, 'none')) FROM "
+               "curve_errors WHERE value IS NOT NULL ORDER BY x, source",
+               "0.1discretisation0.25:0.125,2.0discretisation0.5:0.0,2.0model-2.0:none");
+    check_text("copy.db",
+               "SELECT name || source || value || bound || standard_error FROM scalar_errors",
+               "m0model-0.50.250.125");
     check_text("copy.db", "SELECT \"case\" || realisation || note FROM case_notes", "07why");
     check_text(
         "copy.db",

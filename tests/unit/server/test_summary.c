@@ -65,8 +65,11 @@ static void add_areas(struct case_result *one, const char *model, const char *ki
             curve.kinematics = kinematics;
             curve.level = level;
             if (level == 8)
-                curve.errors[ERROR_DISCRETISATION].value =
-                    built_numbers(one, 3, (const double[]){0.02, -0.03, NAN});
+                curve.errors[ERROR_DISCRETISATION] = (struct curve_error){
+                    .applies = true,
+                    .value = built_numbers(one, 3, (const double[]){0.02, 0, 0.02}),
+                    .bound = built_numbers(one, 3, (const double[]){0, 0.03, 0.01})};
+            curve.errors[ERROR_CELL].applies = true;
             if (partial)
                 curve.valueless = built_numbers(one, 3, (const double[]){0, 0, 3});
             built_theory(one, &curve, "persson", (const double[]){0.15, 0.25, 0.35});
@@ -82,11 +85,12 @@ static void few_cases_have_a_table_each(void **state) {
     add_areas(&study.cases[0], "halfspace", NULL, false);
     char *text = table_of(&study, NULL);
     check_shown(text, (const char *[]){"case 0: 4 realisations; contact area by edges at 8 points",
-                                       "\nload       halfspace  mesh %  persson\n",
-                                       "\n 0.1  0.200 +- 0.010     +10   0.1500\n",
-                                       "\n 0.2  0.300 +- 0.010     -10   0.2500\n",
-                                       "\n 0.3  0.400 +- 0.010       -   0.3500\n",
+                                       "\nload       halfspace  mesh %   persson\n",
+                                       "\n 0.1  0.200 +- 0.010  +10       0.1500\n",
+                                       "\n 0.2  0.300 +- 0.010  +-10      0.2500\n",
+                                       "\n 0.3  0.400 +- 0.010  +5+-2.5   0.3500\n",
                                        "\nhalfspace: kappa 2.50 +- 0.10 (theory 1.5958)",
+                                       "\nErrors not known: cell.\n",
                                        "\nload: p/(E* h'_rms); area: A/A0", NULL});
     assert_null(strstr(text, "model %  ")); /* of one model nothing is known */
     assert_null(strstr(text, "light_load"));
@@ -95,7 +99,7 @@ static void few_cases_have_a_table_each(void **state) {
     /* beside a second model, which lacks values at the last load */
     add_areas(&study.cases[0], "full", "hencky", true);
     text = table_of(&study, NULL);
-    check_shown(text, (const char *[]){"halfspace  mesh %  model %", "full (hencky)  mesh %  model",
+    check_shown(text, (const char *[]){"halfspace  mesh %  ", "full (hencky)  mesh %   persson",
                                        "0.400 +- 0.010 (1 of 4)", "\n(n of N): only n of N",
                                        "a value at the load;", NULL});
     free(text);
@@ -116,7 +120,8 @@ static void many_cases_have_a_row_each(void **state) {
     char *text = table_of(&study, NULL);
     check_shown(
         text, (const char *[]){"\ncase  distribution  hurst  realisations     area at 0.1     "
-                               "area at 0.2     area at 0.3  mesh %  model %  ",
+                               "area at 0.2     area at 0.3         kappa",
+                               "\nErrors not known: cell.\n",
                                "\n   4  weibull_min     0.2             4  0.200 +- 0.010", NULL});
     check_shown(text, (const char *[]){
                           "\n   5  weibull_min     0.3             0               -   ", NULL});
@@ -125,7 +130,7 @@ static void many_cases_have_a_row_each(void **state) {
 }
 
 static const char HEADING[] = "\ncase  realisations  seconds  s/realisation  statistical %  "
-                              "discretisation %  model %  total %  s to halve\n";
+                              "discretisation %  total %  s to halve\n";
 
 /* The report of one case, made by hand: statistical, two sources, total. */
 static void a_report_tells_errors_by_source(void **state) {
@@ -134,12 +139,14 @@ static void a_report_tells_errors_by_source(void **state) {
         {.place = {.quantity = "contact_area", .series = "edges", .model = "layered", .level = 8},
          .seconds = 8,
          .statistical = 0.03,
-         .errors = {[ERROR_DISCRETISATION] = 0.04, [ERROR_MODEL] = NAN},
+         .errors = {0.04, NAN, NAN, NAN, NAN, NAN},
+         .applies = {[ERROR_DISCRETISATION] = true, [ERROR_BLOCK] = true},
          .total = 0.05,
          .valueless = 1},
         {.place =
              {.quantity = "contact_area", .series = "edges_upper", .model = "layered", .level = 8},
-         .seconds = 8},
+         .seconds = 8,
+         .errors = {0.04, NAN, NAN, NAN, NAN, NAN}},
     };
     struct case_report one = {.about = {.realisations = 4},
                               .seconds = 10,
@@ -157,7 +164,8 @@ static void a_report_tells_errors_by_source(void **state) {
     check_shown(text, (const char *[]){"pressed (done), study 12: cost, and relative errors",
                                        HEADING, "4 (3 of 4)       10            2.5              3",
                                        "case 0: contact_area by model, level and estimator\n",
-                                       "layered (3 of 4)      8  edges", "(n of N): ", NULL});
+                                       "layered (3 of 4)      8  edges",
+                                       "(n of N): ", "\nErrors not known: block.\n", NULL});
     assert_null(strstr(text, "upper")); /* a bracket is no estimate */
     free(text);
 }
