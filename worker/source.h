@@ -5,16 +5,9 @@
 
 #include "jobs/kind.h"
 #include "schema/store/store.h"
+#include "worker/source_options.h"
 
 struct source;
-struct source_options {
-    const char *database; /* exactly one of database and url is set */
-    const char *url;
-    const char *token;
-    const char *study; /* claims jobs of this study only; NULL: of any (store only) */
-    const char *worker, *host;
-    int64_t lease_ms; /* of jobs claimed here (store only); 0: the store's default */
-};
 int source_create(struct source **out, const struct source_options *options, struct error *err);
 void source_destroy(struct source **source);
 

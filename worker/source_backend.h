@@ -3,7 +3,8 @@
 #ifndef RUGO_WORKER_SOURCE_BACKEND_H
 #define RUGO_WORKER_SOURCE_BACKEND_H
 
-#include "worker/source.h"
+#include "schema/store/store.h"
+#include "worker/source_options.h"
 
 /* Each function does what the source_* function of its name does (source.h); self is what create
  * made. */

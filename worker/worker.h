@@ -8,21 +8,9 @@
 #ifndef RUGO_WORKER_WORKER_H
 #define RUGO_WORKER_WORKER_H
 
-#include "worker/source.h"
-#include <stdatomic.h>
+#include "core/error.h"
+#include "worker/worker_options.h"
 
-struct worker_options {
-    struct source_options
-        source;             /* worker and host may be NULL; "-N" of the thread is put behind */
-    unsigned threads;       /* at least 1 */
-    int drain;              /* end when no job is waiting and none is running */
-    const atomic_int *stop; /* non-zero: release the job at once and end; may be NULL */
-    /* Called from time to time on the caller's thread (twice a second); non-zero ends. May be NULL.
-     */
-    int (*tick)(void *context);
-    void *context;
-    int quiet; /* log warnings and errors only */
-};
 /* Returns when drained or stopped: 0, or ERROR_STOPPED; or the first error that cannot be waited
  * out. */
 int workers_run(const struct worker_options *options, struct error *err);

@@ -5,7 +5,7 @@
 
 #include "worker/lease_keeper.h"
 #include "worker/shared_parts.h"
-#include "worker/worker.h"
+#include "worker/worker_options.h"
 #include <pthread.h>
 #include <stdatomic.h>
 

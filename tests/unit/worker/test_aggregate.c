@@ -3,6 +3,7 @@
 #include "tests/support/result_tree.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/aggregate.h"
+#include "worker/source.h"
 #include "worker/worker.h"
 
 #include <math.h>
