@@ -6,6 +6,7 @@
 #include "schema/result/result.h"
 #include "schema/study/fault.h"
 #include "schema/study/study.h"
+#include "server/command/exit_status.h"
 #include "server/command/options.h"
 #include <signal.h>
 #include <stdatomic.h>
@@ -15,7 +16,6 @@
 #define DATABASE "rugo.db" /* where no other is named */
 #define SET_HELP "change the study, e.g. --set realisations=100"
 
-enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 enum { ARGUMENTS_MOST = 2, WORKERS_MOST = 4096, SECONDS_MOST = 31536000 };
 
 struct command {

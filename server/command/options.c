@@ -1,5 +1,5 @@
 #include "server/command/options.h"
-#include "server/command/command.h"
+#include "server/command/exit_status.h"
 #include <ctype.h>
 #include <errno.h>
 #include <getopt.h>

@@ -1,0 +1,7 @@
+/* How the program ends; what it tells the shell. */
+#ifndef RUGO_SERVER_COMMAND_EXIT_STATUS_H
+#define RUGO_SERVER_COMMAND_EXIT_STATUS_H
+
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
+
+#endif
