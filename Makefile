@@ -213,7 +213,7 @@ format:
 	@clang-format -i $(SOURCES)
 check-format:
 	@clang-format --dry-run --Werror $(SOURCES)
-lint: lint-deps check-format check-layers check-citations
+lint: lint-deps check-format check-layers check-circles check-citations
 	@printf '%s\n' $(filter %.c,$(SOURCES)) | \
 	    xargs -P $$(nproc) -I {} bash -o pipefail -c \
 	        "clang-tidy --quiet {} -- $(LANGUAGE) -Icore 2>&1 | sed '/^[0-9]* warnings* generated/d'"
@@ -248,7 +248,12 @@ endef
 $(foreach layer,$(LAYERS),$(eval $(call WHOLE,$(layer))))
 check-layers: $(patsubst %,$(BUILD)/whole-%,$(LAYERS))
 	@echo "layers: $(LAYERS): each links whole against those below"
-.PHONY: check-layers
+
+# No file includes itself by way of others, and the check of it notices one that does.
+check-circles:
+	@tests/check-circles --self-test
+	@tests/check-circles
+.PHONY: check-layers check-circles
 
 INSTALLED = $(bindir)/rugo $(libdir)/$(SHARED) $(libdir)/$(SONAME) $(libdir)/librugo.so $(libdir)/librugo.a \
             $(libdir)/pkgconfig/rugo.pc $(includedir)/rugo.h $(mandir)/man1/rugo.1 $(completion)/rugo
