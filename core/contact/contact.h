@@ -26,7 +26,8 @@ extern const struct contact_options CONTACT_DEFAULTS;
 struct contact_state {
     double pressure;   /* mean, in E* */
     const double *p;   /* grid_points, in E*; mean = pressure, 0 where open */
-    const double *gap; /* grid_points, at the nodes whatever the weighting; mean_gap is its mean */
+    const double *gap; /* grid_points, at the nodes whatever the weighting; mean_gap is its mean,
+                          in core/full over the face as pressed */
     const double *opening; /* grid_points: the weighted gap, which is 0 in contact */
     double mean_gap;       /* the grid's length */
     double stiffness;   /* -d pressure/d mean_gap, E* per length; INFINITY in full contact, 0 when

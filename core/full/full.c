@@ -1,4 +1,5 @@
 #include "core/full/full.h"
+#include "core/full/face.h"
 #include "core/sum.h"
 #include <float.h>
 #include <math.h>
@@ -292,26 +293,6 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
 
 /* --- results --- */
 
-/* Mean relative area of the cells around the nodes in contact. Each cell counts once for each of
- * its corners in contact: the integral of a shape function is the same for all corners where the
- * cell is a parallelogram, and nearly so elsewhere. */
-static double contact_stretch(const struct full *f) {
-    const struct mesh *m = f->mesh;
-    const bool *active = f->newton.active;
-    struct sum now = {0};
-    size_t corners = 0, nx = m->level[0].nx, ny = m->level[0].ny;
-    for (size_t j = 0; j < ny; j++)
-        for (size_t i = 0; i < nx; i++) {
-            size_t right = (i + 1) % nx, back = (j + 1) % ny;
-            int touching = active[j * nx + i] + active[j * nx + right];
-            if (m->dimension == 3)
-                touching += active[back * nx + i] + active[back * nx + right];
-            corners += (size_t)touching;
-            sum_add(&now, touching * mesh_stretch(m, f->newton.u, j, i));
-        }
-    return corners > 0 ? sum_value(&now) / (double)corners : NAN;
-}
-
 static double deepest_node(const struct full *f) {
     double deepest = 0;
     for (size_t node = 0; node < f->mesh->face; node++)
@@ -336,7 +317,7 @@ static void fill_report(const struct full *f, const struct newton_end *end,
     report->residual = end->residual;
     report->penetration = deepest_node(f) / height_scale(f);
     report->weighted_penetration = state->penetration;
-    report->stretch = contact_stretch(f);
+    report->stretch = face_contact_stretch(f->mesh, f->newton.u, f->newton.active);
     report->slope = f->mesh->slope;
     report->quality = f->mesh->quality;
     report->unchanged = end->unchanged;
@@ -348,10 +329,8 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
     struct newton *n = &f->newton;
     size_t face = f->mesh->face;
     newton_measure_gaps(n);
-    struct sum gap = {0};
     for (size_t node = 0; node < face; node++) {
         double force = n->force[mesh_vertical(f->mesh, node)];
-        sum_add(&gap, n->gap[node]);
         f->gap[node] = n->gap[node] * f->mesh->unit;
         f->opening[node] = n->opening[node] * f->mesh->unit;
         /* A node whose force is 0 within the tolerance is still in contact, which callers recognise
@@ -360,7 +339,7 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
         out->nodes += n->active[node];
     }
     double compliance = 0;
-    out->mean_gap = sum_value(&gap) / (double)face * f->mesh->unit;
+    out->mean_gap = newton_mean_gap(n) * f->mesh->unit;
     out->penetration = end->penetration / height_scale(f);
     out->violation = fmax(end->inside, end->penetration) / height_scale(f);
     out->stiffness = out->nodes == face ? INFINITY : 0;

@@ -6,7 +6,8 @@
  * model of the same block guesses which nodes touch at each load; the answer does not depend on it.
  * Pressures are contact forces over the nodes' tributary areas on the undeformed grid, so that
  * their mean equals the load exactly; full_report.stretch says how much the contact shrank or
- * stretched sideways. Contact of the face with itself is not modelled: a load under which the face
+ * stretched sideways. Mean gap and stiffness are of the face as it is under load (F14.6), unless
+ * strains are small. Contact of the face with itself is not modelled: a load under which the face
  * would fold has no equilibrium. No load step changes the area of a cell of the face by more than a
  * quarter, so that one load and many lead to the same answer, or fail at the same load to within a
  * few smallest steps. A solver belongs to one thread. The elastic state has no history, but the

@@ -1,4 +1,5 @@
 #include "core/full/newton.h"
+#include "core/full/face.h"
 #include "core/sum.h"
 #include <float.h>
 #include <math.h>
@@ -416,6 +417,15 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
     }
 }
 
+/* Displacements under which the face's cells change; NULL where strains are small. */
+static const double *face_displacement(const struct newton *n) {
+    return n->material.kinematics != KINEMATICS_SMALL ? n->u : NULL;
+}
+
+double newton_mean_gap(const struct newton *n) {
+    return face_mean_gap(n->mesh, face_displacement(n), n->gap);
+}
+
 int newton_compliance(struct newton *n, double *out, struct error *err) {
     const struct mesh *mesh = n->mesh;
     struct newton_end ignored = {0};
@@ -427,9 +437,7 @@ int newton_compliance(struct newton *n, double *out, struct error *err) {
             -newton_node_area(n) * (double)mesh->face;
         status = (factored ? solve_factored : solve_iterated)(n, LINEAR_STIFFNESS, &ignored, err);
     }
-    struct sum gap = {0};
-    for (size_t node = 0; status == 0 && node < mesh->face; node++)
-        sum_add(&gap, n->change[mesh_vertical(mesh, node)]);
-    *out = -sum_value(&gap) / (double)mesh->face;
+    if (status == 0)
+        *out = -face_mean_gap_change(n->mesh, face_displacement(n), n->gap, n->change);
     return status;
 }

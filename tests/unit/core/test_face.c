@@ -1,0 +1,142 @@
+/* Protects the volume between the deformed face and the flat: against the volume of the block,
+ * which fills the rest of the cell, and its change against differences. */
+#include "tests/support/check.h"
+
+#include "core/full/face.h"
+#include "core/random.h"
+#include "tests/support/block_volume.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct face_work {
+    struct mesh *mesh;
+    double *u, *change, *gap; /* gap: from `flat` */
+    double flat;
+};
+
+/* A quarter of a step at most, so that no cell folds; random, but the far side moves as one. */
+static void fill(const struct mesh *mesh, uint64_t seed, double *u) {
+    size_t n = mesh_degrees_of_freedom(mesh), far_side = mesh_far_side(mesh);
+    random_uniform((struct random_key){.seed = seed}, 0, 0, n, u);
+    for (size_t f = 0; f < n; f++)
+        u[f] = (u[f] - 0.5) / 2;
+    for (size_t node = far_side; node < mesh->nodes; node++)
+        u[mesh_vertical(mesh, node)] = u[mesh_vertical(mesh, far_side)];
+}
+
+static void measure_gap(struct face_work *w, double share) {
+    for (size_t node = 0; node < w->mesh->face; node++) {
+        size_t vertical = mesh_vertical(w->mesh, node);
+        w->gap[node] =
+            w->mesh->height[node] + w->u[vertical] + share * w->change[vertical] - w->flat;
+    }
+}
+
+static void open_face(struct face_work *w, struct grid grid, double transition) {
+    struct error err = {0};
+    struct block block = {.poisson = 0.3, .height = 9 * grid_dx(&grid), .layer_growth = 1.3};
+    *w = (struct face_work){.flat = -3};
+    if (mesh_create(&w->mesh, &grid, &block, transition, &err) != 0)
+        fail_msg("%s", err.text);
+    size_t n = mesh_degrees_of_freedom(w->mesh), face = w->mesh->face;
+    w->u = array_create(n, sizeof *w->u);
+    w->change = array_create(n, sizeof *w->change);
+    w->gap = array_create(face, sizeof *w->gap);
+    assert_true(w->u != NULL && w->change != NULL && w->gap != NULL);
+    for (size_t i = 0; i < face; i++)
+        w->gap[i] = 0.4 * sin(2 * (double)i);
+    if (mesh_shape(w->mesh, w->gap, &err) != 0)
+        fail_msg("%s", err.text);
+    fill(w->mesh, 21, w->u);
+    fill(w->mesh, 22, w->change);
+    measure_gap(w, 0);
+}
+
+static void close_face(struct face_work *w) {
+    mesh_destroy(&w->mesh);
+    free(w->u);
+    free(w->change);
+    free(w->gap);
+}
+
+static const struct {
+    struct grid grid;
+    double transition;
+} CASES[] = {{{16, 1, 1, 1}, INFINITY},
+             {{16, 1, 1, 1}, 1},
+             {{8, 8, 1, 1}, INFINITY},
+             {{8, 8, 1, 1}, 1},
+             {{8, 4, 1, 0.8}, INFINITY}};
+enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
+
+/* Gap and block fill the cell from the flat to the far side. Nothing but rounding may differ; over
+ * the undeformed cells the mean gap is another one. */
+static void gap_and_block_fill_the_cell(void **state) {
+    (void)state;
+    for (size_t c = 0; c < CASE_COUNT; c++) {
+        struct face_work w;
+        open_face(&w, CASES[c].grid, CASES[c].transition);
+        size_t far_side = mesh_far_side(w.mesh);
+        double area = (double)w.mesh->face * w.mesh->across;
+        double top = w.mesh->height[far_side] + w.u[mesh_vertical(w.mesh, far_side)];
+        double gap = top - w.flat - block_volume(w.mesh, w.u) / area, plain = 0;
+        check_relative(face_mean_gap(w.mesh, w.u, w.gap), gap, 1e-12);
+        for (size_t i = 0; i < w.mesh->face; i++)
+            plain += w.gap[i] / (double)w.mesh->face;
+        check_relative(face_mean_gap(w.mesh, NULL, w.gap), plain, 1e-12);
+        assert_true(fabs(gap - plain) > 1e-5);
+        close_face(&w);
+    }
+}
+
+/* The mean gap is a polynomial of at most third degree in the displacements: the difference over
+ * 2e-3 of the change is off by its third derivative, about 1e-6. */
+static void changes_are_those_of_differences(void **state) {
+    (void)state;
+    static const double SHARE = 1e-3;
+    for (size_t c = 0; c < CASE_COUNT; c++)
+        for (int deforms = 0; deforms < 2; deforms++) {
+            struct face_work w;
+            open_face(&w, CASES[c].grid, CASES[c].transition);
+            size_t n = mesh_degrees_of_freedom(w.mesh);
+            double *moved = array_create(n, sizeof *moved), at[2];
+            assert_non_null(moved);
+            double *u = deforms ? w.u : NULL;
+            double told = face_mean_gap_change(w.mesh, u, w.gap, w.change);
+            for (int side = 0; side < 2; side++) {
+                double share = side == 0 ? -SHARE : SHARE;
+                for (size_t f = 0; f < n; f++)
+                    moved[f] = w.u[f] + share * w.change[f];
+                measure_gap(&w, share);
+                at[side] = face_mean_gap(w.mesh, deforms ? moved : NULL, w.gap);
+            }
+            check_close(told, (at[1] - at[0]) / (2 * SHARE), 1e-6);
+            assert_true(fabs(told) > 1e-4);
+            free(moved);
+            close_face(&w);
+        }
+}
+
+/* Nodes 0 and 1 in contact; the cell between them shrinks by a half, and that to the left of node 0
+ * grows by as much: (1.5 + 2 x 0.5 + 1)/4. */
+static void stretch_is_of_the_cells_around_touching_nodes(void **state) {
+    (void)state;
+    struct face_work w;
+    bool active[16] = {true, true};
+    open_face(&w, CASES[0].grid, INFINITY);
+    memset(w.u, 0, mesh_degrees_of_freedom(w.mesh) * sizeof *w.u);
+    w.u[0] = 0.5;
+    check_close(face_contact_stretch(w.mesh, w.u, active), 3.5 / 4, 1e-15);
+    active[0] = active[1] = false;
+    assert_true(isnan(face_contact_stretch(w.mesh, w.u, active)));
+    close_face(&w);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gap_and_block_fill_the_cell),
+        cmocka_unit_test(changes_are_those_of_differences),
+        cmocka_unit_test(stretch_is_of_the_cells_around_touching_nodes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
