@@ -3,7 +3,7 @@
 
 void random_words(struct random_key key, enum random_stream stream, uint64_t first, size_t n,
                   uint64_t *words) {
-    philox4x64_key_t philox_key = {{key.seed, key.case_number}};
+    philox4x64_key_t philox_key = {{key.seed, key.sequence}};
     size_t done = 0;
     while (done < n) {
         uint64_t word = first + done;

@@ -1,8 +1,8 @@
 /* Counter-based random words: Philox4x64-10 (Salmon et al. 2011, from Random123).
  *
- * A realisation depends on (seed, case, realisation) alone. Word w of a stream equals raw word w of
- * numpy.random.Philox(key=[seed, case], counter=[0, stream, realisation, 0]): block w/4 + 1, since
- * NumPy counts before it draws. */
+ * A realisation depends on (seed, sequence, realisation) alone. Word w of a stream equals raw word
+ * w of numpy.random.Philox(key=[seed, sequence], counter=[0, stream, realisation, 0]): block w/4 +
+ * 1, since NumPy counts before it draws. */
 #ifndef RUGO_CORE_RANDOM_H
 #define RUGO_CORE_RANDOM_H
 
@@ -14,7 +14,7 @@ enum random_stream { STREAM_PHASES = 0, STREAM_HEIGHTS = 1, STREAM_HEIGHT_PHASES
 /* Selects random numbers. Plain data that may be copied. */
 struct random_key {
     uint64_t seed;
-    uint64_t case_number;
+    uint64_t sequence; /* 0; or the case's number, where cases share no random numbers */
     uint64_t realisation;
 };
 

@@ -135,13 +135,14 @@ RUGO_API int rugo_generator_create(struct rugo_generator **out,
                                    const struct rugo_surface_options *options,
                                    struct rugo_error *err);
 RUGO_API void rugo_generator_destroy(struct rugo_generator **generator);
-/* Fills z, nx*ny heights. The surface depends on (seed, case_number, realisation) alone, by counted
+/* Fills z, nx*ny heights. The surface depends on (seed, sequence, realisation) alone, by counted
  * random words (Salmon et al. 2011), with uniform phases (Wu 2000); a Gaussian one is the same on
- * every grid that resolves it. `rugo generate --case` counts the cases of a study. report: NULL
- * where not wanted. z is filled in place: what it holds after a failure has no meaning. */
-RUGO_API int rugo_generator_run(struct rugo_generator *generator, uint64_t seed,
-                                uint64_t case_number, uint64_t realisation, double *z,
-                                struct rugo_surface_report *report, struct rugo_error *err);
+ * every grid that resolves it. All cases of a study are of sequence 0; those of an independent
+ * study, of the sequence of their number. report: NULL where not wanted. z is filled in place: what
+ * it holds after a failure has no meaning. */
+RUGO_API int rugo_generator_run(struct rugo_generator *generator, uint64_t seed, uint64_t sequence,
+                                uint64_t realisation, double *z, struct rugo_surface_report *report,
+                                struct rugo_error *err);
 /* The map z of the grid `from`, sampled on the grid `to` of the same cell: exact for waves up to
  * mode_x, mode_y a cell, at most half the points of either grid; others are left out. Everything
  * that can fail does so before out is written, which may not overlap z. */

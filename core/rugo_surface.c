@@ -154,12 +154,12 @@ void rugo_generator_destroy(struct rugo_generator **generator) {
     *generator = NULL;
 }
 
-int rugo_generator_run(struct rugo_generator *generator, uint64_t seed, uint64_t case_number,
+int rugo_generator_run(struct rugo_generator *generator, uint64_t seed, uint64_t sequence,
                        uint64_t realisation, double *z, struct rugo_surface_report *report,
                        struct rugo_error *err) {
     struct error why = {0};
     struct surface_report told = {0};
-    const struct random_key key = {seed, case_number, realisation};
+    const struct random_key key = {seed, sequence, realisation};
     int status = generator_run(generator->generator, key, z, &told, &why);
     if (status == 0 && report != NULL)
         *report =

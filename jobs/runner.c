@@ -128,13 +128,13 @@ static int runner_fill(struct job_runner *runner, const cJSON *parameters,
 }
 
 int runner_create(struct job_runner **out, const struct job_kind *kind, const cJSON *parameters,
-                  const struct job_shared *shared, uint64_t seed, uint64_t case_number,
+                  const struct job_shared *shared, uint64_t seed, uint64_t sequence,
                   struct error *err) {
     struct job_runner *runner = array_create(1, sizeof *runner);
     if (runner == NULL)
         return error_memory(err, sizeof *runner, "a runner");
     runner->kind = kind;
-    runner->key = (struct random_key){seed, case_number, 0};
+    runner->key = (struct random_key){seed, sequence, 0};
     int status = runner_fill(runner, parameters, shared, err);
     if (status != 0)
         runner_destroy(&runner);

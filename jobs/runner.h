@@ -23,9 +23,9 @@ const void *job_shared_content(const struct job_shared *shared); /* the kind's s
 
 struct job_runner;
 /* Borrows shared, of the same parameters, as long as it lives; NULL where the kind shares nothing,
- * or for the runner to make its own. */
+ * or for the runner to make its own. seed and sequence: of the random numbers (core/random.h). */
 int runner_create(struct job_runner **out, const struct job_kind *kind, const cJSON *parameters,
-                  const struct job_shared *shared, uint64_t seed, uint64_t case_number,
+                  const struct job_shared *shared, uint64_t seed, uint64_t sequence,
                   struct error *err);
 void runner_destroy(struct job_runner **runner);
 /* Runs realisations first .. first + count - 1 into out (untouched on failure), the caller's to

@@ -38,7 +38,8 @@ cJSON *wire_claim(const struct claim *claim) {
         value, value != NULL && field_put_text(value, "worker", claim->worker) &&
                    field_put_text(value, "host", claim->host != NULL ? claim->host : "") &&
                    (claim->kinds == NULL || field_put(value, "kinds", texts(claim->kinds))) &&
-                   field_put_count(value, "count", claim->count));
+                   field_put_count(value, "count", claim->count) &&
+                   field_put(value, "sequence", cJSON_CreateBool(!claim->independent_only)));
 }
 
 static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
@@ -72,6 +73,7 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
         status = field_count(value, "count", &count, err);
     if (status != 0)
         return status;
+    claim.independent_only = !cJSON_IsTrue(field_at(value, "sequence"));
     claim.count = count < WIRE_JOBS_MOST ? (size_t)count : WIRE_JOBS_MOST;
     memcpy(out->kinds, kinds, sizeof kinds);
     claim.kinds = field_at(value, "kinds") != NULL ? out->kinds : NULL;
@@ -89,6 +91,7 @@ static cJSON *wire_job(const struct claimed_job *job) {
         value != NULL && field_put(value, "id", cJSON_CreateNumber((double)job->id)) &&
         field_put_text(value, "study", job->study) && field_put_text(value, "kind", job->kind) &&
         field_put_count(value, "case", job->case_number) && field_put_text(value, "seed", seed) &&
+        field_put_count(value, "sequence", job->sequence) &&
         field_put_count(value, "first", job->first) &&
         field_put_count(value, "count", job->count) &&
         field_put_count(value, "attempt", job->attempt) &&
@@ -117,6 +120,9 @@ static int read_numbers(const cJSON *value, struct claimed_job *job, struct erro
     job->id = (int64_t)id;
     status = status != 0 ? status : field_count(value, "case", &job->case_number, err);
     status = status != 0 ? status : read_seed(value, &job->seed, err);
+    job->sequence = job->case_number;
+    if (status == 0 && field_at(value, "sequence") != NULL)
+        status = field_count(value, "sequence", &job->sequence, err);
     status = status != 0 ? status : field_count(value, "first", &job->first, err);
     status = status != 0 ? status : field_count(value, "count", &job->count, err);
     status = status != 0 ? status : field_count(value, "attempt", &job->attempt, err);

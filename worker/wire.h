@@ -1,19 +1,18 @@
 /* Jobs and results as they cross the network between worker and server: one encoder and one decoder
  * for both ends, so that they cannot disagree.
  *
- *     POST /v1/jobs/claim            {worker, host, kinds: […], count}
- *       200 {"jobs": [{id, study, kind, case, seed: "decimal", first, count, attempt, token,
- *                      lease_seconds, parameters: {…}}]}, or 204 when there is none
- *     POST /v1/jobs/{id}/heartbeat   {token, done}                      200 {}
- *     POST /v1/jobs/{id}/complete    {token, seconds, first, count,
- *                                     scalars: {names: […], rows: [[…]]}, data: base64}
- *                                                                       200 {"case_done": bool}
- *     POST /v1/jobs/{id}/fail        {token, reason, permanent}         200 {}
- *     POST /v1/jobs/{id}/release     {token}                            200 {}
+ *     POST /v1/jobs/claim            {worker, host, kinds: […], count, sequence: true}
+ *       200 {"jobs": [{id, study, kind, case, seed: "decimal", sequence, first, count, attempt,
+ * token, lease_seconds, parameters: {…}}]}, or 204 when there is none POST /v1/jobs/{id}/heartbeat
+ * {token, done}                      200 {} POST /v1/jobs/{id}/complete    {token, seconds, first,
+ * count, scalars: {names: […], rows: [[…]]}, data: base64} 200 {"case_done": bool} POST
+ * /v1/jobs/{id}/fail        {token, reason, permanent}         200 {} POST /v1/jobs/{id}/release
+ * {token}                            200 {}
  *
  * Numbers read back as the same doubles, NaN crosses as null. Unknown fields are passed over, so
- * that a newer end can talk to an older one. Encoders give NULL when out of memory. Readers give
- * ERROR_INPUT with the field at fault and leave *out untouched. */
+ * that a newer end can talk to an older one: a claim without "sequence" is of a worker that draws
+ * by the number of the case, and a job without it is of a study that wants that. Encoders give NULL
+ * when out of memory. Readers give ERROR_INPUT with the field at fault and leave *out untouched. */
 #ifndef RUGO_WORKER_WIRE_H
 #define RUGO_WORKER_WIRE_H
 

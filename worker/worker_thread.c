@@ -68,7 +68,7 @@ static int runner_prepare(struct worker_thread *thread, const struct claimed_job
                                    job->parameters, &thread->part, err);
     if (status == 0)
         status = runner_create(&thread->runner, kind, job->parameters,
-                               shared_part_content(thread->part), job->seed, job->case_number, err);
+                               shared_part_content(thread->part), job->seed, job->sequence, err);
     if (status != 0) {
         runner_drop(thread);
     } else {

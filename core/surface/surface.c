@@ -89,8 +89,8 @@ double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
     return bytes;
 }
 
-/* Words of a row are numbered by its wave vectors alone, so that a finer grid draws the same ones.
- */
+/* Words of a row are numbered by its wave vectors alone (in units of 2 pi/L), so that a wave has
+ * the same phase on every grid and in every spectrum of the same cell. */
 static uint64_t row_first_word(long my) {
     uint64_t zigzag = my >= 0 ? 2 * (uint64_t)my : 2 * (uint64_t)-my - 1;
     return zigzag << 32;

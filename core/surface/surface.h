@@ -1,7 +1,10 @@
 /* Random rough surfaces with a prescribed spectrum and height distribution.
  *
- * A generator is made once a case and used for every realisation of it; one thread each. The same
- * realisation on a finer grid is the same surface: phases belong to wave vectors, not to points. */
+ * A generator is made once a case and used for every realisation of it; one thread each. Phases
+ * belong to wave numbers in units of 2 pi/L, not to points: the same realisation on a finer grid is
+ * the same surface, one of other amplitudes (H, scale) has the same phases, and one of shorter
+ * waves has those of the longer ones too. Target heights are quantiles of the same uniform numbers,
+ * as many as the grid has points. */
 #ifndef RUGO_CORE_SURFACE_SURFACE_H
 #define RUGO_CORE_SURFACE_SURFACE_H
 

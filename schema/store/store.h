@@ -43,8 +43,9 @@ int store_submit(struct store *store, const struct study *study, const char *key
 
 struct study_status {
     char id[STUDY_ID_SIZE];
-    char *name, *kind;                  /* owned */
-    const char *state;                  /* static: queued running done failed cancelled */
+    char *name, *kind; /* owned */
+    const char *state; /* static: queued running done failed cancelled */
+    enum study_random random;
     uint64_t seed, cases, realisations; /* realisations of each case */
     uint64_t jobs, jobs_done, jobs_failed, jobs_running, jobs_waiting, jobs_cancelled;
     uint64_t cases_failed; /* whose results cannot be published */
@@ -83,7 +84,8 @@ struct claimed_job {
     char study[STUDY_ID_SIZE], token[TOKEN_SIZE]; /* token: the fence of this lease */
     char *kind;                                   /* owned */
     cJSON *parameters;                            /* owned: of the case, as it was checked */
-    uint64_t seed, case_number, first, count, attempt;
+    uint64_t seed, sequence;                      /* of the random numbers (core/random.h) */
+    uint64_t case_number, first, count, attempt;
     int64_t lease_ms;
 };
 void claimed_job_clear(struct claimed_job *job);
@@ -93,6 +95,9 @@ struct claim {
     const char *const *kinds;  /* NULL-terminated; NULL: any */
     const char *study;         /* only this study; NULL: any */
     size_t count;              /* at most */
+    /* The worker is of a program that draws by the number of the case, whatever the sequence: it
+     * may have studies of independent cases, or of one case, alone. */
+    bool independent_only;
 };
 /* Hands out waiting jobs and those whose lease ran out (which count an attempt; the last failed
  * attempt fails the job with "lease ran out ..."). Oldest study first. *count may be 0. */

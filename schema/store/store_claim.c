@@ -35,24 +35,31 @@ static bool is_wanted(const char *const *kinds, const char *kind) {
     return !kinds;
 }
 
+struct found_study {
+    int64_t id;
+    bool queued;
+    enum study_random random;
+};
+
 /* The oldest study with a job that waits and is wanted; only: 0, or the one that may be. Fills
  * job's study, kind and seed. 1, or 0 when there is none. */
-static int find_study(struct store *store, const struct claim *claim, int64_t only, int64_t *study,
-                      bool *queued, struct claimed_job *job, struct error *err) {
+static int find_study(struct store *store, const struct claim *claim, int64_t only,
+                      struct found_study *found, struct claimed_job *job, struct error *err) {
     sqlite3_stmt *row = NULL;
     int status =
         store_query(store, &row, err,
-                    "SELECT id, public, kind, seed, state = 'queued' FROM study WHERE state IN "
-                    "('queued', 'running') AND jobs_waiting > 0 AND (?1 = 0 OR id = ?1) "
-                    "ORDER BY id",
-                    "i", only);
+                    "SELECT id, public, kind, seed, state = 'queued', random FROM study WHERE "
+                    "state IN ('queued', 'running') AND jobs_waiting > 0 AND (?1 = 0 OR id = ?1) "
+                    "AND (NOT ?2 OR random = 'independent' OR cases = 1) ORDER BY id",
+                    "ii", only, (int64_t)claim->independent_only);
     while (status == 0 && (status = store_step(store, row, err)) == 1) {
         const char *kind = (const char *)sqlite3_column_text(row, 2);
         status = 0;
         if (!is_wanted(claim->kinds, kind))
             continue;
-        *study = sqlite3_column_int64(row, 0);
-        *queued = sqlite3_column_int(row, 4);
+        *found = (struct found_study){.id = sqlite3_column_int64(row, 0),
+                                      .queued = sqlite3_column_int(row, 4),
+                                      .random = column_random(row, 5)};
         snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 1));
         job->seed = strtoull((const char *)sqlite3_column_text(row, 3), NULL, 10);
         job->kind = strdup(kind);
@@ -64,14 +71,14 @@ static int find_study(struct store *store, const struct claim *claim, int64_t on
 }
 
 /* Leases the study's first job that waits. */
-static int lease_job(struct store *store, const struct claim *claim, int64_t study,
-                     struct claimed_job *job, struct error *err) {
+static int lease_job(struct store *store, const struct claim *claim,
+                     const struct found_study *study, struct claimed_job *job, struct error *err) {
     sqlite3_stmt *row = NULL;
     int status =
         store_query(store, &row, err,
                     "SELECT id, case_number, first, count, attempts + 1 FROM job WHERE state = "
                     "'waiting' AND study_id = ? ORDER BY id LIMIT 1",
-                    "i", study);
+                    "i", study->id);
     if (status == 0)
         status = store_step(store, row, err);
     if (status == 0)
@@ -81,6 +88,7 @@ static int lease_job(struct store *store, const struct claim *claim, int64_t stu
         return status;
     job->id = sqlite3_column_int64(row, 0);
     job->case_number = (uint64_t)sqlite3_column_int64(row, 1);
+    job->sequence = study_sequence(study->random, job->case_number);
     job->first = (uint64_t)sqlite3_column_int64(row, 2);
     job->count = (uint64_t)sqlite3_column_int64(row, 3);
     job->attempt = (uint64_t)sqlite3_column_int64(row, 4);
@@ -115,30 +123,29 @@ static int copy_parameters(struct store *store, int64_t study, struct claimed_jo
 }
 
 /* The counters change with every claim; the state only with the first, as it is indexed. */
-static int count_claim(struct store *store, int64_t study, bool queued, struct error *err) {
+static int count_claim(struct store *store, const struct found_study *study, struct error *err) {
     int status = store_run(store, err,
                            "UPDATE study SET jobs_waiting = jobs_waiting - 1, jobs_running = "
                            "jobs_running + 1, revision = revision + 1 WHERE id = ?",
-                           "i", study);
-    if (status == 0 && queued)
-        status =
-            store_run(store, err, "UPDATE study SET state = 'running' WHERE id = ?", "i", study);
+                           "i", study->id);
+    if (status == 0 && study->queued)
+        status = store_run(store, err, "UPDATE study SET state = 'running' WHERE id = ?", "i",
+                           study->id);
     return status;
 }
 
 /* 1 and a job, or 0 when nothing waits. */
 static int claim_one(struct store *store, const struct claim *claim, int64_t only,
                      struct claimed_job *job, struct error *err) {
-    int64_t study = 0;
-    bool queued = false;
-    int status = find_study(store, claim, only, &study, &queued, job, err);
+    struct found_study study = {0};
+    int status = find_study(store, claim, only, &study, job, err);
     if (status <= 0)
         return status;
-    status = lease_job(store, claim, study, job, err);
+    status = lease_job(store, claim, &study, job, err);
     if (status == 0)
-        status = count_claim(store, study, queued, err);
+        status = count_claim(store, &study, err);
     if (status == 0)
-        status = copy_parameters(store, study, job, err);
+        status = copy_parameters(store, study.id, job, err);
     return status != 0 ? status : 1;
 }
 

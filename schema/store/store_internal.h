@@ -53,6 +53,8 @@ const char *store_time(struct store *store);
 int random_text(char *text, size_t digits,
                 struct error *err); /* hex digits from the kernel, NUL-terminated */
 char *column_copy(sqlite3_stmt *statement, int column); /* "" for NULL; NULL out of memory */
+/* How the study of this row draws its random numbers. */
+enum study_random column_random(sqlite3_stmt *row, int column);
 /* Reads a JSON text that this program stored, whatever its size; caller deletes *out. */
 int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 

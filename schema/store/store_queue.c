@@ -142,10 +142,11 @@ int store_release(struct store *store, int64_t job, const char *token, struct er
 static int copy_study(struct store *store, int64_t study, struct claimed_job *job,
                       struct error *err) {
     sqlite3_stmt *row = NULL;
-    int status = store_query(store, &row, err,
-                             "SELECT s.public, s.kind, s.seed, c.parameters FROM study s JOIN "
-                             "study_case c ON c.study_id = s.id WHERE s.id = ? AND c.number = ?",
-                             "ii", study, (int64_t)job->case_number);
+    int status =
+        store_query(store, &row, err,
+                    "SELECT s.public, s.kind, s.seed, c.parameters, s.random FROM study s JOIN "
+                    "study_case c ON c.study_id = s.id WHERE s.id = ? AND c.number = ?",
+                    "ii", study, (int64_t)job->case_number);
     if (status == 0)
         status = store_step(store, row, err);
     if (status <= 0)
@@ -155,6 +156,7 @@ static int copy_study(struct store *store, int64_t study, struct claimed_job *jo
     snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 0));
     job->kind = column_copy(row, 1);
     job->seed = strtoull((const char *)sqlite3_column_text(row, 2), NULL, 10);
+    job->sequence = study_sequence(column_random(row, 4), job->case_number);
     status = column_json(row, 3, &job->parameters, err);
     sqlite3_reset(row);
     return job->kind != NULL || status != 0 ? status : error_memory(err, 0, "a job's kind");

@@ -67,6 +67,12 @@ char *column_copy(sqlite3_stmt *statement, int column) {
     return strdup(text != NULL ? (const char *)text : "");
 }
 
+enum study_random column_random(sqlite3_stmt *row, int column) {
+    const char *name = (const char *)sqlite3_column_text(row, column);
+    const struct choice *choice = choice_find(STUDY_RANDOM, name);
+    return choice != NULL ? (enum study_random)choice->value : RANDOM_INDEPENDENT;
+}
+
 int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err) {
     static const struct json_limits limits = {.bytes = SIZE_MAX, .depth = 32, .values = SIZE_MAX};
     bool held = sqlite3_column_type(row, column) != SQLITE_NULL;

@@ -65,13 +65,14 @@ static int insert_study(struct store *store, const struct study *study, const ch
         jobs += blocks_of(study, &study->cases[c]);
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
-    int status = store_run(store, err,
-                           "INSERT INTO study (public, name, kind, seed, realisations, submit_key, "
-                           "state, cases, jobs, "
-                           "jobs_waiting, created) VALUES (?, ?, ?, ?, ?, ?, 'queued', ?, ?, ?, ?)",
-                           "ttttitiiit", id, study->name, study->kind->name, seed,
-                           (int64_t)study->realisations, key, (int64_t)study->case_count,
-                           (int64_t)jobs, (int64_t)jobs, store_time(store));
+    int status =
+        store_run(store, err,
+                  "INSERT INTO study (public, name, kind, seed, random, realisations, "
+                  "submit_key, state, cases, jobs, jobs_waiting, created) VALUES "
+                  "(?, ?, ?, ?, ?, ?, ?, 'queued', ?, ?, ?, ?)",
+                  "tttttitiiit", id, study->name, study->kind->name, seed,
+                  choice_name(STUDY_RANDOM, (int)study->random), (int64_t)study->realisations, key,
+                  (int64_t)study->case_count, (int64_t)jobs, (int64_t)jobs, store_time(store));
     int64_t row = sqlite3_last_insert_rowid(store->db);
     if (status == 0)
         status = store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",
@@ -138,7 +139,7 @@ static const char *state_name(const unsigned char *text) {
     "(SELECT coalesce(sum(reported), 0) FROM job WHERE state = 'running' AND study_id = "          \
     "study.id), "                                                                                  \
     "(SELECT count(DISTINCT worker) FROM job WHERE state = 'running' AND study_id = study.id), "   \
-    "cases_failed"
+    "cases_failed, random"
 
 static uint64_t column_count(sqlite3_stmt *row, int column) {
     return (uint64_t)sqlite3_column_int64(row, column);
@@ -172,6 +173,7 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     column_time(row, 18, out->finished);
     out->workers = column_count(row, 21);
     out->cases_failed = column_count(row, 22);
+    out->random = column_random(row, 23);
     if (out->name == NULL || out->kind == NULL)
         return error_memory(err, 0, "a study's name");
     return 0;

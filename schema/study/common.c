@@ -3,6 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+const struct choice STUDY_RANDOM[] = {
+    {"common", RANDOM_COMMON}, {"independent", RANDOM_INDEPENDENT}, {0}};
+
+uint64_t study_sequence(enum study_random random, uint64_t case_number) {
+    return random == RANDOM_COMMON ? 0 : case_number;
+}
+
 static const struct parameter ROWS[] = {
     {.path = "/name",
      .type = PARAMETER_TEXT,
@@ -24,6 +31,13 @@ static const struct parameter ROWS[] = {
      .example_json = "\"18446744073709551615\"",
      .help = "of all random numbers: the same study and seed give the same results, to the bit; "
              "seeds above 2^53, up to 2^64 - 1, are written as a decimal string"},
+    {.path = "/random",
+     .type = PARAMETER_CHOICE,
+     .choices = STUDY_RANDOM,
+     .default_json = "\"common\"",
+     .example_json = "\"independent\"",
+     .help = "whether all cases are made of the same random numbers, so that what differs between "
+             "them is no chance and their errors go together, or each case of its own"},
     {.path = "/realisations",
      .type = PARAMETER_INTEGER,
      .minimum = 1,
@@ -55,7 +69,9 @@ static bool asks_for_error(const cJSON *realisations, struct fault_list *faults)
 static int take(struct study *study, const struct parameter *row, const cJSON *value,
                 const struct study_kind *const *kinds, struct error *err) {
     uint64_t seed = 0;
-    if (row->type == PARAMETER_CHOICE) {
+    if (strcmp(row->path, "/random") == 0) {
+        study->random = (enum study_random)choice_find(row->choices, value->valuestring)->value;
+    } else if (row->type == PARAMETER_CHOICE) {
         study->kind = kinds[choice_find(row->choices, value->valuestring)->value];
     } else if (row->type == PARAMETER_INTEGER) {
         study->realisations = (uint64_t)value->valuedouble;
@@ -97,7 +113,7 @@ int common_read(struct study *study, const cJSON *document, const struct study_k
     int status = 0;
     for (size_t p = 0; status == 0 && p < COMMON_PARAMETERS.count; p++) {
         struct parameter row = COMMON_PARAMETERS.rows[p];
-        if (row.type == PARAMETER_CHOICE)
+        if (row.type == PARAMETER_CHOICE && row.choices == NULL)
             row.choices = choices;
         status = read_row(study, &row, document, kinds, faults, err);
     }

@@ -1,4 +1,4 @@
-/* What every study has, whatever its kind: name, kind, seed, realisations. */
+/* What every study has, whatever its kind: name, kind, seed, random, realisations. */
 #ifndef RUGO_SCHEMA_STUDY_COMMON_H
 #define RUGO_SCHEMA_STUDY_COMMON_H
 

@@ -232,7 +232,7 @@ static cJSON *common_schema(const struct study_kind *const *kinds) {
     bool complete = schema != NULL && choices != NULL;
     for (size_t p = 0; complete && p < COMMON_PARAMETERS.count; p++) {
         struct parameter row = COMMON_PARAMETERS.rows[p];
-        if (row.type == PARAMETER_CHOICE)
+        if (row.type == PARAMETER_CHOICE && row.choices == NULL)
             row.choices = choices;
         complete = place(schema, &row);
     }

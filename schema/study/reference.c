@@ -226,8 +226,16 @@ static const char INTRODUCTION[] =
     "**Realisations.** Each case is computed on so many random surfaces; curves are their means, "
     "with standard errors that fall with\nthe root of their number. Realisation r of a case is the "
     "same surface whatever the number of realisations and workers.\n\n"
-    "**Seed.** All random numbers follow from the seed, the case and the realisation: the same "
-    "study gives the same results, to the bit.\n\n"
+    "**Random numbers.** All follow from the seed and the realisation: the same study gives the "
+    "same results, to the bit. Realisation\nr of every case is made of the same random numbers, "
+    "and "
+    "a wave has the same phase in every case that has it, counted by its wave\nnumber in units of "
+    "2 "
+    "pi/L. So cases that differ in `/contact` alone see the same surfaces, and cases that differ "
+    "in "
+    "`hurst`, `shape`,\nscale or `wavelength_ratio` surfaces of the same phases: what differs "
+    "between cases is no chance, and their errors go together.\nWith `\"random\": "
+    "\"independent\"` each case has random numbers of its own.\n\n"
     "Lengths are in units of lambda_s, the shortest wavelength. `-` as a unit: a pure number or "
     "none; as a default: absent unless given.\n";
 

@@ -9,6 +9,13 @@
 #include "schema/study/parameter.h"
 #include <stdint.h>
 
+/* Whether the cases of a study are made of the same random numbers, so that they can be compared
+ * realisation by realisation and their errors go together, or each of its own. */
+enum study_random { RANDOM_COMMON, RANDOM_INDEPENDENT };
+extern const struct choice STUDY_RANDOM[];
+/* The sequence of random numbers (core/random.h) that a case is made of. */
+uint64_t study_sequence(enum study_random random, uint64_t case_number);
+
 /* What a case costs; rough, before anything ran. */
 struct study_cost {
     size_t nx, ny;         /* grid of one realisation (the finest) */
@@ -37,6 +44,7 @@ struct study {
     char *name;
     const struct study_kind *kind; /* borrowed from the caller's table */
     uint64_t seed;
+    enum study_random random;
     uint64_t realisations; /* of each case */
     size_t case_count;
     struct study_case *cases;

@@ -78,6 +78,8 @@ static cJSON *progress(const struct study_status *status, bool *complete) {
                 field_put(document, "kind", cJSON_CreateString(status->kind)) &&
                 field_put(document, "state", cJSON_CreateString(status->state)) &&
                 field_put(document, "seed", cJSON_CreateString(seed)) &&
+                field_put(document, "random",
+                          cJSON_CreateString(choice_name(STUDY_RANDOM, (int)status->random))) &&
                 field_put_count(document, "cases", status->cases) &&
                 field_put_count(document, "cases_failed", status->cases_failed) &&
                 put_jobs(document, status) && put_realisations(document, status) &&

@@ -149,12 +149,13 @@ static int generate(const struct generate_order *order, const struct study *stud
     struct surface_case surface;
     struct surface_report report = {0};
     struct generator *generator = NULL;
-    const struct random_key key = {study->seed, (uint64_t)order->options->case_number,
+    const uint64_t case_number = (uint64_t)order->options->case_number;
+    const struct random_key key = {study->seed, study_sequence(study->random, case_number),
                                    (uint64_t)order->options->realisation};
-    if (key.case_number >= study->case_count)
+    if (case_number >= study->case_count)
         return error_set(err, ERROR_INPUT, "there is no case %lld: the study has %zu",
                          (long long)order->options->case_number, study->case_count);
-    int status = surface_case_read(&surface, study->cases[key.case_number].parameters, NULL, err);
+    int status = surface_case_read(&surface, study->cases[case_number].parameters, NULL, err);
     if (status != 0)
         return status;
     double *z = array_create(grid_points(&surface.grid), sizeof *z);

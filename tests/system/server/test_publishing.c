@@ -72,8 +72,9 @@ static void submit(const char *url, const char *file, char id[32]) {
 /* Claims the first job that waits and fails it for good. */
 static void fail_one_job(unsigned port) {
     char path[64], body[128], *answer = NULL;
-    assert_int_equal(
-        http_exchange(port, "POST", "/v1/jobs/claim", JSON, "{\"worker\":\"w\"}", &answer), 200);
+    assert_int_equal(http_exchange(port, "POST", "/v1/jobs/claim", JSON,
+                                   "{\"worker\":\"w\",\"sequence\":true}", &answer),
+                     200);
     cJSON *document = cJSON_Parse(answer);
     const cJSON *job = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "jobs"), 0);
     assert_non_null(job);

@@ -1,5 +1,5 @@
 /* Protects: a generated surface has exactly the spectrum asked for, and is the same surface on
- * every grid, in every process, for one seed, case and realisation. */
+ * every grid, in every process, for one seed, sequence and realisation. */
 #include "core/surface/surface.h"
 #include "core/surface/transform.h"
 #include "tests/support/check.h"
@@ -76,6 +76,70 @@ static void finer_grid_is_the_same_surface(void **state) {
     free(sampled);
 }
 
+/* The surface's mode (mx, my) by its phase alone. */
+static double complex phase_of(struct transform *transform, const struct grid *grid, size_t mx,
+                               long my) {
+    size_t row = my >= 0 ? (size_t)my : grid->ny - (size_t)-my;
+    double complex mode = transform_spectrum(transform)[mx * grid->ny + row];
+    return mode / cabs(mode);
+}
+
+/* Draws the surface of key {7, 0, 4} and leaves its spectrum in *transform. */
+static void draw_spectrum(const struct spectrum *spectrum, const struct grid *grid,
+                          struct generator **generator, struct transform **transform) {
+    double *z = generate(spectrum, grid, (struct random_key){7, 0, 4}, generator);
+    const struct modes *modes = generator_modes(*generator);
+    assert_int_equal(transform_create(transform, grid, modes->mode_x, modes->mode_y, NULL), 0);
+    transform_forward(*transform, z);
+    free(z);
+}
+
+/* What lets cases of a study be compared realisation by realisation: a wave that two of them have,
+ * counted by its wave number in units of 2 pi/L, has one phase, to rounding. The first spectrum has
+ * waves of numbers 4 to 16 on a cell of 4 long waves. */
+static void a_wave_keeps_its_phase_in_other_spectra(void **state) {
+    (void)state;
+    struct spectrum rough = self_affine(4), steep = self_affine(4), fine = self_affine(8);
+    struct spectrum rolled = self_affine(4);
+    rough.hurst = 0.2;
+    steep.scale = SCALE_RMS_SLOPE;
+    steep.scale_value = 3;
+    rolled.wavelength_rolloff = 2;
+    const struct {
+        const struct spectrum *spectrum;
+        double length;
+    } others[] = {{&rough, 16}, {&steep, 16}, {&rolled, 16}, {&fine, 32}};
+    const struct spectrum first = self_affine(4);
+    for (int dimension = 1; dimension <= 2; dimension++)
+        for (size_t n = 0; n < sizeof others / sizeof *others; n++) {
+            double length = others[n].length;
+            struct grid grid = {64, 48, 16, 16}, other = {128, 150, length, length};
+            struct generator *a = NULL, *b = NULL;
+            struct transform *one = NULL, *two = NULL;
+            size_t common = 0;
+            if (dimension == 1)
+                grid.ny = other.ny = 1;
+            draw_spectrum(&first, &grid, &a, &one);
+            draw_spectrum(others[n].spectrum, &other, &b, &two);
+            const struct modes *modes = generator_modes(a);
+            for (size_t mx = 0; mx <= modes->mode_x; mx++)
+                for (long my = -(long)modes->mode_y; my <= (long)modes->mode_y; my++) {
+                    if (modes_power(modes, mx, my) == 0)
+                        continue;
+                    assert_true(modes_power(generator_modes(b), mx, my) > 0);
+                    double complex gap =
+                        phase_of(one, &grid, mx, my) - phase_of(two, &other, mx, my);
+                    check_close(cabs(gap), 0, 1e-9);
+                    common++;
+                }
+            assert_true(common == (dimension == 1 ? 13 : common) && common >= 13);
+            transform_destroy(&one);
+            transform_destroy(&two);
+            generator_destroy(&a);
+            generator_destroy(&b);
+        }
+}
+
 static void realisation_depends_on_its_key_alone(void **state) {
     (void)state;
     const struct grid grid = {48, 40, 8, 8};
@@ -117,6 +181,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spectrum_is_exact),
         cmocka_unit_test(finer_grid_is_the_same_surface),
+        cmocka_unit_test(a_wave_keeps_its_phase_in_other_spectra),
         cmocka_unit_test(realisation_depends_on_its_key_alone),
         cmocka_unit_test(one_mode_is_one_wave),
     };

@@ -43,6 +43,13 @@ static void submit(struct store *store, int realisations, const char *key, char 
     study_destroy(&study);
 }
 
+static struct study *read_study(const char *text) {
+    struct study *study = NULL;
+    struct fault_list faults = {0};
+    assert_int_equal(study_read(&study, text, strlen(text), NULL, FAKE_KINDS, 0, &faults, NULL), 0);
+    return study;
+}
+
 static size_t claim(struct store *store, const char *worker, struct claimed_job *job) {
     struct claim claim = {.worker = worker, .host = "here", .count = 1};
     size_t count = 0;
@@ -523,8 +530,54 @@ static void processes_share_a_file(void **state) {
                "200/200/running");
 }
 
+/* Cases of a study that shares random numbers are of sequence 0, others of their own number,
+ * whoever asks: a claim, or the check of a result. A worker of a program that draws by the case
+ * alone gets no job of the former. */
+static void jobs_tell_their_sequence(void **state) {
+    (void)state;
+    static const char *const RANDOM[] = {"common", "independent"};
+    struct store *store = open_store("sequence.db");
+    for (uint64_t n = 0; n < 2; n++) {
+        char text[200], id[STUDY_ID_SIZE];
+        snprintf(text, sizeof text,
+                 "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":10,\"seconds\":6,"
+                 "\"random\":\"%s\",\"box\":{\"width\":[0.5,1]}}",
+                 RANDOM[n]);
+        struct study *study = read_study(text);
+        struct study_status now = {0};
+        assert_int_equal(store_submit(store, study, NULL, id, NULL, NULL), 0);
+        assert_int_equal(store_status(store, id, &now, NULL), 0);
+        assert_int_equal(now.random, study->random);
+        study_status_clear(&now);
+        study_destroy(&study);
+    }
+    for (uint64_t n = 0; n < 4; n++) {
+        /* the last two jobs of the store first */
+        const struct claim asked = {
+            .worker = "w", .host = "here", .count = 1, .independent_only = n < 2};
+        struct claimed_job job = {0}, same = {0};
+        size_t count = 0;
+        assert_int_equal(store_claim(store, &asked, &job, &count, NULL), 0);
+        assert_int_equal(count, 1);
+        assert_int_equal(job.case_number, n % 2);
+        assert_int_equal(job.sequence, n < 2 ? n : 0);
+        assert_int_equal(store_job(store, job.id, job.token, &same, NULL), 0);
+        assert_int_equal(same.sequence, job.sequence);
+        claimed_job_clear(&job);
+        claimed_job_clear(&same);
+        if (n == 1) {
+            assert_int_equal(store_claim(store, &asked, &job, &count, NULL), 0);
+            assert_int_equal(count, 0); /* what waits is not for this worker */
+        }
+    }
+    check_text("sequence.db", "SELECT group_concat(random) FROM study_progress",
+               "common,independent");
+    store_close(&store);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(jobs_tell_their_sequence),
         cmocka_unit_test(a_study_runs_to_its_end),
         cmocka_unit_test(leases_run_out_and_fence),
         cmocka_unit_test(three_attempts_then_failed_with_its_reason),

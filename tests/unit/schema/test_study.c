@@ -34,6 +34,10 @@ static void faults_are_told_with_pointer_and_range(void **state) {
          "\"boxes\""},
         {"{\"name\":\"n\",\"kind\":\"barrels\"}", "/kind", "\"barrels\" is not one of \"boxes\""},
         {"{\"name\":\"n\",\"kind\":3}", "/kind", "3 is not one of \"boxes\""},
+        {WIDE("\"random\":\"comon\""), "/random",
+         "\"comon\" is not one of \"common\", \"independent\""},
+        {WIDE("\"random\":[\"common\"]"), "/random",
+         "[\"common\"] is not one of \"common\", \"independent\""},
         {STUDY("\"box\":{}"), "/box/width", "missing: in metres"},
         {STUDY("\"seed\":1"), "/box/width", "missing: in metres"},
         {STUDY("\"box\":{\"width\":1.4}"), "/box/width", "1.4 is not in (0, 1]"},
@@ -114,6 +118,28 @@ static void faults_are_told_with_pointer_and_range(void **state) {
         assert_int_equal(faults.count, 1);
         assert_string_equal(faults.faults[0].pointer, BAD[b].pointer);
         assert_string_equal(faults.faults[0].detail, BAD[b].detail);
+        fault_list_clear(&faults);
+    }
+}
+
+/* Which random numbers a case is made of: those of all cases, unless the study says otherwise. */
+static void random_numbers_are_common_unless_told(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        enum study_random random;
+        uint64_t sequence; /* of case 3 */
+    } STUDIES[] = {{WIDE("\"seed\":1"), RANDOM_COMMON, 0},
+                   {WIDE("\"random\":\"common\""), RANDOM_COMMON, 0},
+                   {WIDE("\"random\":\"independent\""), RANDOM_INDEPENDENT, 3}};
+    for (size_t s = 0; s < sizeof STUDIES / sizeof *STUDIES; s++) {
+        struct study *study = NULL;
+        struct fault_list faults = {0};
+        assert_int_equal(read_text(STUDIES[s].text, &study, &faults, NULL), 0);
+        assert_int_equal(study->random, STUDIES[s].random);
+        assert_int_equal(study_sequence(study->random, 3), STUDIES[s].sequence);
+        assert_string_equal(study->kind->name, "boxes"); /* the other choice of a study */
+        study_destroy(&study);
         fault_list_clear(&faults);
     }
 }
@@ -288,6 +314,7 @@ static void schema_has_what_the_reader_asks(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(faults_are_told_with_pointer_and_range),
+        cmocka_unit_test(random_numbers_are_common_unless_told),
         cmocka_unit_test(all_faults_are_told_at_once),
         cmocka_unit_test(choices_and_measures),
         cmocka_unit_test(sweeps_run_in_the_order_of_the_file),

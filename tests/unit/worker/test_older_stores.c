@@ -62,11 +62,15 @@ static void work_off(const char *database) {
         fail_msg("%s", err.text);
 }
 
-/* Runs the study in a store of its own. */
+/* Runs the study in a store of its own; with independent cases, as the programs of before knew no
+ * others. */
 static void run_fresh(struct fixture *fresh, const char *source) {
+    char *text = NULL;
+    assert_true(asprintf(&text, "{\"random\":\"independent\",%s", source + 1) > 0);
     fixture_open(fresh);
-    fixture_submit(fresh, source, 100, NULL, 0);
+    fixture_submit(fresh, text, 100, NULL, 0);
     work_off(fresh->database);
+    free(text);
 }
 
 static void check_same_rows(const char *path, const char *study, const struct fixture *fresh,
@@ -86,6 +90,7 @@ static void check_study(const char *path, const struct study_status *about) {
                            about->id);
     assert_string_equal(about->state, "done");
     assert_int_equal(about->cases_failed, 0);
+    assert_int_equal(about->random, RANDOM_INDEPENDENT);
     run_fresh(&fresh, source);
     check_same_rows(path, about->id, &fresh,
                     "SELECT json_array(\"case\", quantity, series, x, y, standard_error, x2, "

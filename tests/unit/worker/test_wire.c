@@ -41,6 +41,7 @@ static struct claimed_job some_job(void) {
         .kind = (char *)"statistics",
         .parameters = cJSON_Parse(PARAMETERS),
         .seed = UINT64_MAX,
+        .sequence = 12,
         .case_number = 9999,
         .first = 4294967296,
         .count = 7,
@@ -63,6 +64,7 @@ static void job_crosses_unchanged(void **state) {
     assert_int_equal(count, 1);
     assert_true(got.id == sent.id && got.seed == sent.seed && got.lease_ms == sent.lease_ms);
     assert_true(got.case_number == sent.case_number && got.attempt == sent.attempt);
+    assert_true(got.sequence == sent.sequence);
     assert_true(got.first == sent.first && got.count == sent.count);
     assert_string_equal(got.study, STUDY);
     assert_string_equal(got.token, TOKEN);
@@ -73,6 +75,31 @@ static void job_crosses_unchanged(void **state) {
     claimed_job_clear(&got);
     cJSON_Delete(value);
     cJSON_Delete(sent.parameters);
+}
+
+/* A job of a server that knows no sequence is drawn by the number of its case, as it wants it; a
+ * worker that knows none says nothing of it in its claim, and must get no other job. */
+static void sequences_are_by_case_for_older_ends(void **state) {
+    (void)state;
+    struct claimed_job sent = some_job(), got = {0};
+    struct claim claim = {.worker = "w", .count = 1};
+    struct wire_claim read;
+    struct error err = {0};
+    size_t count = 0;
+    cJSON *value = cross(wire_jobs(&sent, 1));
+    cJSON_DeleteItemFromObject(cJSON_GetObjectItem(value, "jobs")->child, "sequence");
+    assert_int_equal(wire_jobs_read(value, &got, 1, &count, &err), 0);
+    assert_int_equal(got.sequence, sent.case_number);
+    claimed_job_clear(&got);
+    cJSON_Delete(value);
+    cJSON_Delete(sent.parameters);
+    value = cross(wire_claim(&claim));
+    assert_int_equal(wire_claim_read(value, &read, &err), 0);
+    assert_false(read.claim.independent_only);
+    cJSON_DeleteItemFromObject(value, "sequence");
+    assert_int_equal(wire_claim_read(value, &read, &err), 0);
+    assert_true(read.claim.independent_only);
+    cJSON_Delete(value);
 }
 
 static void no_jobs_cross(void **state) {
@@ -92,14 +119,31 @@ static void malformed_jobs_are_refused(void **state) {
     static const struct {
         const char *key, *json; /* NULL: left out */
     } table[] = {
-        {"id", "\"1\""},      {"id", "1.5"},           {"id", "-1"},
-        {"id", "1e17"},       {"study", "\"\""},       {"study", "\"0123456789abcdef0\""},
-        {"kind", NULL},       {"case", "null"},        {"seed", "12"},
-        {"seed", "\"\""},     {"seed", "\"-1\""},      {"seed", "\"18446744073709551616\""},
-        {"seed", "\" 1\""},   {"first", "[]"},         {"count", "0"},
-        {"count", NULL},      {"attempt", "true"},     {"token", NULL},
-        {"token", "{}"},      {"lease_seconds", "-1"}, {"lease_seconds", "\"60\""},
-        {"parameters", "[]"}, {"parameters", NULL},
+        {"id", "\"1\""},
+        {"id", "1.5"},
+        {"id", "-1"},
+        {"id", "1e17"},
+        {"study", "\"\""},
+        {"study", "\"0123456789abcdef0\""},
+        {"kind", NULL},
+        {"case", "null"},
+        {"seed", "12"},
+        {"sequence", "-1"},
+        {"sequence", "\"common\""},
+        {"seed", "\"\""},
+        {"seed", "\"-1\""},
+        {"seed", "\"18446744073709551616\""},
+        {"seed", "\" 1\""},
+        {"first", "[]"},
+        {"count", "0"},
+        {"count", NULL},
+        {"attempt", "true"},
+        {"token", NULL},
+        {"token", "{}"},
+        {"lease_seconds", "-1"},
+        {"lease_seconds", "\"60\""},
+        {"parameters", "[]"},
+        {"parameters", NULL},
     };
     struct claimed_job job = some_job();
     for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
@@ -323,6 +367,7 @@ static void long_reason_is_cut_between_characters(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(job_crosses_unchanged),
+        cmocka_unit_test(sequences_are_by_case_for_older_ends),
         cmocka_unit_test(no_jobs_cross),
         cmocka_unit_test(malformed_jobs_are_refused),
         cmocka_unit_test(more_jobs_than_room_are_refused),

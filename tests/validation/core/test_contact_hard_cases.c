@@ -350,7 +350,7 @@ static void small_problems_by_every_set(void **state) {
 /* Larger ones, some of which make the usual steps stall. */
 static void random_problems(void **state) {
     (void)state;
-    struct draw draw = {{.seed = seed_of_now(), .case_number = 1}, 0};
+    struct draw draw = {{.seed = seed_of_now(), .sequence = 1}, 0};
     for (size_t a = 0; a < 60; a++) {
         struct grid grid = {2 + draw_below(&draw, 40), 1 + draw_below(&draw, 40), 1, 1};
         struct scene scene;
@@ -369,7 +369,7 @@ static void random_problems(void **state) {
 /* Careful steps, which follow a stall, reach the solution by themselves. */
 static void careful_steps_converge(void **state) {
     (void)state;
-    struct draw draw = {{.seed = seed_of_now(), .case_number = 2}, 0};
+    struct draw draw = {{.seed = seed_of_now(), .sequence = 2}, 0};
     for (size_t a = 0; a < 60; a++) {
         struct grid grid = {2 + draw_below(&draw, 40), 1 + draw_below(&draw, 40), 1, 1};
         struct scene scene;
