@@ -39,7 +39,7 @@ int error_context(struct error *err, const char *format, ...) {
 }
 
 void *array_create(size_t count, size_t size) {
-    if (size && count > SIZE_MAX / size)
+    if (size != 0 && count > SIZE_MAX / size)
         return NULL;
-    return calloc(count ? count : 1, size ? size : 1);
+    return calloc(count != 0 ? count : 1, size != 0 ? size : 1);
 }

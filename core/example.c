@@ -39,12 +39,12 @@ int main(void) {
                  rugo_generator_run(generator, 1, 0, 0, z, NULL, &err) != 0 ||
                  rugo_contact_create(&contact, &grid, &block, &err) != 0 ||
                  rugo_contact_begin(contact, z, &err) != 0;
-    if (!failed) {
+    if (failed == 0) {
         printf("RMS height %.4g, slope %.4g, Nayak's alpha %.4g\n", moments.rms_height,
                moments.rms_slope, moments.nayak_alpha);
         failed = print_areas(contact, rms_slope, moments.nayak_alpha, &err);
     }
-    if (failed)
+    if (failed != 0)
         fprintf(stderr, "example: %s\n", err.text);
     rugo_contact_destroy(&contact);
     rugo_generator_destroy(&generator);

@@ -48,7 +48,7 @@ static void get_text(struct byte_reader *reader, char text[NOTE_SIZE]) {
             break;
     }
     text[0] = 0;
-    reader->failed = 1;
+    reader->failed = true;
 }
 
 void notes_get(struct byte_reader *reader, struct notes *notes) {
@@ -59,7 +59,7 @@ void notes_get(struct byte_reader *reader, struct notes *notes) {
         note->realisation = bytes_get_unsigned(reader);
         get_text(reader, note->text);
         if (note->realisation < last)
-            reader->failed = 1;
+            reader->failed = true;
         last = note->realisation;
     }
 }

@@ -189,7 +189,7 @@ static int realise_all(struct job_runner *runner, const struct job_control *cont
     struct progress progress = {.control = control};
     for (uint64_t r = 0; r < result->count; r++) {
         progress.done = r;
-        if (is_stopped(&progress))
+        if (is_stopped(&progress) != 0)
             return error_set(err, ERROR_STOPPED, "stopped after %llu of %llu realisations",
                              (unsigned long long)r, (unsigned long long)result->count);
         int status = realise(runner, result->first + r, &progress, tally,

@@ -12,7 +12,7 @@ static const fixed_point EXACT_MOST = (fixed_point)1 << 120;
 static fixed_point get_sum(struct byte_reader *reader, fixed_point least, fixed_point most) {
     fixed_point value = bytes_get_fixed(reader);
     if (value < least || value > most) {
-        reader->failed = 1;
+        reader->failed = true;
         return 0;
     }
     return value;

@@ -33,7 +33,7 @@ struct sink {
 
 int client_global_init(struct error *err) {
     CURLcode code = curl_global_init(CURL_GLOBAL_DEFAULT);
-    return code ? error_set(err, ERROR_SYSTEM, "libcurl: %s", curl_easy_strerror(code)) : 0;
+    return code != 0 ? error_set(err, ERROR_SYSTEM, "libcurl: %s", curl_easy_strerror(code)) : 0;
 }
 
 void client_global_cleanup(void) {
@@ -76,7 +76,7 @@ static int url_check(const char *url, bool *loopback, struct error *err) {
 
 /* A line break in a token would start another header. */
 static bool token_is_valid(const char *token) {
-    for (; *token; token++)
+    for (; *token != '\0'; token++)
         if (*token <= ' ' || *token > '~')
             return false;
     return true;
@@ -85,16 +85,17 @@ static bool token_is_valid(const char *token) {
 static int client_options(struct client *client, bool loopback, struct error *err) {
     CURL *curl = client->curl;
     /* CURLOPT_PROXY "" switches off what the environment names */
-    bool good = !curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L) &&
-                !curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https") &&
-                !curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L) &&
-                !curl_easy_setopt(curl, CURLOPT_PATH_AS_IS, 1L) &&
-                !curl_easy_setopt(curl, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1) &&
-                !curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT_MS, (long)CONNECT_MS) &&
-                !curl_easy_setopt(curl, CURLOPT_TCP_KEEPALIVE, 1L) &&
-                !curl_easy_setopt(curl, CURLOPT_USERAGENT, "rugo") &&
-                !curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, client->detail) &&
-                (!loopback || !curl_easy_setopt(curl, CURLOPT_PROXY, ""));
+    bool good =
+        curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https") == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_PATH_AS_IS, 1L) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT_MS, (long)CONNECT_MS) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_TCP_KEEPALIVE, 1L) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_USERAGENT, "rugo") == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, client->detail) == CURLE_OK &&
+        (!loopback || curl_easy_setopt(curl, CURLOPT_PROXY, "") == CURLE_OK);
     return good ? 0 : error_set(err, ERROR_SYSTEM, "libcurl refuses an option");
 }
 
@@ -223,29 +224,31 @@ static bool request_options(CURL *curl, const struct request *request, const cha
                             struct curl_slist *headers, struct sink *sink) {
     bool post = strcmp(request->method, "POST") == 0;
     const char *body = request->body != NULL ? request->body : "";
-    long total = request->timeout_ms ? request->timeout_ms : TOTAL_MS;
+    long total = request->timeout_ms != 0 ? request->timeout_ms : TOTAL_MS;
     bool good =
-        !curl_easy_setopt(curl, CURLOPT_URL, url) &&
-        !curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers) &&
-        !curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, sink_write) &&
-        !curl_easy_setopt(curl, CURLOPT_WRITEDATA, sink) &&
-        !curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, sink->file ? 0L : total) &&
-        !curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, sink->file ? 1L : 0L) &&
-        !curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, sink->file ? (long)SILENCE_SECONDS : 0L) &&
-        !curl_easy_setopt(curl, CURLOPT_HTTPGET, 1L);
+        curl_easy_setopt(curl, CURLOPT_URL, url) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, sink_write) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_WRITEDATA, sink) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, sink->file != NULL ? 0L : total) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, sink->file != NULL ? 1L : 0L) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME,
+                         sink->file != NULL ? (long)SILENCE_SECONDS : 0L) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_HTTPGET, 1L) == CURLE_OK;
     if (good && post) {
-        good = !curl_easy_setopt(curl, CURLOPT_POST, 1L) &&
-               !curl_easy_setopt(curl, CURLOPT_POSTFIELDS, body) &&
-               !curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)strlen(body));
+        good = curl_easy_setopt(curl, CURLOPT_POST, 1L) == CURLE_OK &&
+               curl_easy_setopt(curl, CURLOPT_POSTFIELDS, body) == CURLE_OK &&
+               curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)strlen(body)) ==
+                   CURLE_OK;
     }
-    return good && !curl_easy_setopt(curl, CURLOPT_CUSTOMREQUEST, request->method);
+    return good && curl_easy_setopt(curl, CURLOPT_CUSTOMREQUEST, request->method) == CURLE_OK;
 }
 
 static int perform(struct client *client, struct sink *sink, struct error *err) {
     client->detail[0] = '\0';
     CURLcode code = curl_easy_perform(client->curl);
-    if (code) {
-        const char *detail = client->detail[0] ? client->detail : curl_easy_strerror(code);
+    if (code != 0) {
+        const char *detail = client->detail[0] != '\0' ? client->detail : curl_easy_strerror(code);
         return error_set(err, ERROR_SYSTEM, "%s: %s", client->url,
                          sink->fault ? sink->fault : detail);
     }

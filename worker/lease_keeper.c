@@ -111,7 +111,7 @@ static int lease_keeper_start(struct lease_keeper *keeper, struct error *err) {
 int lease_keeper_create(struct lease_keeper **out, const struct source_options *options,
                         unsigned slots, struct error *err) {
     size_t size = sizeof(struct lease_keeper) + slots * sizeof(struct slot);
-    struct lease_keeper *keeper = slots ? calloc(1, size) : NULL;
+    struct lease_keeper *keeper = slots != 0 ? calloc(1, size) : NULL;
     if (keeper == NULL)
         return error_memory(err, size, "leases");
     keeper->slot_count = slots;

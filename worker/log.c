@@ -18,7 +18,7 @@ static void line_byte(struct line *line, char byte) {
 }
 
 static void line_text(struct line *line, const char *text) {
-    for (; *text; text++)
+    for (; *text != '\0'; text++)
         line_byte(line, *text);
 }
 
@@ -80,12 +80,12 @@ static void line_time(struct line *line, int64_t time_ms) {
 static void line_about(struct line *line, const struct log_about *about) {
     line_field(line, "worker", about->worker);
     line_field(line, "study", about->study);
-    if (about->job)
+    if (about->job != 0)
         line_print(line, " job=%lld", (long long)about->job);
-    if (about->attempt)
+    if (about->attempt != 0)
         line_print(line, " attempt=%llu", (unsigned long long)about->attempt);
     line_field(line, "request", about->request);
-    if (about->status)
+    if (about->status != 0)
         line_print(line, " status=%ld", about->status);
     if (about->seconds > 0)
         line_print(line, " seconds=%.6f", about->seconds);

@@ -74,7 +74,7 @@ int source_claim(struct source *source, struct claimed_job *job, int *found, str
         .worker = source->worker,
         .host = source->host,
         .kinds = source->kinds,
-        .study = source->study[0] ? source->study : NULL,
+        .study = source->study[0] != '\0' ? source->study : NULL,
         .count = 1,
     };
     return source->backend->claim(source->self, &claim, job, found, err);

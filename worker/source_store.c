@@ -93,7 +93,7 @@ static int local_release(void *self, const struct claimed_job *job, struct error
 
 static int local_left(void *self, int *left, struct error *err) {
     struct local *local = self;
-    if (local->study[0]) {
+    if (local->study[0] != '\0') {
         struct study_status study = {0};
         int status = store_status(local->store, local->study, &study, err);
         if (status == 0) {

@@ -21,10 +21,10 @@ static cJSON *texts(const char *const *strings) {
 
 static int read_seed(const cJSON *object, uint64_t *out, struct error *err) {
     const char *text = cJSON_GetStringValue(field_at(object, "seed"));
-    bool digits = text != NULL && *text && strspn(text, "0123456789") == strlen(text);
+    bool digits = text != NULL && *text != '\0' && strspn(text, "0123456789") == strlen(text);
     errno = 0;
     unsigned long long seed = digits ? strtoull(text, NULL, 10) : 0;
-    if (!digits || errno)
+    if (!digits || errno != 0)
         return field_fault("seed", "a decimal string of at most 2^64 - 1", err);
     *out = seed;
     return 0;
@@ -263,10 +263,10 @@ static int read_rows(const cJSON *scalars, struct block_result *out, struct erro
 
 static int read_result(const cJSON *value, struct block_result *out, struct error *err) {
     int status = field_seconds(value, "seconds", &out->seconds, err);
-    status = status ? status : field_count(value, "first", &out->first, err);
-    status = status ? status : field_count(value, "count", &out->count, err);
-    status = status ? status : read_names(field_at(value, "scalars"), out, err);
-    status = status ? status : read_rows(field_at(value, "scalars"), out, err);
+    status = status != 0 ? status : field_count(value, "first", &out->first, err);
+    status = status != 0 ? status : field_count(value, "count", &out->count, err);
+    status = status != 0 ? status : read_names(field_at(value, "scalars"), out, err);
+    status = status != 0 ? status : read_rows(field_at(value, "scalars"), out, err);
     if (status != 0)
         return status;
     const char *data = cJSON_GetStringValue(field_at(value, "data"));

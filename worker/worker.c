@@ -25,7 +25,7 @@ static bool worker_pool_watch(struct worker_pool *pool) {
             clock_cond_wait(&pool->changed, &pool->lock, clock_ms() + STOP_POLL_MS);
         at_work = pool->at_work > 0;
         pthread_mutex_unlock(&pool->lock);
-        bool stop = options->stop != NULL && *options->stop;
+        bool stop = options->stop != NULL && *options->stop != 0;
         if (options->tick != NULL && clock_ms() >= tick_ms) {
             stop = options->tick(options->context) != 0 || stop;
             tick_ms = clock_ms() + TICK_MS;
@@ -94,7 +94,7 @@ static void name_default(char *name, size_t size, const char *host) {
 
 static bool is_told_to_stop(void *context) {
     const struct worker_options *options = context;
-    return options->stop != NULL && *options->stop;
+    return options->stop != NULL && *options->stop != 0;
 }
 
 /* Publishes what others, or these workers themselves, left due. */

@@ -4,18 +4,19 @@
 
 #include "worker/source_options.h"
 #include <stdatomic.h>
+#include <stdbool.h>
 
 struct worker_options {
     struct source_options
         source;             /* worker and host may be NULL; "-N" of the thread is put behind */
     unsigned threads;       /* at least 1 */
-    int drain;              /* end when no job is waiting and none is running */
+    bool drain;             /* end when no job is waiting and none is running */
     const atomic_int *stop; /* non-zero: release the job at once and end; may be NULL */
     /* Called from time to time on the caller's thread (twice a second); non-zero ends. May be NULL.
      */
     int (*tick)(void *context);
     void *context;
-    int quiet; /* log warnings and errors only */
+    bool quiet; /* log warnings and errors only */
 };
 
 #endif

@@ -24,7 +24,7 @@ void worker_pool_fail(struct worker_pool *pool, const struct error *err) {
 
 /* The upper half of a pause is random. */
 void worker_pool_pause(struct worker_pool *pool, struct backoff *backoff, int64_t most_ms) {
-    int64_t pause = backoff->ms ? 2 * backoff->ms : PAUSE_FIRST_MS;
+    int64_t pause = backoff->ms != 0 ? 2 * backoff->ms : PAUSE_FIRST_MS;
     backoff->ms = pause < most_ms ? pause : most_ms;
     uint32_t word = 0;
     if (getrandom(&word, sizeof word, GRND_NONBLOCK) != (ssize_t)sizeof word)

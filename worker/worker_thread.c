@@ -189,7 +189,7 @@ static bool thread_idle(struct worker_thread *thread, struct backoff *idle) {
     if (thread->pool->options->drain) {
         struct error err = {0};
         int left = 1;
-        if (source_left(thread->source, &left, &err) == 0 && !left)
+        if (source_left(thread->source, &left, &err) == 0 && left == 0)
             return false;
     }
     worker_pool_pause(thread->pool, idle, IDLE_MOST_MS);
@@ -215,10 +215,10 @@ static void thread_work(struct worker_thread *thread) {
             worker_pool_fail(thread->pool, &err);
             return;
         }
-        if (away.ms)
+        if (away.ms != 0)
             thread_log(thread, LEVEL_INFO, NULL, "answered again");
         away.ms = 0;
-        if (found) {
+        if (found != 0) {
             idle.ms = 0;
             job_work(thread, &job);
             claimed_job_clear(&job);

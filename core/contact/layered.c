@@ -221,7 +221,7 @@ static void length_store(const struct layered_mesh *mesh, size_t mx, size_t my, 
     size_t ny = mesh->grid->ny;
     double *column = mesh->length + mx * ny;
     column[my] = length;
-    column[my ? ny - my : 0] = length;
+    column[my != 0 ? ny - my : 0] = length;
 }
 
 /* Eliminates the layers for the waves collected, and stores their compliances. */
@@ -252,7 +252,7 @@ static void mesh_solve(struct layered_mesh *mesh) {
             if (w->count == LANES)
                 waves_solve(mesh);
         }
-    if (w->count)
+    if (w->count != 0)
         waves_solve(mesh);
 }
 

@@ -12,10 +12,10 @@ INLINE void parent_gradients(int d, double reach, pointwise parent[8][3]) {
     for (int a = 0; a < 1 << d; a++)
         for (int k = 0; k < d; k++)
             for (int q = 0; q < 1 << d; q++) {
-                double product = a >> k & 1 ? 0.5 : -0.5;
+                double product = (a >> k & 1) != 0 ? 0.5 : -0.5;
                 for (int l = 0; l < d; l++)
                     if (l != k)
-                        product *= ((a ^ q) >> l & 1 ? 1 - reach : 1 + reach) / 2;
+                        product *= (((a ^ q) >> l & 1) != 0 ? 1 - reach : 1 + reach) / 2;
                 parent[a][k][q] = product;
             }
 }

@@ -49,7 +49,7 @@ INLINE void over_sinh(int d, const pointwise s, pointwise out) {
                                          x * (73.0 / 3421440 - x * (1414477.0 / 653837184000))))));
         beyond |= x > SERIES_MOST;
     }
-    for (int q = 0; beyond && q < 1 << d; q++)
+    for (int q = 0; beyond != 0 && q < 1 << d; q++)
         if (s[q] * s[q] > SERIES_MOST)
             out[q] = s[q] / sinh(s[q]);
 }

@@ -147,7 +147,7 @@ static void put_corners(const struct vtu_writer *w, const struct vtu_cell *cell)
         int a = AROUND[corner], deep = profile ? a >> 1 : a >> 2, back = profile ? 0 : a >> 1 & 1;
         size_t row = (cell->j + (size_t)back) * plane_columns(w->mesh, cell->layer);
         fprintf(w->file, "%zu ",
-                (deep ? cell->lower : cell->upper) + row + cell->i + (size_t)(a & 1));
+                (deep != 0 ? cell->lower : cell->upper) + row + cell->i + (size_t)(a & 1));
     }
     fputc('\n', w->file);
 }

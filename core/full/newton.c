@@ -435,7 +435,8 @@ int newton_compliance(struct newton *n, double *out, struct error *err) {
         memset(n->change, 0, newton_unknowns(n) * sizeof *n->change);
         n->change[mesh_vertical(mesh, mesh_far_side(mesh))] =
             -newton_node_area(n) * (double)mesh->face;
-        status = (factored ? solve_factored : solve_iterated)(n, LINEAR_STIFFNESS, &ignored, err);
+        status =
+            (factored != 0 ? solve_factored : solve_iterated)(n, LINEAR_STIFFNESS, &ignored, err);
     }
     if (status == 0)
         *out = -face_mean_gap_change(n->mesh, face_displacement(n), n->gap, n->change);

@@ -120,7 +120,7 @@ INLINE bool deform(int d, pointwise h[3][3], pointwise c[3][3], struct strained 
         out->dilatation[q] = dilatation;
         folded |= !(dilatation > -1);
     }
-    return !folded;
+    return folded == 0;
 }
 
 /* out->inverse, out->dilatation = J - 1, out->square and out->axis of a deformation h, and

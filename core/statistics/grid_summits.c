@@ -26,7 +26,7 @@ WIDE_VECTORS static int64_t compare_block(const double *u, const double *m, cons
 /* The same for one point of any column, the ends included. */
 static bool is_summit(const double *u, const double *m, const double *d, size_t nx, bool corners,
                       size_t i) {
-    size_t left = i ? i - 1 : nx - 1, right = i + 1 < nx ? i + 1 : 0;
+    size_t left = i != 0 ? i - 1 : nx - 1, right = i + 1 < nx ? i + 1 : 0;
     double z = m[i];
     if (!(z > m[left] && z > m[right]))
         return false;
@@ -45,11 +45,11 @@ size_t row_summits(const double *up, const double *middle, const double *down, s
         columns[found++] = 0;
     for (size_t i = 1; i + 1 < nx; i += BLOCK) {
         size_t n = nx - 1 - i < BLOCK ? nx - 1 - i : BLOCK;
-        if (!compare_block(up != NULL ? up + i : NULL, middle + i, down != NULL ? down + i : NULL,
-                           corners, n, above))
+        if (compare_block(up != NULL ? up + i : NULL, middle + i, down != NULL ? down + i : NULL,
+                          corners, n, above) == 0)
             continue;
         for (size_t k = 0; k < n; k++)
-            if (above[k])
+            if (above[k] != 0)
                 columns[found++] = i + k;
     }
     if (is_summit(up, middle, down, nx, corners, nx - 1))

@@ -27,7 +27,7 @@ struct refined {
 };
 
 static size_t fine_points(size_t points, size_t mode, size_t points_a_wave) {
-    size_t wanted = points_a_wave * (mode ? mode : 1);
+    size_t wanted = points_a_wave * (mode != 0 ? mode : 1);
     return points * ((wanted + points - 1) / points);
 }
 

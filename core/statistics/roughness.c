@@ -70,7 +70,8 @@ static void map_means(const struct grid *grid, const double *z, double mean, dou
     struct sum totals[SUMS] = {{0}};
     size_t nx = grid->nx, ny = grid->ny;
     for (size_t j = 0; j < ny; j++) {
-        const double *up = z + (j ? j - 1 : ny - 1) * nx, *down = z + (j + 1 < ny ? j + 1 : 0) * nx;
+        const double *up = z + (j != 0 ? j - 1 : ny - 1) * nx,
+                     *down = z + (j + 1 < ny ? j + 1 : 0) * nx;
         union {
             struct row_sums named;
             double lanes[SUMS][LANES];

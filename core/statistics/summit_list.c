@@ -9,7 +9,7 @@ void summit_list_clear(struct summit_list *list) {
 
 int summit_list_add(struct summit_list *list, const struct summit *summit, struct error *err) {
     if (list->count == list->capacity) {
-        size_t capacity = list->capacity ? 2 * list->capacity : 1024;
+        size_t capacity = list->capacity != 0 ? 2 * list->capacity : 1024;
         size_t bytes = capacity * sizeof *list->summits;
         struct summit *larger =
             capacity < SIZE_MAX / sizeof *larger ? realloc(list->summits, bytes) : NULL;

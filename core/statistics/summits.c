@@ -97,11 +97,11 @@ static double difference_curvature(const struct grid *grid, const double *z, siz
     size_t nx = grid->nx, ny = grid->ny;
     const double *row = z + j * nx;
     double dx = grid_dx(grid), dy = grid_dy(grid);
-    double left = row[i ? i - 1 : nx - 1], right = row[i + 1 < nx ? i + 1 : 0];
+    double left = row[i != 0 ? i - 1 : nx - 1], right = row[i + 1 < nx ? i + 1 : 0];
     double xx = (left - 2 * row[i] + right) / (dx * dx);
     if (grid_is_profile(grid))
         return -xx;
-    double up = z[(j ? j - 1 : ny - 1) * nx + i], down = z[(j + 1 < ny ? j + 1 : 0) * nx + i];
+    double up = z[(j != 0 ? j - 1 : ny - 1) * nx + i], down = z[(j + 1 < ny ? j + 1 : 0) * nx + i];
     double yy = (up - 2 * row[i] + down) / (dy * dy);
     return -(xx + yy) / 2;
 }
@@ -135,7 +135,7 @@ int summits_find(struct summit_finder *f, const double *z, struct summit_list *l
     size_t nx = f->grid.nx, ny = f->grid.ny;
     bool corners = f->stencil == SUMMITS_NINE_POINT, profile = grid_is_profile(&f->grid);
     for (size_t j = 0; j < ny; j++) {
-        const double *up = profile ? NULL : z + (j ? j - 1 : ny - 1) * nx;
+        const double *up = profile ? NULL : z + (j != 0 ? j - 1 : ny - 1) * nx;
         const double *down = profile ? NULL : z + (j + 1 < ny ? j + 1 : 0) * nx;
         size_t found = row_summits(up, z + j * nx, down, nx, corners, f->columns);
         int status = row_add(f, z, j, found, list, err);

@@ -89,7 +89,7 @@ static void annulus_count(uint64_t r, double *counts, double *fourths) {
             uint64_t square = x * x + y * y;
             if (square < inner)
                 continue;
-            double copies = (x ? 2 : 1) * (y ? 2 : 1);
+            double copies = (x != 0 ? 2 : 1) * (y != 0 ? 2 : 1);
             double x2 = (double)(x * x), y2 = (double)(y * y);
             counts[square - inner] += copies;
             fourths[square - inner] += copies * (x2 * x2 + y2 * y2) / 2;

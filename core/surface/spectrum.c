@@ -35,7 +35,7 @@ static int table_check(const struct spectrum *s, struct error *err) {
         return error_set(err, ERROR_INPUT, "a spectrum table of %zu rows; allowed: at least 2",
                          s->table_count);
     for (size_t row = 0; row < s->table_count; row++) {
-        double before = row ? s->table_wave_number[row - 1] : 0;
+        double before = row != 0 ? s->table_wave_number[row - 1] : 0;
         if (!(s->table_wave_number[row] > before && isfinite(s->table_wave_number[row])))
             return error_set(err, ERROR_INPUT,
                              "wave number %zu of the spectrum table = %g; allowed: rising, above 0",

@@ -113,7 +113,7 @@ static double complex with_phase(double amplitude, uint64_t word) {
 static void own_mirror_mode(double complex *column, long my, size_t ny, double amplitude,
                             uint64_t word) {
     if (my == 0 || 2 * (size_t)my == ny) {
-        column[column_row(my, ny)] = word >> 63 ? -amplitude : amplitude;
+        column[column_row(my, ny)] = word >> 63 != 0 ? -amplitude : amplitude;
         return;
     }
     double complex mode = with_phase(amplitude, word);

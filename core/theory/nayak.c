@@ -33,7 +33,7 @@ struct tilted {
 
 static double tilted_weight(double s, const void *context) {
     const struct tilted *t = context;
-    double power = t->order ? s : 1;
+    double power = t->order != 0 ? s : 1;
     return power * weight(s) * exp(s * (t->b - t->c1 * s / 2) - t->peak);
 }
 

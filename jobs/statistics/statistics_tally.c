@@ -131,7 +131,7 @@ void statistics_tally_put(struct bytes *bytes, const struct statistics_tally *ta
 void statistics_tally_get(struct byte_reader *reader, struct statistics_tally *tally) {
     if (bytes_get_unsigned(reader) != tally->density.size ||
         bytes_get_unsigned(reader) != tally->correlation.size) {
-        reader->failed = 1;
+        reader->failed = true;
         return;
     }
     tally_total_get(reader, &tally->points);

@@ -10,7 +10,7 @@ int base64_encode(const unsigned char *data, size_t size, char **out, struct err
         return error_set(err, ERROR_MEMORY, "%zu bytes are too many to encode", size);
     size_t length = (size + 2) / 3 * 4;
     char *text = malloc(length + 1), *at = text;
-    if (!text)
+    if (text == NULL)
         return error_memory(err, length + 1, "base64 text");
     for (size_t i = 0; i < size; i += 3) {
         size_t left = size - i;
@@ -39,7 +39,7 @@ static int digit_value(char c) {
 }
 
 /* Four characters to 1..3 bytes; 0 when they are no base64. Only the last group may be padded. */
-static size_t group_decode(const char *text, int last, unsigned char *bytes) {
+static size_t group_decode(const char *text, bool last, unsigned char *bytes) {
     size_t count = last && text[3] == '=' ? (text[2] == '=' ? 1 : 2) : 3;
     uint32_t group = 0;
     for (size_t i = 0; i < 4; i++) {
@@ -49,7 +49,7 @@ static size_t group_decode(const char *text, int last, unsigned char *bytes) {
         group = group << 6 | (uint32_t)value;
     }
     /* Bits behind the last byte must be zero: one text for one value. */
-    if ((count == 1 && group & 0xffff) || (count == 2 && group & 0xff))
+    if ((count == 1 && (group & 0xffff) != 0) || (count == 2 && (group & 0xff) != 0))
         return 0;
     bytes[0] = (unsigned char)(group >> 16);
     bytes[1] = (unsigned char)(group >> 8);
@@ -59,11 +59,11 @@ static size_t group_decode(const char *text, int last, unsigned char *bytes) {
 
 int base64_decode(const char *text, unsigned char **out, size_t *size, struct error *err) {
     size_t length = strlen(text), at = 0;
-    if (length % 4)
+    if (length % 4 != 0)
         return error_set(err, ERROR_INPUT, "base64 of %zu characters; allowed: a multiple of 4",
                          length);
     unsigned char *data = malloc(length / 4 * 3 + 1);
-    if (!data)
+    if (data == NULL)
         return error_memory(err, length / 4 * 3 + 1, "base64 data");
     for (size_t i = 0; i < length; i += 4) {
         size_t count = group_decode(text + i, i + 4 == length, data + at);

@@ -7,7 +7,7 @@
 static const double INTEGER_MOST = 9007199254740992.0; /* 2^53 */
 
 bool field_put(cJSON *object, const char *key, cJSON *item) {
-    if (item && cJSON_AddItemToObject(object, key, item)) {
+    if (item != NULL && cJSON_AddItemToObject(object, key, item)) {
         return true;
     }
     cJSON_Delete(item);
@@ -46,7 +46,7 @@ double field_number(const cJSON *object, const char *key) {
 int field_text(const cJSON *object, const char *key, size_t size, const char **out,
                struct error *err) {
     const char *text = cJSON_GetStringValue(field_at(object, key));
-    if (!text || !*text || strlen(text) >= size) {
+    if (text == NULL || *text == '\0' || strlen(text) >= size) {
         return error_set(err, ERROR_INPUT, "\"%s\" must be a string of 1 to %zu bytes", key,
                          size - 1);
     }
@@ -57,7 +57,7 @@ int field_text(const cJSON *object, const char *key, size_t size, const char **o
 int field_copy(const cJSON *object, const char *key, size_t size, char *out, struct error *err) {
     const char *text = "";
     int status = field_text(object, key, size, &text, err);
-    if (!status) {
+    if (status == 0) {
         memcpy(out, text, strlen(text) + 1);
     }
     return status;
@@ -84,7 +84,7 @@ int field_seconds(const cJSON *object, const char *key, double *out, struct erro
 
 int field_bool(const cJSON *object, const char *key, bool *out, struct error *err) {
     const cJSON *item = field_at(object, key);
-    if (item && !cJSON_IsBool(item)) {
+    if (item != NULL && !cJSON_IsBool(item)) {
         return field_fault(key, "true or false", err);
     }
     *out = cJSON_IsTrue(item);

@@ -20,13 +20,13 @@ struct gate {
 };
 
 static bool refuse(struct gate *gate, const char *fault) {
-    if (!gate->fault)
+    if (gate->fault == NULL)
         gate->fault = fault;
     return false;
 }
 
 static void skip_space(struct gate *gate) {
-    while (gate->at < gate->end && strchr(" \t\n\r", *gate->at) && *gate->at)
+    while (gate->at < gate->end && strchr(" \t\n\r", *gate->at) != NULL && *gate->at != '\0')
         gate->at++;
 }
 
@@ -71,7 +71,7 @@ static long scan_hex(struct gate *gate) {
 
 static bool scan_escape(struct gate *gate) {
     gate->at++;
-    if (gate->at >= gate->end || !*gate->at || !strchr("\"\\/bfnrtu", *gate->at))
+    if (gate->at >= gate->end || *gate->at == '\0' || strchr("\"\\/bfnrtu", *gate->at) == NULL)
         return refuse(gate, "an unknown escape in a string");
     if (*gate->at++ != 'u')
         return true;
@@ -131,7 +131,8 @@ static bool is_inexact_integer(const char *text, size_t length) {
     snprintf(digits, sizeof digits, "%.*s", (int)length, text);
     errno = 0;
     long long value = strtoll(digits, NULL, 10);
-    return !strpbrk(digits, ".eE") && (errno || value > 1LL << 53 || value < -(1LL << 53));
+    return strpbrk(digits, ".eE") == NULL &&
+           (errno != 0 || value > 1LL << 53 || value < -(1LL << 53));
 }
 
 static bool scan_number(struct gate *gate) {
@@ -266,15 +267,15 @@ static const char *duplicate_name(const cJSON *object, bool *failed) {
     if (count < 2)
         return NULL;
     const cJSON **members = array_create(count, sizeof *members);
-    if (!members) {
+    if (members == NULL) {
         *failed = true;
         return NULL;
     }
-    for (const cJSON *member = object->child; member; member = member->next)
+    for (const cJSON *member = object->child; member != NULL; member = member->next)
         members[n++] = member;
     qsort(members, n, sizeof *members, by_name);
     const char *name = NULL;
-    for (size_t i = 1; i < n && !name; i++)
+    for (size_t i = 1; i < n && name == NULL; i++)
         if (strcmp(members[i - 1]->string, members[i]->string) == 0)
             name = members[i]->string;
     free(members);
@@ -287,11 +288,11 @@ static int check_names(const cJSON *value, struct error *err) {
     const char *name = cJSON_IsObject(value) ? duplicate_name(value, &failed) : NULL;
     if (failed)
         return error_memory(err, 0, "the members of an object");
-    if (name)
+    if (name != NULL)
         return error_set(err, ERROR_INPUT, "the name \"%.60s\" is given twice in one object", name);
-    for (const cJSON *child = value->child; child; child = child->next) {
+    for (const cJSON *child = value->child; child != NULL; child = child->next) {
         int status = check_names(child, err);
-        if (status)
+        if (status != 0)
             return status;
     }
     return 0;
@@ -299,13 +300,13 @@ static int check_names(const cJSON *value, struct error *err) {
 
 int json_parse(const char *text, size_t size, const struct json_limits *limits, cJSON **out,
                struct error *err) {
-    if (!limits)
+    if (limits == NULL)
         limits = &JSON_LIMITS;
     if (size > limits->bytes)
         return error_set(err, ERROR_INPUT, "%zu bytes of JSON; allowed: up to %zu", size,
                          limits->bytes);
     char *copy = malloc(size + 1); /* ends with NUL, as strtod and cJSON want it */
-    if (!copy)
+    if (copy == NULL)
         return error_memory(err, size + 1, "a JSON text");
     memcpy(copy, text, size);
     copy[size] = 0;
@@ -317,11 +318,11 @@ int json_parse(const char *text, size_t size, const struct json_limits *limits, 
     int status = good ? 0 : gate_error(&gate, err);
     cJSON *value = good ? cJSON_ParseWithLength(copy, size + 1) : NULL;
     free(copy);
-    if (good && !value)
+    if (good && value == NULL)
         return error_memory(err, size, "a JSON value");
-    if (!status)
+    if (status == 0)
         status = check_names(value, err);
-    if (status) {
+    if (status != 0) {
         cJSON_Delete(value);
         return status;
     }
@@ -332,7 +333,7 @@ int json_parse(const char *text, size_t size, const struct json_limits *limits, 
 /* One reference token of a pointer, unescaped; false when it is longer than any name of ours. */
 static bool pointer_token(const char **at, char *token, size_t room) {
     size_t n = 0;
-    for ((*at)++; **at && **at != '/'; (*at)++) {
+    for ((*at)++; **at != '\0' && **at != '/'; (*at)++) {
         char c = **at;
         if (c == '~' && ((*at)[1] == '0' || (*at)[1] == '1'))
             c = *++(*at) == '0' ? '~' : '/';
@@ -347,14 +348,15 @@ static bool pointer_token(const char **at, char *token, size_t room) {
 const cJSON *json_at(const cJSON *root, const char *pointer) {
     const cJSON *value = root;
     char token[256];
-    while (value && *pointer) {
+    while (value != NULL && *pointer != '\0') {
         if (*pointer != '/' || !pointer_token(&pointer, token, sizeof token))
             return NULL;
         if (cJSON_IsArray(value)) {
             char *end;
             errno = 0;
             long index = strtol(token, &end, 10);
-            bool good = isdigit((unsigned char)*token) && !*end && !errno && index <= INT32_MAX;
+            bool good =
+                isdigit((unsigned char)*token) && *end == '\0' && errno == 0 && index <= INT32_MAX;
             value = good ? cJSON_GetArrayItem(value, (int)index) : NULL;
         } else {
             value = cJSON_GetObjectItemCaseSensitive(value, token);
@@ -369,7 +371,7 @@ cJSON *json_number(double value) {
 
 cJSON *json_numbers(const double *values, size_t n) {
     cJSON *array = cJSON_CreateArray();
-    for (size_t i = 0; array && i < n; i++)
+    for (size_t i = 0; array != NULL && i < n; i++)
         if (!cJSON_AddItemToArray(array, json_number(values[i]))) {
             cJSON_Delete(array);
             array = NULL;

@@ -27,7 +27,7 @@ void json_print_number(FILE *file, double number) {
 /* Strings, true, false, null: false when out of memory. */
 static bool put_plain(FILE *file, const cJSON *value) {
     char *text = cJSON_PrintUnformatted(value);
-    if (text) {
+    if (text != NULL) {
         fputs(text, file);
     }
     cJSON_free(text);

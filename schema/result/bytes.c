@@ -16,7 +16,7 @@ static void put_byte(struct bytes *bytes, unsigned byte) {
         size_t capacity = bytes->capacity < 256 ? 512 : 2 * bytes->capacity;
         unsigned char *data = capacity > bytes->capacity ? realloc(bytes->data, capacity) : NULL;
         if (data == NULL) {
-            bytes->failed = 1;
+            bytes->failed = true;
             return;
         }
         bytes->data = data;
@@ -80,7 +80,7 @@ void bytes_put_counts(struct bytes *bytes, size_t n, const uint64_t *counts) {
 
 static unsigned get_byte(struct byte_reader *reader) {
     if (reader->failed || reader->at == reader->end) {
-        reader->failed = 1;
+        reader->failed = true;
         return 0;
     }
     return *reader->at++;
@@ -100,7 +100,7 @@ static wide get_wide(struct byte_reader *reader, unsigned bits) {
             return reader->failed ? 0 : value;
         }
     }
-    reader->failed = 1;
+    reader->failed = true;
     return 0;
 }
 
@@ -111,7 +111,7 @@ uint64_t bytes_get_unsigned(struct byte_reader *reader) {
 fixed_point bytes_get_fixed(struct byte_reader *reader) {
     wide bits = get_wide(reader, 128);
     wide value = bits >> 1;
-    return bits & 1 ? -(fixed_point)value - 1 : (fixed_point)value;
+    return (bits & 1) != 0 ? -(fixed_point)value - 1 : (fixed_point)value;
 }
 
 static uint64_t get_word(struct byte_reader *reader) {
@@ -130,7 +130,7 @@ double bytes_get_double(struct byte_reader *reader) {
 
 struct byte_reader bytes_open(const unsigned char *data, size_t size) {
     if (data == NULL || size < 8)
-        return (struct byte_reader){.failed = 1};
+        return (struct byte_reader){.failed = true};
     const unsigned char *end = data + size - 8;
     struct byte_reader seal = {end, end + 8, 0};
     int damaged = get_word(&seal) != hash_bytes(HASH_START, size - 8, data);
@@ -142,14 +142,14 @@ void bytes_get_counts(struct byte_reader *reader, size_t n, uint64_t *counts) {
         uint64_t zeros = bytes_get_unsigned(reader);
         uint64_t others = bytes_get_unsigned(reader);
         if (zeros > n - a || others > n - a - zeros || zeros + others == 0) {
-            reader->failed = 1;
+            reader->failed = true;
             return;
         }
         a += zeros;
         for (; others > 0; others--) {
             counts[a] = bytes_get_unsigned(reader);
             if (counts[a++] == 0)
-                reader->failed = 1;
+                reader->failed = true;
         }
     }
 }

@@ -4,11 +4,12 @@
 #define RUGO_SCHEMA_RESULT_BYTES_H
 
 #include "core/statistics/histogram.h"
+#include <stdbool.h>
 
 struct bytes {
     unsigned char *data; /* owned; initialise with {0} */
     size_t size, capacity;
-    int failed; /* set by the first allocation failure; later writes do nothing */
+    bool failed; /* set by the first allocation failure; later writes do nothing */
 };
 void bytes_clear(struct bytes *bytes);
 void bytes_put_unsigned(struct bytes *bytes, uint64_t value);
@@ -22,7 +23,7 @@ void bytes_seal(struct bytes *bytes);
 
 struct byte_reader {
     const unsigned char *at, *end; /* borrowed */
-    int failed; /* set by a read past the end or a malformed number; reads give 0 */
+    bool failed; /* set by a read past the end or a malformed number; reads give 0 */
 };
 /* A reader of what comes before the seal; failed where that does not match. */
 struct byte_reader bytes_open(const unsigned char *data, size_t size);

@@ -139,7 +139,7 @@ static void *room_for(struct decoding *decoding, size_t count, size_t size, size
     struct byte_reader *reader = &decoding->reader;
     size_t left = (size_t)(reader->end - reader->at);
     if (reader->failed || count > left / bytes_each) { /* more than is there */
-        reader->failed = 1;
+        reader->failed = true;
         return NULL;
     }
     void *room = result_room(decoding->result, count > 0 ? count : 1, size);
@@ -151,7 +151,7 @@ static void *room_for(struct decoding *decoding, size_t count, size_t size, size
 static const char *get_text(struct decoding *decoding) {
     uint64_t length = bytes_get_unsigned(&decoding->reader);
     if (length > TEXT_MOST)
-        decoding->reader.failed = 1;
+        decoding->reader.failed = true;
     char *text = room_for(decoding, (size_t)length + 1, 1, 1);
     for (uint64_t a = 0; text != NULL && a < length; a++) {
         uint64_t byte = bytes_get_unsigned(&decoding->reader);
@@ -195,7 +195,7 @@ static void get_cells(struct decoding *decoding, struct curve *curve) {
         uint64_t step = bytes_get_unsigned(reader);
         uint64_t cell = next + step - 1;
         if (step == 0 || step > all || cell >= all) {
-            reader->failed = 1;
+            reader->failed = true;
             return;
         }
         cells[a] = (uint32_t)cell;
@@ -211,7 +211,7 @@ static void get_values(struct decoding *decoding, struct curve *curve) {
     curve->n = (size_t)bytes_get_unsigned(reader);
     curve->columns = (size_t)bytes_get_unsigned(reader);
     if (curve->n > UINT32_MAX || curve->columns > UINT32_MAX / (curve->n > 0 ? curve->n : 1))
-        reader->failed = 1;
+        reader->failed = true;
     curve->x = get_numbers(decoding, curve->n);
     if (curve->columns > 0)
         get_cells(decoding, curve);
@@ -251,7 +251,7 @@ static void get_error(struct decoding *decoding, struct curve *curve, enum part 
 
 static void get_theory(struct decoding *decoding, struct curve *curve) {
     if (curve->theory_count == THEORIES_MOST) {
-        decoding->reader.failed = 1;
+        decoding->reader.failed = true;
         return;
     }
     struct theory *theory = &curve->theories[curve->theory_count++];
@@ -271,7 +271,7 @@ static void get_parts(struct decoding *decoding, struct curve *curve) {
         else if (part == PART_THEORY)
             get_theory(decoding, curve);
         else
-            decoding->reader.failed = 1;
+            decoding->reader.failed = true;
     }
 }
 
@@ -282,7 +282,7 @@ int curve_decode(struct case_result *result, const unsigned char *data, size_t s
     uint64_t format = bytes_get_unsigned(&decoding.reader);
     uint64_t version = bytes_get_unsigned(&decoding.reader);
     if (format != FORMAT_CURVE || version != FORMAT_VERSION)
-        decoding.reader.failed = 1;
+        decoding.reader.failed = true;
     curve.quantity = get_text(&decoding);
     curve.x_label = get_text(&decoding);
     curve.y_label = get_text(&decoding);

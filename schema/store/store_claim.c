@@ -29,10 +29,10 @@ static int expire_one(struct store *store, struct error *err) {
 }
 
 static bool is_wanted(const char *const *kinds, const char *kind) {
-    for (; kinds && *kinds; kinds++)
+    for (; kinds != NULL && *kinds != NULL; kinds++)
         if (strcmp(*kinds, kind) == 0)
             return true;
-    return !kinds;
+    return kinds == NULL;
 }
 
 struct found_study {

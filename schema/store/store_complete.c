@@ -125,7 +125,7 @@ static int count_completion(struct store *store, const struct job_row *job, doub
         status = store_integer(store, &undone, err,
                                "SELECT jobs_waiting + jobs_running FROM study WHERE id = ?", "i",
                                job->study);
-    if (status == 0 && !undone)
+    if (status == 0 && undone == 0)
         status = study_settle(store, job->study, err);
     return status != 0 ? status : read_left(store, job, left, err);
 }
@@ -180,7 +180,7 @@ int store_complete(struct store *store, int64_t job, const char *token,
     int64_t left = 0;
     bool again = false;
     int status = result->text != NULL ? 0 : block_text_create(&made, result, err);
-    if (status == 0 && !(status = change_begin(store, err))) {
+    if (status == 0 && (status = change_begin(store, err)) == 0) {
         status = complete(store, job, token, result, text, &again, &left, err);
         status = change_end(store, status, err);
     }

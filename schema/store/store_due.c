@@ -123,7 +123,7 @@ int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t
                        "UPDATE study_case SET settled = ?, publish_error = NULL WHERE study_id = ? "
                        "AND number = ?",
                        "iii", revision, study, case_number);
-    if (status == 0 && marked)
+    if (status == 0 && marked != 0)
         status = store_run(
             store, err,
             "UPDATE study SET cases_failed = cases_failed - 1, state = CASE WHEN state = 'failed' "
@@ -135,7 +135,7 @@ int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t
                                "SELECT state = 'running' AND jobs_waiting + jobs_running = 0 FROM "
                                "study WHERE id = ?",
                                "i", study);
-    return status == 0 && (marked || ends) ? study_settle(store, study, err) : status;
+    return status == 0 && (marked != 0 || ends != 0) ? study_settle(store, study, err) : status;
 }
 
 int marks_clear(struct store *store, int64_t study, struct error *err) {

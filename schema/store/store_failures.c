@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 void failures_free(struct failure *failures, size_t count) {
-    for (size_t i = 0; failures && i < count; i++) {
+    for (size_t i = 0; failures != NULL && i < count; i++) {
         free(failures[i].worker);
         free(failures[i].reason);
     }

@@ -31,7 +31,7 @@ static int check_file_system(const char *path, struct error *err) {
     char *slash = strrchr(folder, '/');
     if (slash != NULL)
         slash[slash == folder] = 0;
-    if (statfs(slash != NULL ? folder : ".", &info))
+    if (statfs(slash != NULL ? folder : ".", &info) != 0)
         return error_set(err, ERROR_SYSTEM, "database %s: %s", path, strerror(errno));
     static const long NETWORK[] = {NFS_SUPER_MAGIC,
                                    SMB_SUPER_MAGIC,
@@ -62,7 +62,7 @@ static int void_old_leases(struct store *store, struct error *err) {
     int64_t known = 0;
     int status = store_integer(store, &known, err, "SELECT count(*) FROM boot WHERE id = ?", "t",
                                store->boot);
-    if (status || known)
+    if (status != 0 || known != 0)
         return status;
     status = change_begin(store, err);
     if (status != 0)

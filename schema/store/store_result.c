@@ -63,10 +63,11 @@ static int fill_scalars(const struct stored_block *block, struct block_result *o
     if (names == NULL || scalars == NULL)
         return error_memory(err, count * rows * sizeof *scalars, "scalars");
     size_t n = 0, s = 0;
-    for (const cJSON *name = block->names->child; name; name = name->next)
+    for (const cJSON *name = block->names->child; name != NULL; name = name->next)
         names[n++] = cJSON_IsString(name) ? name->valuestring : "";
-    for (const cJSON *row = block->rows->child; row; row = row->next)
-        for (const cJSON *value = row->child; value && s < count * rows; value = value->next)
+    for (const cJSON *row = block->rows->child; row != NULL; row = row->next)
+        for (const cJSON *value = row->child; value != NULL && s < count * rows;
+             value = value->next)
             scalars[s++] = cJSON_IsNumber(value) ? value->valuedouble : NAN;
     if (s != count * rows)
         return error_set(err, ERROR_SYSTEM, "a stored result has %zu scalars instead of %zu", s,

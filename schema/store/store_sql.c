@@ -44,7 +44,7 @@ int64_t store_now(const struct store *store) {
 const char *store_time(struct store *store) {
     time_t now = time(NULL);
     struct tm utc = {0};
-    if (now != store->time || !*store->time_text) {
+    if (now != store->time || *store->time_text == '\0') {
         gmtime_r(&now, &utc);
         strftime(store->time_text, sizeof store->time_text, "%Y-%m-%dT%H:%M:%SZ", &utc);
         store->time = now;
@@ -57,7 +57,7 @@ int random_text(char *text, size_t digits, struct error *err) {
     if (digits / 2 > sizeof bytes || getrandom(bytes, digits / 2, 0) != (ssize_t)(digits / 2))
         return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
     for (size_t i = 0; i < digits; i++)
-        text[i] = "0123456789abcdef"[bytes[i / 2] >> (i % 2 ? 0 : 4) & 15];
+        text[i] = "0123456789abcdef"[bytes[i / 2] >> (i % 2 != 0 ? 0 : 4) & 15];
     text[digits] = 0;
     return 0;
 }
@@ -96,7 +96,7 @@ static int find_statement(struct store *store, const char *sql, sqlite3_stmt **o
         }
     if (store->statement_count == STATEMENTS)
         return error_set(err, ERROR_SYSTEM, "more than %d statements are prepared", STATEMENTS);
-    if (sqlite3_prepare_v3(store->db, sql, -1, SQLITE_PREPARE_PERSISTENT, out, NULL))
+    if (sqlite3_prepare_v3(store->db, sql, -1, SQLITE_PREPARE_PERSISTENT, out, NULL) != 0)
         return store_error(store, err);
     store->statements[store->statement_count].sql = sql;
     store->statements[store->statement_count++].statement = *out;
@@ -106,7 +106,7 @@ static int find_statement(struct store *store, const char *sql, sqlite3_stmt **o
 static int bind(sqlite3_stmt *statement, sqlite3_destructor_type life, const char *format,
                 va_list arguments) {
     int code = SQLITE_OK;
-    for (int column = 1; !code && *format; format++, column++) {
+    for (int column = 1; code == 0 && *format != '\0'; format++, column++) {
         if (*format == 'i') {
             code = sqlite3_bind_int64(statement, column, va_arg(arguments, int64_t));
         } else if (*format == 'd') {
@@ -128,7 +128,7 @@ static int bind(sqlite3_stmt *statement, sqlite3_destructor_type life, const cha
 static int query(struct store *store, sqlite3_stmt **out, sqlite3_destructor_type life,
                  struct error *err, const char *sql, const char *format, va_list arguments) {
     int status = find_statement(store, sql, out, err);
-    if (status == 0 && bind(*out, life, format, arguments))
+    if (status == 0 && bind(*out, life, format, arguments) != 0)
         status = store_error(store, err);
     return status;
 }
@@ -187,7 +187,7 @@ int store_integer(struct store *store, int64_t *out, struct error *err, const ch
 /* --- transactions --- */
 
 int store_execute(struct store *store, const char *sql, struct error *err) {
-    return sqlite3_exec(store->db, sql, NULL, NULL, NULL) ? store_error(store, err) : 0;
+    return sqlite3_exec(store->db, sql, NULL, NULL, NULL) != 0 ? store_error(store, err) : 0;
 }
 
 static const char ROLL_BACK[] = "ROLLBACK";
@@ -199,22 +199,22 @@ int change_begin(struct store *store, struct error *err) {
     if (store->options.read_only)
         return error_set(err, ERROR_SYSTEM, "database %s was opened for reading only", store->path);
     int status = find_statement(store, ROLL_BACK, &undo, err);
-    if (status == 0 && !store->batch && !sqlite3_get_autocommit(store->db))
+    if (status == 0 && store->batch == 0 && sqlite3_get_autocommit(store->db) == 0)
         status = store_run(store, err, ROLL_BACK, ""); /* which failed after the last change */
     if (status != 0)
         return status;
-    return store_run(store, err, store->batch ? "SAVEPOINT change" : "BEGIN IMMEDIATE", "");
+    return store_run(store, err, store->batch != 0 ? "SAVEPOINT change" : "BEGIN IMMEDIATE", "");
 }
 
 int change_end(struct store *store, int status, struct error *err) {
     if (status == 0)
-        status = store_run(store, err, store->batch ? "RELEASE change" : "COMMIT", "");
+        status = store_run(store, err, store->batch != 0 ? "RELEASE change" : "COMMIT", "");
     /* After a full disk SQLite may have rolled back by itself: then there is nothing left to undo.
      */
-    if (status != 0 && !sqlite3_get_autocommit(store->db)) {
-        if (store->batch)
+    if (status != 0 && sqlite3_get_autocommit(store->db) == 0) {
+        if (store->batch != 0)
             store_run(store, NULL, "ROLLBACK TO change", "");
-        store_run(store, NULL, store->batch ? "RELEASE change" : ROLL_BACK, "");
+        store_run(store, NULL, store->batch != 0 ? "RELEASE change" : ROLL_BACK, "");
     }
     return status;
 }
@@ -227,7 +227,7 @@ int store_begin(struct store *store, struct error *err) {
 
 int store_commit(struct store *store, struct error *err) {
     store->batch = 0;
-    if (sqlite3_get_autocommit(store->db))
+    if (sqlite3_get_autocommit(store->db) != 0)
         return error_set(err, ERROR_SYSTEM, "database %s: the transaction was rolled back",
                          store->path);
     return change_end(store, 0, err);

@@ -126,7 +126,7 @@ int store_submit(struct store *store, const struct study *study, const char *key
 static const char *state_name(const unsigned char *text) {
     static const char *const NAMES[] = {"queued", "running", "done", "failed", "cancelled"};
     for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
-        if (text && strcmp(NAMES[n], (const char *)text) == 0)
+        if (text != NULL && strcmp(NAMES[n], (const char *)text) == 0)
             return NAMES[n];
     return "failed";
 }
@@ -242,7 +242,7 @@ static void free_list(struct study_status *list, size_t count) {
 int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
                size_t *count, struct error *err) {
     int64_t row = 0;
-    int status = after != NULL && *after ? study_row(store, after, &row, err) : 0;
+    int status = after != NULL && *after != '\0' ? study_row(store, after, &row, err) : 0;
     if (status != 0)
         return status;
     struct study_status *list = array_create(limit, sizeof *list);
@@ -260,7 +260,7 @@ int store_list(struct store *store, const char *after, size_t limit, struct stud
         rows[n] = sqlite3_column_int64(statement, 19);
         status = read_status(statement, &list[n++], err);
     }
-    if (status >= 0 && n)
+    if (status >= 0 && n != 0)
         sqlite3_reset(statement);
     for (size_t i = 0; status >= 0 && i < n; i++)
         status = time_left(store, rows[i], &list[i], err);
@@ -304,7 +304,7 @@ int store_cancel(struct store *store, const char *id, struct error *err) {
             store, &ended, err,
             "SELECT state = 'cancelled' OR jobs_waiting + jobs_running = 0 FROM study WHERE id = ?",
             "i", row);
-    if (status == 0 && ended)
+    if (status == 0 && ended != 0)
         status = error_set(err, ERROR_STATE, "study %s has already ended", id);
     if (status == 0)
         status = cancel_jobs(store, row, err);

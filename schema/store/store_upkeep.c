@@ -18,7 +18,7 @@ static uint64_t file_bytes(const char *path, const char *suffix) {
     char name[4096];
     struct stat info;
     snprintf(name, sizeof name, "%s%s", path, suffix);
-    return stat(name, &info) ? 0 : (uint64_t)info.st_size;
+    return stat(name, &info) != 0 ? 0 : (uint64_t)info.st_size;
 }
 
 int store_metrics(struct store *store, struct store_metrics *out, struct error *err) {

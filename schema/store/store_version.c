@@ -28,7 +28,7 @@ static int64_t version_newest(void) {
 
 static int pragma_integer(struct store *store, const char *sql, int64_t *out, struct error *err) {
     sqlite3_stmt *statement = NULL;
-    if (sqlite3_prepare_v2(store->db, sql, -1, &statement, NULL) ||
+    if (sqlite3_prepare_v2(store->db, sql, -1, &statement, NULL) != 0 ||
         sqlite3_step(statement) != SQLITE_ROW) {
         sqlite3_finalize(statement);
         return store_error(store, err);
@@ -58,7 +58,7 @@ static int mend_first_version(struct store *store, struct error *err) {
                  {"point", "valueless", "INTEGER"}};
     int64_t found = 0;
     int status = table_has(store, "study_source", "source", &found, err);
-    if (status == 0 && !found)
+    if (status == 0 && found == 0)
         return error_set(err, ERROR_INPUT,
                          "database %s has the first layout that a store ever had, which this "
                          "program cannot read; its studies are texts in the column source of its "
@@ -69,7 +69,7 @@ static int mend_first_version(struct store *store, struct error *err) {
         status = table_has(store, LATER[c].table, LATER[c].column, &found, err);
         snprintf(sql, sizeof sql, "ALTER TABLE %s ADD COLUMN %s %s", LATER[c].table,
                  LATER[c].column, LATER[c].type);
-        if (status == 0 && !found)
+        if (status == 0 && found == 0)
             status = store_execute(store, sql, err);
     }
     return status;

@@ -22,21 +22,21 @@ void fault_add(struct fault_list *list, const char *pointer, const char *format,
     size_t at = list->count++;
     if (at >= FAULTS_KEPT)
         return;
-    if (!list->faults)
+    if (list->faults == NULL)
         list->faults = array_create(FAULTS_KEPT, sizeof *list->faults);
     char detail[400];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(detail, sizeof detail, format, arguments);
     va_end(arguments);
-    if (!list->faults)
+    if (list->faults == NULL)
         return;
     list->faults[at] = (struct fault){text_copy(pointer), text_copy(detail)};
 }
 
 void fault_list_clear(struct fault_list *list) {
     size_t kept = list->count < FAULTS_KEPT ? list->count : FAULTS_KEPT;
-    for (size_t i = 0; list->faults && i < kept; i++) {
+    for (size_t i = 0; list->faults != NULL && i < kept; i++) {
         text_free(list->faults[i].pointer);
         text_free(list->faults[i].detail);
     }

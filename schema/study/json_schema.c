@@ -47,11 +47,11 @@ static cJSON *choice_schema(const struct parameter *parameter) {
 /* {"anyOf": [first, second]}; takes both. */
 static cJSON *either(cJSON *first, cJSON *second) {
     cJSON *schema = cJSON_CreateObject();
-    cJSON *forms = schema ? cJSON_AddArrayToObject(schema, "anyOf") : NULL;
-    bool complete = forms && first && cJSON_AddItemToArray(forms, first);
+    cJSON *forms = schema != NULL ? cJSON_AddArrayToObject(schema, "anyOf") : NULL;
+    bool complete = forms != NULL && first != NULL && cJSON_AddItemToArray(forms, first);
     if (!complete)
         cJSON_Delete(first);
-    if (!complete || !second || !cJSON_AddItemToArray(forms, second)) {
+    if (!complete || second == NULL || !cJSON_AddItemToArray(forms, second)) {
         cJSON_Delete(second);
         complete = false;
     }
@@ -172,7 +172,7 @@ static cJSON *parameter_schema(const struct parameter *parameter) {
     bool complete = put_remarks(schema, parameter);
     cJSON *forms = complete ? cJSON_AddArrayToObject(schema, "anyOf") : NULL;
     cJSON *value = value_schema(parameter);
-    if (!forms || !value || !cJSON_AddItemToArray(forms, value)) {
+    if (forms == NULL || value == NULL || !cJSON_AddItemToArray(forms, value)) {
         cJSON_Delete(value);
         return checked(schema, false);
     }
@@ -183,7 +183,7 @@ static cJSON *parameter_schema(const struct parameter *parameter) {
                field_put(list, "items", value_schema(parameter)) &&
                field_put(list, "minItems", cJSON_CreateNumber(1));
     list = checked(list, complete);
-    if (!list || !cJSON_AddItemToArray(forms, list))
+    if (list == NULL || !cJSON_AddItemToArray(forms, list))
         return checked(schema, false);
     return schema;
 }
@@ -199,11 +199,11 @@ static cJSON *object_schema(void) {
 
 static bool require(cJSON *schema, const char *name) {
     cJSON *required = cJSON_GetObjectItemCaseSensitive(schema, "required");
-    for (const cJSON *known = required->child; known; known = known->next)
+    for (const cJSON *known = required->child; known != NULL; known = known->next)
         if (strcmp(known->valuestring, name) == 0)
             return true;
     cJSON *text = cJSON_CreateString(name);
-    return text && cJSON_AddItemToArray(required, text);
+    return text != NULL && cJSON_AddItemToArray(required, text);
 }
 
 /* Puts a parameter where its pointer leads, with the objects on the way. */
@@ -216,7 +216,7 @@ static bool place(cJSON *schema, const struct parameter *parameter) {
         if (parameter->required && !require(schema, name))
             return false;
         cJSON *properties = cJSON_GetObjectItemCaseSensitive(schema, "properties");
-        if (!at[length])
+        if (at[length] == '\0')
             return field_put(properties, name, parameter_schema(parameter));
         if (!cJSON_HasObjectItem(properties, name) && !field_put(properties, name, object_schema()))
             return false;

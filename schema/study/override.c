@@ -11,13 +11,13 @@ static int override_value(const char *text, cJSON **out, struct error *err) {
     if (parsed.code == ERROR_MEMORY)
         return error_set(err, ERROR_MEMORY, "%s", parsed.text);
     *out = cJSON_CreateString(text);
-    return *out ? 0 : error_memory(err, strlen(text), "a value");
+    return *out != NULL ? 0 : error_memory(err, strlen(text), "a value");
 }
 
 /* The member `name` of object, made if missing; NULL when it is no object. */
 static cJSON *member_object(cJSON *object, const char *name) {
     cJSON *member = cJSON_GetObjectItemCaseSensitive(object, name);
-    if (!member)
+    if (member == NULL)
         member = cJSON_AddObjectToObject(object, name);
     return cJSON_IsObject(member) ? member : NULL;
 }
@@ -34,28 +34,28 @@ static int put(cJSON *object, const char *name, cJSON *value, struct error *err)
 
 int override_apply(cJSON *document, const char *text, struct error *err) {
     const char *equals = strchr(text, '=');
-    if (!equals || equals == text)
+    if (equals == NULL || equals == text)
         return error_set(err, ERROR_INPUT, "\"%.100s\" is not PATH=VALUE", text);
     char *path = strndup(text, (size_t)(equals - text));
-    if (!path)
+    if (path == NULL)
         return error_memory(err, strlen(text), "a path");
     const char *separator = *path == '/' ? "/" : ".";
     cJSON *object = document, *value = NULL;
     char *rest = NULL, *name = strtok_r(path, separator, &rest);
     int status = 0;
-    while (!status && name) {
+    while (status == 0 && name != NULL) {
         char *next = strtok_r(NULL, separator, &rest);
         if (!cJSON_IsObject(object)) {
             status = error_set(err, ERROR_INPUT,
                                "\"%.100s\": what is before \"%.60s\" is not an object", text, name);
-        } else if (next) {
+        } else if (next != NULL) {
             bool there = cJSON_GetObjectItemCaseSensitive(object, name) != NULL;
             object = member_object(object, name);
             if (object == NULL && !there)
                 status = error_memory(err, strlen(name), "a member");
         } else {
             status = override_value(equals + 1, &value, err);
-            if (!status)
+            if (status == 0)
                 status = put(object, name, value, err);
         }
         name = next;

@@ -3,11 +3,11 @@
 
 void study_destroy(struct study **study) {
     struct study *s = *study;
-    if (!s)
+    if (s == NULL)
         return;
-    for (size_t c = 0; s->cases && c < s->case_count; c++)
+    for (size_t c = 0; s->cases != NULL && c < s->case_count; c++)
         cJSON_Delete(s->cases[c].parameters);
-    for (size_t p = 0; s->swept && s->swept[p]; p++)
+    for (size_t p = 0; s->swept != NULL && s->swept[p] != NULL; p++)
         free(s->swept[p]);
     free(s->swept);
     free(s->cases);

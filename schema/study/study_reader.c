@@ -20,7 +20,7 @@ static size_t name_distance(const char *a, const char *b) {
         return 64;
     for (size_t j = 0; j <= length; j++)
         row[j] = j;
-    for (size_t i = 1; *a; a++, i++) {
+    for (size_t i = 1; *a != '\0'; a++, i++) {
         size_t diagonal = row[0];
         row[0] = i;
         for (size_t j = 1; j <= length; j++) {
@@ -47,7 +47,7 @@ enum place { PLACE_UNKNOWN, PLACE_INSIDE, PLACE_PARAMETER };
 static enum place pointer_place(const struct study_kind *kind, const char *pointer) {
     size_t length = strlen(pointer);
     const char *path;
-    for (size_t i = 0; (path = known_path(kind, i)); i++) {
+    for (size_t i = 0; (path = known_path(kind, i)) != NULL; i++) {
         if (strncmp(path, pointer, length) != 0)
             continue;
         if (path[length] == 0)
@@ -64,7 +64,7 @@ static void suggestion(const struct study_kind *kind, const char *prefix, const 
     size_t best = strlen(name) / 3 + 1, length = strlen(prefix);
     const char *path;
     *text = 0;
-    for (size_t i = 0; (path = known_path(kind, i)); i++) {
+    for (size_t i = 0; (path = known_path(kind, i)) != NULL; i++) {
         if (strncmp(path, prefix, length) != 0 || path[length] != '/')
             continue;
         char sibling[POINTER_SIZE];
@@ -80,7 +80,7 @@ static void suggestion(const struct study_kind *kind, const char *prefix, const 
 
 static void check_names(const struct study_kind *kind, const cJSON *object, const char *prefix,
                         struct fault_list *faults) {
-    for (const cJSON *member = object->child; member; member = member->next) {
+    for (const cJSON *member = object->child; member != NULL; member = member->next) {
         char pointer[POINTER_SIZE], hint[96], text[48];
         snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
         switch (pointer_place(kind, pointer)) {
@@ -109,7 +109,7 @@ static void check_list(const struct parameter *parameter, const cJSON *list,
         return;
     }
     size_t i = 0;
-    for (const cJSON *item = list->child; item; item = item->next, i++) {
+    for (const cJSON *item = list->child; item != NULL; item = item->next, i++) {
         char pointer[POINTER_SIZE];
         snprintf(pointer, sizeof pointer, "%s/%zu", parameter->path, i);
         value_check(parameter, item, pointer, faults);
@@ -123,9 +123,9 @@ static void check_parameters(const struct study_kind *kind, const cJSON *documen
     const struct parameter *parameter;
     for (size_t p = 0; (parameter = parameter_row(kind->tables, p)) != NULL; p++) {
         const cJSON *value = json_at(document, parameter->path);
-        if (value && value_is_list(parameter, value))
+        if (value != NULL && value_is_list(parameter, value))
             check_list(parameter, value, faults);
-        else if (value)
+        else if (value != NULL)
             value_check(parameter, value, parameter->path, faults);
         else if (parameter->required)
             value_missing(parameter, faults);
@@ -137,11 +137,11 @@ static void merge_faults(struct fault_list *all, const struct fault_list *found)
     size_t kept = found->count < FAULTS_KEPT ? found->count : FAULTS_KEPT;
     if (found->faults == NULL)
         all->count += found->count;
-    for (size_t i = 0; found->faults && i < kept; i++) {
+    for (size_t i = 0; found->faults != NULL && i < kept; i++) {
         const struct fault *fault = &found->faults[i];
         bool known = false;
         size_t told = all->count < FAULTS_KEPT ? all->count : FAULTS_KEPT;
-        for (size_t k = 0; all->faults && k < told && !known; k++)
+        for (size_t k = 0; all->faults != NULL && k < told && !known; k++)
             known = strcmp(all->faults[k].pointer, fault->pointer) == 0 &&
                     strcmp(all->faults[k].detail, fault->detail) == 0;
         if (!known)
@@ -163,7 +163,8 @@ static int check_cases(struct study *study, double memory_limit, struct fault_li
         struct study_case *one = &study->cases[c];
         struct fault_list found = {0};
         int status = study->kind->check(study->kind, one->parameters, &found, &one->cost, err);
-        if (!status && !found.count && memory_limit > 0 && one->cost.memory_bytes > memory_limit)
+        if (status == 0 && found.count == 0 && memory_limit > 0 &&
+            one->cost.memory_bytes > memory_limit)
             fault_add(&found, "",
                       "a worker needs %.3g GiB for a grid of %zu by %zu; allowed: "
                       "%.3g GiB on this machine",
@@ -171,7 +172,7 @@ static int check_cases(struct study *study, double memory_limit, struct fault_li
                       memory_limit / 0x1p30);
         merge_faults(faults, &found);
         fault_list_clear(&found);
-        if (status)
+        if (status != 0)
             return status;
         one->block = block_size(study->realisations, one->cost.seconds);
     }
@@ -182,7 +183,7 @@ static int check_cases(struct study *study, double memory_limit, struct fault_li
 
 static int faulty(const struct fault_list *faults, struct error *err) {
     const struct fault *first = faults->faults;
-    if (first && first->pointer && first->detail)
+    if (first != NULL && first->pointer != NULL && first->detail != NULL)
         return error_set(err, ERROR_INPUT, "%s%s%s", first->pointer, *first->pointer ? ": " : "",
                          first->detail);
     return error_set(err, ERROR_INPUT, "the study has %zu faults", faults->count);
@@ -191,21 +192,21 @@ static int faulty(const struct fault_list *faults, struct error *err) {
 static int fill(struct study *study, const cJSON *document, const struct study_kind *const *kinds,
                 double memory_limit, struct fault_list *faults, struct error *err) {
     int status = common_read(study, document, kinds, faults, err);
-    if (status)
+    if (status != 0)
         return status;
-    if (study->kind) {
+    if (study->kind != NULL) {
         check_names(study->kind, document, "", faults);
         check_parameters(study->kind, document, faults);
     }
-    if (faults->count || !study->kind)
+    if (faults->count != 0 || study->kind == NULL)
         return faulty(faults, err);
     study->source = json_print(document);
-    if (!study->source)
+    if (study->source == NULL)
         return error_memory(err, strlen(study->kind->name), "a study");
     status = sweep_open(study, document, faults, err);
-    if (!status && !faults->count)
+    if (status == 0 && faults->count == 0)
         status = check_cases(study, memory_limit, faults, err);
-    if (!status && faults->count)
+    if (status == 0 && faults->count != 0)
         status = faulty(faults, err);
     return status;
 }
@@ -216,18 +217,18 @@ int study_read(struct study **out, const char *text, size_t size, const char *co
     cJSON *document = NULL;
     struct study *study = NULL;
     int status = json_parse(text, size, NULL, &document, err);
-    if (!status && !cJSON_IsObject(document)) {
+    if (status == 0 && !cJSON_IsObject(document)) {
         fault_add(faults, "", "a study is a JSON object");
         status = faulty(faults, err);
     }
-    for (size_t i = 0; !status && overrides && overrides[i]; i++)
+    for (size_t i = 0; status == 0 && overrides != NULL && overrides[i] != NULL; i++)
         status = override_apply(document, overrides[i], err);
-    if (!status && !(study = array_create(1, sizeof *study)))
+    if (status == 0 && (study = array_create(1, sizeof *study)) == NULL)
         status = error_memory(err, sizeof *study, "a study");
-    if (!status)
+    if (status == 0)
         status = fill(study, document, kinds, memory_limit, faults, err);
     cJSON_Delete(document);
-    if (status) {
+    if (status != 0) {
         study_destroy(&study);
         return status;
     }

@@ -23,11 +23,11 @@ struct origin {
 /* Axes of the document's lists, in its own order. */
 static size_t find_axes(const struct study_kind *kind, const cJSON *object, const char *prefix,
                         struct axis *axes, size_t count) {
-    for (const cJSON *member = object->child; member; member = member->next) {
+    for (const cJSON *member = object->child; member != NULL; member = member->next) {
         char pointer[POINTER_SIZE];
         snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
         const struct parameter *parameter = parameter_find(kind->tables, pointer, NULL);
-        if (parameter && value_is_list(parameter, member))
+        if (parameter != NULL && value_is_list(parameter, member))
             axes[count++] = (struct axis){parameter, member, (size_t)cJSON_GetArraySize(member), 1,
                                           member->child};
         else if (cJSON_IsObject(member))
@@ -55,15 +55,15 @@ static int put_at(cJSON *root, const char *pointer, cJSON *value) {
     for (const char *at = pointer + 1;;) {
         size_t length = strcspn(at, "/");
         snprintf(name, sizeof name, "%.*s", (int)length, at);
-        if (!at[length])
+        if (at[length] == '\0')
             break;
         cJSON *next = cJSON_GetObjectItemCaseSensitive(object, name);
-        object = next ? next : cJSON_AddObjectToObject(object, name);
+        object = next != NULL ? next : cJSON_AddObjectToObject(object, name);
         at += length + 1;
-        if (!object)
+        if (object == NULL)
             break;
     }
-    if (object && value && cJSON_AddItemToObject(object, name, value))
+    if (object != NULL && value != NULL && cJSON_AddItemToObject(object, name, value))
         return 0;
     cJSON_Delete(value);
     return ERROR_MEMORY;

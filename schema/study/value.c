@@ -7,8 +7,8 @@
 
 void value_describe(const cJSON *value, char *text, size_t size) {
     char *printed = json_print(value);
-    snprintf(text, size, "%s", printed ? printed : "a value");
-    if (printed && strlen(printed) >= size)
+    snprintf(text, size, "%s", printed != NULL ? printed : "a value");
+    if (printed != NULL && strlen(printed) >= size)
         memcpy(text + size - 4, "...", 4);
     free(printed);
 }
@@ -147,7 +147,7 @@ static bool choices_check(const struct parameter *parameter, const cJSON *value,
     if (!good)
         fault_add(faults, pointer, "an empty list; give at least one value");
     size_t i = 0;
-    for (const cJSON *item = value->child; item; item = item->next, i++) {
+    for (const cJSON *item = value->child; item != NULL; item = item->next, i++) {
         char at[POINTER_SIZE];
         snprintf(at, sizeof at, "%s/%zu", pointer, i);
         bool fits = choice_check(parameter, item, at, faults), twice = false;
@@ -165,7 +165,8 @@ static bool measure_check(const struct parameter *parameter, const cJSON *value,
     if (choice_find(parameter->choices, cJSON_GetStringValue(value)) != NULL)
         return true;
     const cJSON *number = cJSON_IsObject(value) ? value->child : NULL;
-    if (number && !number->next && choice_find(parameter->units, number->string) != NULL) {
+    if (number != NULL && number->next == NULL &&
+        choice_find(parameter->units, number->string) != NULL) {
         char at[POINTER_SIZE];
         snprintf(at, sizeof at, "%s/%s", pointer, number->string);
         return number_check(parameter, number, at, faults);
@@ -192,7 +193,7 @@ static bool numbers_check(const struct parameter *parameter, const cJSON *value,
         return is_not(value, pointer, faults, what);
     }
     size_t i = 0;
-    for (const cJSON *item = value->child; item; item = item->next, i++) {
+    for (const cJSON *item = value->child; item != NULL; item = item->next, i++) {
         char at[POINTER_SIZE];
         snprintf(at, sizeof at, "%s/%zu", pointer, i);
         good = number_check(parameter, item, at, faults) && good;

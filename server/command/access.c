@@ -16,9 +16,9 @@ struct access {
 };
 
 int access_options_check(const char *command, const struct access_options *options) {
-    if (options->database && options->server)
+    if (options->database != NULL && options->server != NULL)
         return usage_error(command, "--db and --server exclude each other");
-    if (options->token_file && !options->server)
+    if (options->token_file != NULL && options->server == NULL)
         return usage_error(command, "--token-file goes with --server");
     return 0;
 }
@@ -27,7 +27,7 @@ static int open_client(struct access *access, const struct access_options *optio
                        struct error *err) {
     char *token = NULL;
     int status = token_read(options->token_file, &token, err);
-    if (!status)
+    if (status == 0)
         status = client_create(&access->client, options->server, token, err);
     free(token);
     return status;
@@ -36,15 +36,16 @@ static int open_client(struct access *access, const struct access_options *optio
 int access_open(struct access **out, const struct access_options *options, enum access_mode mode,
                 struct error *err) {
     struct access *access = array_create(1, sizeof *access);
-    if (!access)
+    if (access == NULL)
         return error_memory(err, sizeof *access, "a store");
     struct store_options store = {.read_only = mode == ACCESS_READ,
                                   .existing = mode != ACCESS_CREATE};
-    int status = options->server
-                     ? open_client(access, options, err)
-                     : store_open(&access->store, options->database ? options->database : DATABASE,
-                                  &store, err);
-    if (status) {
+    int status =
+        options->server != NULL
+            ? open_client(access, options, err)
+            : store_open(&access->store, options->database != NULL ? options->database : DATABASE,
+                         &store, err);
+    if (status != 0) {
         access_close(&access);
         return status;
     }
@@ -53,7 +54,7 @@ int access_open(struct access **out, const struct access_options *options, enum 
 }
 
 void access_close(struct access **access) {
-    if (!*access)
+    if (*access == NULL)
         return;
     store_close(&(*access)->store);
     client_destroy(&(*access)->client);
@@ -64,7 +65,7 @@ void access_close(struct access **access) {
 /* An identifier in a path: anything but letters and digits would change the path's meaning. */
 static bool is_study_id(const char *id) {
     size_t length = strlen(id);
-    return length && length < STUDY_ID_SIZE && strspn(id, "0123456789abcdef") == length;
+    return length != 0 && length < STUDY_ID_SIZE && strspn(id, "0123456789abcdef") == length;
 }
 
 static int study_path(char *path, size_t size, const char *id, const char *rest,
@@ -85,7 +86,7 @@ static int ask_study(struct access *access, const char *method, const char *id, 
                      cJSON **out, struct error *err) {
     char path[320];
     int status = study_path(path, sizeof path, id, rest, err);
-    return status ? status : ask(access, method, path, NULL, out, err);
+    return status != 0 ? status : ask(access, method, path, NULL, out, err);
 }
 
 /* A server has no --set: the changes are made before the study is sent. */
@@ -94,15 +95,15 @@ static int submit_remote(struct access *access, const char *text, size_t size,
                          struct error *err) {
     cJSON *document = NULL;
     int status = json_parse(text, size, NULL, &document, err);
-    for (size_t i = 0; !status && overrides && overrides[i]; i++)
+    for (size_t i = 0; status == 0 && overrides != NULL && overrides[i] != NULL; i++)
         status = override_apply(document, overrides[i], err);
-    char *body = status ? NULL : json_print(document);
+    char *body = status != 0 ? NULL : json_print(document);
     cJSON_Delete(document);
-    if (!status && !body)
+    if (status == 0 && body == NULL)
         status = error_memory(err, size, "a study");
     struct request request = {
         .method = "POST", .path = "/v1/studies", .body = body, .faults = faults};
-    if (!status)
+    if (status == 0)
         status = client_json(access->client, &request, out, err);
     free(body);
     return status;
@@ -113,27 +114,28 @@ int access_submit(struct access *access, const char *text, size_t size,
                   struct error *err) {
     bool existing;
     struct study *study = NULL;
-    if (access->client)
+    if (access->client != NULL)
         return submit_remote(access, text, size, overrides, out, faults, err);
     int status = kind_read_study(&study, text, size, overrides, faults, err);
-    if (!status)
+    if (status == 0)
         status = api_submit(access->store, study, NULL, out, &existing, err);
     study_destroy(&study);
     return status;
 }
 
 int access_status(struct access *access, const char *id, cJSON **out, struct error *err) {
-    return access->client ? ask_study(access, "GET", id, "", out, err)
-                          : api_status(access->store, id, out, err);
+    return access->client != NULL ? ask_study(access, "GET", id, "", out, err)
+                                  : api_status(access->store, id, out, err);
 }
 
 enum { PAGE = 100 };
 
 static int list_page(struct access *access, const char *after, cJSON **out, struct error *err) {
     char path[96];
-    if (!access->client)
+    if (access->client == NULL)
         return api_list(access->store, after, PAGE, out, err);
-    snprintf(path, sizeof path, "/v1/studies?limit=%d%s%s", PAGE, *after ? "&after=" : "", after);
+    snprintf(path, sizeof path, "/v1/studies?limit=%d%s%s", PAGE, *after != '\0' ? "&after=" : "",
+             after);
     return ask(access, "GET", path, NULL, out, err);
 }
 
@@ -141,28 +143,28 @@ static int list_page(struct access *access, const char *after, cJSON **out, stru
 static void append_studies(cJSON *all, cJSON *page) {
     cJSON *from = cJSON_GetObjectItemCaseSensitive(page, "studies");
     cJSON *to = cJSON_GetObjectItemCaseSensitive(all, "studies");
-    for (cJSON *study; from && (study = cJSON_DetachItemFromArray(from, 0)) != NULL;)
+    for (cJSON *study; from != NULL && (study = cJSON_DetachItemFromArray(from, 0)) != NULL;)
         cJSON_AddItemToArray(to, study);
 }
 
 int access_list(struct access *access, cJSON **out, struct error *err) {
     char after[STUDY_ID_SIZE] = "";
     cJSON *all = cJSON_CreateObject();
-    int status = all && cJSON_AddArrayToObject(all, "studies")
+    int status = all != NULL && cJSON_AddArrayToObject(all, "studies") != NULL
                      ? 0
                      : error_memory(err, 0, "a list of studies");
-    for (bool more = !status; more;) {
+    for (bool more = status == 0; more;) {
         cJSON *page = NULL;
         status = list_page(access, after, &page, err);
-        if (!status)
+        if (status == 0)
             append_studies(all, page);
         const char *next = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(page, "next"));
-        more = !status && next && is_study_id(next) && strcmp(next, after) != 0;
+        more = status == 0 && next != NULL && is_study_id(next) && strcmp(next, after) != 0;
         if (more)
             snprintf(after, sizeof after, "%s", next);
         cJSON_Delete(page);
     }
-    if (status)
+    if (status != 0)
         cJSON_Delete(all);
     else
         *out = all;
@@ -214,26 +216,26 @@ int access_report(struct access *access, const char *id, struct study_report *ou
 }
 
 int access_cancel(struct access *access, const char *id, cJSON **out, struct error *err) {
-    return access->client ? ask_study(access, "DELETE", id, "", out, err)
-                          : api_cancel(access->store, id, out, err);
+    return access->client != NULL ? ask_study(access, "DELETE", id, "", out, err)
+                                  : api_cancel(access->store, id, out, err);
 }
 
 int access_retry(struct access *access, const char *id, cJSON **out, struct error *err) {
-    return access->client ? ask_study(access, "POST", id, "/retry", out, err)
-                          : api_retry(access->store, id, out, err);
+    return access->client != NULL ? ask_study(access, "POST", id, "/retry", out, err)
+                                  : api_retry(access->store, id, out, err);
 }
 
 int access_snapshot(struct access *access, const char *path, struct error *err) {
-    if (!access->client)
+    if (access->client == NULL)
         return store_snapshot(access->store, path, err);
     FILE *file = fopen(path, "wxb");
-    if (!file)
+    if (file == NULL)
         return error_set(err, errno == EEXIST ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s", path,
                          errno == EEXIST ? "exists; a snapshot needs a new file" : strerror(errno));
     int status = client_download(access->client, "/v1/snapshot", file, err);
-    if (fclose(file) && !status)
+    if (fclose(file) != 0 && status == 0)
         status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
-    if (status)
+    if (status != 0)
         remove(path);
     return status;
 }

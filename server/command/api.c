@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 static int finish(cJSON *document, bool complete, cJSON **out, struct error *err) {
-    if (!document || !complete) {
+    if (document == NULL || !complete) {
         cJSON_Delete(document);
         return error_memory(err, 0, "a document");
     }
@@ -18,7 +18,7 @@ static int finish(cJSON *document, bool complete, cJSON **out, struct error *err
 
 static cJSON *submitted(const struct study_status *status, bool *complete) {
     cJSON *document = cJSON_CreateObject();
-    *complete = document && field_put(document, "id", cJSON_CreateString(status->id)) &&
+    *complete = document != NULL && field_put(document, "id", cJSON_CreateString(status->id)) &&
                 field_put(document, "name", cJSON_CreateString(status->name)) &&
                 field_put(document, "state", cJSON_CreateString(status->state)) &&
                 field_put_count(document, "cases", status->cases) &&
@@ -31,9 +31,9 @@ int api_submit(struct store *store, const struct study *study, const char *key, 
     char id[STUDY_ID_SIZE];
     struct study_status now = {0};
     int status = store_submit(store, study, key, id, existing, err);
-    if (!status)
+    if (status == 0)
         status = store_status(store, id, &now, err);
-    if (status)
+    if (status != 0)
         return status;
     bool complete;
     cJSON *document = submitted(&now, &complete);
@@ -45,7 +45,7 @@ int api_submit(struct store *store, const struct study *study, const char *key, 
 
 static bool put_jobs(cJSON *object, const struct study_status *status) {
     cJSON *jobs = cJSON_AddObjectToObject(object, "jobs");
-    return jobs && field_put_count(jobs, "total", status->jobs) &&
+    return jobs != NULL && field_put_count(jobs, "total", status->jobs) &&
            field_put_count(jobs, "done", status->jobs_done) &&
            field_put_count(jobs, "failed", status->jobs_failed) &&
            field_put_count(jobs, "running", status->jobs_running) &&
@@ -55,25 +55,26 @@ static bool put_jobs(cJSON *object, const struct study_status *status) {
 
 static bool put_realisations(cJSON *object, const struct study_status *status) {
     cJSON *realisations = cJSON_AddObjectToObject(object, "realisations");
-    return realisations && field_put_count(realisations, "total", status->realisations_total) &&
+    return realisations != NULL &&
+           field_put_count(realisations, "total", status->realisations_total) &&
            field_put_count(realisations, "done", status->realisations_done) &&
            field_put_count(realisations, "failed", status->realisations_failed);
 }
 
 static bool put_time(cJSON *object, const char *name, const char *time) {
-    return field_put(object, name, *time ? cJSON_CreateString(time) : cJSON_CreateNull());
+    return field_put(object, name, *time != '\0' ? cJSON_CreateString(time) : cJSON_CreateNull());
 }
 
 /* Time left of a study nobody works on is what one worker would need. */
 static double time_left(const struct study_status *status) {
-    return status->seconds_left / (double)(status->workers ? status->workers : 1);
+    return status->seconds_left / (double)(status->workers != 0 ? status->workers : 1);
 }
 
 static cJSON *progress(const struct study_status *status, bool *complete) {
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)status->seed);
     cJSON *document = cJSON_CreateObject();
-    *complete = document && field_put(document, "id", cJSON_CreateString(status->id)) &&
+    *complete = document != NULL && field_put(document, "id", cJSON_CreateString(status->id)) &&
                 field_put(document, "name", cJSON_CreateString(status->name)) &&
                 field_put(document, "kind", cJSON_CreateString(status->kind)) &&
                 field_put(document, "state", cJSON_CreateString(status->state)) &&
@@ -98,10 +99,10 @@ static bool put_failures(cJSON *document, const struct failure *failures, size_t
     for (size_t i = 0; complete && i < count; i++) {
         const struct failure *failure = &failures[i];
         cJSON *entry = cJSON_CreateObject();
-        complete = entry && cJSON_AddItemToArray(list, entry) &&
+        complete = entry != NULL && cJSON_AddItemToArray(list, entry) &&
                    field_put(entry, "job",
-                             failure->job ? cJSON_CreateNumber((double)failure->job)
-                                          : cJSON_CreateNull()) &&
+                             failure->job != 0 ? cJSON_CreateNumber((double)failure->job)
+                                               : cJSON_CreateNull()) &&
                    field_put_count(entry, "case", failure->case_number) &&
                    field_put_count(entry, "first", failure->first) &&
                    field_put_count(entry, "count", failure->count) &&
@@ -117,9 +118,9 @@ int api_status(struct store *store, const char *id, cJSON **out, struct error *e
     struct failure *failures = NULL;
     size_t count = 0;
     int code = store_status(store, id, &status, err);
-    if (!code && status.jobs_failed + status.cases_failed > 0)
+    if (code == 0 && status.jobs_failed + status.cases_failed > 0)
         code = store_failures(store, id, &failures, &count, err);
-    if (!code) {
+    if (code == 0) {
         bool complete;
         cJSON *document = progress(&status, &complete);
         complete = complete && put_failures(document, failures, count);
@@ -134,15 +135,15 @@ int api_list(struct store *store, const char *after, size_t limit, cJSON **out, 
     struct study_status *list = NULL;
     size_t count = 0;
     int status = store_list(store, after, limit, &list, &count, err);
-    if (status)
+    if (status != 0)
         return status;
     cJSON *document = cJSON_CreateObject();
-    cJSON *studies = document ? cJSON_AddArrayToObject(document, "studies") : NULL;
+    cJSON *studies = document != NULL ? cJSON_AddArrayToObject(document, "studies") : NULL;
     bool complete = studies != NULL;
     for (size_t i = 0; i < count; i++) {
         bool whole = false;
         cJSON *entry = complete ? progress(&list[i], &whole) : NULL;
-        complete = complete && entry && cJSON_AddItemToArray(studies, entry) && whole;
+        complete = complete && entry != NULL && cJSON_AddItemToArray(studies, entry) && whole;
     }
     /* A full page may have a next one. */
     if (complete && count == limit)
@@ -155,7 +156,7 @@ int api_list(struct store *store, const char *after, size_t limit, cJSON **out, 
 
 int api_cancel(struct store *store, const char *id, cJSON **out, struct error *err) {
     int status = store_cancel(store, id, err);
-    return status ? status : api_status(store, id, out, err);
+    return status != 0 ? status : api_status(store, id, out, err);
 }
 
 int api_retry(struct store *store, const char *id, cJSON **out, struct error *err) {
@@ -165,7 +166,7 @@ int api_retry(struct store *store, const char *id, cJSON **out, struct error *er
         status = publish_due(store, NULL, NULL, NULL, err);
     if (status == 0)
         status = api_status(store, id, out, err);
-    if (!status && !field_put_count(*out, "retried", count)) {
+    if (status == 0 && !field_put_count(*out, "retried", count)) {
         cJSON_Delete(*out);
         *out = NULL;
         status = error_memory(err, 0, "a document");

@@ -22,13 +22,13 @@ static int print(const struct characterise_options *options, const struct height
         characterise_heights(&values, &map->grid, map->z, map->grid.nx / 2, map->grid.ny / 2, err);
     if (status != 0)
         return status;
-    if (!options->json)
+    if (options->json == 0)
         characterisation_print(stdout, &values);
     else if (characterisation_print_json(stdout, &values))
         putchar('\n');
     else
         status = error_memory(err, sizeof values, "the characterisation");
-    if (status == 0 && (fflush(stdout) != 0 || ferror(stdout)))
+    if (status == 0 && (fflush(stdout) != 0 || ferror(stdout) != 0))
         status = error_set(err, ERROR_SYSTEM, "cannot write to standard output");
     return status;
 }

@@ -35,16 +35,17 @@ static double largest_memory(const struct study *study) {
 /* --- text --- */
 
 static void print_value(struct text_table *table, const cJSON *value) {
-    char *text = value ? json_print(value) : NULL;
-    size_t length = text ? strlen(text) : 0;
+    char *text = value != NULL ? json_print(value) : NULL;
+    size_t length = text != NULL ? strlen(text) : 0;
     bool quoted = length > 1 && text[0] == '"';
-    table_cell(table, "%.*s", text ? (int)(length - 2 * quoted) : 1, text ? text + quoted : "-");
+    table_cell(table, "%.*s", text != NULL ? (int)(length - 2 * quoted) : 1,
+               text != NULL ? text + quoted : "-");
     free(text);
 }
 
 static void print_cases(const struct study *study) {
     size_t swept = 0;
-    while (study->swept[swept])
+    while (study->swept[swept] != NULL)
         swept++;
     struct text_table table = {.columns = swept + 6};
     table_cell(&table, "case");
@@ -73,17 +74,17 @@ static void print_cases(const struct study *study) {
 
 /* Effective values of all cases; what is swept stands in the table. */
 static void print_values(const struct study *study, const cJSON *object, const char *prefix) {
-    for (const cJSON *member = object->child; member; member = member->next) {
+    for (const cJSON *member = object->child; member != NULL; member = member->next) {
         char pointer[256];
         snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
         bool swept = false;
-        for (size_t p = 0; study->swept[p]; p++)
+        for (size_t p = 0; study->swept[p] != NULL; p++)
             swept = swept || strcmp(study->swept[p], pointer) == 0;
         if (cJSON_IsObject(member)) {
             print_values(study, member, pointer);
         } else if (!swept) {
             char *text = json_print(member);
-            printf("  %-36s %s\n", pointer, text ? text : "?");
+            printf("  %-36s %s\n", pointer, text != NULL ? text : "?");
             free(text);
         }
     }
@@ -107,7 +108,8 @@ static void print_text(const struct study *study) {
 static cJSON *case_document(const struct study *study, size_t c) {
     const struct study_case *one = &study->cases[c];
     cJSON *document = cJSON_CreateObject();
-    bool complete = document && field_put(document, "case", cJSON_CreateNumber((double)c)) &&
+    bool complete = document != NULL &&
+                    field_put(document, "case", cJSON_CreateNumber((double)c)) &&
                     field_put(document, "parameters", cJSON_Duplicate(one->parameters, true)) &&
                     field_put(document, "nx", cJSON_CreateNumber((double)one->cost.nx)) &&
                     field_put(document, "ny", cJSON_CreateNumber((double)one->cost.ny)) &&
@@ -144,7 +146,7 @@ static int print_study_json(const struct study *study, struct error *err) {
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
     bool complete =
-        document && field_put(document, "name", cJSON_CreateString(study->name)) &&
+        document != NULL && field_put(document, "name", cJSON_CreateString(study->name)) &&
         field_put(document, "kind", cJSON_CreateString(study->kind->name)) &&
         field_put(document, "seed", cJSON_CreateString(seed)) &&
         field_put(document, "realisations", cJSON_CreateNumber((double)study->realisations)) &&
@@ -154,7 +156,7 @@ static int print_study_json(const struct study *study, struct error *err) {
     cJSON *cases = cJSON_GetObjectItemCaseSensitive(document, "cases");
     for (size_t c = 0; complete && c < study->case_count; c++) {
         cJSON *one = case_document(study, c);
-        complete = one && cJSON_AddItemToArray(cases, one);
+        complete = one != NULL && cJSON_AddItemToArray(cases, one);
     }
     if (!complete) {
         cJSON_Delete(document);
@@ -169,9 +171,9 @@ static int check(const char *file, const char *const *sets, bool json, struct fa
                  struct error *err) {
     struct study *study = NULL;
     int status = study_file_read(&study, file, sets, faults, err);
-    if (!status && json) {
+    if (status == 0 && json) {
         status = print_study_json(study, err);
-    } else if (!status) {
+    } else if (status == 0) {
         print_text(study);
         status = output_flush(err);
     }

@@ -10,7 +10,7 @@ atomic_int stop_requested;
 
 /* The second one ends at once: nothing is lost but the lease of a running block. */
 static void on_signal(int number) {
-    if (stop_requested && number == SIGINT)
+    if (stop_requested != 0 && number == SIGINT)
         _exit(EXIT_INTERRUPTED);
     stop_requested = 1;
 }
@@ -46,11 +46,11 @@ int command_fail_faults(const char *file, const struct fault_list *faults) {
     if (faults->faults == NULL && faults->count > 0)
         fprintf(stderr, "%s: %zu faults, and no memory to tell them\n", name_of(file),
                 faults->count);
-    for (size_t i = 0; faults->faults && i < kept; i++) {
+    for (size_t i = 0; faults->faults != NULL && i < kept; i++) {
         const struct fault *fault = &faults->faults[i];
-        const char *pointer = fault->pointer ? fault->pointer : "";
-        fprintf(stderr, "%s: %s%s%s\n", name_of(file), pointer, *pointer ? ": " : "",
-                fault->detail ? fault->detail : "");
+        const char *pointer = fault->pointer != NULL ? fault->pointer : "";
+        fprintf(stderr, "%s: %s%s%s\n", name_of(file), pointer, *pointer != '\0' ? ": " : "",
+                fault->detail != NULL ? fault->detail : "");
     }
     if (faults->count > kept)
         fprintf(stderr, "%s: and %zu more\n", name_of(file), faults->count - kept);
@@ -58,15 +58,15 @@ int command_fail_faults(const char *file, const struct fault_list *faults) {
 }
 
 int output_flush(struct error *err) {
-    if (!ferror(stdout) && fflush(stdout) == 0)
+    if (ferror(stdout) == 0 && fflush(stdout) == 0)
         return 0;
     return error_set(err, ERROR_SYSTEM, "cannot write the output: %s",
-                     strerror(errno ? errno : EIO));
+                     strerror(errno != 0 ? errno : EIO));
 }
 
 int output_document(const cJSON *document, struct error *err) {
-    char *text = document ? json_print(document) : NULL;
-    if (!text)
+    char *text = document != NULL ? json_print(document) : NULL;
+    if (text == NULL)
         return error_memory(err, 0, "a document");
     puts(text);
     int status = output_flush(err);
@@ -79,19 +79,19 @@ static int read_stream(FILE *file, const char *path, size_t limit, char **text, 
                        struct error *err) {
     size_t room = 65536, used = 0;
     char *buffer = malloc(room + 1);
-    while (buffer && used <= limit) {
+    while (buffer != NULL && used <= limit) {
         used += fread(buffer + used, 1, room - used, file);
         if (used < room)
             break;
         room *= 2;
         char *larger = realloc(buffer, room + 1);
-        if (!larger)
+        if (larger == NULL)
             free(buffer);
         buffer = larger;
     }
-    if (!buffer)
+    if (buffer == NULL)
         return error_memory(err, room, path);
-    if (ferror(file) || used > limit) {
+    if (ferror(file) != 0 || used > limit) {
         free(buffer);
         return used > limit ? error_set(err, ERROR_INPUT, "%s: larger than %zu bytes", path, limit)
                             : error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
@@ -106,7 +106,7 @@ int file_read(const char *path, size_t limit, char **text, size_t *size, struct 
     if (strcmp(path, "-") == 0)
         return read_stream(stdin, name_of(path), limit, text, size, err);
     FILE *file = fopen(path, "rb");
-    if (!file)
+    if (file == NULL)
         return error_set(err, errno == ENOENT ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s", path,
                          strerror(errno));
     int status = read_stream(file, path, limit, text, size, err);
@@ -119,23 +119,25 @@ int study_file_read(struct study **out, const char *path, const char *const *ove
     char *text = NULL;
     size_t size;
     int status = file_read(path, JSON_LIMITS.bytes, &text, &size, err);
-    if (status)
+    if (status != 0)
         return status;
     status = kind_read_study(out, text, size, overrides, faults, err);
     free(text);
-    return status ? error_context(err, "%s", name_of(path)) : 0;
+    return status != 0 ? error_context(err, "%s", name_of(path)) : 0;
 }
 
 int token_read(const char *token_file, char **token, struct error *err) {
     const char *given = getenv("RUGO_TOKEN");
     size_t size;
     *token = NULL;
-    if (!token_file) {
-        *token = given && *given ? strdup(given) : NULL;
-        return given && *given && !*token ? error_memory(err, strlen(given), "a token") : 0;
+    if (token_file == NULL) {
+        *token = given != NULL && *given != '\0' ? strdup(given) : NULL;
+        return given != NULL && *given != '\0' && *token == NULL
+                   ? error_memory(err, strlen(given), "a token")
+                   : 0;
     }
     int status = file_read(token_file, 65536, token, &size, err);
-    if (!status)
+    if (status == 0)
         (*token)[strcspn(*token, "\r\n")] = 0;
     return status;
 }

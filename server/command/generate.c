@@ -60,7 +60,7 @@ static int choose_format(struct generate_order *order) {
     if (order->format == HEIGHT_MAP_FORMATS)
         order->format = HEIGHT_MAP_NPY;
     if (writes_surface(order) && order->output == NULL && order->format == HEIGHT_MAP_NPY &&
-        isatty(STDOUT_FILENO))
+        isatty(STDOUT_FILENO) != 0)
         return usage_error("generate", "npy is not for a terminal: give -o FILE or --format");
     return 0;
 }
@@ -115,7 +115,7 @@ static int characterise(const struct generate_order *order, const struct surface
                 "generation\n  %-18s %zu\n  %-18s %s\n  %-18s %.4g\n  %-18s %.4g\n  %-18s %.4g\n",
                 "iterations", report->iterations, "end", end_name(report->end), "eps_h",
                 report->eps_h, "eps_s", report->eps_s, "eps_s0", report->eps_s0);
-    if (fflush(file) != 0 || ferror(file))
+    if (fflush(file) != 0 || ferror(file) != 0)
         return error_set(err, ERROR_SYSTEM, "cannot write the characterisation");
     return 0;
 }

@@ -93,7 +93,7 @@ int main(int argc, char **argv) {
     signal(SIGXFSZ, SIG_IGN);
     int status = dispatch(argc, argv);
     struct error err = {0};
-    if (output_flush(&err) && status == EXIT_DONE) {
+    if (output_flush(&err) != 0 && status == EXIT_DONE) {
         fprintf(stderr, "rugo: %s\n", err.text);
         return EXIT_FAILED;
     }

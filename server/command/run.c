@@ -47,13 +47,13 @@ static int submit(struct run *run, struct error *err) {
     struct study *study = NULL;
     bool existing = false;
     int status = study_file_read(&study, run->file, run->sets, &run->faults, err);
-    if (!status && asprintf(&key, "run %s", study->source) < 0) {
+    if (status == 0 && asprintf(&key, "run %s", study->source) < 0) {
         key = NULL;
         status = error_memory(err, strlen(study->source), "a study's key");
     }
-    if (!status)
+    if (status == 0)
         status = store_open(&run->store, run->database, NULL, err);
-    if (!status)
+    if (status == 0)
         status = store_submit(run->store, study, key, run->id, &existing, err);
     study_destroy(&study);
     free(key);

@@ -51,7 +51,7 @@ static int read_listen(struct serve *serve, struct error *err) {
     size_t length = colon != NULL ? (size_t)(colon - text) : 0;
     bool brackets = length > 2 && text[0] == '[' && text[length - 1] == ']';
     size_t width = length - 2 * brackets;
-    if (colon == NULL || end == colon + 1 || *end || port > 65535 || width == 0 ||
+    if (colon == NULL || end == colon + 1 || *end != '\0' || port > 65535 || width == 0 ||
         width >= sizeof serve->address)
         return error_set(err, ERROR_INPUT,
                          "--listen %.60s is not ADDRESS:PORT, e.g. 127.0.0.1:8080 or [::1]:8080",
@@ -110,7 +110,7 @@ static void print_url(const struct serve *serve, char *url, size_t size) {
 
 static int local_workers_start(struct local_workers *workers, struct error *err) {
     struct serve *serve = workers->serve;
-    if (!serve->options->workers)
+    if (serve->options->workers == 0)
         return 0;
     print_url(serve, workers->url, sizeof workers->url);
     if (pthread_create(&workers->thread, NULL, local_workers_thread, workers) != 0)
@@ -123,7 +123,7 @@ static int local_workers_start(struct local_workers *workers, struct error *err)
 static int local_workers_token(struct local_workers *workers, struct error *err) {
     struct tokens *tokens = workers->serve->service.tokens;
     unsigned char bytes[(TOKEN_SIZE - 1) / 2];
-    if (tokens == NULL || !workers->serve->options->workers)
+    if (tokens == NULL || workers->serve->options->workers == 0)
         return 0;
     if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
         return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
@@ -136,7 +136,7 @@ static int local_workers_token(struct local_workers *workers, struct error *err)
 
 static void wait_for_end(void) {
     struct timespec pause = {0, 100000000};
-    while (!stop_requested)
+    while (stop_requested == 0)
         nanosleep(&pause, NULL); /* a signal ends it early */
 }
 

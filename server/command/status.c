@@ -21,7 +21,7 @@ static int ask(struct access *access, const char *id, const void *options, cJSON
 
 static int show(const cJSON *document, const char *id, const void *values, struct error *err) {
     const struct options *options = values;
-    if (options->json)
+    if (options->json != 0)
         return output_document(document, err);
     if (id != NULL)
         return show_progress(document, id, options, err);

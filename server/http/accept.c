@@ -27,9 +27,9 @@ static int fit_of(const char *range, size_t length, const char *type) {
 }
 
 double accept_quality(const char *accept, const char *type) {
-    double quality = accept ? 0 : 1;
+    double quality = accept != NULL ? 0 : 1;
     int closest = 0;
-    while (accept && *accept) {
+    while (accept != NULL && *accept != '\0') {
         accept += strspn(accept, ", \t");
         size_t size = strcspn(accept, ","), length = strcspn(accept, ",; \t");
         int fit = fit_of(accept, length, type);

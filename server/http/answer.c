@@ -6,7 +6,7 @@
 #include <string.h>
 
 void answer_header(struct exchange *exchange, const char *name, const char *value) {
-    if (exchange->response)
+    if (exchange->response != NULL)
         MHD_add_response_header(exchange->response, name, value);
 }
 
@@ -14,7 +14,7 @@ static void finish(struct exchange *exchange, unsigned status, const char *type,
                    struct MHD_Response *response) {
     exchange->status = status;
     exchange->response = response;
-    if (type)
+    if (type != NULL)
         answer_header(exchange, "Content-Type", type);
     answer_header(exchange, "X-Content-Type-Options", "nosniff");
     answer_header(exchange, "Referrer-Policy", "no-referrer");
@@ -25,7 +25,7 @@ static void finish(struct exchange *exchange, unsigned status, const char *type,
 }
 
 void answer_text(struct exchange *exchange, unsigned status, const char *type, char *text) {
-    if (!text) {
+    if (text == NULL) {
         exchange->status = 500; /* no response: the connection is closed */
         return;
     }
@@ -47,14 +47,14 @@ static size_t character_length(const unsigned char *s) {
 }
 
 void answer_mend(char *text) {
-    for (size_t length; text && *text; text += length ? length : 1)
+    for (size_t length; text != NULL && *text != '\0'; text += length != 0 ? length : 1)
         if ((length = character_length((unsigned char *)text)) == 0)
             *text = '?';
 }
 
 static void answer_document(struct exchange *exchange, unsigned status, const char *type,
                             cJSON *document) {
-    char *text = document ? json_print(document) : NULL;
+    char *text = document != NULL ? json_print(document) : NULL;
     cJSON_Delete(document);
     answer_mend(text);
     answer_text(exchange, status, type, text);
@@ -80,7 +80,7 @@ void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
     }
     finish(exchange, 200, type,
            MHD_create_response_from_callback(size, PART, read, context, free_context));
-    if (!exchange->response)
+    if (exchange->response == NULL)
         free_context(context);
 }
 
@@ -120,12 +120,12 @@ static bool put_faults(cJSON *problem, const struct fault_list *faults) {
     cJSON *errors = cJSON_AddArrayToObject(problem, "errors");
     size_t kept = faults->count < FAULTS_KEPT ? faults->count : FAULTS_KEPT;
     bool complete = errors != NULL;
-    for (size_t i = 0; complete && faults->faults && i < kept; i++) {
+    for (size_t i = 0; complete && faults->faults != NULL && i < kept; i++) {
         const struct fault *fault = &faults->faults[i];
         cJSON *entry = cJSON_CreateObject();
-        complete = entry && cJSON_AddItemToArray(errors, entry) &&
-                   field_put_text(entry, "pointer", fault->pointer ? fault->pointer : "") &&
-                   field_put_text(entry, "detail", fault->detail ? fault->detail : "");
+        complete = entry != NULL && cJSON_AddItemToArray(errors, entry) &&
+                   field_put_text(entry, "pointer", fault->pointer != NULL ? fault->pointer : "") &&
+                   field_put_text(entry, "detail", fault->detail != NULL ? fault->detail : "");
     }
     return complete;
 }
@@ -133,11 +133,11 @@ static bool put_faults(cJSON *problem, const struct fault_list *faults) {
 void answer_problem(struct exchange *exchange, unsigned status, const char *detail,
                     const struct fault_list *faults) {
     cJSON *problem = cJSON_CreateObject();
-    bool complete = problem && field_put_text(problem, "type", "about:blank") &&
+    bool complete = problem != NULL && field_put_text(problem, "type", "about:blank") &&
                     field_put_text(problem, "title", problem_title(status)) &&
-                    cJSON_AddNumberToObject(problem, "status", status) &&
+                    cJSON_AddNumberToObject(problem, "status", status) != NULL &&
                     field_put_text(problem, "detail", detail) &&
-                    (!faults || !faults->count || put_faults(problem, faults));
+                    (faults == NULL || faults->count == 0 || put_faults(problem, faults));
     if (!complete) {
         cJSON_Delete(problem);
         problem = NULL;

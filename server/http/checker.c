@@ -24,7 +24,7 @@ struct checker {
 };
 
 static void case_merger_destroy(struct case_merger **one) {
-    if (*one && (*one)->merger)
+    if (*one != NULL && (*one)->merger != NULL)
         merger_destroy(&(*one)->merger);
     free(*one);
     *one = NULL;
@@ -33,7 +33,7 @@ static void case_merger_destroy(struct case_merger **one) {
 static int case_merger_create(struct case_merger **out, const struct claimed_job *job,
                               const struct job_kind *kind, struct error *err) {
     struct case_merger *one = array_create(1, sizeof *one);
-    if (!one)
+    if (one == NULL)
         return error_memory(err, sizeof *one, "a merger");
     snprintf(one->study, sizeof one->study, "%s", job->study);
     one->case_number = job->case_number;
@@ -59,7 +59,7 @@ static void let_go(struct checker *checker, struct case_merger *one) {
 static struct case_merger *take(struct checker *checker, const struct claimed_job *job) {
     struct case_merger *found = NULL;
     pthread_mutex_lock(&checker->mutex);
-    for (size_t i = 0; i < CASES_KEPT && checker->kept[i] && !found; i++) {
+    for (size_t i = 0; i < CASES_KEPT && checker->kept[i] != NULL && found == NULL; i++) {
         struct case_merger *one = checker->kept[i];
         if (one->case_number != job->case_number || strcmp(one->study, job->study) != 0)
             continue;
@@ -79,22 +79,22 @@ static void keep(struct checker *checker, struct case_merger *one) {
     checker->kept[0] = one;
     one->holders++;
     pthread_mutex_unlock(&checker->mutex);
-    if (dropped)
+    if (dropped != NULL)
         let_go(checker, dropped);
 }
 
 int checker_check(struct checker *checker, const struct claimed_job *job,
                   const struct block_result *result, struct error *err) {
     const struct job_kind *kind = kind_find(job->kind);
-    if (!kind)
+    if (kind == NULL)
         return error_set(err, ERROR_SYSTEM, "this server does not know the kind %.40s", job->kind);
     int status = kind_check_names(kind, result, err);
-    if (status)
+    if (status != 0)
         return status;
     struct case_merger *one = take(checker, job);
-    if (!one) {
+    if (one == NULL) {
         status = case_merger_create(&one, job, kind, err);
-        if (status)
+        if (status != 0)
             return status;
         keep(checker, one);
     }
@@ -105,7 +105,7 @@ int checker_check(struct checker *checker, const struct claimed_job *job,
 
 int checker_create(struct checker **out, struct error *err) {
     struct checker *checker = array_create(1, sizeof *checker);
-    if (!checker)
+    if (checker == NULL)
         return error_memory(err, sizeof *checker, "a checker of results");
     pthread_mutex_init(&checker->mutex, NULL);
     *out = checker;
@@ -114,7 +114,7 @@ int checker_create(struct checker **out, struct error *err) {
 
 void checker_destroy(struct checker **checker) {
     struct checker *c = *checker;
-    if (!c)
+    if (c == NULL)
         return;
     for (size_t i = 0; i < CASES_KEPT; i++)
         case_merger_destroy(&c->kept[i]);

@@ -31,7 +31,7 @@ static bool peer_leaves(const struct event_stream *stream) {
 
 static bool has_ended(const cJSON *status) {
     const char *state = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(status, "state"));
-    return !state || (strcmp(state, "queued") != 0 && strcmp(state, "running") != 0);
+    return state == NULL || (strcmp(state, "queued") != 0 && strcmp(state, "running") != 0);
 }
 
 /* The text of the next event, NULL when there is nothing new. */
@@ -41,15 +41,15 @@ static char *look(struct event_stream *stream) {
     cJSON *status = NULL;
     char *text = NULL, *event = NULL;
     int code = service_reader(stream->service, &reader, &err);
-    if (!code)
+    if (code == 0)
         code = api_status(reader, stream->id, &status, &err);
     service_give_back(stream->service, reader);
-    if (code) {
+    if (code != 0) {
         stream->ended = true;
         return NULL;
     }
     double revision = cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(status, "revision"));
-    if (revision != stream->revision && (text = json_print(status))) {
+    if (revision != stream->revision && (text = json_print(status)) != NULL) {
         if (asprintf(&event, "event: progress\ndata: %s\n\n", text) < 0)
             event = NULL;
         stream->revision = revision;
@@ -63,15 +63,15 @@ static char *look(struct event_stream *stream) {
 static ssize_t next_event(void *context, uint64_t position, char *buffer, size_t room) {
     struct event_stream *stream = context;
     (void)position;
-    while (!stream->pending) {
+    while (stream->pending == NULL) {
         exchange_renew(stream->exchange);
         if (stream->ended || atomic_load(&stream->service->stopping))
             return MHD_CONTENT_READER_END_OF_STREAM;
         stream->pending = look(stream);
         stream->sent = 0;
-        if (!stream->pending && clock_ms() - stream->told_ms > ALIVE_MS)
+        if (stream->pending == NULL && clock_ms() - stream->told_ms > ALIVE_MS)
             stream->pending = strdup(": alive\n\n");
-        if (!stream->pending && !stream->ended)
+        if (stream->pending == NULL && !stream->ended)
             stream->ended = peer_leaves(stream);
     }
     exchange_renew(stream->exchange); /* who takes nothing for a whole deadline is cut */
@@ -98,13 +98,13 @@ void handle_events(struct exchange *exchange, const char *id) {
     struct error err = {0};
     struct study_status status = {0};
     int code = service_reader(exchange->service, &reader, &err);
-    if (!code)
+    if (code == 0)
         code = store_status(reader, id, &status, &err);
     service_give_back(exchange->service, reader);
     study_status_clear(&status);
-    struct event_stream *stream = code ? NULL : calloc(1, sizeof *stream);
-    if (!stream) {
-        if (!code)
+    struct event_stream *stream = code != 0 ? NULL : calloc(1, sizeof *stream);
+    if (stream == NULL) {
+        if (code == 0)
             error_memory(&err, sizeof *stream, "a stream");
         answer_error(exchange, &err);
         return;

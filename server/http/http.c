@@ -53,7 +53,7 @@ static int64_t now_ns(void) {
 static int socket_of(struct MHD_Connection *connection) {
     const union MHD_ConnectionInfo *info =
         MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
-    return info ? info->connect_fd : -1;
+    return info != NULL ? info->connect_fd : -1;
 }
 
 static void on_connection(void *context, struct MHD_Connection *connection, void **slot,
@@ -61,11 +61,11 @@ static void on_connection(void *context, struct MHD_Connection *connection, void
     struct http *http = context;
     struct connection *entry = *slot;
     if (code == MHD_CONNECTION_NOTIFY_CLOSED) {
-        if (!entry)
+        if (entry == NULL)
             return;
         pthread_mutex_lock(&http->mutex);
         *entry->link = entry->next;
-        if (entry->next)
+        if (entry->next != NULL)
             entry->next->link = entry->link;
         pthread_mutex_unlock(&http->mutex);
         atomic_fetch_sub(&http->service->connections, 1);
@@ -75,7 +75,7 @@ static void on_connection(void *context, struct MHD_Connection *connection, void
     }
     int socket = socket_of(connection);
     entry = calloc(1, sizeof *entry);
-    if (!entry) {
+    if (entry == NULL) {
         shutdown(socket, SHUT_RDWR); /* it would have no deadline */
         return;
     }
@@ -84,7 +84,7 @@ static void on_connection(void *context, struct MHD_Connection *connection, void
     pthread_mutex_lock(&http->mutex);
     entry->next = http->connections;
     entry->link = &http->connections;
-    if (entry->next)
+    if (entry->next != NULL)
         entry->next->link = &entry->next;
     http->connections = entry;
     pthread_mutex_unlock(&http->mutex);
@@ -96,8 +96,8 @@ static void set_deadline(struct http *http, struct MHD_Connection *connection,
                          int64_t deadline_ms) {
     const union MHD_ConnectionInfo *info =
         MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
-    struct connection *entry = info ? info->socket_context : NULL;
-    if (!entry)
+    struct connection *entry = info != NULL ? info->socket_context : NULL;
+    if (entry == NULL)
         return;
     pthread_mutex_lock(&http->mutex);
     entry->deadline_ms = deadline_ms;
@@ -114,7 +114,7 @@ static void *watchdog_thread(void *context) {
     pthread_mutex_lock(&http->mutex);
     while (!http->ending) {
         int64_t now = clock_ms();
-        for (struct connection *entry = http->connections; entry; entry = entry->next)
+        for (struct connection *entry = http->connections; entry != NULL; entry = entry->next)
             if (entry->deadline_ms <= now) {
                 shutdown(entry->socket, SHUT_RDWR);
                 entry->deadline_ms = INT64_MAX; /* once is enough */
@@ -138,7 +138,7 @@ static void count_request(struct http *http, int change) {
 static struct exchange *exchange_create(struct http *http, struct MHD_Connection *connection,
                                         const char *method, const char *path) {
     struct exchange *exchange = calloc(1, sizeof *exchange);
-    if (!exchange)
+    if (exchange == NULL)
         return NULL;
     exchange->service = http->service;
     exchange->http = http;
@@ -169,13 +169,13 @@ static void on_completed(void *context, struct MHD_Connection *connection, void 
                          enum MHD_RequestTerminationCode code) {
     struct http *http = context;
     struct exchange *exchange = *slot;
-    if (!exchange)
+    if (exchange == NULL)
         return;
     unsigned hundred = exchange->status / 100;
     if (hundred < STATUS_CLASSES)
         atomic_fetch_add(&http->service->answers[hundred], 1);
     log_exchange(exchange, code == MHD_REQUEST_TERMINATED_COMPLETED_OK);
-    if (exchange->response)
+    if (exchange->response != NULL)
         MHD_destroy_response(exchange->response);
     atomic_fetch_sub(&http->bodies, bytes_counted(exchange));
     free(exchange->body);
@@ -186,7 +186,7 @@ static void on_completed(void *context, struct MHD_Connection *connection, void 
 }
 
 static enum MHD_Result send_answer(struct exchange *exchange) {
-    if (!exchange->response)
+    if (exchange->response == NULL)
         return MHD_NO; /* out of memory for any answer: the connection is closed */
     if (atomic_load(&exchange->service->stopping))
         answer_header(exchange, "Connection", "close");
@@ -201,8 +201,8 @@ static enum MHD_Result send_answer(struct exchange *exchange) {
  */
 static void reserve_body(struct exchange *exchange) {
     const char *length = exchange_header(exchange, "Content-Length");
-    unsigned long long room = length ? strtoull(length, NULL, 10) : 0;
-    if (!length && exchange_header(exchange, "Transfer-Encoding"))
+    unsigned long long room = length != NULL ? strtoull(length, NULL, 10) : 0;
+    if (length == NULL && exchange_header(exchange, "Transfer-Encoding") != NULL)
         room = BODY_MOST;
     if (room > BODY_MOST) {
         answer_problem(exchange, 413, "a body may have up to 16 MiB", NULL);
@@ -210,14 +210,14 @@ static void reserve_body(struct exchange *exchange) {
     }
     exchange->body_room = (size_t)room;
     size_t bytes = bytes_counted(exchange); /* given back by on_completed */
-    if (atomic_fetch_add(&exchange->http->bodies, bytes) + bytes > BODIES_MOST && bytes)
+    if (atomic_fetch_add(&exchange->http->bodies, bytes) + bytes > BODIES_MOST && bytes != 0)
         answer_problem(exchange, 503, "too many large bodies at a time", NULL);
 }
 
 static bool keep_body(struct exchange *exchange, const char *data, size_t size) {
     if (size > exchange->body_room - exchange->body_size)
         return false;
-    if (!exchange->body && !(exchange->body = malloc(exchange->body_room + 1)))
+    if (exchange->body == NULL && (exchange->body = malloc(exchange->body_room + 1)) == NULL)
         return false;
     memcpy(exchange->body + exchange->body_size, data, size);
     exchange->body_size += size;
@@ -229,13 +229,13 @@ static enum MHD_Result begin(struct http *http, struct MHD_Connection *connectio
                              const char *method, const char *path, void **slot) {
     struct exchange *exchange = exchange_create(http, connection, method, path);
     *slot = exchange;
-    if (!exchange)
+    if (exchange == NULL)
         return MHD_NO;
     route_refuse_early(exchange);
-    if (!exchange->status)
+    if (exchange->status == 0)
         reserve_body(exchange);
     /* An answer before the body closes the connection: what an early refusal wants. */
-    return exchange->status ? send_answer(exchange) : MHD_YES;
+    return exchange->status != 0 ? send_answer(exchange) : MHD_YES;
 }
 
 static enum MHD_Result on_request(void *context, struct MHD_Connection *connection,
@@ -243,9 +243,9 @@ static enum MHD_Result on_request(void *context, struct MHD_Connection *connecti
                                   const char *data, size_t *size, void **slot) {
     struct exchange *exchange = *slot;
     (void)version;
-    if (!exchange)
+    if (exchange == NULL)
         return begin(context, connection, method, path, slot);
-    if (*size) {
+    if (*size != 0) {
         /* A chunked body past the cap can only be cut. */
         bool kept = keep_body(exchange, data, *size);
         *size = 0;
@@ -287,7 +287,8 @@ bool http_host_allowed(const struct http *http, const char *host) {
     if (strcasecmp(name, "localhost") == 0 || inet_pton(AF_INET, name, address) == 1 ||
         inet_pton(AF_INET6, name, address) == 1)
         return true;
-    for (const char *const *allowed = http->options.hosts; allowed && *allowed; allowed++)
+    for (const char *const *allowed = http->options.hosts; allowed != NULL && *allowed != NULL;
+         allowed++)
         if (strcasecmp(*allowed, name) == 0)
             return true;
     return false;
@@ -314,7 +315,7 @@ static bool socket_address(const struct http_options *options, struct sockaddr_s
 static size_t unescape(void *context, struct MHD_Connection *connection, char *text) {
     (void)context;
     (void)connection;
-    return strstr(text, "%00") ? strlen(text) : MHD_http_unescape(text);
+    return strstr(text, "%00") != NULL ? strlen(text) : MHD_http_unescape(text);
 }
 
 static void no_library_log(void *context, const char *format, va_list arguments) {
@@ -339,30 +340,30 @@ static int start_daemon(struct http *http, struct error *err) {
         MHD_OPTION_NOTIFY_CONNECTION, on_connection, http, MHD_OPTION_NOTIFY_COMPLETED,
         on_completed, http, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_UNESCAPE_CALLBACK, unescape,
         NULL, MHD_OPTION_LISTEN_BACKLOG_SIZE, 128u, MHD_OPTION_END);
-    if (!http->daemon)
+    if (http->daemon == NULL)
         return error_set(err, ERROR_SYSTEM, "cannot listen on %s port %u (in use?)",
                          http->options.address, http->options.port);
     const union MHD_DaemonInfo *info = MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_BIND_PORT);
-    http->port = info ? info->port : http->options.port;
+    http->port = info != NULL ? info->port : http->options.port;
     return 0;
 }
 
 int http_start(struct http **out, struct service *service, const struct http_options *options,
                struct error *err) {
     struct http *http = array_create(1, sizeof *http);
-    if (!http)
+    if (http == NULL)
         return error_memory(err, sizeof *http, "the HTTP service");
     http->service = service;
     http->options = *options;
     pthread_mutex_init(&http->mutex, NULL);
-    int status = clock_cond_init(&http->changed)
+    int status = clock_cond_init(&http->changed) != 0
                      ? error_set(err, ERROR_SYSTEM, "no condition variable")
                      : start_daemon(http, err);
-    if (!status && pthread_create(&http->watchdog, NULL, watchdog_thread, http)) {
+    if (status == 0 && pthread_create(&http->watchdog, NULL, watchdog_thread, http) != 0) {
         MHD_stop_daemon(http->daemon);
         status = error_set(err, ERROR_SYSTEM, "cannot start the watchdog's thread");
     }
-    if (status) {
+    if (status != 0) {
         free(http);
         return status;
     }
@@ -376,13 +377,13 @@ uint16_t http_port(const struct http *http) {
 
 void http_stop(struct http **http) {
     struct http *h = *http;
-    if (!h)
+    if (h == NULL)
         return;
     MHD_socket listening = MHD_quiesce_daemon(h->daemon);
     int64_t until = clock_ms() + END_MS;
     pthread_mutex_lock(&h->mutex);
     h->stopping = true;
-    while (h->requests && clock_ms() < until)
+    while (h->requests != 0 && clock_ms() < until)
         clock_cond_wait(&h->changed, &h->mutex, until);
     h->ending = true;
     pthread_cond_broadcast(&h->changed);

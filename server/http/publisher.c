@@ -60,7 +60,7 @@ static void *publisher_thread(void *context) {
 
 int publisher_create(struct publisher **out, const char *database, struct error *err) {
     struct publisher *publisher = array_create(1, sizeof *publisher);
-    if (!publisher)
+    if (publisher == NULL)
         return error_memory(err, sizeof *publisher, "the publisher");
     pthread_mutex_init(&publisher->mutex, NULL);
     if (clock_cond_init(&publisher->woken) != 0) {
@@ -68,9 +68,9 @@ int publisher_create(struct publisher **out, const char *database, struct error 
         return error_set(err, ERROR_SYSTEM, "cannot make a condition");
     }
     int status = store_open(&publisher->store, database, NULL, err);
-    if (!status && pthread_create(&publisher->thread, NULL, publisher_thread, publisher))
+    if (status == 0 && pthread_create(&publisher->thread, NULL, publisher_thread, publisher) != 0)
         status = error_set(err, ERROR_SYSTEM, "cannot start the publisher's thread");
-    if (status) {
+    if (status != 0) {
         store_close(&publisher->store);
         free(publisher);
         return status;
@@ -88,7 +88,7 @@ void publisher_wake(struct publisher *publisher) {
 
 void publisher_destroy(struct publisher **publisher) {
     struct publisher *p = *publisher;
-    if (!p)
+    if (p == NULL)
         return;
     pthread_mutex_lock(&p->mutex);
     p->stopping = true;

@@ -18,13 +18,13 @@ static enum MHD_Result check_parameter(void *context, enum MHD_ValueKind kind, c
     size_t n = 0;
     (void)kind;
     snprintf(pointer, sizeof pointer, "?%.40s", name);
-    while (n < QUERY_NAMES_MOST && query->names[n] && strcmp(query->names[n], name) != 0)
+    while (n < QUERY_NAMES_MOST && query->names[n] != NULL && strcmp(query->names[n], name) != 0)
         n++;
-    if (n == QUERY_NAMES_MOST || !query->names[n])
+    if (n == QUERY_NAMES_MOST || query->names[n] == NULL)
         fault_add(&query->faults, pointer, "unknown name");
     else if (query->seen[n])
         fault_add(&query->faults, pointer, "given twice");
-    else if (!value)
+    else if (value == NULL)
         fault_add(&query->faults, pointer, "no value");
     else
         query->seen[n] = true;
@@ -32,7 +32,7 @@ static enum MHD_Result check_parameter(void *context, enum MHD_ValueKind kind, c
 }
 
 static bool answered(struct exchange *exchange, struct fault_list *faults) {
-    if (faults->count)
+    if (faults->count != 0)
         answer_problem(exchange, 422, "the query is not valid", faults);
     fault_list_clear(faults);
     return exchange->status != 0;
@@ -49,12 +49,12 @@ bool query_number(struct exchange *exchange, const char *name, int64_t least, in
     const char *text = exchange_query(exchange, name);
     struct fault_list faults = {0};
     char *end, pointer[32];
-    if (!text)
+    if (text == NULL)
         return true;
     errno = 0;
     long long number = strtoll(text, &end, 10);
     bool digits = strspn(text, "-0123456789") == strlen(text);
-    if (!errno && end != text && !*end && digits && number >= least && number <= most) {
+    if (errno == 0 && end != text && *end == '\0' && digits && number >= least && number <= most) {
         *value = number;
         return true;
     }

@@ -37,7 +37,7 @@ enum { ROUTE_COUNT = sizeof ROUTES / sizeof *ROUTES };
 
 /* Whether a path fits a pattern; the starred segment goes to id. */
 static bool fits(const char *pattern, const char *path, char id[SEGMENT_SIZE]) {
-    for (; *pattern; pattern++) {
+    for (; *pattern != '\0'; pattern++) {
         if (*pattern != '*') {
             if (*path++ != *pattern)
                 return false;
@@ -75,7 +75,7 @@ static void allowed_methods(const char *path, char *text, size_t size) {
         if (!fits(ROUTES[r].pattern, path, id))
             continue;
         bool get = strcmp(ROUTES[r].method, "GET") == 0;
-        used += (size_t)snprintf(text + used, size - used, "%s%s%s", used ? ", " : "",
+        used += (size_t)snprintf(text + used, size - used, "%s%s%s", used != 0 ? ", " : "",
                                  ROUTES[r].method, get ? ", HEAD" : "");
     }
 }
@@ -83,7 +83,7 @@ static void allowed_methods(const char *path, char *text, size_t size) {
 static void refuse_route(struct exchange *exchange) {
     char methods[96], detail[200];
     allowed_methods(exchange->path, methods, sizeof methods);
-    if (!*methods) {
+    if (*methods == '\0') {
         snprintf(detail, sizeof detail, "there is nothing at %.120s", exchange->path);
         answer_problem(exchange, 404, detail, NULL);
         return;
@@ -118,20 +118,20 @@ static bool check_headers(struct exchange *exchange) {
     struct header_counts counts = {0};
     MHD_get_connection_values(exchange->connection, MHD_HEADER_KIND, count_header, &counts);
     const char *encoding = exchange_header(exchange, "Transfer-Encoding"), *detail = NULL;
+    bool unknown = encoding != NULL && strcasecmp(encoding, "chunked") != 0; /* to the library */
     if (counts.lengths > 1)
         detail = "more than one Content-Length";
-    else if (counts.lengths && counts.encodings)
+    else if (counts.lengths != 0 && counts.encodings != 0)
         detail = "Content-Length beside Transfer-Encoding";
     else if (counts.hosts > 1)
         detail = "more than one Host";
     else if (counts.keys > 1)
         detail = "more than one Idempotency-Key";
-    else if (counts.encodings > 1 ||
-             (encoding && strcasecmp(encoding, "chunked") != 0)) /* the library knows no other */
+    else if (counts.encodings > 1 || unknown)
         detail = "a Transfer-Encoding other than chunked";
-    if (detail)
+    if (detail != NULL)
         answer_problem(exchange, 400, detail, NULL);
-    return !detail;
+    return detail == NULL;
 }
 
 /* A page of another site, or a name that somebody pointed at this address, may not use this
@@ -139,13 +139,14 @@ static bool check_headers(struct exchange *exchange) {
 static bool check_origin(struct exchange *exchange) {
     const char *host = exchange_header(exchange, "Host");
     const char *origin = exchange_header(exchange, "Origin");
-    if (host && !http_host_allowed(exchange->http, host)) {
+    if (host != NULL && !http_host_allowed(exchange->http, host)) {
         answer_problem(exchange, 403, "the Host is no name of this server; see serve --allow-host",
                        NULL);
         return false;
     }
-    const char *scheme_end = origin ? strstr(origin, "://") : NULL;
-    if (origin && (!host || !scheme_end || strcmp(scheme_end + 3, host) != 0)) {
+    const char *scheme_end = origin != NULL ? strstr(origin, "://") : NULL;
+    if (origin != NULL &&
+        (host == NULL || scheme_end == NULL || strcmp(scheme_end + 3, host) != 0)) {
         answer_problem(exchange, 403, "requests of another origin are not answered", NULL);
         return false;
     }
@@ -153,14 +154,14 @@ static bool check_origin(struct exchange *exchange) {
 }
 
 static bool check_token(struct exchange *exchange, unsigned wanted) {
-    if (wanted == ROLE_NONE || !exchange->service->tokens)
+    if (wanted == ROLE_NONE || exchange->service->tokens == NULL)
         return true;
     const char *authorization = exchange_header(exchange, "Authorization");
-    bool bearer = authorization && strncasecmp(authorization, "Bearer ", 7) == 0;
+    bool bearer = authorization != NULL && strncasecmp(authorization, "Bearer ", 7) == 0;
     unsigned roles = tokens_roles(exchange->service->tokens, bearer ? authorization + 7 : NULL);
-    if (roles & wanted)
+    if ((roles & wanted) != 0)
         return true;
-    if (roles)
+    if (roles != 0)
         answer_problem(exchange, 403, "the token's role does not allow this", NULL);
     else
         answer_problem(exchange, 401, bearer ? "the token is unknown" : "no Bearer token", NULL);
@@ -169,12 +170,13 @@ static bool check_token(struct exchange *exchange, unsigned wanted) {
 
 static bool has_body(const struct exchange *exchange) {
     const char *length = exchange_header(exchange, "Content-Length");
-    return (length && strcmp(length, "0") != 0) || exchange_header(exchange, "Transfer-Encoding");
+    return (length != NULL && strcmp(length, "0") != 0) ||
+           exchange_header(exchange, "Transfer-Encoding") != NULL;
 }
 
 static bool check_media(struct exchange *exchange) {
     const char *type = exchange_header(exchange, "Content-Type");
-    size_t length = type ? strcspn(type, "; \t") : 0;
+    size_t length = type != NULL ? strcspn(type, "; \t") : 0;
     if (!has_body(exchange) || (length == 16 && strncasecmp(type, "application/json", 16) == 0))
         return true;
     answer_problem(exchange, 415, "a body must be application/json", NULL);
@@ -186,7 +188,7 @@ void route_refuse_early(struct exchange *exchange) {
     if (!check_headers(exchange) || !check_origin(exchange))
         return;
     const struct route *route = find_route(exchange, id);
-    if (!route)
+    if (route == NULL)
         refuse_route(exchange);
     else if (check_token(exchange, route->roles) && check_media(exchange) &&
              strncmp(exchange->path, "/v1/", 4) == 0)
@@ -199,7 +201,7 @@ void route_answer(struct exchange *exchange) {
 }
 
 bool check_body(struct exchange *exchange) {
-    if (!exchange->body)
+    if (exchange->body == NULL)
         answer_problem(exchange, 400, "a JSON body is needed", NULL);
     return exchange->body != NULL;
 }
@@ -209,7 +211,7 @@ cJSON *body_json(struct exchange *exchange) {
     cJSON *document = NULL;
     if (!check_body(exchange))
         return NULL;
-    if (json_parse(exchange->body, exchange->body_size, NULL, &document, &err)) {
+    if (json_parse(exchange->body, exchange->body_size, NULL, &document, &err) != 0) {
         unsigned status = err.code == ERROR_INPUT ? 400 : 503;
         answer_problem(exchange, status, err.text, NULL);
         return NULL;

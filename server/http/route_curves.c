@@ -122,11 +122,11 @@ static ssize_t next_part(void *context, uint64_t position, char *buffer, size_t 
     struct error err = {0};
     (void)position;
     exchange_renew(stream->exchange); /* who takes nothing for a whole deadline is cut */
-    if (!stream->text && stream->next == stream->end)
+    if (stream->text == NULL && stream->next == stream->end)
         return MHD_CONTENT_READER_END_OF_STREAM;
-    if (!stream->text && atomic_load(&stream->exchange->service->stopping))
+    if (stream->text == NULL && atomic_load(&stream->exchange->service->stopping))
         return MHD_CONTENT_READER_END_WITH_ERROR;
-    if (!stream->text && read_case(stream, &err)) {
+    if (stream->text == NULL && read_case(stream, &err) != 0) {
         struct log_about about = {.study = stream->study.about.id};
         log_line(LEVEL_ERROR, &about, "%s: %s", stream->report ? "report" : "curves", err.text);
         return MHD_CONTENT_READER_END_WITH_ERROR;
@@ -238,14 +238,14 @@ static bool wants_csv(const struct exchange *exchange) {
 
 static bool matches(const struct exchange *exchange, const char *etag) {
     const char *known = exchange_header(exchange, "If-None-Match");
-    return known && (strcmp(known, "*") == 0 || strstr(known, etag));
+    return known != NULL && (strcmp(known, "*") == 0 || strstr(known, etag) != NULL);
 }
 
 static int find_study(struct exchange *exchange, const char *id, struct study_status *out,
                       struct error *err) {
     struct store *reader;
     int status = service_reader(exchange->service, &reader, err);
-    if (!status)
+    if (status == 0)
         status = store_status(reader, id, out, err);
     service_give_back(exchange->service, reader);
     return status;
@@ -266,13 +266,13 @@ void handle_curves(struct exchange *exchange, const char *id) {
      * identity. */
     snprintf(etag, sizeof etag, "\"%s-%llu-%s\"", id, (unsigned long long)study.revision,
              csv ? "csv" : "json");
-    if (!status && matches(exchange, etag))
+    if (status == 0 && matches(exchange, etag))
         answer_empty(exchange, 304);
-    else if (!status)
+    else if (status == 0)
         status = csv ? send_csv(exchange, id, &filter, study.cases, &err)
                      : send_json(exchange, id, &filter, false, &err);
     study_status_clear(&study);
-    if (status) {
+    if (status != 0) {
         answer_error(exchange, &err);
         return;
     }
@@ -283,6 +283,6 @@ void handle_curves(struct exchange *exchange, const char *id) {
 void handle_report(struct exchange *exchange, const char *id) {
     struct error err = {0};
     struct result_filter all = {.case_number = -1};
-    if (send_json(exchange, id, &all, true, &err))
+    if (send_json(exchange, id, &all, true, &err) != 0)
         answer_error(exchange, &err);
 }

@@ -18,7 +18,7 @@ static bool job_number(struct exchange *exchange, const char *id, int64_t *job) 
     char *end;
     errno = 0;
     *job = strtoll(id, &end, 10);
-    bool good = !errno && end != id && !*end && *job > 0;
+    bool good = errno == 0 && end != id && *end == '\0' && *job > 0;
     if (!good)
         answer_problem(exchange, 404, "there is no such job", NULL);
     return good;
@@ -42,11 +42,11 @@ void handle_claim(struct exchange *exchange, const char *id) {
     struct claiming claiming = {.count = 0};
     struct error err = {0};
     cJSON *body = body_json(exchange);
-    if (!body)
+    if (body == NULL)
         return;
-    if (wire_claim_read(body, &claiming.wire, &err))
+    if (wire_claim_read(body, &claiming.wire, &err) != 0)
         refuse_message(exchange, &err);
-    else if (writer_do(exchange->service->writer, claim_change, &claiming, &err))
+    else if (writer_do(exchange->service->writer, claim_change, &claiming, &err) != 0)
         answer_error(exchange, &err);
     else if (claiming.count == 0)
         answer_empty(exchange, 204);
@@ -71,7 +71,7 @@ static int heartbeat_change(struct store *store, void *context, struct error *er
 
 static int fail_change(struct store *store, void *context, struct error *err) {
     struct reporting *r = context;
-    const char *reason = *r->report.reason ? r->report.reason : "no reason was given";
+    const char *reason = *r->report.reason != '\0' ? r->report.reason : "no reason was given";
     return store_fail(store, r->job, r->report.token, reason, r->report.permanent, err);
 }
 
@@ -86,11 +86,11 @@ static void handle_report_of(struct exchange *exchange, const char *id, store_ch
     if (!job_number(exchange, id, &reporting.job))
         return;
     cJSON *body = body_json(exchange);
-    if (!body)
+    if (body == NULL)
         return;
-    if (wire_report_read(body, &reporting.report, &err))
+    if (wire_report_read(body, &reporting.report, &err) != 0)
         refuse_message(exchange, &err);
-    else if (writer_do(exchange->service->writer, change, &reporting, &err))
+    else if (writer_do(exchange->service->writer, change, &reporting, &err) != 0)
         answer_error(exchange, &err);
     else
         answer_json(exchange, 200, cJSON_CreateObject());
@@ -128,10 +128,10 @@ static int check_against_job(struct exchange *exchange, const struct completing 
     struct store *reader;
     struct claimed_job job = {0};
     int status = service_reader(exchange->service, &reader, err);
-    if (!status)
+    if (status == 0)
         status = store_job(reader, completing->job, completing->token, &job, err);
     service_give_back(exchange->service, reader);
-    if (!status)
+    if (status == 0)
         status = checker_check(exchange->service->checker, &job, &completing->block, err);
     claimed_job_clear(&job);
     return status;
@@ -141,10 +141,10 @@ static void complete(struct exchange *exchange, struct completing *completing) {
     struct block_text text = {0};
     struct error err = {0};
     int status = check_against_job(exchange, completing, &err);
-    if (!status)
+    if (status == 0)
         status = block_text_create(&text, &completing->block, &err);
     completing->block.text = &text;
-    if (!status)
+    if (status == 0)
         status = writer_do(exchange->service->writer, complete_change, completing, &err);
     block_text_clear(&text);
     completing->block.text = NULL;
@@ -152,12 +152,13 @@ static void complete(struct exchange *exchange, struct completing *completing) {
         refuse_message(exchange, &err);
         return;
     }
-    if (status) {
+    if (status != 0) {
         answer_error(exchange, &err);
         return;
     }
     cJSON *document = cJSON_CreateObject();
-    if (document && !cJSON_AddBoolToObject(document, "case_done", completing->case_done)) {
+    if (document != NULL &&
+        cJSON_AddBoolToObject(document, "case_done", completing->case_done) == NULL) {
         cJSON_Delete(document);
         document = NULL;
     }

@@ -55,15 +55,15 @@ void handle_health(struct exchange *exchange, const char *id) {
     struct error err = {0};
     struct store_metrics metrics;
     int status = service_reader(exchange->service, &reader, &err);
-    if (!status)
+    if (status == 0)
         status = store_metrics(reader, &metrics, &err);
     service_give_back(exchange->service, reader);
-    if (status) {
+    if (status != 0) {
         answer_error(exchange, &err);
         return;
     }
     cJSON *document = cJSON_CreateObject();
-    if (document)
+    if (document != NULL)
         cJSON_AddStringToObject(document, "status", "ok");
     answer_json(exchange, 200, document);
 }
@@ -72,7 +72,7 @@ void handle_metrics(struct exchange *exchange, const char *id) {
     (void)id;
     struct error err = {0};
     char *text;
-    if (service_metrics(exchange->service, &text, &err))
+    if (service_metrics(exchange->service, &text, &err) != 0)
         answer_error(exchange, &err);
     else
         answer_text(exchange, 200, "text/plain; version=0.0.4; charset=utf-8", text);
@@ -114,14 +114,14 @@ static int snapshot_file(struct download *download, uint64_t *size, struct error
     snprintf(path, sizeof path, "%s.snapshot-%d-%p", service->database, (int)getpid(),
              (void *)download);
     int status = service_reader(service, &reader, err);
-    if (!status)
+    if (status == 0)
         status = store_snapshot(reader, path, err);
     service_give_back(service, reader);
-    if (status)
+    if (status != 0)
         return status;
     download->file = open(path, O_RDONLY | O_CLOEXEC);
     unlink(path);
-    if (download->file < 0 || fstat(download->file, &info))
+    if (download->file < 0 || fstat(download->file, &info) != 0)
         return error_set(err, ERROR_SYSTEM, "the snapshot cannot be read: %s", strerror(errno));
     *size = (uint64_t)info.st_size;
     return 0;
@@ -132,7 +132,7 @@ void handle_snapshot(struct exchange *exchange, const char *id) {
     struct error err = {0};
     uint64_t size;
     struct download *download = array_create(1, sizeof *download);
-    if (!download) {
+    if (download == NULL) {
         answer_problem(exchange, 503, "no memory for a snapshot", NULL);
         return;
     }
@@ -140,7 +140,7 @@ void handle_snapshot(struct exchange *exchange, const char *id) {
     if (atomic_fetch_add(&exchange->service->snapshots, 1) >= SNAPSHOTS_MOST) {
         download_free(download);
         answer_problem(exchange, 503, "too many snapshots are being sent", NULL);
-    } else if (snapshot_file(download, &size, &err)) {
+    } else if (snapshot_file(download, &size, &err) != 0) {
         download_free(download);
         answer_error(exchange, &err);
     } else {

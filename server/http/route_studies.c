@@ -27,7 +27,7 @@ static void submit(struct exchange *exchange, const struct study *study) {
     struct submission submission = {.study = study,
                                     .key = exchange_header(exchange, "Idempotency-Key")};
     struct error err = {0};
-    if (writer_do(exchange->service->writer, submit_change, &submission, &err)) {
+    if (writer_do(exchange->service->writer, submit_change, &submission, &err) != 0) {
         cJSON_Delete(submission.document); /* made, but its commit failed */
         answer_error(exchange, &err);
         return;
@@ -43,9 +43,9 @@ static void submit(struct exchange *exchange, const struct study *study) {
 static bool check_key(struct exchange *exchange) {
     const char *key = exchange_header(exchange, "Idempotency-Key");
     size_t length = 0;
-    while (key && key[length] > ' ' && key[length] < 0x7f)
+    while (key != NULL && key[length] > ' ' && key[length] < 0x7f)
         length++;
-    if (!key || (length && length <= KEY_MOST && !key[length]))
+    if (key == NULL || (length != 0 && length <= KEY_MOST && key[length] == '\0'))
         return true;
     answer_problem(exchange, 400, "an Idempotency-Key has 1 to 200 visible ASCII characters", NULL);
     return false;
@@ -60,9 +60,9 @@ void handle_study_create(struct exchange *exchange, const char *id) {
     if (!check_key(exchange) || !check_body(exchange))
         return;
     int status = kind_read_study(&study, exchange->body, exchange->body_size, NULL, &faults, &err);
-    if (!status)
+    if (status == 0)
         submit(exchange, study);
-    else if (faults.count)
+    else if (faults.count != 0)
         answer_problem(exchange, 422, "the study is not valid", &faults);
     else if (status == ERROR_INPUT) /* no JSON */
         answer_problem(exchange, 400, err.text, NULL);
@@ -85,7 +85,7 @@ static int change_study(struct store *store, void *context, struct error *err) {
 
 static void answer_change(struct exchange *exchange, struct study_change change) {
     struct error err = {0};
-    if (writer_do(exchange->service->writer, change_study, &change, &err)) {
+    if (writer_do(exchange->service->writer, change_study, &change, &err) != 0) {
         cJSON_Delete(change.document); /* made, but its commit failed */
         answer_error(exchange, &err);
     } else {
@@ -112,11 +112,11 @@ void handle_study_list(struct exchange *exchange, const char *id) {
     if (!query_number(exchange, "limit", 1, 1000, &limit))
         return;
     int status = service_reader(exchange->service, &reader, &err);
-    if (!status)
+    if (status == 0)
         status =
             api_list(reader, exchange_query(exchange, "after"), (size_t)limit, &document, &err);
     service_give_back(exchange->service, reader);
-    if (status)
+    if (status != 0)
         answer_error(exchange, &err);
     else
         answer_json(exchange, 200, document);
@@ -127,10 +127,10 @@ void handle_study(struct exchange *exchange, const char *id) {
     struct error err = {0};
     cJSON *document = NULL;
     int status = service_reader(exchange->service, &reader, &err);
-    if (!status)
+    if (status == 0)
         status = api_status(reader, id, &document, &err);
     service_give_back(exchange->service, reader);
-    if (status)
+    if (status != 0)
         answer_error(exchange, &err);
     else
         answer_json(exchange, 200, document);

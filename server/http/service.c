@@ -18,13 +18,13 @@ int service_open(struct service *service, const char *database, int64_t lease_ms
     service->started_ms = clock_ms();
     pthread_mutex_init(&service->mutex, NULL);
     int status = store_open(&service->store, database, &options, err);
-    if (!status)
+    if (status == 0)
         status = writer_create(&service->writer, service->store, err);
-    if (!status)
+    if (status == 0)
         status = publisher_create(&service->publisher, database, err);
-    if (!status)
+    if (status == 0)
         writer_on_due(service->writer, wake_publisher, service->publisher);
-    if (!status)
+    if (status == 0)
         status = checker_create(&service->checker, err);
     return status;
 }
@@ -43,15 +43,15 @@ void service_close(struct service *service) {
 int service_reader(struct service *service, struct store **out, struct error *err) {
     *out = NULL;
     pthread_mutex_lock(&service->mutex);
-    if (service->reader_count)
+    if (service->reader_count != 0)
         *out = service->readers[--service->reader_count];
     pthread_mutex_unlock(&service->mutex);
     struct store_options options = {.read_only = true};
-    return *out ? 0 : store_open(out, service->database, &options, err);
+    return *out != NULL ? 0 : store_open(out, service->database, &options, err);
 }
 
 void service_give_back(struct service *service, struct store *reader) {
-    if (!reader)
+    if (reader == NULL)
         return;
     pthread_mutex_lock(&service->mutex);
     if (service->reader_count < READERS_KEPT) {
@@ -88,7 +88,7 @@ int service_metrics(struct service *service, char **out, struct error *err) {
     struct writer_figures writer;
     struct memory_file memory;
     int status = service_reader(service, &reader, err);
-    if (!status)
+    if (status == 0)
         status = store_metrics(reader, &metrics, err);
     service_give_back(service, reader);
     if (status != 0)

@@ -25,7 +25,7 @@ static void digest_of(const char *token, uint8_t digest[SHA256_DIGEST_SIZE]) {
 int tokens_add(struct tokens *tokens, enum role role, const char *token, struct error *err) {
     size_t bytes = (tokens->count + 1) * sizeof *tokens->entries;
     struct entry *larger = realloc(tokens->entries, bytes);
-    if (!larger)
+    if (larger == NULL)
         return error_memory(err, bytes, "tokens");
     tokens->entries = larger;
     digest_of(token, larger[tokens->count].digest);
@@ -50,7 +50,7 @@ static int add_line(struct tokens *tokens, const char *line, size_t number, cons
     size_t length = strcspn(line, ":");
     if (*line == 0 || *line == '#')
         return 0;
-    unsigned role = line[length] ? role_of(line, length) : ROLE_NONE;
+    unsigned role = line[length] != '\0' ? role_of(line, length) : ROLE_NONE;
     if (role == ROLE_NONE)
         return error_set(err, ERROR_INPUT,
                          "%s, line %zu: no role:token; roles are read, submit and work", file,
@@ -65,21 +65,21 @@ int tokens_read(struct tokens **out, const char *file, struct error *err) {
     char *text = NULL, *rest = NULL;
     size_t size, number = 0;
     struct tokens *tokens = array_create(1, sizeof *tokens);
-    int status = tokens ? file_read(file, 1 << 20, &text, &size, err)
-                        : error_memory(err, sizeof *tokens, "tokens");
-    for (char *line = text; !status && line; line = rest) {
+    int status = tokens != NULL ? file_read(file, 1 << 20, &text, &size, err)
+                                : error_memory(err, sizeof *tokens, "tokens");
+    for (char *line = text; status == 0 && line != NULL; line = rest) {
         rest = strchr(line, '\n');
-        if (rest)
+        if (rest != NULL)
             *rest++ = 0;
         line[strcspn(line, "\r")] = 0;
         status = add_line(tokens, line, ++number, file, err);
     }
-    if (!status && tokens->count == 0)
+    if (status == 0 && tokens->count == 0)
         status = error_set(err, ERROR_INPUT, "%s holds no token", file);
-    if (text)
+    if (text != NULL)
         explicit_bzero(text, size);
     free(text);
-    if (status) {
+    if (status != 0) {
         tokens_destroy(&tokens);
         return status;
     }
@@ -88,7 +88,7 @@ int tokens_read(struct tokens **out, const char *file, struct error *err) {
 }
 
 void tokens_destroy(struct tokens **tokens) {
-    if (!*tokens)
+    if (*tokens == NULL)
         return;
     free((*tokens)->entries);
     free(*tokens);
@@ -98,7 +98,7 @@ void tokens_destroy(struct tokens **tokens) {
 unsigned tokens_roles(const struct tokens *tokens, const char *token) {
     uint8_t digest[SHA256_DIGEST_SIZE];
     unsigned roles = 0;
-    if (!token)
+    if (token == NULL)
         return 0;
     digest_of(token, digest);
     for (size_t i = 0; i < tokens->count; i++) /* all of them, whichever fits */

@@ -33,11 +33,11 @@ enum { BATCH_MOST = 256 };
 static void run_batch(struct store *store, struct post *const *batch, size_t count) {
     struct error error = {0};
     int status = store_begin(store, &error);
-    for (size_t i = 0; !status && i < count; i++)
+    for (size_t i = 0; status == 0 && i < count; i++)
         batch[i]->status = batch[i]->change(store, batch[i]->context, &batch[i]->error);
-    if (!status)
+    if (status == 0)
         status = store_commit(store, &error);
-    for (size_t i = 0; status && i < count; i++) {
+    for (size_t i = 0; status != 0 && i < count; i++) {
         batch[i]->status = status;
         batch[i]->error = error;
     }
@@ -52,11 +52,11 @@ static void tell_due(struct writer *writer) {
 
 static size_t take_batch(struct writer *writer, struct post **batch) {
     size_t count = 0;
-    while (writer->first && count < BATCH_MOST) {
+    while (writer->first != NULL && count < BATCH_MOST) {
         batch[count++] = writer->first;
         writer->first = writer->first->next;
     }
-    if (!writer->first)
+    if (writer->first == NULL)
         writer->last = &writer->first;
     return count;
 }
@@ -66,7 +66,7 @@ static void *writer_thread(void *context) {
     struct post *batch[BATCH_MOST];
     pthread_mutex_lock(&writer->mutex);
     for (;;) {
-        while (!writer->first && !writer->stopping)
+        while (writer->first == NULL && !writer->stopping)
             pthread_cond_wait(&writer->posted, &writer->mutex);
         /* Those who were just answered come back with the next: let them, and commit more at once.
          */
@@ -91,13 +91,13 @@ static void *writer_thread(void *context) {
 
 int writer_create(struct writer **out, struct store *store, struct error *err) {
     struct writer *writer = array_create(1, sizeof *writer);
-    if (!writer)
+    if (writer == NULL)
         return error_memory(err, sizeof *writer, "the writer");
     writer->store = store;
     writer->last = &writer->first;
     pthread_mutex_init(&writer->mutex, NULL);
     pthread_cond_init(&writer->posted, NULL);
-    if (pthread_create(&writer->thread, NULL, writer_thread, writer)) {
+    if (pthread_create(&writer->thread, NULL, writer_thread, writer) != 0) {
         free(writer);
         return error_set(err, ERROR_SYSTEM, "cannot start the writer's thread");
     }
@@ -107,7 +107,7 @@ int writer_create(struct writer **out, struct store *store, struct error *err) {
 
 void writer_destroy(struct writer **writer) {
     struct writer *w = *writer;
-    if (!w)
+    if (w == NULL)
         return;
     pthread_mutex_lock(&w->mutex);
     w->stopping = true;
@@ -139,13 +139,13 @@ int writer_do(struct writer *writer, store_change *change, void *context, struct
     }
     pthread_mutex_unlock(&writer->mutex);
     if (taken) {
-        while (sem_wait(&post.ended) && errno == EINTR)
+        while (sem_wait(&post.ended) != 0 && errno == EINTR)
             continue;
     } else {
         post.status = error_set(&post.error, ERROR_SYSTEM, "the server is ending");
     }
     sem_destroy(&post.ended);
-    if (post.status && err)
+    if (post.status != 0 && err != NULL)
         *err = post.error;
     return post.status;
 }

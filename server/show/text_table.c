@@ -102,7 +102,7 @@ static size_t width_between(const struct column_shape *shapes, size_t begin, siz
 /* Columns of the terminal; everything else has room. */
 static size_t room_of(FILE *file) {
     struct winsize size;
-    bool known = isatty(fileno(file)) && ioctl(fileno(file), TIOCGWINSZ, &size) == 0;
+    bool known = isatty(fileno(file)) != 0 && ioctl(fileno(file), TIOCGWINSZ, &size) == 0;
     return known && size.ws_col > 0 ? size.ws_col : SIZE_MAX / 2;
 }
 
