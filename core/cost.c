@@ -97,9 +97,9 @@ static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
                                 const struct full_options *options, double rms_slope) {
     bool profile = grid_is_profile(grid);
-    double bulk = 1 / (1 - 2 * block->poisson);
-    double steep =
-        STEEP * rms_slope * (1 + rms_slope) * pow(BULK_FRONT * fmin(bulk, BULK_MOST), BULK_POWER);
+    double bulk_over_shear = 1 / (1 - 2 * block->poisson);
+    double steep = STEEP * rms_slope * (1 + rms_slope) *
+                   pow(BULK_FRONT * fmin(bulk_over_shear, BULK_MOST), BULK_POWER);
     struct material material = material_of(block->poisson, options->kinematics);
     struct full_size size = {.degrees_of_freedom =
                                  (double)full_degrees_of_freedom(grid, block, options),
@@ -110,7 +110,7 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
     size.factored = size.linear > FACTORED_ITERATIONS &&
                     (profile || size.degrees_of_freedom <= SURFACE_FACTORED);
     if (size.pressures)
-        size.linear += PRESSURE_FRONT * pow(bulk, PRESSURE_POWER);
+        size.linear += PRESSURE_FRONT * pow(bulk_over_shear, PRESSURE_POWER);
     return size;
 }
 

@@ -158,12 +158,12 @@ int rugo_generator_run(struct rugo_generator *generator, uint64_t seed, uint64_t
                        uint64_t realisation, double *z, struct rugo_surface_report *report,
                        struct rugo_error *err) {
     struct error why = {0};
-    struct surface_report told = {0};
+    struct surface_report made = {0};
     const struct random_key key = {seed, sequence, realisation};
-    int status = generator_run(generator->generator, key, z, &told, &why);
+    int status = generator_run(generator->generator, key, z, &made, &why);
     if (status == 0 && report != NULL)
         *report =
-            (struct rugo_surface_report){told.iterations, told.eps_h, told.eps_s, told.eps_s0};
+            (struct rugo_surface_report){made.iterations, made.eps_h, made.eps_s, made.eps_s0};
     return error_give(status, &why, err);
 }
 

@@ -22,6 +22,12 @@ struct client {
     char detail[CURL_ERROR_SIZE];
 };
 
+struct reply {
+    long status; /* of HTTP; 0: no answer at all (the connection failed) */
+    char *body;  /* owned, NUL-terminated */
+    size_t size;
+};
+
 /* Where the body of one reply goes. */
 struct sink {
     CURL *curl;
@@ -150,7 +156,7 @@ void client_destroy(struct client **client) {
     *client = NULL;
 }
 
-void reply_clear(struct reply *reply) {
+static void reply_clear(struct reply *reply) {
     free(reply->body);
     *reply = (struct reply){0};
 }
@@ -282,11 +288,6 @@ static int exchange(struct client *client, const struct request *request, FILE *
     if (status != 0)
         reply_clear(reply);
     return status;
-}
-
-int client_send(struct client *client, const struct request *request, struct reply *reply,
-                struct error *err) {
-    return exchange(client, request, NULL, reply, err);
 }
 
 /* --- answers as errors --- */

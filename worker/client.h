@@ -18,12 +18,6 @@ struct client;
 int client_create(struct client **out, const char *url, const char *token, struct error *err);
 void client_destroy(struct client **client);
 
-struct reply {
-    long status; /* HTTP status; 0: no answer at all (the connection failed) */
-    char *body;  /* owned, NUL-terminated */
-    size_t size;
-};
-void reply_clear(struct reply *reply);
 struct request {
     const char *method, *path;   /* "POST", "/v1/studies" */
     const char *body;            /* JSON text or NULL */
@@ -32,13 +26,9 @@ struct request {
     struct fault_list *faults;   /* client_json adds those of a refusal; or NULL */
     long timeout_ms;             /* 0: 30 000 */
 };
-/* One exchange. 0 for every answer of the server, whatever its status; ERROR_SYSTEM when there is
- * none (try again later). */
-int client_send(struct client *client, const struct request *request, struct reply *reply,
-                struct error *err);
-/* The same, and turns a status >= 400 into an error with the problem's detail and pointers; parses
- * the body (NULL for a 204). 404 ERROR_ABSENT, 409 ERROR_STATE, 4xx ERROR_INPUT, 5xx
- * ERROR_SYSTEM. */
+/* One exchange; parses the body (NULL for a 204). ERROR_SYSTEM without an answer: try again later.
+ * A status >= 400 is an error with the problem's detail and pointers: 404 ERROR_ABSENT, 409
+ * ERROR_STATE, 4xx ERROR_INPUT, 5xx ERROR_SYSTEM. */
 int client_json(struct client *client, const struct request *request, cJSON **out,
                 struct error *err);
 /* Streams a body to a file (snapshot). */

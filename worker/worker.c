@@ -92,7 +92,7 @@ static void name_default(char *name, size_t size, const char *host) {
     snprintf(name, size, "%s-%ld", host, (long)getpid());
 }
 
-static bool is_told_to_stop(void *context) {
+static bool is_stopped(void *context) {
     const struct worker_options *options = context;
     return options->stop != NULL && *options->stop != 0;
 }
@@ -104,7 +104,7 @@ static int publish_left(struct worker_options *options, struct error *err) {
         return 0;
     int status = store_open(&store, options->source.database, NULL, err);
     if (status == 0)
-        status = publish_due(store, is_told_to_stop, options, NULL, err);
+        status = publish_due(store, is_stopped, options, NULL, err);
     store_close(&store);
     return status;
 }

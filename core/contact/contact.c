@@ -97,10 +97,10 @@ static int take_heights(struct contact *c, const double *z, struct error *err) {
         sum_add(&square, c->z[i] * c->z[i]);
     }
     double rms = sqrt(sum_value(&square) / (double)n);
-    bool flat = !(rms > 1e-14);
-    c->unit = flat ? 0 : rms * most;
+    bool is_flat = !(rms > 1e-14);
+    c->unit = is_flat ? 0 : rms * most;
     for (size_t i = 0; i < n; i++)
-        c->z[i] = flat ? 0 : c->z[i] / rms;
+        c->z[i] = is_flat ? 0 : c->z[i] / rms;
     return 0;
 }
 

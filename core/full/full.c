@@ -173,7 +173,7 @@ static int take_heights(struct full *f, const double *z, struct error *err) {
         sum_add(&square, f->z[i] * f->z[i]);
     }
     f->rms = sqrt(sum_value(&square) / (double)n);
-    f->newton.flat = -highest;
+    f->newton.flat_height = -highest;
     return 0;
 }
 

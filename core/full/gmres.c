@@ -181,7 +181,8 @@ static int precondition_factored(struct gmres *gmres, const struct linear_system
 }
 
 /* x: the displacements and pressures of the flat block under r. */
-static void precondition_flat(struct gmres *gmres, const bool *active, const double *r, double *x) {
+static void preconditioner_apply_flat(struct gmres *gmres, const bool *active, const double *r,
+                                      double *x) {
     const struct mesh *mesh = gmres->mesh;
     double sum = 0;
     memcpy(gmres->moved, r, gmres->degrees_of_freedom * sizeof *r);
@@ -253,7 +254,7 @@ static int cycle(struct gmres *gmres, const struct linear_system *system, double
             status =
                 precondition_factored(gmres, system, gmres->basis[c], gmres->direction[c], err);
         else
-            precondition_flat(gmres, system->active, gmres->basis[c], gmres->direction[c]);
+            preconditioner_apply_flat(gmres, system->active, gmres->basis[c], gmres->direction[c]);
         if (status != 0)
             return status;
         operate(gmres, system, gmres->direction[c], next);

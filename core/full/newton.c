@@ -75,7 +75,7 @@ void newton_clear(struct newton *n) {
 
 void newton_measure_gaps(struct newton *n) {
     for (size_t node = 0; node < n->mesh->face; node++)
-        n->gap[node] = n->mesh->height[node] + n->u[mesh_vertical(n->mesh, node)] - n->flat;
+        n->gap[node] = n->mesh->height[node] + n->u[mesh_vertical(n->mesh, node)] - n->flat_height;
     gmres_weigh(n->gmres, n->gap, n->opening);
 }
 
@@ -90,7 +90,7 @@ static double contact_force(const struct newton *n, size_t node) {
 /* Rounding error of gaps, which are sums of heights and displacements as large as the highest
  * height, and of the forces that strains of that size make. */
 static double gap_rounding(const struct newton *n) {
-    return ROUNDINGS * DBL_EPSILON * fabs(n->flat);
+    return ROUNDINGS * DBL_EPSILON * fabs(n->flat_height);
 }
 static double force_rounding(const struct newton *n) {
     double stiffness = 2 * n->material.shear + n->material.local + n->material.mean;

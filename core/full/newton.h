@@ -37,7 +37,7 @@ struct newton {
     double *before, *change; /* newton_unknowns: scratch */
     double *gap, *opening;   /* by node of the face, at u: the gap, and the weighted gap */
     bool *active;            /* by node of the face: whether it is in contact */
-    double flat;             /* vertical position of the flat */
+    double flat_height;      /* vertical position of the flat */
     double tolerance;        /* largest residual, over the largest contact force */
     size_t max_iterations;
     int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */

@@ -1,21 +1,21 @@
 #include "core/full/volumetric.h"
 #include <stdlib.h>
 
-static size_t count_of(const struct mesh *mesh, bool flat) {
-    return flat ? mesh->layers : mesh->elements;
+static size_t count_of(const struct mesh *mesh, bool one_per_layer) {
+    return one_per_layer ? mesh->layers : mesh->elements;
 }
 
-int volumetric_create(struct volumetric **out, const struct mesh *mesh, bool flat,
+int volumetric_create(struct volumetric **out, const struct mesh *mesh, bool one_per_layer,
                       struct error *err) {
     *out = NULL;
     struct volumetric *volumetric = array_create(1, sizeof *volumetric);
     if (volumetric == NULL)
         return error_memory(err, sizeof *volumetric, "mean dilatations");
-    *volumetric = (struct volumetric){.mesh = mesh, .flat = flat};
-    volumetric->element = array_create(count_of(mesh, flat), sizeof *volumetric->element);
+    *volumetric = (struct volumetric){.mesh = mesh, .one_per_layer = one_per_layer};
+    volumetric->element = array_create(count_of(mesh, one_per_layer), sizeof *volumetric->element);
     if (volumetric->element == NULL) {
         volumetric_destroy(&volumetric);
-        return error_memory(err, (size_t)volumetric_bytes(mesh, flat), "mean dilatations");
+        return error_memory(err, (size_t)volumetric_bytes(mesh, one_per_layer), "mean dilatations");
     }
     *out = volumetric;
     return 0;
@@ -29,8 +29,8 @@ void volumetric_destroy(struct volumetric **volumetric) {
     *volumetric = NULL;
 }
 
-double volumetric_bytes(const struct mesh *mesh, bool flat) {
-    return (double)count_of(mesh, flat) * sizeof(struct element_volumetric);
+double volumetric_bytes(const struct mesh *mesh, bool one_per_layer) {
+    return (double)count_of(mesh, one_per_layer) * sizeof(struct element_volumetric);
 }
 
 /* The change of volume of one element by displacements u of the whole mesh. */
@@ -54,7 +54,7 @@ void volumetric_pressures(const struct volumetric *volumetric, const double *u, 
         for (size_t j = 0; j < mesh->level[layer].ny; j++)
             for (size_t i = 0; i < mesh->level[layer].nx; i++, e++) {
                 const struct element_volumetric *own =
-                    &volumetric->element[volumetric->flat ? layer : e];
+                    &volumetric->element[volumetric->one_per_layer ? layer : e];
                 mesh_element(mesh, layer, j, i, &element);
                 out[e] = p[e] + factor * own->stiffness * volume_of(mesh, &element, own, u);
             }
@@ -70,7 +70,7 @@ void volumetric_forces(const struct volumetric *volumetric, const double *p, dou
         for (size_t j = 0; j < mesh->level[layer].ny; j++)
             for (size_t i = 0; i < mesh->level[layer].nx; i++, e++) {
                 const struct element_volumetric *own =
-                    &volumetric->element[volumetric->flat ? layer : e];
+                    &volumetric->element[volumetric->one_per_layer ? layer : e];
                 for (size_t a = 0; a < (size_t)1 << d; a++)
                     for (size_t k = 0; k < d; k++)
                         corner[a][k] = factor * p[e] * own->gradient[a * d + k];

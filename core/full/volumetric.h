@@ -9,15 +9,15 @@
 
 struct volumetric {
     const struct mesh *mesh; /* borrowed */
-    bool flat;               /* the mesh is flat, and one entry serves all elements of a layer */
+    bool one_per_layer;      /* of a flat mesh: one entry serves all elements of a layer */
     struct element_volumetric
         *element; /* owned: elements in the order of the mesh with x fastest, or layers */
 };
 
-int volumetric_create(struct volumetric **out, const struct mesh *mesh, bool flat,
+int volumetric_create(struct volumetric **out, const struct mesh *mesh, bool one_per_layer,
                       struct error *err);
 void volumetric_destroy(struct volumetric **volumetric);
-double volumetric_bytes(const struct mesh *mesh, bool flat);
+double volumetric_bytes(const struct mesh *mesh, bool one_per_layer);
 
 /* out[e] = p[e] + factor * k v of every element e, where v is the change of volume by displacements
  * u (mesh_degrees_of_freedom values) and k is element_volumetric.stiffness. p and out may be the

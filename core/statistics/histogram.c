@@ -1,14 +1,5 @@
 #include "core/statistics/histogram.h"
 
-int bins_check(const struct bins *bins, struct error *err) {
-    if (!isfinite(bins->low) || !isfinite(bins->high) || !(bins->low < bins->high))
-        return error_set(err, ERROR_INPUT, "bins from %g to %g; allowed: rising, finite", bins->low,
-                         bins->high);
-    if (bins->count < 1)
-        return error_set(err, ERROR_INPUT, "%zu bins; allowed: at least 1", bins->count);
-    return 0;
-}
-
 void histogram_add(const struct bins *bins, size_t n, const double *values, double scale,
                    uint64_t *counts) {
     for (size_t i = 0; i < n; i++)

@@ -11,7 +11,6 @@ struct bins {
     double low, high; /* low < high, finite */
     size_t count;     /* at least 1 */
 };
-int bins_check(const struct bins *bins, struct error *err);
 static inline double bins_width(const struct bins *bins) {
     return (bins->high - bins->low) / (double)bins->count;
 }

@@ -24,11 +24,6 @@ static double gaussian_cdf(double shape, double raw) {
     return erfc(-raw / M_SQRT2) / 2;
 }
 
-static double gaussian_pdf(double shape, double raw, double factor) {
-    (void)shape;
-    return factor * exp(-raw * raw / 2) / sqrt(2 * M_PI);
-}
-
 /* --- Weibull, scale 1: a minimum lies above 0, a maximum is its mirror image below 0 --- */
 
 /* Central moments of a Weibull minimum of scale 1 in units of its mean, F4.2. With
@@ -57,12 +52,6 @@ static double weibull_min_cdf(double shape, double raw) {
     return -expm1(-(raw > 0 ? pow(raw, shape) : 0));
 }
 
-static double weibull_min_pdf(double shape, double raw, double factor) {
-    if (raw < 0)
-        return 0;
-    return factor * shape * pow(raw, shape - 1) * exp(-pow(raw, shape));
-}
-
 static void weibull_max_moments(double shape, struct height_moments *out) {
     weibull_min_moments(shape, out);
     out->mean = -out->mean;
@@ -77,10 +66,6 @@ static double weibull_max_quantile(double shape, double probability) {
 
 static double weibull_max_cdf(double shape, double raw) {
     return exp(-(raw < 0 ? pow(-raw, shape) : 0));
-}
-
-static double weibull_max_pdf(double shape, double raw, double factor) {
-    return weibull_min_pdf(shape, -raw, factor);
 }
 
 /* --- log-normal: exp(s x) of a Gaussian x, median 1 (Johnson, Kotz & Balakrishnan 1994, chapter
@@ -104,13 +89,8 @@ static double lognormal_cdf(double shape, double raw) {
     return raw > 0 ? gaussian_cdf(0, log(raw) / shape) : 0;
 }
 
-static double lognormal_pdf(double shape, double raw, double factor) {
-    return raw > 0 ? gaussian_pdf(0, log(raw) / shape, factor / (shape * raw)) : 0;
-}
-
 /* The functions of a distribution, whose names begin with its own. */
-#define FUNCTIONS(name)                                                                            \
-    .moments = name##_moments, .quantile = name##_quantile, .cdf = name##_cdf, .pdf = name##_pdf
+#define FUNCTIONS(name) .moments = name##_moments, .quantile = name##_quantile, .cdf = name##_cdf
 #define WEIBULL                                                                                    \
     .family = "weibull", .shape_means = "shape C of a Weibull distribution", .shape_low = 0.5,     \
     .shape_high = 20
@@ -219,13 +199,6 @@ double heights_quantile(const struct heights *heights, const struct height_momen
     double raw = row != NULL ? row->quantile(heights->shape, probability)
                              : heights->quantile(probability, heights->context);
     return (raw - moments->mean) / moments->deviation;
-}
-
-double heights_pdf(const struct heights *heights, const struct height_moments *moments, double z) {
-    const struct distribution *row = heights_distribution(heights->type);
-    if (row == NULL)
-        return NAN;
-    return row->pdf(heights->shape, moments->mean + moments->deviation * z, moments->deviation);
 }
 
 double heights_cdf(const struct heights *heights, const struct height_moments *moments, double z) {

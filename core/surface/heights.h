@@ -45,7 +45,6 @@ struct distribution {
     void (*moments)(double shape, struct height_moments *out);
     double (*quantile)(double shape, double probability); /* of the raw variable */
     double (*cdf)(double shape, double raw);
-    double (*pdf)(double shape, double raw, double factor); /* times a factor */
 };
 /* NULL for HEIGHTS_QUANTILE, which has no row. */
 const struct distribution *heights_distribution(enum heights_type type);
@@ -55,8 +54,7 @@ int heights_moments(const struct heights *heights, struct height_moments *out, s
 /* Standardised quantile at probability in (0, 1), given the moments above. */
 double heights_quantile(const struct heights *heights, const struct height_moments *moments,
                         double probability);
-/* Standardised probability density and cumulative probability; NaN for HEIGHTS_QUANTILE. */
-double heights_pdf(const struct heights *heights, const struct height_moments *moments, double z);
+/* Standardised cumulative probability; NaN for HEIGHTS_QUANTILE. */
 double heights_cdf(const struct heights *heights, const struct height_moments *moments, double z);
 
 #endif

@@ -40,15 +40,3 @@ double westergaard_gap(double ratio) {
      * would, d(gap)/d(ratio) = ln(ratio) (Johnson 1985); its integral, zero at full contact. */
     return ratio > 0 ? (1 - ratio) + ratio * log(ratio) : 1;
 }
-
-double hertz_line_half_width(double load_over_modulus, double radius) {
-    if (!(load_over_modulus >= 0 && radius > 0))
-        return NAN;
-    return 2 * sqrt(load_over_modulus * radius / M_PI);
-}
-
-double hertz_sphere_radius(double load_over_modulus, double radius) {
-    if (!(load_over_modulus >= 0 && radius > 0))
-        return NAN;
-    return cbrt(0.75 * load_over_modulus * radius);
-}

@@ -40,9 +40,4 @@ double westergaard_pressure(double x, double ratio);
 /* Mean gap over the amplitude: 1 - ratio + ratio ln(ratio). */
 double westergaard_gap(double ratio);
 
-/* Hertz: half-width of a line contact, load per length P over E* and radius R; radius of a circle,
- * force P. a = sqrt(4 P R/(pi E*)), a^3 = 3 P R/(4 E*). */
-double hertz_line_half_width(double load_over_modulus, double radius);
-double hertz_sphere_radius(double load_over_modulus, double radius);
-
 #endif

@@ -43,7 +43,7 @@ static struct place place_of(size_t scalar) {
     return (struct place){NULL, scalar};
 }
 
-size_t contact_scalar_count(void) {
+static size_t scalar_count(void) {
     size_t count = CONTACT_SCALAR_COUNT;
     for (size_t m = 0; CONTACT_MODELS[m] != NULL; m++)
         count += CONTACT_MODELS[m]->scalar_count;
@@ -51,7 +51,7 @@ size_t contact_scalar_count(void) {
 }
 
 const char *contact_scalar_name(size_t scalar) {
-    if (scalar >= contact_scalar_count())
+    if (scalar >= scalar_count())
         return NULL;
     struct place place = place_of(scalar);
     return place.model != NULL ? place.model->scalars[place.at] : NAMES[place.at];
@@ -135,7 +135,7 @@ int contact_scalars_measure(struct contact_tally *tally, const struct roughness 
         [CONTACT_SCALAR_EPS_S0] = iterated ? report->eps_s0 : NAN,
     };
     int status = measure_fits(one_case, fraction, scalars, err);
-    size_t count = contact_scalar_count();
+    size_t count = scalar_count();
     for (size_t a = 0; a < count; a++) {
         struct place place = place_of(a);
         if (place.model == NULL)
@@ -167,7 +167,7 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
                        const struct realisations *realisations, double *column,
                        struct case_result *out, struct error *err) {
     double theory[CONTACT_SCALAR_COUNT];
-    size_t count = contact_scalar_count();
+    size_t count = scalar_count();
     int status = 0;
     theories(one_case, moments, theory);
     for (size_t a = 0; a < count && status == 0; a++) {

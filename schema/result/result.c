@@ -230,7 +230,7 @@ bool curve_same_series(const struct curve *a, const struct curve *b) {
     bool same = strcmp(a->quantity, b->quantity) == 0;
     for (size_t n = 0; n < CURVE_ATTRIBUTE_COUNT && same; n++) {
         const struct curve_attribute *row = &CURVE_ATTRIBUTES[n];
-        if (row->tells_series)
+        if (row->separates_series)
             same = same_text(curve_attribute_text(a, row), curve_attribute_text(b, row)) &&
                    same_number(curve_attribute_number(a, row), curve_attribute_number(b, row));
     }

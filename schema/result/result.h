@@ -102,8 +102,8 @@ struct curve_attribute {
     const char *key; /* in JSON, CSV and views */
     size_t offset;   /* in struct curve */
     enum attribute_type type;
-    bool tells_series; /* of one estimator at one pressure: other than by model and mesh */
-    size_t column;     /* of CSV, reports and views, counted from 1; 0: in none of them */
+    bool separates_series; /* of one estimator at one pressure: other than by model and mesh */
+    size_t column;         /* of CSV, reports and views, counted from 1; 0: in none of them */
 };
 enum { CURVE_ATTRIBUTE_COUNT = 6 };
 extern const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT];

@@ -176,10 +176,6 @@ struct due_case {
 };
 /* Whether any case is. */
 int store_is_due(struct store *store, bool *due, struct error *err);
-/* Marks a case that cannot be published, with the reason: it is due no more, and its study fails
- * once it ends. Does nothing where the case is not due at this revision. */
-int store_publish_failed(struct store *store, const struct due_case *due, const char *reason,
-                         struct error *err);
 struct publication {
     /* Publishes one case by store_publish. ERROR_INPUT and ERROR_NUMERIC mark the case; any other
      * error may pass, and leaves it due. */

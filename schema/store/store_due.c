@@ -46,6 +46,34 @@ int store_is_due(struct store *store, bool *due, struct error *err) {
     return status;
 }
 
+static int mark(struct store *store, int64_t study, const struct due_case *due, const char *reason,
+                struct error *err) {
+    int status =
+        store_run(store, err,
+                  "UPDATE study_case SET settled = revision, publish_error = ? WHERE "
+                  "study_id = ? AND number = ? AND revision = ? AND " DUE,
+                  "tiii", reason, study, (int64_t)due->case_number, (int64_t)due->revision);
+    if (status != 0 || sqlite3_changes(store->db) == 0)
+        return status;
+    status = store_run(store, err, "UPDATE study SET cases_failed = cases_failed + 1 WHERE id = ?",
+                       "i", study);
+    return status != 0 ? status : study_settle(store, study, err);
+}
+
+/* Marks a case that cannot be published: it is due no more, and its study fails once it ends. Does
+ * nothing where the case is not due at this revision. */
+static int fail_publication(struct store *store, const struct due_case *due, const char *reason,
+                            struct error *err) {
+    int64_t study = 0;
+    int status = change_begin(store, err);
+    if (status != 0)
+        return status;
+    status = study_row(store, due->study, &study, err);
+    if (status == 0)
+        status = mark(store, study, due, reason, err);
+    return change_end(store, status, err);
+}
+
 /* Neither is cured by trying again. */
 static bool is_final(int status) {
     return status == ERROR_INPUT || status == ERROR_NUMERIC;
@@ -57,7 +85,7 @@ static int offer(struct store *store, const struct publication *publication,
     int status = publication->publish(publication->context, store, due, &reason);
     if (is_final(status)) {
         counts->failed++;
-        return store_publish_failed(store, due, reason.text, err);
+        return fail_publication(store, due, reason.text, err);
     }
     if (status != 0) {
         counts->postponed++;
@@ -83,32 +111,6 @@ int store_publish_due(struct store *store, const struct publication *publication
 }
 
 /* --- marks --- */
-
-static int mark(struct store *store, int64_t study, const struct due_case *due, const char *reason,
-                struct error *err) {
-    int status =
-        store_run(store, err,
-                  "UPDATE study_case SET settled = revision, publish_error = ? WHERE "
-                  "study_id = ? AND number = ? AND revision = ? AND " DUE,
-                  "tiii", reason, study, (int64_t)due->case_number, (int64_t)due->revision);
-    if (status != 0 || sqlite3_changes(store->db) == 0)
-        return status;
-    status = store_run(store, err, "UPDATE study SET cases_failed = cases_failed + 1 WHERE id = ?",
-                       "i", study);
-    return status != 0 ? status : study_settle(store, study, err);
-}
-
-int store_publish_failed(struct store *store, const struct due_case *due, const char *reason,
-                         struct error *err) {
-    int64_t study = 0;
-    int status = change_begin(store, err);
-    if (status != 0)
-        return status;
-    status = study_row(store, due->study, &study, err);
-    if (status == 0)
-        status = mark(store, study, due, reason, err);
-    return change_end(store, status, err);
-}
 
 int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t revision,
                 struct error *err) {

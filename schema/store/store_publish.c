@@ -45,13 +45,13 @@ static int insert_scalar(const struct target *target, const struct scalar *scala
 static int insert_point(struct store *store, int64_t curve, size_t number, double x, double x2,
                         const struct curve *from, struct error *err) {
     sqlite3_stmt *statement = NULL;
-    bool told = from->valueless != NULL && from->columns == 0;
-    int status =
-        store_query(store, &statement, err,
-                    "INSERT INTO point (curve_id, number, x, x2, y, standard_error, "
-                    "valueless) VALUES (?, ?, ?, ?, ?, ?, ?)",
-                    "iiddddd", curve, (int64_t)number, x, x2, from->y[number],
-                    from->standard_error[number], told ? from->valueless[number] : (double)NAN);
+    bool has_valueless = from->valueless != NULL && from->columns == 0;
+    int status = store_query(store, &statement, err,
+                             "INSERT INTO point (curve_id, number, x, x2, y, standard_error, "
+                             "valueless) VALUES (?, ?, ?, ?, ?, ?, ?)",
+                             "iiddddd", curve, (int64_t)number, x, x2, from->y[number],
+                             from->standard_error[number],
+                             has_valueless ? from->valueless[number] : (double)NAN);
     return status != 0 ? status : run_bound(store, statement, err);
 }
 

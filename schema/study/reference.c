@@ -110,9 +110,9 @@ static void write_tables(FILE *file, const struct reference *reference, const ch
                 write(file, reference, *table, path);
 }
 
-/* A row as it is told: /kind has its names. */
-static struct parameter told_row(const struct reference *reference,
-                                 const struct parameter_table *table, size_t index) {
+/* The row as it is listed: that of /kind with the names of the kinds as its choices. */
+static struct parameter listed_row(const struct reference *reference,
+                                   const struct parameter_table *table, size_t index) {
     struct parameter row = table->rows[index];
     if (row.type == PARAMETER_CHOICE && row.choices == NULL)
         row.choices = reference->names;
@@ -143,7 +143,7 @@ static void print_table(FILE *file, const struct reference *reference,
                         const struct parameter_table *table, const char *path) {
     bool headed = false;
     for (size_t p = 0; p < table->count; p++) {
-        struct parameter row = told_row(reference, table, p);
+        struct parameter row = listed_row(reference, table, p);
         if (!is_below(path, row.path))
             continue;
         char kinds[CELL_SIZE];
@@ -198,7 +198,7 @@ static void markdown_table(FILE *file, const struct reference *reference,
           "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
           file);
     for (size_t p = 0; p < table->count; p++) {
-        struct parameter row = told_row(reference, table, p);
+        struct parameter row = listed_row(reference, table, p);
         markdown_row(file, reference, &row);
     }
 }

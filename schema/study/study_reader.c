@@ -132,7 +132,7 @@ static void check_parameters(const struct study_kind *kind, const cJSON *documen
     }
 }
 
-/* Cases of a sweep share most of their faults: each is told once. */
+/* Cases of a sweep share most of their faults: each is listed once. */
 static void merge_faults(struct fault_list *all, const struct fault_list *found) {
     size_t kept = found->count < FAULTS_KEPT ? found->count : FAULTS_KEPT;
     if (found->faults == NULL)
@@ -140,8 +140,8 @@ static void merge_faults(struct fault_list *all, const struct fault_list *found)
     for (size_t i = 0; found->faults != NULL && i < kept; i++) {
         const struct fault *fault = &found->faults[i];
         bool known = false;
-        size_t told = all->count < FAULTS_KEPT ? all->count : FAULTS_KEPT;
-        for (size_t k = 0; all->faults != NULL && k < told && !known; k++)
+        size_t merged = all->count < FAULTS_KEPT ? all->count : FAULTS_KEPT;
+        for (size_t k = 0; all->faults != NULL && k < merged && !known; k++)
             known = strcmp(all->faults[k].pointer, fault->pointer) == 0 &&
                     strcmp(all->faults[k].detail, fault->detail) == 0;
         if (!known)

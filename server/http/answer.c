@@ -157,7 +157,7 @@ void answer_error(struct exchange *exchange, const struct error *err) {
         status = 409;
     else if (err->code == ERROR_SYSTEM || err->code == ERROR_MEMORY)
         status = 503;
-    if (status >= 500) { /* the server's trouble: its keeper must see why */
+    if (status >= 500) { /* the server's trouble: whoever runs it must see why */
         struct log_about about = {.request = exchange->path, .status = (long)status};
         log_line(LEVEL_ERROR, &about, "%s", err->text);
     }

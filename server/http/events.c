@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STREAMS_MOST = 64, LOOK_MS = 300, ALIVE_MS = 15000 };
+enum { STREAMS_MOST = 64, POLL_MS = 300, ALIVE_MS = 15000 };
 
 /* One stream; the library calls next_event on the connection's own thread, which may wait. */
 struct event_stream {
@@ -15,8 +15,8 @@ struct event_stream {
     struct service *service;
     int socket; /* the library's */
     char id[SEGMENT_SIZE];
-    double revision; /* told last; -1 at first */
-    int64_t told_ms;
+    double revision; /* sent last; -1 at first */
+    int64_t sent_ms;
     bool ended;
     char *pending; /* owned: text not yet taken */
     size_t sent;
@@ -26,7 +26,7 @@ struct event_stream {
  */
 static bool peer_leaves(const struct event_stream *stream) {
     struct pollfd peer = {.fd = stream->socket, .events = POLLRDHUP};
-    return poll(&peer, 1, LOOK_MS) > 0;
+    return poll(&peer, 1, POLL_MS) > 0;
 }
 
 static bool has_ended(const cJSON *status) {
@@ -35,7 +35,7 @@ static bool has_ended(const cJSON *status) {
 }
 
 /* The text of the next event, NULL when there is nothing new. */
-static char *look(struct event_stream *stream) {
+static char *read_event(struct event_stream *stream) {
     struct store *reader;
     struct error err = {0};
     cJSON *status = NULL;
@@ -67,9 +67,9 @@ static ssize_t next_event(void *context, uint64_t position, char *buffer, size_t
         exchange_renew(stream->exchange);
         if (stream->ended || atomic_load(&stream->service->stopping))
             return MHD_CONTENT_READER_END_OF_STREAM;
-        stream->pending = look(stream);
+        stream->pending = read_event(stream);
         stream->sent = 0;
-        if (stream->pending == NULL && clock_ms() - stream->told_ms > ALIVE_MS)
+        if (stream->pending == NULL && clock_ms() - stream->sent_ms > ALIVE_MS)
             stream->pending = strdup(": alive\n\n");
         if (stream->pending == NULL && !stream->ended)
             stream->ended = peer_leaves(stream);
@@ -78,7 +78,7 @@ static ssize_t next_event(void *context, uint64_t position, char *buffer, size_t
     size_t left = strlen(stream->pending) - stream->sent, part = left < room ? left : room;
     memcpy(buffer, stream->pending + stream->sent, part);
     stream->sent += part;
-    stream->told_ms = clock_ms();
+    stream->sent_ms = clock_ms();
     if (part == left) {
         free(stream->pending);
         stream->pending = NULL;

@@ -43,8 +43,8 @@ static void run_batch(struct store *store, struct post *const *batch, size_t cou
     }
 }
 
-/* A question of one row, beside a commit. */
-static void tell_due(struct writer *writer) {
+/* Calls back where a case is due. The question reads one row, which is little beside a commit. */
+static void report_due(struct writer *writer) {
     bool due = false;
     if (writer->due != NULL && store_is_due(writer->store, &due, NULL) == 0 && due)
         writer->due(writer->due_context);
@@ -78,7 +78,7 @@ static void *writer_thread(void *context) {
             break;
         pthread_mutex_unlock(&writer->mutex);
         run_batch(writer->store, batch, count);
-        tell_due(writer);
+        report_due(writer);
         for (size_t i = 0; i < count; i++)
             sem_post(&batch[i]->ended);
         pthread_mutex_lock(&writer->mutex);

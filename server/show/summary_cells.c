@@ -58,12 +58,12 @@ const char *source_word(const char *const *words, enum error_source source) {
 }
 
 void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file) {
-    size_t told = 0;
+    size_t listed = 0;
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         if (unknown[s])
-            fprintf(file, "%s%s", told++ > 0 ? ", " : "Errors not known: ",
+            fprintf(file, "%s%s", listed++ > 0 ? ", " : "Errors not known: ",
                     source_word(words, (enum error_source)s));
-    if (told > 0)
+    if (listed > 0)
         fputs(".\n", file);
 }
 

@@ -33,14 +33,6 @@ static void values_are_scaled(void **state) {
     assert_int_equal(counts[5], 1);
 }
 
-static void bad_bins_are_refused(void **state) {
-    (void)state;
-    const struct bins bad[] = {{1, 1, 4}, {2, 1, 4}, {0, 1, 0}, {NAN, 1, 2}, {0, INFINITY, 3}};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        assert_int_equal(bins_check(&bad[i], NULL), ERROR_INPUT);
-    assert_int_equal(bins_check(&BINS, NULL), 0);
-}
-
 /* A deterministic generator: the test needs spread, not quality. */
 static double spread(uint64_t *seed) {
     *seed = *seed * 6364136223846793005u + 1442695040888963407u;
@@ -96,7 +88,6 @@ int main(void) {
         cmocka_unit_test(edges_belong_above),
         cmocka_unit_test(outside_is_counted),
         cmocka_unit_test(values_are_scaled),
-        cmocka_unit_test(bad_bins_are_refused),
         cmocka_unit_test(sum_is_the_same_in_any_order),
         cmocka_unit_test(a_million_additions_lose_nothing),
         cmocka_unit_test(what_does_not_fit_is_told),

@@ -36,7 +36,7 @@ static void open_work(struct equilibrium_work *w, struct grid grid, enum gap_wei
     }
     if (mesh_shape(w->mesh, w->z, &err) != 0)
         fail_msg("%s", err.text);
-    w->newton.flat = -highest;
+    w->newton.flat_height = -highest;
     w->newton.tolerance = 1e-10;
     w->newton.max_iterations = 200;
 }

@@ -31,12 +31,12 @@ static void refused_connection_is_no_answer(void **state) {
     char url[64];
     close(listen_any(url, sizeof url)); /* the port was free a moment ago */
     struct client *client = client_of(url, "secret-token");
-    struct reply reply;
+    cJSON *answer = NULL;
     struct error err = {0};
-    assert_int_equal(client_send(client, &CLAIM, &reply, &err), ERROR_SYSTEM);
+    assert_int_equal(client_json(client, &CLAIM, &answer, &err), ERROR_SYSTEM);
     assert_non_null(strstr(err.text, url));
     assert_null(strstr(err.text, "secret-token"));
-    assert_null(reply.body);
+    assert_null(answer);
     client_destroy(&client);
 }
 
@@ -119,11 +119,11 @@ static void endless_answer_is_cut(void **state) {
     stub_start(&stub);
     struct client *client = client_of(stub.url, NULL);
     struct request request = {.method = "GET", .path = "/"};
-    struct reply reply;
+    cJSON *answer = NULL;
     struct error err = {0};
-    assert_int_equal(client_send(client, &request, &reply, &err), ERROR_SYSTEM);
+    assert_int_equal(client_json(client, &request, &answer, &err), ERROR_SYSTEM);
     assert_non_null(strstr(err.text, "larger than"));
-    assert_null(reply.body);
+    assert_null(answer);
     client_destroy(&client);
     stub_stop(&stub);
 }

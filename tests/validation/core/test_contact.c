@@ -7,6 +7,7 @@
 #include "core/surface/surface.h"
 #include "core/theory/contact.h"
 #include "tests/support/contact_scene.h"
+#include "tests/support/hertz.h"
 
 static const struct block LAYERED = {
     .model = MODEL_LAYERED, .poisson = 0.3, .height = 1.5, .layer_growth = 1.1};

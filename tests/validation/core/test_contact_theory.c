@@ -4,6 +4,7 @@
 #include "core/theory/contact.h"
 #include "core/theory/quadrature.h"
 #include "tests/support/check.h"
+#include "tests/support/hertz.h"
 #include <gsl/gsl_sf_ellint.h>
 
 static const double ALPHAS[] = {1.5001, 1.51, 2, 5, 11.89, 206.45, 1e4};
@@ -349,8 +350,6 @@ static void out_of_domain_is_no_number(void **state) {
     assert_true(isnan(westergaard_area(1.001)) && isnan(westergaard_area(-0.001)));
     assert_true(isnan(westergaard_gap(NAN)) && isnan(westergaard_gap(1.001)));
     assert_true(isnan(westergaard_pressure(0, 0)) && isnan(westergaard_pressure(INFINITY, 0.5)));
-    assert_true(isnan(hertz_line_half_width(-1, 1)) && isnan(hertz_line_half_width(1, 0)));
-    assert_true(isnan(hertz_sphere_radius(-1, 1)) && isnan(hertz_sphere_radius(NAN, 1)));
 }
 
 int main(void) {
