@@ -62,7 +62,8 @@ struct study_result aggregate_head(const struct aggregate *aggregate) {
     return (struct study_result){.id = (char *)about->id,
                                  .name = about->name,
                                  .kind = about->kind,
-                                 .state = (char *)about->state};
+                                 .state = (char *)about->state,
+                                 .random = (char *)choice_name(STUDY_RANDOM, (int)about->random)};
 }
 
 /* --- a case --- */
@@ -196,11 +197,8 @@ int aggregate_publish(struct store *store, const char *study, uint64_t case_numb
 
 /* --- reports --- */
 
-/* Shares of the case's time become seconds. */
 static void spend(struct case_report *report, const struct case_cost *cost) {
-    report->seconds = cost->seconds;
-    for (size_t a = 0; a < report->curve_count; a++)
-        report->curves[a].seconds *= cost->seconds;
+    case_report_spend(report, &cost->time);
     report->about.case_number = cost->case_number;
     report->about.realisations = cost->realisations_done;
     report->realisations_total = cost->realisations;
@@ -220,7 +218,7 @@ static int read_report(struct store *store, const struct aggregate *aggregate, u
         return status;
     status = result_or_error(store, aggregate, case_number, info, &all, &result, err);
     if (status == 0)
-        status = case_report_make(out, &result, 1, err);
+        status = case_report_make(out, &result, err);
     result_clear(&result);
     return status;
 }
@@ -251,13 +249,16 @@ int aggregate_case_report(struct store *store, const struct aggregate *aggregate
 /* --- whole studies --- */
 
 /* Copies what an aggregate tells of its study; the caller clears it. */
-static int copy_head(const struct aggregate *aggregate, char **id, char **name, char **kind,
-                     char **state, struct error *err) {
-    *id = strdup(aggregate->about.id);
-    *name = strdup(aggregate->about.name);
-    *kind = strdup(aggregate->about.kind);
-    *state = strdup(aggregate->about.state);
-    bool done = *id != NULL && *name != NULL && *kind != NULL && *state != NULL;
+static int copy_head(const struct aggregate *aggregate, struct study_result *out,
+                     struct error *err) {
+    const struct study_result head = aggregate_head(aggregate);
+    out->id = strdup(head.id);
+    out->name = strdup(head.name);
+    out->kind = strdup(head.kind);
+    out->state = strdup(head.state);
+    out->random = strdup(head.random);
+    bool done = out->id != NULL && out->name != NULL && out->kind != NULL && out->state != NULL &&
+                out->random != NULL;
     return done ? 0 : error_memory(err, STUDY_ID_SIZE, "the head of a study");
 }
 
@@ -273,7 +274,7 @@ static int read_cases(struct store *store, const struct aggregate *aggregate,
     uint64_t end = one ? first + 1 : aggregate->about.cases;
     bool answered = false;
     study->cases = array_create((size_t)(end - first), sizeof *study->cases);
-    int status = copy_head(aggregate, &study->id, &study->name, &study->kind, &study->state, err);
+    int status = copy_head(aggregate, study, err);
     if (status == 0 && study->cases == NULL)
         status = error_memory(err, (size_t)(end - first) * sizeof *study->cases, "results");
     for (uint64_t c = first; c < end && status == 0; c++) {
@@ -307,13 +308,19 @@ int aggregate_report(struct store *store, const char *study, struct study_report
                      struct error *err) {
     struct aggregate aggregate;
     struct study_report report = {0};
+    struct study_result head = {0};
     bool answered = false;
     int status = aggregate_begin(store, study, &aggregate, err);
     if (status != 0)
         return status;
-    report.seconds = aggregate.about.seconds;
+    report.time = aggregate.about.time;
     report.cases = array_create((size_t)aggregate.about.cases, sizeof *report.cases);
-    status = copy_head(&aggregate, &report.id, &report.name, &report.kind, &report.state, err);
+    status = copy_head(&aggregate, &head, err);
+    report.id = head.id;
+    report.name = head.name;
+    report.kind = head.kind;
+    report.state = head.state;
+    report.random = head.random;
     if (status == 0 && report.cases == NULL)
         status = error_memory(err, (size_t)aggregate.about.cases * sizeof *report.cases, "reports");
     for (uint64_t c = 0; c < aggregate.about.cases && status == 0; c++) {

@@ -204,6 +204,7 @@ cJSON *wire_result(const char *token, const struct block_result *result) {
         field_put(scalars, "names", names_of(result)) &&
         field_put(scalars, "rows", scalar_rows(result)) && field_put_text(value, "token", token) &&
         field_put(value, "seconds", json_number(result->seconds)) &&
+        field_put(value, "cpu_seconds", json_number(result->cpu_seconds)) &&
         field_put_count(value, "first", result->first) &&
         field_put_count(value, "count", result->count) && field_put_text(value, "data", data);
     free(data);
@@ -261,8 +262,16 @@ static int read_rows(const cJSON *scalars, struct block_result *out, struct erro
     return 0;
 }
 
+/* Workers of older programs do not tell it. */
+static int read_cpu_seconds(const cJSON *value, double *out, struct error *err) {
+    const cJSON *given = field_at(value, "cpu_seconds");
+    *out = NAN;
+    return given == NULL || cJSON_IsNull(given) ? 0 : field_seconds(value, "cpu_seconds", out, err);
+}
+
 static int read_result(const cJSON *value, struct block_result *out, struct error *err) {
     int status = field_seconds(value, "seconds", &out->seconds, err);
+    status = status != 0 ? status : read_cpu_seconds(value, &out->cpu_seconds, err);
     status = status != 0 ? status : field_count(value, "first", &out->first, err);
     status = status != 0 ? status : field_count(value, "count", &out->count, err);
     status = status != 0 ? status : read_names(field_at(value, "scalars"), out, err);

@@ -147,9 +147,11 @@ static void job_log(const struct worker_thread *thread, const struct claimed_job
                     const struct job_report *report) {
     switch (report->outcome) {
     case OUTCOME_COMPLETE:
-        thread_log(thread, LEVEL_INFO, job, "case %llu: realisations %llu to %llu took %.3g s",
+        thread_log(thread, LEVEL_INFO, job,
+                   "case %llu: realisations %llu to %llu took %.3g s, %.3g s of CPU time",
                    (unsigned long long)job->case_number, (unsigned long long)job->first,
-                   (unsigned long long)(job->first + job->count - 1), report->result.seconds);
+                   (unsigned long long)(job->first + job->count - 1), report->result.seconds,
+                   report->result.cpu_seconds);
         break;
     case OUTCOME_FAIL:
         thread_log(thread, LEVEL_WARNING, job, "failed: %s", report->reason.text);

@@ -16,7 +16,8 @@ struct block_result {
     const double *scalars;         /* count x scalar_count, realisation by realisation; NaN: none */
     const unsigned char *data;     /* the kind's accumulators, portable, versioned */
     size_t size;                   /* bytes of data */
-    double seconds;                /* wall seconds that it took */
+    double seconds;                /* by the clock */
+    double cpu_seconds;            /* of the thread that computed; NaN: not known */
     const struct block_text *text; /* borrowed: its texts in the store; NULL: not made yet */
 };
 /* Frees names, scalars and data. */

@@ -16,6 +16,7 @@ void study_report_clear(struct study_report *report) {
     free(report->name);
     free(report->kind);
     free(report->state);
+    free(report->random);
     *report = (struct study_report){0};
 }
 
@@ -161,7 +162,7 @@ static int place_of(struct case_result *about, const struct curve *curve, struct
 static int curve_report_make(struct case_report *report, const struct case_result *result,
                              const struct curve *curve, double *scratch, struct curve_report *out) {
     int status = place_of(&report->about, curve, &out->place);
-    out->seconds = report->seconds * share_of(result, curve);
+    out->seconds = out->cpu_seconds = share_of(result, curve);
     out->statistical = statistical_error(curve);
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         out->errors[s] = source_error(result, curve, (enum error_source)s, scratch);
@@ -252,9 +253,8 @@ static int make_curves(struct case_report *report, const struct case_result *res
     return status;
 }
 
-int case_report_make(struct case_report *out, const struct case_result *result, double seconds,
-                     struct error *err) {
-    struct case_report report = {.seconds = seconds};
+int case_report_make(struct case_report *out, const struct case_result *result, struct error *err) {
+    struct case_report report = {.time = {.seconds = 1, .cpu_seconds = 1}};
     int status = copy_about(&report.about, result);
     if (status == 0)
         status = make_curves(&report, result);
@@ -269,6 +269,14 @@ int case_report_make(struct case_report *out, const struct case_result *result, 
     return 0;
 }
 
+void case_report_spend(struct case_report *report, const struct work_time *time) {
+    report->time = *time;
+    for (size_t a = 0; a < report->curve_count; a++) {
+        report->curves[a].seconds *= time->seconds;
+        report->curves[a].cpu_seconds *= time->cpu_seconds;
+    }
+}
+
 double case_report_seconds_to_halve(const struct case_report *report) {
-    return report->main != NULL ? 3 * report->seconds : (double)NAN;
+    return report->main != NULL ? 3 * report->time.cpu_seconds : (double)NAN;
 }

@@ -12,11 +12,12 @@
 
 #include "schema/json/json.h"
 #include "schema/result/result.h"
+#include "schema/result/work_time.h"
 
 /* All errors are relative; NaN: not known. */
 struct curve_report {
-    struct curve place; /* quantity and attributes alone, without points */
-    double seconds;     /* of the solves behind the curve: the case's time, shared by their work */
+    struct curve place;          /* quantity and attributes alone, without points */
+    double seconds, cpu_seconds; /* of the solves behind the curve: shares of the case's time */
     double statistical, errors[ERROR_SOURCES];
     bool applies[ERROR_SOURCES]; /* the source bears on the curve */
     double total;     /* the statistical one and the sum of the others, root of the sum of squares;
@@ -37,27 +38,29 @@ struct case_report {
     struct case_result about; /* number, realisations, parameters, notes, error, and the arena of
                                  all texts: no curves and no scalars */
     uint64_t realisations_total, jobs, attempts;
-    double seconds; /* of completed jobs, over all workers */
+    struct work_time time; /* of completed jobs */
     size_t curve_count, scalar_count;
     struct curve_report *curves; /* in the arena, as the scalars */
     struct scalar_report *scalars;
     const struct curve_report *main; /* one of the curves, or NULL */
 };
 struct study_report {
-    char *id, *name, *kind, *state; /* owned */
-    double seconds;
+    char *id, *name, *kind, *state, *random; /* owned; random as in study_result */
+    struct work_time time;
     size_t case_count;
     struct case_report *cases; /* owned */
 };
 void case_report_clear(struct case_report *report);
 void study_report_clear(struct study_report *report);
 
-/* Measures the curves and scalars of a result whose case took `seconds`; copies parameters,
- * notes and error too. Realisations in all, jobs and attempts are the caller's to fill in. */
-int case_report_make(struct case_report *out, const struct case_result *result, double seconds,
-                     struct error *err);
+/* Measures the curves and scalars of a result as if its case had taken one second; copies
+ * parameters, notes and error too. Realisations in all, jobs and attempts are the caller's to fill
+ * in. */
+int case_report_make(struct case_report *out, const struct case_result *result, struct error *err);
+/* Tells what the case took: of a report that was made so, or read from one. */
+void case_report_spend(struct case_report *report, const struct work_time *time);
 /* Statistical errors fall with the square root of the realisations: half the error costs three
- * times what was spent. NaN without a main curve. */
+ * times the processor time that was spent. NaN without a main curve. */
 double case_report_seconds_to_halve(const struct case_report *report);
 
 /* The document of `rugo report`: as study_print_head and result_print. */

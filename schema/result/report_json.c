@@ -54,6 +54,7 @@ static bool print_curve(FILE *file, const struct curve_report *report) {
     bool done = json_print_text(file, report->place.quantity) &&
                 curve_print_attributes(file, &report->place, false);
     put_number(file, "seconds", report->seconds);
+    put_number(file, "cpu_seconds", report->cpu_seconds);
     done = done && put_errors(file, report);
     fputc('}', file);
     return done;
@@ -76,8 +77,12 @@ static void put_cost(FILE *file, const struct case_report *report) {
     put_number(file, "realisations_total", (double)report->realisations_total);
     put_number(file, "jobs", (double)report->jobs);
     put_number(file, "attempts", (double)report->attempts);
-    put_number(file, "seconds", report->seconds);
-    put_number(file, "seconds_per_realisation", done > 0 ? report->seconds / done : (double)NAN);
+    fputc(',', file);
+    work_time_print(file, &report->time);
+    put_number(file, "seconds_per_realisation",
+               done > 0 ? report->time.seconds / done : (double)NAN);
+    put_number(file, "cpu_seconds_per_realisation",
+               done > 0 ? report->time.cpu_seconds / done : (double)NAN);
 }
 
 bool case_report_print(FILE *file, const struct case_report *report) {
@@ -108,9 +113,12 @@ bool case_report_print(FILE *file, const struct case_report *report) {
 }
 
 bool study_report_print(FILE *file, const struct study_report *report) {
-    const struct study_result head = {
-        .id = report->id, .name = report->name, .kind = report->kind, .state = report->state};
-    bool done = study_print_head(file, &head, report->seconds);
+    const struct study_result head = {.id = report->id,
+                                      .name = report->name,
+                                      .kind = report->kind,
+                                      .state = report->state,
+                                      .random = report->random};
+    bool done = study_print_head(file, &head, &report->time);
     for (size_t c = 0; c < report->case_count && done; c++) {
         fputs(c > 0 ? "," : "", file);
         done = case_report_print(file, &report->cases[c]);
@@ -139,7 +147,10 @@ static int read_curve(struct case_result *about, const cJSON *object, struct cur
     if (out->place.quantity == NULL)
         return no_memory(err);
     int status = curve_read_attributes(about, object, &out->place, err);
-    out->seconds = field_number(object, "seconds");
+    struct work_time time;
+    work_time_read(object, 0, &time);
+    out->seconds = time.seconds;
+    out->cpu_seconds = time.cpu_seconds;
     out->statistical = field_number(object, "statistical_error");
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         out->applies[s] = field_at(object, ERROR_SOURCE_ROWS[s].key) != NULL;
@@ -211,8 +222,8 @@ static int read_lists(const cJSON *document, struct case_report *report, struct 
 int case_report_read(const cJSON *document, struct case_report *out, struct error *err) {
     struct case_report report = {.realisations_total = count_at(document, "realisations_total"),
                                  .jobs = count_at(document, "jobs"),
-                                 .attempts = count_at(document, "attempts"),
-                                 .seconds = field_number(document, "seconds")};
+                                 .attempts = count_at(document, "attempts")};
+    work_time_read(document, report.jobs, &report.time);
     report.about.case_number = count_at(document, "case");
     report.about.realisations = count_at(document, "realisations");
     int status = result_read_parameters(&report.about, field_at(document, "parameters"), err);
@@ -233,8 +244,9 @@ int case_report_read(const cJSON *document, struct case_report *out, struct erro
 
 int study_report_read(const cJSON *document, struct study_report *out, struct error *err) {
     struct study_result head = {0};
-    struct study_report report = {.seconds = field_number(document, "seconds")};
+    struct study_report report = {0};
     const cJSON *cases = field_at(document, "cases");
+    work_time_read(document, 0, &report.time);
     int status = study_head_read(document, &head, err);
     report.cases = array_create((size_t)cJSON_GetArraySize(cases), sizeof *report.cases);
     if (status == 0 && report.cases == NULL)
@@ -248,6 +260,7 @@ int study_report_read(const cJSON *document, struct study_report *out, struct er
     report.name = head.name;
     report.kind = head.kind;
     report.state = head.state;
+    report.random = head.random;
     if (status != 0) {
         study_report_clear(&report);
         return status;

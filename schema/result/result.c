@@ -154,6 +154,7 @@ void study_result_clear(struct study_result *study) {
     free(study->name);
     free(study->kind);
     free(study->state);
+    free(study->random);
     *study = (struct study_result){0};
 }
 

@@ -153,6 +153,7 @@ struct case_result {
 /* Of a whole study, or of those of its cases that were asked for. Owns its texts and cases. */
 struct study_result {
     char *id, *name, *kind, *state;
+    char *random; /* "common": cases share random numbers, their errors go together; or NULL */
     size_t case_count;
     struct case_result *cases;
 };

@@ -2,7 +2,7 @@
  * which prints a case after another without making a tree of it, and one reader, for results that
  * come from a server. What is printed reads back to the same numbers, and prints again the same.
  *
- *     {"study", "name", "kind", "state", "cases": [
+ *     {"study", "name", "kind", "state", "random"?, "cases": [
  *       {"case", "parameters": {pointer: value}, "realisations",
  *        "scalars": {name: {"value", "standard_error", "theory"?}},
  *        "curves": [{"quantity", attributes, "x", "y", "standard_error", errors, "theory", ...}],
@@ -14,11 +14,12 @@
 
 #include "schema/json/json.h"
 #include "schema/result/result.h"
+#include "schema/result/work_time.h"
 
 /* {"study": ..., "cases":[ ; what follows is case after case, with commas between, and "]}".
- * seconds: NaN where the document has none. False when out of memory; write errors are left to the
+ * time: NULL where the document has none. False when out of memory; write errors are left to the
  * file's own flag, here and below. */
-bool study_print_head(FILE *file, const struct study_result *study, double seconds);
+bool study_print_head(FILE *file, const struct study_result *study, const struct work_time *time);
 bool result_print(FILE *file, const struct case_result *result);
 /* All of the study. */
 bool study_print(FILE *file, const struct study_result *study);

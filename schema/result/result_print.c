@@ -243,20 +243,24 @@ bool result_print(FILE *file, const struct case_result *result) {
 
 /* --- a study --- */
 
-bool study_print_head(FILE *file, const struct study_result *study, double seconds) {
+bool study_print_head(FILE *file, const struct study_result *study, const struct work_time *time) {
     bool first = true;
     fputc('{', file);
     bool done = put_text(file, &first, "study", study->id) &&
                 put_text(file, &first, "name", study->name) &&
                 put_text(file, &first, "kind", study->kind) &&
                 put_text(file, &first, "state", study->state) &&
-                (isnan(seconds) || put_number(file, &first, "seconds", seconds));
+                (study->random == NULL || put_text(file, &first, "random", study->random));
+    if (time != NULL) {
+        fputc(',', file);
+        work_time_print(file, time);
+    }
     fputs(",\"cases\":[", file);
     return done;
 }
 
 bool study_print(FILE *file, const struct study_result *study) {
-    bool done = study_print_head(file, study, NAN);
+    bool done = study_print_head(file, study, NULL);
     for (size_t c = 0; c < study->case_count && done; c++) {
         if (c > 0)
             fputc(',', file);

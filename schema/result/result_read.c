@@ -345,10 +345,15 @@ int study_head_read(const cJSON *document, struct study_result *out, struct erro
     const struct {
         const char *key;
         char **text;
-    } texts[] = {
-        {"study", &out->id}, {"name", &out->name}, {"kind", &out->kind}, {"state", &out->state}};
+    } texts[] = {{"study", &out->id},
+                 {"name", &out->name},
+                 {"kind", &out->kind},
+                 {"state", &out->state},
+                 {"random", &out->random}};
     for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
         const char *text = cJSON_GetStringValue(field_at(document, texts[t].key));
+        if (texts[t].text == &out->random && field_at(document, "random") == NULL)
+            continue; /* of an older program */
         if (text == NULL)
             return error_set(err, ERROR_INPUT, "\"%s\" of a result must be a string", texts[t].key);
         *texts[t].text = strdup(text);

@@ -12,6 +12,7 @@
 
 #include "schema/result/block_result.h"
 #include "schema/result/report.h"
+#include "schema/result/work_time.h"
 #include "schema/study/study.h"
 #include <stdbool.h>
 
@@ -51,7 +52,7 @@ struct study_status {
     uint64_t cases_failed; /* whose results cannot be published */
     uint64_t realisations_total, realisations_done,
         realisations_failed; /* done includes running jobs' reports */
-    double seconds;          /* spent by completed jobs, summed over workers */
+    struct work_time time;   /* of completed jobs */
     double seconds_left;     /* estimate of work left, one worker; NaN before anything is known */
     uint64_t workers;        /* distinct workers with a live lease */
     uint64_t revision;       /* rises with every change of results or state */
@@ -198,7 +199,7 @@ int store_publish_due(struct store *store, const struct publication *publication
 /* Cost and time of a case for the report. */
 struct case_cost {
     uint64_t case_number, realisations_done, realisations, jobs, attempts;
-    double seconds; /* of completed jobs */
+    struct work_time time; /* of completed jobs */
 };
 int store_cost(struct store *store, const char *study, uint64_t case_number, struct case_cost *out,
                struct error *err);

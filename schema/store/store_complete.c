@@ -106,21 +106,25 @@ static int read_left(struct store *store, const struct job_row *job, int64_t *le
 }
 
 /* A query behind each update, not RETURNING: that makes a table for its row each time. */
-static int count_completion(struct store *store, const struct job_row *job, double seconds,
-                            int64_t *left, struct error *err) {
+static int count_completion(struct store *store, const struct job_row *job,
+                            const struct block_result *result, int64_t *left, struct error *err) {
+    bool without = isnan(result->cpu_seconds);
+    double seconds = result->seconds, cpu_seconds = without ? seconds : result->cpu_seconds;
     int64_t undone = 0;
     int status = store_run(
         store, err,
         "UPDATE study_case SET jobs_left = jobs_left - 1, realisations_done = realisations_done "
-        "+ ?, seconds = seconds + ?, revision = revision + 1 WHERE study_id = ? AND number = ?",
-        "idii", job->count, seconds, job->study, job->case_number);
+        "+ ?, seconds = seconds + ?, cpu_seconds = cpu_seconds + ?, jobs_without_cpu = "
+        "jobs_without_cpu + ?, revision = revision + 1 WHERE study_id = ? AND number = ?",
+        "iddiii", job->count, seconds, cpu_seconds, (int64_t)without, job->study, job->case_number);
     if (status == 0)
         status = store_run(
             store, err,
             "UPDATE study SET jobs_running = jobs_running - 1, jobs_done = jobs_done + 1, "
-            "realisations_done = realisations_done + ?, seconds = seconds + ?, revision = "
-            "revision + 1 WHERE id = ?",
-            "idi", job->count, seconds, job->study);
+            "realisations_done = realisations_done + ?, seconds = seconds + ?, cpu_seconds = "
+            "cpu_seconds + ?, jobs_without_cpu = jobs_without_cpu + ?, revision = revision + 1 "
+            "WHERE id = ?",
+            "iddii", job->count, seconds, cpu_seconds, (int64_t)without, job->study);
     if (status == 0)
         status = store_integer(store, &undone, err,
                                "SELECT jobs_waiting + jobs_running FROM study WHERE id = ?", "i",
@@ -137,9 +141,10 @@ static int job_complete(struct store *store, const struct job_row *job,
     if (status == 0)
         status = store_run(
             store, err,
-            "UPDATE job SET state = 'done', reported = 0, seconds = ?, ended = ? WHERE id = ?",
-            "dti", result->seconds, store_time(store), job->id);
-    return status != 0 ? status : count_completion(store, job, result->seconds, left, err);
+            "UPDATE job SET state = 'done', reported = 0, seconds = ?, cpu_seconds = ?, ended = ? "
+            "WHERE id = ?",
+            "ddti", result->seconds, result->cpu_seconds, store_time(store), job->id);
+    return status != 0 ? status : count_completion(store, job, result, left, err);
 }
 
 static int check_block(const struct job_row *job, const struct block_result *result,

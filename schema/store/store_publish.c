@@ -132,7 +132,7 @@ static int case_texts_print(struct case_texts *out, struct error *err) {
     struct case_result head = *out->result;
     struct case_report report;
     struct memory_file file;
-    int status = case_report_make(&report, out->result, 1, err);
+    int status = case_report_make(&report, out->result, err);
     if (status != 0)
         return status;
     head.curve_count = head.parameter_count = report.about.parameter_count = 0;

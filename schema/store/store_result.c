@@ -75,6 +75,12 @@ static int fill_scalars(const struct stored_block *block, struct block_result *o
     return 0;
 }
 
+/* NaN for NULL. */
+static double column_number(sqlite3_stmt *row, int column) {
+    return sqlite3_column_type(row, column) == SQLITE_NULL ? (double)NAN
+                                                           : sqlite3_column_double(row, column);
+}
+
 static int read_block(sqlite3_stmt *row, struct stored_block *block, struct block_result *result,
                       struct error *err) {
     int status = column_json(row, 2, &block->names, err);
@@ -86,7 +92,8 @@ static int read_block(sqlite3_stmt *row, struct stored_block *block, struct bloc
                                     .scalar_count = count,
                                     .data = sqlite3_column_blob(row, 4),
                                     .size = (size_t)sqlite3_column_bytes(row, 4),
-                                    .seconds = sqlite3_column_double(row, 5)};
+                                    .seconds = sqlite3_column_double(row, 5),
+                                    .cpu_seconds = column_number(row, 6)};
     if (status == 0)
         status = fill_scalars(block, result, err);
     return status;
@@ -98,12 +105,13 @@ int store_results(struct store *store, const char *study, uint64_t case_number, 
     sqlite3_stmt *row = NULL;
     int status = study_row(store, study, &id, err);
     if (status == 0)
-        status = store_query(store, &row, err,
-                             "SELECT job.first, job.count, scalar_names.names, result.scalars, "
-                             "result.data, job.seconds FROM job JOIN result ON result.job_id = "
-                             "job.id JOIN scalar_names ON scalar_names.id = result.names_id "
-                             "WHERE job.study_id = ? AND job.case_number = ? ORDER BY job.first",
-                             "ii", id, (int64_t)case_number);
+        status = store_query(
+            store, &row, err,
+            "SELECT job.first, job.count, scalar_names.names, result.scalars, "
+            "result.data, job.seconds, job.cpu_seconds FROM job JOIN result ON "
+            "result.job_id = job.id JOIN scalar_names ON scalar_names.id = result.names_id "
+            "WHERE job.study_id = ? AND job.case_number = ? ORDER BY job.first",
+            "ii", id, (int64_t)case_number);
     if (status != 0)
         return status;
     while ((status = store_step(store, row, err)) == 1) {
@@ -130,12 +138,13 @@ int store_cost(struct store *store, const char *study, uint64_t case_number, str
     sqlite3_stmt *row = NULL;
     int status = study_row(store, study, &id, err);
     if (status == 0)
-        status = store_query(store, &row, err,
-                             "SELECT realisations_done, (SELECT realisations FROM study WHERE id = "
-                             "study_id), jobs, (SELECT sum(attempts) FROM job WHERE job.study_id "
-                             "= study_case.study_id AND job.case_number = number), seconds FROM "
-                             "study_case WHERE study_id = ? AND number = ?",
-                             "ii", id, (int64_t)case_number);
+        status = store_query(
+            store, &row, err,
+            "SELECT realisations_done, (SELECT realisations FROM study WHERE id = "
+            "study_id), jobs, (SELECT sum(attempts) FROM job WHERE job.study_id "
+            "= study_case.study_id AND job.case_number = number), seconds, "
+            "cpu_seconds, jobs_without_cpu FROM study_case WHERE study_id = ? AND number = ?",
+            "ii", id, (int64_t)case_number);
     if (status == 0)
         status = store_step(store, row, err);
     if (status == 0)
@@ -148,7 +157,8 @@ int store_cost(struct store *store, const char *study, uint64_t case_number, str
                               (uint64_t)sqlite3_column_int64(row, 1),
                               (uint64_t)sqlite3_column_int64(row, 2),
                               (uint64_t)sqlite3_column_int64(row, 3),
-                              sqlite3_column_double(row, 4)};
+                              {sqlite3_column_double(row, 4), sqlite3_column_double(row, 5),
+                               (uint64_t)sqlite3_column_int64(row, 6)}};
     sqlite3_reset(row);
     return 0;
 }

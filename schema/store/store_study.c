@@ -139,7 +139,7 @@ static const char *state_name(const unsigned char *text) {
     "(SELECT coalesce(sum(reported), 0) FROM job WHERE state = 'running' AND study_id = "          \
     "study.id), "                                                                                  \
     "(SELECT count(DISTINCT worker) FROM job WHERE state = 'running' AND study_id = study.id), "   \
-    "cases_failed, random"
+    "cases_failed, random, cpu_seconds, jobs_without_cpu"
 
 static uint64_t column_count(sqlite3_stmt *row, int column) {
     return (uint64_t)sqlite3_column_int64(row, column);
@@ -167,13 +167,15 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     out->realisations_total = out->cases * out->realisations;
     out->realisations_done = column_count(row, 13) + column_count(row, 20);
     out->realisations_failed = column_count(row, 14);
-    out->seconds = sqlite3_column_double(row, 15);
+    out->time.seconds = sqlite3_column_double(row, 15);
     out->revision = column_count(row, 16);
     column_time(row, 17, out->created);
     column_time(row, 18, out->finished);
     out->workers = column_count(row, 21);
     out->cases_failed = column_count(row, 22);
     out->random = column_random(row, 23);
+    out->time.cpu_seconds = sqlite3_column_double(row, 24);
+    out->time.jobs_without_cpu = column_count(row, 25);
     if (out->name == NULL || out->kind == NULL)
         return error_memory(err, 0, "a study's name");
     return 0;

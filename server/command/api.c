@@ -85,7 +85,9 @@ static cJSON *progress(const struct study_status *status, bool *complete) {
                 field_put_count(document, "cases_failed", status->cases_failed) &&
                 put_jobs(document, status) && put_realisations(document, status) &&
                 field_put_count(document, "workers", status->workers) &&
-                field_put(document, "seconds", json_number(status->seconds)) &&
+                field_put(document, "seconds", json_number(status->time.seconds)) &&
+                field_put(document, "cpu_seconds", json_number(status->time.cpu_seconds)) &&
+                field_put_count(document, "jobs_without_cpu", status->time.jobs_without_cpu) &&
                 field_put(document, "seconds_left", json_number(time_left(status))) &&
                 field_put_count(document, "revision", status->revision) &&
                 put_time(document, "created", status->created) &&

@@ -66,10 +66,10 @@ static int printing_end(struct printing *printing, bool done, struct error *err)
 
 static int print_head(struct stream *stream, struct error *err) {
     const struct study_result head = aggregate_head(&stream->study);
-    double seconds = stream->report ? stream->study.about.seconds : (double)NAN;
+    const struct work_time *time = stream->report ? &stream->study.about.time : NULL;
     struct printing printing;
     bool done =
-        printing_begin(&printing, stream) && study_print_head(printing.memory.file, &head, seconds);
+        printing_begin(&printing, stream) && study_print_head(printing.memory.file, &head, time);
     return printing_end(&printing, done, err);
 }
 

@@ -86,7 +86,7 @@ static void put_heading(const struct scalar_table *plan, struct text_table *tabl
     }
     if (plan->report != NULL) {
         table_fold(table);
-        table_cell(table, "time");
+        table_cell(table, "CPU time");
     }
 }
 
@@ -100,7 +100,7 @@ static void put_row(const struct scalar_table *plan, size_t c, struct text_table
         scalar_cells(table, result_scalar(one, plan->scalars[s]), plan->compared[s]);
     if (plan->report != NULL) {
         const struct case_report *cost = report_of(plan->report, one);
-        duration_cell(table, cost != NULL ? cost->seconds : (double)NAN);
+        duration_cell(table, cost != NULL ? cost->time.cpu_seconds : (double)NAN);
     }
 }
 
@@ -123,11 +123,14 @@ static void print_title(const struct study_result *study, const struct study_rep
         fprintf(file, ", %llu realisations a case",
                 (unsigned long long)study->cases[0].realisations);
     if (report != NULL) {
-        char time[48];
-        duration_text(report->seconds, time, sizeof time);
-        fprintf(file, ", %s of work", time);
+        char time[112];
+        work_time_text(&report->time, time, sizeof time);
+        fprintf(file, ", %s", time);
     }
     fputc('\n', file);
+    if (report != NULL)
+        print_without_cpu(&report->time, file);
+    print_random(study->random, study->case_count, file);
 }
 
 void summary_of_curves(const struct study_result *study, const struct study_report *report,

@@ -99,6 +99,24 @@ void duration_text(double seconds, char *out, size_t size) {
                  floor(fmod(seconds, 3600) / 60));
 }
 
+void work_time_text(const struct work_time *time, char *out, size_t size) {
+    char clock[48], cpu[48];
+    duration_text(time->seconds, clock, sizeof clock);
+    duration_text(time->cpu_seconds, cpu, sizeof cpu);
+    snprintf(out, size, "%s of CPU time in %s", cpu, clock);
+}
+
+void print_without_cpu(const struct work_time *time, FILE *file) {
+    if (time->jobs_without_cpu > 0)
+        fprintf(file, "Jobs whose CPU time is not known, so that the clock stands for it: %llu.\n",
+                (unsigned long long)time->jobs_without_cpu);
+}
+
+void print_random(const char *random, size_t cases, FILE *file) {
+    if (cases > 1 && random != NULL && strcmp(random, "common") == 0)
+        fputs("Cases are made of the same random numbers: their errors go together.\n", file);
+}
+
 void duration_cell(struct text_table *table, double seconds) {
     char text[48];
     duration_text(seconds, text, sizeof text);

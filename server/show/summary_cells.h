@@ -2,6 +2,7 @@
 #ifndef RUGO_SERVER_SHOW_SUMMARY_CELLS_H
 #define RUGO_SERVER_SHOW_SUMMARY_CELLS_H
 
+#include "schema/result/work_time.h"
 #include "server/show/shown_cases.h"
 #include "server/show/text_table.h"
 
@@ -26,6 +27,12 @@ bool is_bracket(const char *series);
 /* "2 h 5 min", "12 s", "-" for NaN. */
 void duration_text(double seconds, char *out, size_t size);
 void duration_cell(struct text_table *table, double seconds);
+/* "15 s of CPU time in 2 min 21 s", or what is known of it. */
+void work_time_text(const struct work_time *time, char *out, size_t size);
+/* A line where the clock stands for the processor time of some jobs. */
+void print_without_cpu(const struct work_time *time, FILE *file);
+/* A line where errors of cases go together; random as in study_result. */
+void print_random(const char *random, size_t cases, FILE *file);
 /* The report of a case, or NULL where the report, which may be NULL, has none. */
 const struct case_report *report_of(const struct study_report *report,
                                     const struct case_result *one);

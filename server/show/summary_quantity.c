@@ -197,8 +197,8 @@ static void print_case(const struct quantity_table *words, const struct shown_ca
     fprintf(file, "%llu realisations", (unsigned long long)one->realisations);
     if (cost != NULL) {
         char time[48];
-        duration_text(cost->seconds, time, sizeof time);
-        fprintf(file, ", %s", time);
+        duration_text(cost->time.cpu_seconds, time, sizeof time);
+        fprintf(file, ", %s of CPU time", time);
     }
     if (finest.model_count > 0) {
         fprintf(file, "; %s by %s at %.4g points a shortest wave\n", words->title,
@@ -265,7 +265,7 @@ static void put_row_heading(const struct quantity_table *words, const struct sho
     table_fold(table);
     for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++)
         table_cell(table, "%s", *name);
-    table_cell(table, "time");
+    table_cell(table, "CPU time");
 }
 
 static void put_row(const struct quantity_table *words, const struct shown_cases *shown, size_t c,
@@ -288,7 +288,7 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
         measured_cell(table, scalar != NULL ? scalar->value : (double)NAN,
                       scalar != NULL ? scalar->standard_error : (double)NAN);
     }
-    duration_cell(table, cost != NULL ? cost->seconds : (double)NAN);
+    duration_cell(table, cost != NULL ? cost->time.cpu_seconds : (double)NAN);
 }
 
 static void print_rows(const struct quantity_table *words, const struct shown_cases *shown,

@@ -72,8 +72,9 @@ static void put_case(const struct shown_cases *shown, size_t c, const struct cas
     partial_text(realisations, one->main != NULL ? one->main->valueless : (double)NAN, partial,
                  sizeof partial);
     table_cell(table, "%.0f%s", realisations, partial);
-    table_number(table, one->seconds);
-    table_number(table, realisations > 0 ? one->seconds / realisations : (double)NAN);
+    table_number(table, one->time.seconds);
+    table_number(table, one->time.cpu_seconds);
+    table_number(table, realisations > 0 ? one->time.cpu_seconds / realisations : (double)NAN);
     errors_of(one->main, errors);
     error_cells(columns, errors, table);
     table_number(table, case_report_seconds_to_halve(one));
@@ -81,14 +82,15 @@ static void put_case(const struct shown_cases *shown, size_t c, const struct cas
 
 static void print_cases(const struct study_report *report, const struct shown_cases *shown,
                         const struct error_columns *columns, FILE *file) {
-    struct text_table table = {.columns = 1 + shown->varied_count + 3 + columns->count + 1};
+    struct text_table table = {.columns = 1 + shown->varied_count + 4 + columns->count + 1};
     table_cell(&table, "case");
     varied_headings(&table, shown);
     table_cell(&table, "realisations");
     table_cell(&table, "seconds");
-    table_cell(&table, "s/realisation");
+    table_cell(&table, "CPU s");
+    table_cell(&table, "CPU s/realisation");
     error_headings(columns, &table);
-    table_cell(&table, "s to halve");
+    table_cell(&table, "CPU s to halve");
     for (size_t c = 0; c < report->case_count; c++)
         put_case(shown, c, &report->cases[c], columns, &table);
     table_print(&table, file);
@@ -100,7 +102,7 @@ static void print_cases(const struct study_report *report, const struct shown_ca
 /* Sums over the cases that have the series. */
 struct series_cost {
     const struct curve *place; /* of the first case */
-    double seconds, realisations, valueless, squares[ERROR_COLUMNS];
+    double cpu_seconds, realisations, valueless, squares[ERROR_COLUMNS];
     size_t known[ERROR_COLUMNS];
 };
 struct series_list {
@@ -127,7 +129,7 @@ static void add_curve(struct series_cost *series, const struct case_report *one,
                       const struct curve_report *curve) {
     double errors[ERROR_COLUMNS];
     errors_of(curve, errors);
-    series->seconds += curve->seconds;
+    series->cpu_seconds += curve->cpu_seconds;
     series->realisations += (double)one->about.realisations;
     series->valueless += fmax(curve->valueless, 0);
     for (size_t e = 0; e < ERROR_COLUMNS; e++)
@@ -159,7 +161,7 @@ static void put_series(const struct series_cost *series, const struct error_colu
     table_cell(table, "%s%s", model, partial);
     table_number(table, series->place->level);
     table_cell(table, "%s", series->place->series != NULL ? series->place->series : "-");
-    table_cell(table, "%.3g", series->seconds / series->realisations);
+    table_cell(table, "%.3g", series->cpu_seconds / series->realisations);
     for (size_t e = 0; e < ERROR_COLUMNS; e++)
         errors[e] =
             series->known[e] > 0 ? sqrt(series->squares[e] / (double)series->known[e]) : NAN;
@@ -170,7 +172,7 @@ static void put_series(const struct series_cost *series, const struct error_colu
 static void print_series(const struct study_report *report, size_t first, size_t end,
                          const char *title, const struct shown_cases *swept,
                          const struct error_columns *columns, FILE *file) {
-    static const char *const HEADINGS[] = {"model", "level", "estimator", "s/realisation"};
+    static const char *const HEADINGS[] = {"model", "level", "estimator", "CPU s/realisation"};
     enum { HEADING_COUNT = sizeof HEADINGS / sizeof *HEADINGS };
     struct text_table table = {.columns = HEADING_COUNT + columns->count};
     struct series_list list = {0};
@@ -216,6 +218,8 @@ void summary_of_report(const struct study_report *report, FILE *file) {
         return;
     fprintf(file, "%s (%s), study %s: cost, and relative errors of the main curve\n", report->name,
             report->state, report->id);
+    print_without_cpu(&report->time, file);
+    print_random(report->random, report->case_count, file);
     if (!shown_of_report(report, &shown)) {
         fputs("(no memory for a table)\n", file);
         return;

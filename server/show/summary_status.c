@@ -29,9 +29,11 @@ static void print_failure(const cJSON *failure, FILE *file) {
 
 void summary_of_status(const cJSON *status, FILE *file) {
     const cJSON *jobs = field_at(status, "jobs"), *realisations = field_at(status, "realisations");
-    char left[48], spent[48];
+    struct work_time time;
+    char left[48], spent[112];
+    work_time_read(status, (uint64_t)fmax(number_of(jobs, "done"), 0), &time);
     duration_text(number_of(status, "seconds_left"), left, sizeof left);
-    duration_text(number_of(status, "seconds"), spent, sizeof spent);
+    work_time_text(&time, spent, sizeof spent);
     fprintf(file, "%s  %s  %s  %s\n", text_of(status, "id"), text_of(status, "name"),
             text_of(status, "kind"), text_of(status, "state"));
     fprintf(file, "  realisations %.0f of %.0f, jobs %.0f of %.0f (%.0f running, %.0f failed)\n",
@@ -39,6 +41,8 @@ void summary_of_status(const cJSON *status, FILE *file) {
             number_of(jobs, "done"), number_of(jobs, "total"), number_of(jobs, "running"),
             number_of(jobs, "failed"));
     fprintf(file, "  workers %.0f, spent %s, left %s\n", number_of(status, "workers"), spent, left);
+    if (time.seconds > 0)
+        print_without_cpu(&time, file);
     const cJSON *failure;
     cJSON_ArrayForEach(failure, field_at(status, "failures")) {
         print_failure(failure, file);

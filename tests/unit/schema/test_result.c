@@ -224,8 +224,9 @@ static void report_measures_and_comes_back(void **state) {
     struct case_result sample;
     struct case_report report, again;
     struct error err = {0};
+    const struct work_time time = {.seconds = 10, .cpu_seconds = 4, .jobs_without_cpu = 1};
     sample_result(&sample);
-    assert_int_equal(case_report_make(&report, &sample, 10, &err), 0);
+    assert_int_equal(case_report_make(&report, &sample, &err), 0);
     assert_int_equal(report.curve_count, 3);
     assert_ptr_equal(report.main, &report.curves[0]);
     /* one point is known: 0.1/3, |3 - 1.5|/1.5 */
@@ -246,7 +247,9 @@ static void report_measures_and_comes_back(void **state) {
     assert_true(report.scalars[0].statistical == 0.5);
     assert_false(report.scalars[0].has_theory);
     assert_true(fabs(report.scalars[1].deviation - 1.0 / 6) <= 1e-15);
-    assert_true(case_report_seconds_to_halve(&report) == 30);
+    case_report_spend(&report, &time);
+    assert_true(case_report_seconds_to_halve(&report) == 12);
+    assert_true(report.curves[0].seconds == 2.5 * report.curves[0].cpu_seconds);
     char *first = print_report(&report);
     cJSON *document = cJSON_Parse(first);
     assert_int_equal(case_report_read(document, &again, &err), 0);

@@ -71,7 +71,8 @@ static int complete(struct store *store, const struct claimed_job *job, bool *fi
                                   .scalars = scalars,
                                   .data = (const unsigned char *)"\0\1data",
                                   .size = 6,
-                                  .seconds = 2};
+                                  .seconds = 2,
+                                  .cpu_seconds = 0.5};
     return store_complete(store, job->id, job->token, &result, first, case_done, err);
 }
 
@@ -128,7 +129,9 @@ static void a_study_runs_to_its_end(void **state) {
     struct study_status status;
     assert_int_equal(store_status(store, id, &status, NULL), 0);
     assert_int_equal(status.realisations_done, 40);
-    check_close(status.seconds, 8, 1e-12);
+    check_close(status.time.seconds, 8, 1e-12);
+    check_close(status.time.cpu_seconds, 2, 1e-12);
+    assert_int_equal(status.time.jobs_without_cpu, 0);
     assert_true(status.seconds_left == 0 && *status.finished);
     study_status_clear(&status);
     struct error err = {0};

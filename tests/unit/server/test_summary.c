@@ -129,15 +129,16 @@ static void many_cases_have_a_row_each(void **state) {
     study_result_clear(&study);
 }
 
-static const char HEADING[] = "\ncase  realisations  seconds  s/realisation  statistical %  "
-                              "discretisation %  total %  s to halve\n";
+static const char HEADING[] = "\ncase  realisations  seconds  CPU s  CPU s/realisation  "
+                              "statistical %  discretisation %  total %  CPU s to halve\n";
 
 /* The report of one case, made by hand: statistical, two sources, total. */
 static void a_report_tells_errors_by_source(void **state) {
     (void)state;
     struct curve_report curves[] = {
         {.place = {.quantity = "contact_area", .series = "edges", .model = "layered", .level = 8},
-         .seconds = 8,
+         .seconds = 16,
+         .cpu_seconds = 8,
          .statistical = 0.03,
          .errors = {0.04, NAN, NAN, NAN, NAN, NAN},
          .applies = {[ERROR_DISCRETISATION] = true, [ERROR_BLOCK] = true},
@@ -145,11 +146,12 @@ static void a_report_tells_errors_by_source(void **state) {
          .valueless = 1},
         {.place =
              {.quantity = "contact_area", .series = "edges_upper", .model = "layered", .level = 8},
-         .seconds = 8,
+         .seconds = 16,
+         .cpu_seconds = 8,
          .errors = {0.04, NAN, NAN, NAN, NAN, NAN}},
     };
     struct case_report one = {.about = {.realisations = 4},
-                              .seconds = 10,
+                              .time = {.seconds = 20, .cpu_seconds = 10},
                               .curve_count = 2,
                               .curves = curves,
                               .main = &curves[0]};
@@ -161,11 +163,12 @@ static void a_report_tells_errors_by_source(void **state) {
     assert_non_null(file);
     summary_of_report(&report, file);
     fclose(file);
-    check_shown(text, (const char *[]){"pressed (done), study 12: cost, and relative errors",
-                                       HEADING, "4 (3 of 4)       10            2.5              3",
-                                       "case 0: contact_area by model, level and estimator\n",
-                                       "layered (3 of 4)      8  edges",
-                                       "(n of N): ", "\nErrors not known: block.\n", NULL});
+    check_shown(text,
+                (const char *[]){"pressed (done), study 12: cost, and relative errors", HEADING,
+                                 "4 (3 of 4)       20     10                2.5              3",
+                                 "case 0: contact_area by model, level and estimator\n",
+                                 "layered (3 of 4)      8  edges",
+                                 "(n of N): ", "\nErrors not known: block.\n", NULL});
     assert_null(strstr(text, "upper")); /* a bracket is no estimate */
     free(text);
 }
@@ -194,7 +197,8 @@ static void failures_are_told(void **state) {
     static const char DOCUMENT[] =
         "{\"id\":\"12\",\"name\":\"pressed\",\"kind\":\"contact\",\"state\":\"done\",\"jobs\":{"
         "\"done\":3,\"total\":5,\"running\":0,\"failed\":1},\"realisations\":{\"done\":30,"
-        "\"total\":50},\"workers\":0,\"seconds\":12,\"seconds_left\":null,\"failures\":[{\"job\":4,"
+        "\"total\":50},\"workers\":0,\"seconds\":12,\"cpu_seconds\":5,\"jobs_without_cpu\":1,"
+        "\"seconds_left\":null,\"failures\":[{\"job\":4,"
         "\"case\":1,\"first\":10,\"count\":10,\"attempts\":3,\"worker\":\"w\",\"reason\":\"lost\"},"
         "{\"case\":2,\"reason\":\"of another program\"}]}";
     cJSON *document = cJSON_Parse(DOCUMENT), *empty = cJSON_Parse("{}");
@@ -205,12 +209,15 @@ static void failures_are_told(void **state) {
     summary_of_status(document, file);
     summary_of_status(empty, file);
     fclose(file);
-    check_shown(text, (const char *[]){
-                          "12  pressed  contact  done\n  realisations 30 of 50, jobs 3 "
-                          "of 5 (0 running, 1 failed)\n  workers 0, spent 12 s, left -",
-                          "  failed: case 1, realisations 10 to 19, 3 attempts, "
-                          "worker w: lost\n",
-                          "  not published: case 2: of another program\n", "\n-  -  -  -\n", NULL});
+    check_shown(
+        text,
+        (const char *[]){
+            "12  pressed  contact  done\n  realisations 30 of 50, jobs 3 "
+            "of 5 (0 running, 1 failed)\n  workers 0, spent 5 s of CPU time in 12 s, left -\nJobs "
+            "whose CPU time is not known, so that the clock stands for it: 1.\n",
+            "  failed: case 1, realisations 10 to 19, 3 attempts, "
+            "worker w: lost\n",
+            "  not published: case 2: of another program\n", "\n-  -  -  -\n", NULL});
     free(text);
     cJSON_Delete(document);
     cJSON_Delete(empty);

@@ -229,9 +229,13 @@ static void report_agrees_with_the_curves(void **state) {
     assert_true(cJSON_IsNull(json_at(report, "/cases/0/discretisation_error")));
     assert_true(cJSON_IsNull(json_at(report, "/cases/0/total_error")));
     assert_true(number_at(report, "/cases/1/realisations") == 24);
-    double seconds = number_at(report, "/cases/0/seconds");
-    assert_true(seconds > 0);
-    assert_true(fabs(number_at(report, "/cases/0/seconds_to_halve_error") - 3 * seconds) <= 0);
+    double cost = number_at(report, "/cases/0/cpu_seconds");
+    assert_true(cost > 0 && number_at(report, "/cases/0/seconds") > 0);
+    assert_true(fabs(number_at(report, "/cases/0/seconds_to_halve_error") - 3 * cost) <= 0);
+    assert_true(fabs(number_at(report, "/cpu_seconds") - cost -
+                     number_at(report, "/cases/1/cpu_seconds")) <= 1e-12);
+    assert_true(number_at(report, "/jobs_without_cpu") == 0);
+    assert_string_equal(cJSON_GetStringValue(json_at(report, "/random")), "common");
     assert_true(number_at(report, "/cases/0/scalars/summit_density/statistical_error") > 0);
     cJSON_Delete(document);
     cJSON_Delete(report);

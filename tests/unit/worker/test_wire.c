@@ -267,7 +267,8 @@ static void result_crosses_bit_for_bit(void **state) {
                                 .scalars = scalars,
                                 .data = data,
                                 .size = sizeof data,
-                                .seconds = 0.1};
+                                .seconds = 0.1,
+                                .cpu_seconds = 0.07};
     struct block_result block;
     char token[TOKEN_SIZE];
     struct error err = {0};
@@ -284,7 +285,11 @@ static void result_crosses_bit_for_bit(void **state) {
     }
     assert_int_equal(block.size, sizeof data);
     assert_memory_equal(block.data, data, sizeof data);
-    assert_true(block.seconds == 0.1);
+    assert_true(block.seconds == 0.1 && block.cpu_seconds == 0.07);
+    block_result_clear(&block);
+    cJSON_DeleteItemFromObject(value, "cpu_seconds"); /* as a worker of an older program */
+    assert_int_equal(wire_result_read(value, token, &block, &err), 0);
+    assert_true(block.seconds == 0.1 && isnan(block.cpu_seconds));
     block_result_clear(&block);
     cJSON_Delete(value);
 }
@@ -315,6 +320,8 @@ static void malformed_results_are_refused(void **state) {
         "\"scalars\":{\"names\":[\"a\"],\"rows\":[[1]]}}",
         "{\"token\":\"t\",\"seconds\":1,\"first\":0,\"count\":1,\"data\":\"\","
         "\"scalars\":{\"names\":[\"a\"],\"rows\":[3]}}",
+        "{\"token\":\"t\",\"seconds\":1,\"cpu_seconds\":-1,\"first\":0,\"count\":1,\"data\":"
+        "\"\",\"scalars\":{\"names\":[\"a\"],\"rows\":[[1]]}}",
     };
     for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
         struct block_result got;
