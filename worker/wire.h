@@ -2,12 +2,15 @@
  * for both ends, so that they cannot disagree.
  *
  *     POST /v1/jobs/claim            {worker, host, kinds: […], count, sequence: true}
- *       200 {"jobs": [{id, study, kind, case, seed: "decimal", sequence, first, count, attempt,
- * token, lease_seconds, parameters: {…}}]}, or 204 when there is none POST /v1/jobs/{id}/heartbeat
- * {token, done}                      200 {} POST /v1/jobs/{id}/complete    {token, seconds, first,
- * count, scalars: {names: […], rows: [[…]]}, data: base64} 200 {"case_done": bool} POST
- * /v1/jobs/{id}/fail        {token, reason, permanent}         200 {} POST /v1/jobs/{id}/release
- * {token}                            200 {}
+ *       200 {"jobs": [{id, study, kind, case, seed: "decimal", sequence, first, count,
+ *                      attempt, token, lease_seconds, parameters: {…}}]},
+ *       or 204 when there is none
+ *     POST /v1/jobs/{id}/heartbeat   {token, done}                      200 {}
+ *     POST /v1/jobs/{id}/complete    {token, seconds, cpu_seconds, first, count,
+ *                                     scalars: {names: […], rows: [[…]]}, data: base64}
+ *                                                                       200 {"case_done": bool}
+ *     POST /v1/jobs/{id}/fail        {token, reason, permanent}         200 {}
+ *     POST /v1/jobs/{id}/release     {token}                            200 {}
  *
  * Numbers read back as the same doubles, NaN crosses as null. Unknown fields are passed over, so
  * that a newer end can talk to an older one: a claim without "sequence" is of a worker that draws
