@@ -4,7 +4,7 @@
 
 /* --- surfaces --- */
 
-/* bench_surface: nanoseconds a point of a Gaussian surface. */
+/* A point of a Gaussian surface takes so many nanoseconds (measured by bench_surface). */
 static const double GAUSSIAN_NS = 6;
 /* bench_nongaussian: nanoseconds a point and iteration; iterations after which plain alternation
  * stalls; plain iterations behind the relaxed ones. */
@@ -89,7 +89,7 @@ static const double FACTORED_ITERATIONS = 20, SURFACE_FACTORED = 20000;
 static const double PROFILE_NEWTON_NS = 250, SURFACE_NEWTON_NS = 1100;
 static const double PROFILE_LINEAR_NS = 36, SURFACE_LINEAR_NS = 80, PRESSURE_NS = 50;
 static const double PROFILE_FACTORED_NS = 5000, SURFACE_FACTORED_NS = 7e4;
-/* Bytes of a factorisation a degree of freedom. */
+/* A factorisation takes so many bytes a degree of freedom. */
 static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
 /* Transforms of a point in the time of an iteration of Newton's method on a degree of freedom. */
 static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Loads p/(E* h'); the surface lives until the end. */
+/* Presses the surface at rising loads p/(E* h') and prints the contact area of each. */
 static int print_areas(struct rugo_contact *contact, double rms_slope, double alpha,
                        struct rugo_error *err) {
     static const double LOADS[] = {0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5};

@@ -7,7 +7,7 @@
 
 enum { ROOM_LEAST = 1024 };
 
-/* Room for so many bytes and a NUL. */
+/* Makes room for so many bytes and a NUL; false when out of memory. */
 static bool reserve(struct memory_file *memory, size_t size) {
     size_t room = memory->room < ROOM_LEAST ? ROOM_LEAST : memory->room;
     while (room <= size && room <= SIZE_MAX / 2)

@@ -115,7 +115,7 @@ struct rugo_surface_options {
     double tolerance;      /* of the iteration, on its three errors */
     size_t max_iterations; /* of the iteration */
 };
-/* Gaussian; tolerance 1e-3, at most 1000 iterations. */
+/* Returns options for Gaussian surfaces, with a tolerance of 1e-3 and at most 1000 iterations. */
 RUGO_API struct rugo_surface_options rugo_surface_defaults(void);
 
 /* What one generation did: errors of heights, of the spectrum and of waves outside of it; all 0 for
@@ -169,7 +169,7 @@ RUGO_API int rugo_map_write(const char *path, const struct rugo_grid *grid, cons
 
 /* --- statistics of a map --- */
 
-/* By finite differences on the grid, about the mean. */
+/* These are about the mean, and slopes and curvatures are finite differences on the grid. */
 struct rugo_roughness {
     double mean, rms_height, rms_slope, rms_curvature;
     double skewness, kurtosis; /* NaN for a flat map; a Gaussian has 0 and 3 */
@@ -180,7 +180,7 @@ RUGO_API int rugo_roughness(const struct rugo_grid *grid, const double *z,
 /* Spectral moments of a map: exact for band-limited ones, where finite differences are not. */
 RUGO_API int rugo_moments(const struct rugo_grid *grid, const double *z, struct rugo_moments *out,
                           struct rugo_error *err);
-/* How many values rugo_psd gives on a grid; 0 for no grid. */
+/* Returns how many values rugo_psd gives on a grid; 0 for no grid. */
 RUGO_API size_t rugo_psd_size(const struct rugo_grid *grid);
 /* Power spectral density over |k| (radians per length), in rings: m00 is its integral over the
  * plane of k, of a profile over both signs. Both arrays have room for rugo_psd_size. */
@@ -213,7 +213,7 @@ RUGO_API double rugo_nayak_summit_pdf(double z, double alpha);
 RUGO_API double rugo_nayak_summit_cdf(double z, double alpha);
 /* Joint density of height z and t1 = -sqrt(3/m4) kappa, kappa the mean curvature; 0 for t1 >= 0. */
 RUGO_API double rugo_nayak_joint_pdf(double z, double t1, double alpha);
-/* Mean curvature of the summits at height z, over sqrt(m4). */
+/* Returns the mean curvature of the summits at height z, over sqrt(m4). */
 RUGO_API double rugo_nayak_mean_curvature(double z, double alpha);
 /* Summits per area, from the isotropic moments; NaN unless both are finite, m2 > 0 and m4 >= 0. */
 RUGO_API double rugo_nayak_summit_density(double m2, double m4);
@@ -269,7 +269,7 @@ struct rugo_contact_state {
 };
 /* A solver for one grid and one block. */
 struct rugo_contact;
-/* INPUT for a block out of range or too deep a mesh; MEMORY. */
+/* Fails with INPUT for a block out of range or too deep a mesh, or with MEMORY. */
 RUGO_API int rugo_contact_create(struct rugo_contact **out, const struct rugo_grid *grid,
                                  const struct rugo_block *block, struct rugo_error *err);
 RUGO_API void rugo_contact_destroy(struct rugo_contact **contact);

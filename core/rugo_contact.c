@@ -1,4 +1,4 @@
-/* Contact, of rugo.h: one solver with what measures its area. */
+/* Implements the contact of rugo.h: one solver with what measures its area. */
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
 #include "core/full/full.h"

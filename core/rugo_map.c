@@ -1,11 +1,11 @@
-/* Height maps in files, of rugo.h. */
+/* Implements the height maps of rugo.h. */
 #include "core/map/height_map_file.h"
 #include "core/rugo_shared.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The bytes of a file, NUL-terminated; the caller frees them. */
+/* Reads the bytes of a file and puts a NUL behind them; the caller frees them. */
 static int read_file(const char *path, char **text, size_t *size, struct error *err) {
     FILE *file = fopen(path, "rb");
     char *bytes = NULL;

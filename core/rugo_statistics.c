@@ -1,4 +1,4 @@
-/* Statistics of maps, of rugo.h. */
+/* Implements the statistics of rugo.h. */
 #include "core/rugo_shared.h"
 #include "core/statistics/roughness.h"
 #include "core/statistics/summits.h"

@@ -1,4 +1,4 @@
-/* Spectra and random surfaces of rugo.h. */
+/* Implements the spectra and random surfaces of rugo.h. */
 #include "core/rugo_shared.h"
 #include "core/surface/surface.h"
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Theories, of rugo.h. */
+/* Implements the theories of rugo.h. */
 #include "core/rugo.h"
 #include "core/theory/contact.h"
 #include "core/theory/nayak.h"

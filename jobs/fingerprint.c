@@ -11,7 +11,7 @@ static uint64_t hash_text(uint64_t hash, const char *text) {
     return hash_bytes(hash, strlen(text), text);
 }
 
-/* Of one value; members of an object with their names. */
+/* Hashes one value; members of an object with their names. */
 static uint64_t hash_value(uint64_t hash, const cJSON *value) {
     if (cJSON_IsNumber(value))
         return hash_number(hash, value->valuedouble);

@@ -14,7 +14,7 @@
 #include "schema/study/values.h"
 #include <stdint.h>
 
-/* tables: those by which the values were made. */
+/* Returns the mark of values; tables are those by which the values were made. */
 uint64_t case_fingerprint(const struct values *values, const struct parameter_table *const *tables);
 
 #endif

@@ -58,7 +58,7 @@ struct job_kind {
     int (*read)(void *study, const cJSON *parameters, struct fault_list *faults, struct error *err);
     void (*clear)(void *study); /* NULL: nothing to clear */
     void (*estimate)(const void *study, struct study_cost *out);
-    /* The surface that each realisation is given; NULL: kinds without surfaces. */
+    /* Gives the surface that each realisation is given; NULL for kinds without surfaces. */
     const struct surface_case *(*surface)(const void *study);
 
     /* --- what all runners of a case can share, such as a factorised matrix; 0 and NULL: nothing.
@@ -85,7 +85,7 @@ struct job_kind {
     void (*merge)(void *into, const void *from);
     uint64_t format, format_version; /* marks of its bytes, between the kinds of the program */
     void (*put)(struct bytes *bytes, const void *tally);
-    /* Into a new tally. Fails the reader for what put cannot have made. */
+    /* Reads into a new tally. Fails the reader for what put cannot have made. */
     void (*get)(struct byte_reader *reader, void *tally);
     /* Whether a tally that was read can be, and whether it is of these scalars. Either may be NULL:
      * then any tally will do. */
@@ -118,7 +118,7 @@ extern const struct study_kind *const JOB_KINDS[];
     LIST(JOB_KIND_DECLARE)                                                                         \
     const struct study_kind *const JOB_KINDS[] = {LIST(JOB_KIND_HEAD) NULL};
 
-/* The kind of a table's entry; and by name, NULL for an unknown one. */
+/* These return the kind of a table's entry, and that of a name: NULL for an unknown one. */
 const struct job_kind *kind_of(const struct study_kind *study);
 const struct job_kind *kind_find(const char *name);
 /* Reads a study of these kinds; a case may need as much memory as the machine has. */
@@ -131,7 +131,7 @@ void kind_case_destroy(const struct job_kind *kind, void **study);
 /* Adds what is wrong with a case to faults (0 then too), or estimates what it costs. */
 int kind_check(const struct study_kind *head, const cJSON *parameters, struct fault_list *faults,
                struct study_cost *cost, struct error *err);
-/* The mark of a case in its partial results (fingerprint.h). */
+/* Computes the mark of a case in its partial results (fingerprint.h). */
 int kind_fingerprint(const struct job_kind *kind, const cJSON *parameters, uint64_t *out,
                      struct error *err);
 /* How many scalars a realisation has, and whether these of a result are they: ERROR_INPUT. */

@@ -23,7 +23,7 @@ static inline size_t notes_kept(const struct notes *notes) {
 
 /* realisation: that of the last note or a later one. Other characters are replaced. */
 void notes_add(struct notes *notes, uint64_t realisation, const char *text);
-/* Of other realisations. */
+/* Merges the notes of other realisations. */
 void notes_merge(struct notes *into, const struct notes *from);
 
 void notes_put(struct bytes *bytes, const struct notes *notes);

@@ -9,7 +9,7 @@ void realisations_clear(struct realisations *set) {
     *set = (struct realisations){.scalar_count = set->scalar_count};
 }
 
-/* Place of the first block that starts at or behind `first`. */
+/* Returns the place of the first block that starts at or behind `first`. */
 static size_t place_of(const struct realisations *set, uint64_t first) {
     size_t low = 0, high = set->block_count;
     while (low < high) {

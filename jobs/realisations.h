@@ -22,7 +22,7 @@ int realisations_check(const struct realisations *set, const struct block_result
 /* Copies the scalars of a block that realisations_check took. Nothing is added on failure. */
 int realisations_add(struct realisations *set, const struct block_result *result,
                      struct error *err);
-/* Scalar number `scalar` of every realisation, in order, into out[count]. */
+/* Puts scalar number `scalar` of every realisation, in order, into out[count]. */
 void realisations_column(const struct realisations *set, size_t scalar, double *out);
 
 #endif

@@ -144,7 +144,7 @@ int runner_create(struct job_runner **out, const struct job_kind *kind, const cJ
 
 /* --- a block --- */
 
-/* Whom to ask whether to stop, and what is done. */
+/* A block in progress knows whom to ask whether to stop, and what is done. */
 struct progress {
     const struct job_control *control; /* may be NULL */
     uint64_t done;
@@ -182,7 +182,7 @@ static int realise(struct job_runner *runner, uint64_t number, struct progress *
     return status != 0 ? error_context(err, "realisation %llu", (unsigned long long)number) : 0;
 }
 
-/* Into room of the result's size. */
+/* Runs all realisations of a block into a result that has room for them. */
 static int realise_all(struct job_runner *runner, const struct job_control *control,
                        const struct block_result *result, void *tally, double *scalars,
                        struct error *err) {

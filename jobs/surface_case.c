@@ -9,7 +9,7 @@ static const double ROUNDING = 1e-9; /* relative: guards integers behind divisio
 
 static const struct parameter_table *const TABLES[] = {&SURFACE_PARAMETERS, NULL};
 
-/* Heights and the iteration that gives them. */
+/* Reads the heights and the iteration that gives them. */
 static void read_heights(struct surface_case *out, struct values *values) {
     struct surface_options *options = &out->options;
     *options = SURFACE_DEFAULTS;

@@ -37,7 +37,7 @@ size_t surface_case_band(const struct surface_case *surface);
 /* Points a side of a cell that asks for `points`, at least that: where it is no integer, rounded up
  * to an even number without prime factors above 7. */
 size_t surface_case_side(double points);
-/* Most points of a grid: 2^31. */
+/* A grid has at most 2^31 points. */
 #define SURFACE_POINTS_MOST 2147483648.0
 
 #endif

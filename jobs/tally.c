@@ -99,7 +99,7 @@ void tally_get_weighed(struct byte_reader *reader, struct tally *tally) {
     get_tally(reader, tally, false);
 }
 
-/* a b - c d of integers, exact unless a product passes 2^127. */
+/* Returns a b - c d of integers, exact unless a product passes 2^127. */
 static double cross_difference(fixed_point a, fixed_point b, fixed_point c, fixed_point d) {
     fixed_point left, right;
     if (__builtin_mul_overflow(a, b, &left) || __builtin_mul_overflow(c, d, &right))

@@ -11,7 +11,7 @@
 #include "jobs/estimate.h"
 #include "schema/result/bytes.h"
 
-/* What all cells of a tally share. */
+/* All cells of a tally share these sums. */
 struct tally_total {
     uint64_t realisations;   /* M */
     fixed_point sum, square; /* sum of N_r, of N_r^2 */
@@ -42,10 +42,10 @@ void tally_merge(struct tally *into, const struct tally *from);
 void tally_put(struct bytes *bytes, const struct tally *tally);
 /* Fails the reader for sums that no realisations could have, or that could overflow in merging. */
 void tally_get(struct byte_reader *reader, struct tally *tally);
-/* The same of things that weigh differently, so that n_r may pass N_r. */
+/* Does the same for things that weigh differently, so that n_r may pass N_r. */
 void tally_get_weighed(struct byte_reader *reader, struct tally *tally);
 
-/* Share of a cell and its error. */
+/* Estimates the share of a cell and its error. */
 struct estimate tally_share(const struct tally *tally, size_t cell,
                             const struct tally_total *total);
 
@@ -64,10 +64,10 @@ void tally_sums_add(struct tally_sums *sums, size_t cell, double k, uint64_t n);
 void tally_sums_merge(struct tally_sums *into, const struct tally_sums *from);
 void tally_sums_put(struct bytes *bytes, const struct tally_sums *sums);
 void tally_sums_get(struct byte_reader *reader, struct tally_sums *sums);
-/* The ratio in a cell: `counts` holds n_r, from `realisations` realisations. */
+/* Estimates the ratio in a cell; `counts` holds n_r of `realisations` realisations. */
 struct estimate tally_sums_ratio(const struct tally_sums *sums, const struct tally *counts,
                                  size_t cell, uint64_t realisations);
-/* Mean of k a realisation where every n_r was 1. */
+/* Estimates the mean of k a realisation where every n_r was 1. */
 struct estimate tally_sums_mean(const struct tally_sums *sums, size_t cell, uint64_t realisations);
 
 #endif

@@ -93,7 +93,7 @@ static double crossing_cosine(const struct crossing *x, const double *rise, doub
     return cosine;
 }
 
-/* Gap over the largest pressure, from the rise of a node out of contact. */
+/* Returns the gap over the largest pressure, given the rise of a node out of contact. */
 static double gap_of(double rise) {
     double root = sqrt(fmax(0, -rise));
     return 4.0 / 3 * root * root * root;
@@ -168,7 +168,7 @@ static struct crossing crossing_at(const struct family *f, size_t line, size_t a
                              .across = f->across};
 }
 
-/* Share of all lines that is in contact. */
+/* Returns the share of all lines that is in contact. */
 static double family_share(const struct family *f, const struct edge_law *law, const double *rise) {
     double steps = 0;
     for (size_t line = 0; line < f->lines; line++)

@@ -20,7 +20,7 @@ int area_workspace_create(struct area_workspace **out, const struct compliance *
                           struct error *err);
 void area_workspace_destroy(struct area_workspace **workspace);
 
-/* p in E* and opening, both grid_points, as contact_press gives them. */
+/* Takes p in E* and opening, both grid_points values, as contact_press gives them. */
 void contact_area(struct area_workspace *workspace, const double *p, const double *opening,
                   struct contact_area *out);
 

@@ -20,7 +20,7 @@ struct block {
 };
 enum { LAYERS_MOST = 4096 };
 
-/* ERROR_INPUT for a block out of the ranges above. */
+/* Fails with ERROR_INPUT for a block out of the ranges above. */
 int block_check(const struct block *block, struct error *err);
 
 /* Thicknesses of the layers of a block from the face down, at most LAYERS_MOST into thickness: the

@@ -13,7 +13,7 @@ static bool has_weight(const struct block *block) {
     return block->model == MODEL_LAYERED && block->weighting == GAP_STANDARD;
 }
 
-/* |my| of a row of the half spectrum. */
+/* Returns |my| of a row of the half spectrum. */
 static size_t row_mode(const struct grid *grid, size_t row) {
     return row <= grid->ny / 2 ? row : grid->ny - row;
 }
@@ -43,7 +43,7 @@ static void halfspace_lengths(struct compliance *compliance) {
         }
 }
 
-/* Symbol of the mean (1, 4, 1)/6 along one axis (F10.5). */
+/* Returns the symbol of the mean (1, 4, 1)/6 along one axis (F10.5). */
 static double weight_symbol(size_t mode, size_t n) {
     return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
 }

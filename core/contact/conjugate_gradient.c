@@ -26,10 +26,10 @@ enum {
 static const double STRIDE = 1.8;
 static const double TANGENT_TOLERANCE =
     1e-2; /* relative, of the slope; measured errors are below 3e-4 */
-/* Violations that rounding of the highest points can make, in heights. */
+/* Rounding of the highest points can make violations as large as this, over the heights. */
 static const double ROUNDING = 64 * DBL_EPSILON;
 
-/* Depth of the padding nodes, which never come into contact. */
+/* Padding nodes lie so deep that they never come into contact. */
 static const double FAR = 1e30;
 
 static size_t padded(size_t n) {
@@ -173,7 +173,7 @@ WIDE_VECTORS static double tangent_residual(size_t n, const double *p, const dou
     return lanes_most(most);
 }
 
-/* Sums over the set r != 0. */
+/* These sums are over the set r != 0. */
 struct products {
     double members, w, r, old, t, w_r, w_old;
 };
@@ -202,7 +202,7 @@ WIDE_VECTORS static struct products multiply(size_t n, const double *r, const do
                              .w_old = lanes_sum(wo)};
 }
 
-/* t = w - w_mean + beta (t - t_mean) in the set, 0 outside. */
+/* Sets t to w - w_mean + beta (t - t_mean) in the set, to 0 outside. */
 WIDE_VECTORS static void redirect(size_t n, const double *r, const double *w, double w_mean,
                                   double beta, double t_mean, double *t) {
     for (size_t i = 0; i < n; i++) {
@@ -211,7 +211,7 @@ WIDE_VECTORS static void redirect(size_t n, const double *r, const double *w, do
     }
 }
 
-/* r.t/t.w with w = S t: the step to the least energy along t. */
+/* Returns r.t/t.w with w = S t: the step to the least energy along t. */
 WIDE_VECTORS static double step_length(size_t n, const double *r, const double *t,
                                        const double *w) {
     double above[LANES] = {0}, below[LANES] = {0};
@@ -254,7 +254,7 @@ static void scale(size_t n, double factor, double *x) {
         x[i] *= factor;
 }
 
-/* What one step passes on to the next. */
+/* A step of the iteration passes this on to the next one. */
 struct step_memory {
     double energy; /* w.r of the last direction; 0 restarts */
     bool blocked;  /* a careful step ended where a pressure came to 0 */
@@ -302,7 +302,7 @@ static void project(struct conjugate_gradient *solver, double mean) {
     scale(solver->n, mean * (double)solver->n / sum, solver->p);
 }
 
-/* The longest step along t that leaves no pressure negative. */
+/* Returns the longest step along t that leaves no pressure negative. */
 static double feasible_step(const struct conjugate_gradient *solver, double step) {
     for (size_t i = 0; i < solver->n; i++)
         if (solver->t[i] > 0 && solver->p[i] > 0 && solver->p[i] < step * solver->t[i])
@@ -323,7 +323,7 @@ static bool stalled(struct stall_watch *progress, double violation, size_t itera
     return progress->since >= iterations;
 }
 
-/* One iteration from r; *stale says whether u must be computed anew from p. */
+/* Makes one iteration from r; *stale says whether u must be computed anew from p. */
 static void iterate(struct conjugate_gradient *solver, double mean, bool careful,
                     struct step_memory *memory, bool *stale) {
     direct(solver, memory);

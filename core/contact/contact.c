@@ -71,7 +71,7 @@ void contact_destroy(struct contact **contact) {
     *contact = NULL;
 }
 
-/* The unit of the solver's pressures, in E*. */
+/* Returns the unit of the solver's pressures, in E*. */
 static double pressure_unit(const struct contact *c) {
     return c->unit / c->solver.largest;
 }

@@ -54,7 +54,7 @@ int contact_begin(struct contact *contact, const double *z, struct error *err);
  * tolerance is not met; the state before is lost then, and the next load starts anew. */
 int contact_press(struct contact *contact, double pressure, struct contact_state *out,
                   struct error *err);
-/* The smallest mean pressure of full contact, in E*; from contact_begin on. */
+/* Returns the smallest mean pressure of full contact, in E*; it is known from contact_begin on. */
 double contact_full_pressure(const struct contact *contact);
 
 #endif

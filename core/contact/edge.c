@@ -143,7 +143,7 @@ static void swap(double *values, size_t a, size_t b) {
     values[b] = value;
 }
 
-/* By insertion; samples come nearly in order. */
+/* Sorts by insertion, since samples come nearly in order. */
 static void sort(struct edge_law *law) {
     for (size_t a = 1; a < EDGE_PHASES; a++)
         for (size_t b = a; b > 0 && law->share[b] < law->share[b - 1]; b--) {

@@ -49,7 +49,7 @@ struct layered_material layered_material(double poisson) {
     return (struct layered_material){mu, local, 2 * mu * poisson / compressible - local};
 }
 
-/* A direction's symbols for one wave. */
+/* The symbols of one direction for one wave are these. */
 struct symbols {
     double mass;       /* <N, N> */
     double stiffness;  /* <N', N'> */
@@ -130,7 +130,7 @@ static inline struct cholesky factorise(struct symmetric h) {
     return f;
 }
 
-/* L^-1 g */
+/* Returns L^-1 g. */
 static inline struct layer_row forward(struct cholesky f, struct layer_row g) {
     struct layer_row u = {.x = g.x};
     u.y = g.y - f.yx * u.x;
@@ -196,7 +196,7 @@ WIDE_VECTORS static void next_layer(struct wave_lanes *w, double h) {
     }
 }
 
-/* Z of the face under a unit pressure, X and Y free: (M^-1)_zz. */
+/* Computes Z of the face under a unit pressure with X and Y free: (M^-1)_zz. */
 WIDE_VECTORS static void face(struct wave_lanes *w) {
     for (size_t l = 0; l < LANES; l++) {
         struct symmetric m = {w->mxx[l], w->mxy[l], w->myy[l], w->mxz[l], w->myz[l], w->mzz[l]};

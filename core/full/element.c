@@ -7,7 +7,7 @@
 
 /* --- shape --- */
 
-/* At the points (+-reach, ...): parent[a][k] = dN_a/dxi_k. */
+/* Fills parent[a][k] = dN_a/dxi_k at the points (+-reach, ...). */
 INLINE void parent_gradients(int d, double reach, pointwise parent[8][3]) {
     for (int a = 0; a < 1 << d; a++)
         for (int k = 0; k < d; k++)
@@ -20,7 +20,7 @@ INLINE void parent_gradients(int d, double reach, pointwise parent[8][3]) {
             }
 }
 
-/* There, the same and jacobian[k][l] = dX_l/dxi_k. */
+/* Fills the same at those points, and jacobian[k][l] = dX_l/dxi_k. */
 INLINE void jacobians(int d, double reach, double position[8][3], pointwise parent[8][3],
                       pointwise jacobian[3][3]) {
     parent_gradients(d, reach, parent);
@@ -34,7 +34,7 @@ INLINE void jacobians(int d, double reach, double position[8][3], pointwise pare
             }
 }
 
-/* adjoint[l][k] is the determinant times the inverse. */
+/* Fills adjoint[l][k], the determinant times the inverse. */
 INLINE void invert(int d, pointwise m[3][3], pointwise determinant, pointwise adjoint[3][3]) {
     for (int q = 0; q < 1 << d; q++) {
         if (d == 2) {
@@ -109,7 +109,7 @@ double element_quality(int dimension, double position[8][3]) {
 
 /* --- energy, forces, stiffness --- */
 
-/* Values with the node as the innermost index. */
+/* In these values the node is the innermost index. */
 typedef double nodes[ELEMENT_NODES];
 
 struct field {
@@ -120,7 +120,7 @@ struct field {
     double growth;            /* mean over the element of strained.dilatation */
 };
 
-/* out[i][a]: the integral of tensor_ik grad_k N_a. */
+/* Sets out[i][a] to the integral of tensor_ik grad_k N_a. */
 INLINE void divergence(int d, const pointwise weight, pointwise tensor[3][3], nodes across[8][3],
                        nodes out[3]) {
     for (int i = 0; i < d; i++) {
@@ -136,7 +136,7 @@ INLINE void divergence(int d, const pointwise weight, pointwise tensor[3][3], no
     }
 }
 
-/* h[i][k] = du_i/dX_k. */
+/* Fills h[i][k] = du_i/dX_k. */
 INLINE void displacement_gradient(int d, const struct element_shape *shape, double u[8][3],
                                   pointwise h[3][3]) {
     for (int i = 0; i < d; i++)

@@ -27,7 +27,7 @@ struct cell {
     double gap[4], dgap[4];
 };
 
-/* Component k of a node's displacement; 0 for u = NULL, and across profiles. */
+/* Returns component k of a node's displacement; 0 for u = NULL, and across profiles. */
 static double sideways(const struct mesh *mesh, const double *u, size_t node, int k) {
     return u != NULL && k < mesh->dimension - 1 ? u[node * (size_t)mesh->dimension + (size_t)k] : 0;
 }
@@ -50,7 +50,7 @@ static struct cell cell_of(const struct mesh *mesh, const double *u, const doubl
     return cell;
 }
 
-/* The integral of a value, linear along the cell, over positions x. */
+/* Integrates a value, linear along the cell, over positions x. */
 static double line_integral(const double *x, const double *value) {
     return (x[1] - x[0]) * (value[0] + value[1]) / 2;
 }

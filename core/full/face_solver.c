@@ -8,7 +8,7 @@
 static const double PI = 3.14159265358979323846;
 enum { ITERATIONS_MOST = 200 };
 
-/* Symbol of the mean (1, 4, 1)/6 along one axis (F10.5). */
+/* Returns the symbol of the mean (1, 4, 1)/6 along one axis (F10.5). */
 static double weight_symbol(size_t mode, size_t n) {
     return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
 }

@@ -300,7 +300,7 @@ static double deepest_node(const struct full *f) {
     return deepest;
 }
 
-/* The length over which violations are reported. */
+/* Returns the length over which violations are reported. */
 static double height_scale(const struct full *f) {
     return f->rms > 0 ? f->rms : 1;
 }

@@ -54,11 +54,11 @@ struct full_report {
 
 struct full;
 
-/* Errors: ERROR_INPUT, ERROR_MEMORY. block->model is ignored. */
+/* Fails with ERROR_INPUT or ERROR_MEMORY; block->model is ignored. */
 int full_create(struct full **out, const struct grid *grid, const struct block *block,
                 const struct full_options *options, struct error *err);
 void full_destroy(struct full **full);
-/* Degrees of freedom of the mesh; 0 where the block cannot be meshed. */
+/* Returns the degrees of freedom of the mesh; 0 where the block cannot be meshed. */
 size_t full_degrees_of_freedom(const struct grid *grid, const struct block *block,
                                const struct full_options *options);
 /* Bytes of a solver that takes this many iterations of the linear equations in each iteration of

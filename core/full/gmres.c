@@ -10,7 +10,7 @@ enum { BASIS = 24, RESTARTS = 10, LANES = 8 };
 static const double STALLED = 0.5;
 /* Bulk over shear modulus above which pressures are unknowns of their own. */
 static const double BULK_RATIO_LEAST = 10;
-/* Residual of face_solver.h that is left inside the preconditioner. */
+/* The preconditioner solves the face (face_solver.h) down to this residual. */
 static const double FACE_TOLERANCE = 1e-3;
 
 struct gmres {
@@ -180,7 +180,7 @@ static int precondition_factored(struct gmres *gmres, const struct linear_system
     return status;
 }
 
-/* x: the displacements and pressures of the flat block under r. */
+/* Fills x with the displacements and pressures of the flat block under r. */
 static void preconditioner_apply_flat(struct gmres *gmres, const bool *active, const double *r,
                                       double *x) {
     const struct mesh *mesh = gmres->mesh;

@@ -27,7 +27,7 @@ int gmres_create(struct gmres **out, const struct mesh *mesh, const struct mater
                  enum gap_weighting weighting, struct error *err);
 void gmres_destroy(struct gmres **handle);
 
-/* Bytes that this many iterations a linear step touch. */
+/* Returns the bytes that this many iterations of a linear step touch. */
 double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations);
 
 /* Whether the pressures of elements must be unknowns of their own, so that the tangent needs its

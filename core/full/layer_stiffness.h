@@ -17,7 +17,7 @@ struct layer_stiffness {
 void layer_stiffness_make(const struct mesh *mesh, const struct material *material, size_t layer,
                           struct layer_stiffness *out, struct element_volumetric *volumetric);
 
-/* Cosine and sine of a wave's phase over each step. */
+/* A wave's phase over each step has this cosine and sine. */
 struct wave_phases {
     double cosine[9], sine[9];
 };

@@ -79,7 +79,7 @@ struct material_law {
     bool logarithmic;    /* an element's mean strain is ln(1 + growth), otherwise growth itself,
                             growth being the mean of strained.dilatation (element.h) */
     double growth_least; /* an element whose growth is not above this is inverted */
-    /* As material_strain and material_moduli. */
+    /* These do what material_strain and material_moduli do. */
     bool (*strain)(int dimension, const struct material *material, pointwise h[3][3],
                    struct strained *out);
     void (*moduli)(int dimension, const struct material *material, const struct strained *point,

@@ -86,11 +86,11 @@ static inline size_t mesh_degrees_of_freedom(const struct mesh *mesh) {
 static inline size_t mesh_unknowns(const struct mesh *mesh, bool pressures) {
     return mesh_degrees_of_freedom(mesh) + (pressures ? mesh->elements : 0);
 }
-/* Index of a node's vertical displacement. */
+/* Returns the index of a node's vertical displacement. */
 static inline size_t mesh_vertical(const struct mesh *mesh, size_t node) {
     return (node + 1) * (size_t)mesh->dimension - 1;
 }
-/* The first node of the far side, whose nodes are the last ones. */
+/* Returns the first node of the far side, whose nodes are the last ones. */
 static inline size_t mesh_far_side(const struct mesh *mesh) {
     return mesh->level[mesh->layers].first;
 }

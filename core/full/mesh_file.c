@@ -91,7 +91,7 @@ static size_t plane_columns(const struct mesh *mesh, size_t level) {
 static size_t plane_rows(const struct mesh *mesh, size_t level) {
     return mesh->dimension == 3 ? mesh->level[level].ny + 1 : 1;
 }
-/* Number of points of a level, with those of its second plane. */
+/* Counts the points of a level, with those of its second plane. */
 static size_t plane_points(const struct mesh *mesh, size_t level) {
     size_t points = plane_columns(mesh, level) * plane_rows(mesh, level);
     if (level > 0 && mesh_widens(mesh, level - 1))

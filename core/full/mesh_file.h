@@ -18,7 +18,7 @@ struct mesh_step {
     struct contact_state face; /* its pressures and gaps */
     double unit;               /* of pressures and stresses, in E*: they are told over it */
 };
-/* title: one line without "--". step NULL: the mesh alone. */
+/* Writes a mesh; title is one line without "--", step may be NULL for the mesh alone. */
 int mesh_file_write(FILE *file, const char *title, const struct mesh *mesh,
                     const struct mesh_step *step, struct error *err);
 

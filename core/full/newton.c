@@ -321,7 +321,7 @@ static void remember_residual(struct newton_end *end, double value, bool changed
     end->unchanged++;
 }
 
-/* One round of the loop: the state at u before a step from there. */
+/* A round of the loop finds this state at u before it steps from there. */
 struct round {
     double largest; /* largest contact force, at least the mean force of a node */
     double residual, inside;
@@ -355,7 +355,7 @@ static struct round assess(struct newton *n, double pressure, bool first,
     return round;
 }
 
-/* The best round since the active set changed. */
+/* The loop remembers the best round since the active set changed. */
 struct newton_progress {
     double least;  /* smallest residual, in the units of the tolerance */
     size_t rounds; /* rounds since then */

@@ -50,7 +50,7 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct mate
 size_t newton_unknowns(const struct newton *newton);
 void newton_clear(struct newton *newton);
 
-/* How an equilibrium was reached. */
+/* Tells how an equilibrium was reached. */
 struct newton_end {
     size_t iterations; /* Newton's */
     size_t linear;     /* iterations of the linear equations */

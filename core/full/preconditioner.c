@@ -136,7 +136,7 @@ static void couple(const struct preconditioner *preconditioner, struct layer_sti
         }
 }
 
-/* Number of nodes of a level for each node of the next one. */
+/* Returns the number of nodes of a level for each node of the next one. */
 static double share_of(const struct mesh *mesh, size_t level) {
     return mesh_widens(mesh, level) ? 1 << (mesh->dimension - 1) : 1;
 }
@@ -182,7 +182,7 @@ static int eliminate_all(struct preconditioner *preconditioner, const struct mat
     return 0;
 }
 
-/* Number of waves of all levels. */
+/* Counts the waves of all levels. */
 static size_t all_waves(const struct mesh *mesh) {
     size_t waves = 0;
     for (size_t level = 0; level <= mesh->layers; level++)
@@ -407,7 +407,7 @@ WIDE_VECTORS static void descend_three(size_t n, const double *pivot, const doub
     descend(3, n, pivot, coupling, above, below);
 }
 
-/* passed = coupling^T times a level's displacements. */
+/* Computes passed = coupling^T times a level's displacements. */
 WIDE_VECTORS static void pull(size_t d, size_t n, const double *coupling, const double *above,
                               double *passed) {
     memset(passed, 0, 2 * d * n * sizeof *passed);
@@ -419,7 +419,7 @@ WIDE_VECTORS static void pull(size_t d, size_t n, const double *coupling, const 
                         coupling[(i * d + j) * n + k] * above[(2 * i + part) * n + k];
 }
 
-/* The next level's displacements where its columns are wider. */
+/* Computes the next level's displacements where its columns are wider. */
 static void descend_wider(struct preconditioner *preconditioner, size_t level) {
     size_t n = 2 * preconditioner->d * waves_at(preconditioner, level + 1);
     double share = share_of(preconditioner->mesh, level),

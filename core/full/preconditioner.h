@@ -17,7 +17,7 @@
 
 struct preconditioner;
 
-/* volumetric: gets the entries of the layers; may be NULL. */
+/* Fills volumetric, which may be NULL, with the entries of the layers. */
 int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
                           const struct material *material, struct volumetric *volumetric,
                           struct error *err);

@@ -68,7 +68,7 @@ INLINE bool off_diagonal(pointwise a[3][3]) {
     return any;
 }
 
-/* Principal values and axes of a, which is overwritten. */
+/* Finds the principal values and axes of a, which is overwritten. */
 INLINE void principal_three(pointwise a[3][3], pointwise value[3], pointwise axis[3][3]) {
     enum { SWEEPS_MOST = 12 };
     for (int i = 0; i < 3; i++)
@@ -145,7 +145,7 @@ INLINE bool deform_principal(int d, pointwise h[3][3], pointwise c[3][3], pointw
     return true;
 }
 
-/* Kirchhoff's stress in space from its principal values. */
+/* Turns Kirchhoff's stress from its principal axes into space. */
 INLINE void turn_stress(int d, struct strained *out) {
     for (int i = 0; i < d; i++)
         for (int k = 0; k < d; k++)
@@ -169,7 +169,7 @@ struct principal_moduli {
 /* A value by symmetric_index(p, r) of two principal axes and symmetric_index(i, k) in space. */
 typedef pointwise by_pairs[SYMMETRIC_MOST][SYMMETRIC_MOST];
 
-/* The dyads of axes p and r, symmetric. */
+/* Computes the symmetric dyads of axes p and r. */
 INLINE void turn_dyads(int d, const struct strained *point, by_pairs dyad) {
     for (int p = 0; p < d; p++)
         for (int r = 0; r <= p; r++)
@@ -183,7 +183,7 @@ INLINE void turn_dyads(int d, const struct strained *point, by_pairs dyad) {
                     }
 }
 
-/* What each dyad is multiplied with, times the weight. */
+/* Computes what each dyad is multiplied with, times the weight. */
 INLINE void turn_factors(int d, const struct principal_moduli *m, const pointwise weight,
                          by_pairs dyad, by_pairs factor) {
     int components = d * (d + 1) / 2;
@@ -201,7 +201,7 @@ INLINE void turn_factors(int d, const struct principal_moduli *m, const pointwis
                 }
 }
 
-/* From principal axes, times the weight. */
+/* Turns the moduli from principal axes into space, times the weight. */
 INLINE void turn_moduli(int d, const struct principal_moduli *m, const struct strained *point,
                         const pointwise weight, pointwise out[SYMMETRIC_MOST][9]) {
     by_pairs dyad, factor;

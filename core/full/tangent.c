@@ -121,7 +121,7 @@ WIDE_VECTORS void tangent_apply(const struct tangent *tangent, const double *x, 
 
 /* --- assembly --- */
 
-/* What one element contributes, by its corners. */
+/* An element contributes this, by its corners. */
 struct contribution {
     double energy, force[ELEMENT_DEGREES_OF_FREEDOM],
         stiffness[ELEMENT_DEGREES_OF_FREEDOM][ELEMENT_DEGREES_OF_FREEDOM];
@@ -188,7 +188,7 @@ INLINE void scatter(int d, const size_t node[8], int parity, struct contribution
         }
 }
 
-/* Pressures of a layer's elements, beginning with the first one. */
+/* The pressures of a layer's elements begin with that of the first one. */
 struct layer_pressures {
     const double *pressure;
     bool bound;

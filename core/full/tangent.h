@@ -20,7 +20,7 @@ struct tangent {
     bool bound;      /* pressures follow the dilatations, and those given are ignored */
 };
 
-/* pressures: whether the tangent has a volumetric part (gmres.h). */
+/* Makes a tangent; pressures says whether it has a volumetric part (gmres.h). */
 int tangent_create(struct tangent **out, const struct mesh *mesh, bool pressures,
                    struct error *err);
 void tangent_destroy(struct tangent **tangent);
@@ -29,7 +29,7 @@ double tangent_bytes(const struct mesh *mesh, bool pressures);
 /* Neighbours, by slot, of a level's node in row j and column i; SIZE_MAX below the far side. */
 void tangent_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t i,
                         size_t neighbour[NEIGHBOURS_MOST]);
-/* y = K x; x and y have mesh_degrees_of_freedom values. */
+/* Computes y = K x; x and y have mesh_degrees_of_freedom values. */
 void tangent_apply(const struct tangent *tangent, const double *x, double *y);
 
 /* Displacements and, where the tangent tells the volumetric apart, the pressures of the elements.

@@ -33,7 +33,7 @@ double volumetric_bytes(const struct mesh *mesh, bool one_per_layer) {
     return (double)count_of(mesh, one_per_layer) * sizeof(struct element_volumetric);
 }
 
-/* The change of volume of one element by displacements u of the whole mesh. */
+/* Returns the change of volume of one element by displacements u of the whole mesh. */
 static double volume_of(const struct mesh *mesh, const struct mesh_element *element,
                         const struct element_volumetric *volumetric, const double *u) {
     size_t d = (size_t)mesh->dimension;

@@ -23,7 +23,7 @@ WIDE_VECTORS static int64_t compare_block(const double *u, const double *m, cons
     return any;
 }
 
-/* The same for one point of any column, the ends included. */
+/* Does the same for one point of any column, the ends included. */
 static bool is_summit(const double *u, const double *m, const double *d, size_t nx, bool corners,
                       size_t i) {
     size_t left = i != 0 ? i - 1 : nx - 1, right = i + 1 < nx ? i + 1 : 0;

@@ -277,7 +277,7 @@ static int by_row(const void *a, const void *b) {
     return (s->x > t->x) - (s->x < t->x);
 }
 
-/* Distance on a circle. */
+/* Returns the distance of two places on a circle. */
 static double apart(double a, double b, double period) {
     double distance = fabs(a - b);
     return fmin(distance, period - distance);

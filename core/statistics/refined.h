@@ -20,9 +20,9 @@ struct refined;
 int refined_create(struct refined **out, const struct grid *grid, size_t mode_x, size_t mode_y,
                    struct error *err);
 void refined_destroy(struct refined **refined);
-/* Two bands of columns, one of the fine grid, and 28 fine rows. */
+/* Returns the bytes of two bands of columns, one of the fine grid, and 28 fine rows. */
 double refined_bytes(const struct grid *grid, size_t mode_x, size_t mode_y);
-/* Appends to an empty list, in row order. */
+/* Appends the summits to an empty list, in the order of rows. */
 int refined_find(struct refined *refined, const double *z, struct summit_list *list,
                  struct error *err);
 

@@ -8,7 +8,7 @@
 #ifndef RUGO_CORE_STATISTICS_RICHARDSON_H
 #define RUGO_CORE_STATISTICS_RICHARDSON_H
 
-/* Least squares over the points of a curve; initialise with {0}. */
+/* Sums the least squares over the points of a curve; initialise with {0}. */
 struct richardson_fit {
     double product, square;
 };
@@ -21,7 +21,7 @@ double richardson_fit_ratio(const struct richardson_fit *fit);
 /* The order q whose changes have this ratio, held within 1 and 3: orders outside of these say that
  * the levels are too coarse to show one. fine is h_next/h_finest, coarse is h_third/h_next. */
 double richardson_order(double ratio, double fine, double coarse);
-/* The factor above at an order; fine is h_next/h_finest. */
+/* Returns the factor above at an order; fine is h_next/h_finest. */
 double richardson_factor(double order, double fine);
 
 #endif

@@ -65,7 +65,7 @@ static double map_mean(const struct grid *grid, const double *z, double *lowest,
 
 enum { SUMS = sizeof(struct row_sums) / sizeof(double[LANES]) };
 
-/* Means over the map, in the order of struct row_sums. */
+/* Computes means over the map, in the order of struct row_sums. */
 static void map_means(const struct grid *grid, const double *z, double mean, double *means) {
     struct sum totals[SUMS] = {{0}};
     size_t nx = grid->nx, ny = grid->ny;
@@ -144,7 +144,7 @@ static double shorter_side(const struct grid *grid) {
     return grid_is_profile(grid) ? grid->lx : fmin(grid->lx, grid->ly);
 }
 
-/* |m| in units of one wave along the shorter side. */
+/* Returns |m| in units of one wave along the shorter side. */
 static double radius(const struct grid *grid, double mx, double my) {
     double side = shorter_side(grid);
     return hypot(mx * (side / grid->lx), grid_is_profile(grid) ? 0 : my * (side / grid->ly));

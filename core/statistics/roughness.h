@@ -28,7 +28,7 @@ size_t radial_bins(const struct grid *grid);
  * radial_bins entries (bin r: r - 1/2 <= |m| < r + 1/2, wave_number 2 pi r / min(lx, ly)). */
 int psd_measure(const struct grid *grid, const double *z, double *wave_number, double *density,
                 struct error *err);
-/* Likewise of a discrete spectrum, which costs no transform. */
+/* Does likewise for a discrete spectrum, which costs no transform. */
 void psd_of_modes(const struct modes *modes, double *wave_number, double *density);
 /* Autocorrelation R(r)/R(0) at lags 0, dx, 2dx … (nx/2 + 1 of them), radially averaged for
  * surfaces. */

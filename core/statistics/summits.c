@@ -92,7 +92,7 @@ static void curvature_fill(struct summit_finder *f, const double *z) {
     transform_inverse(f->transform, f->curvature);
 }
 
-/* Central second differences (F1.3). */
+/* Computes the curvature by central second differences (F1.3). */
 static double difference_curvature(const struct grid *grid, const double *z, size_t i, size_t j) {
     size_t nx = grid->nx, ny = grid->ny;
     const double *row = z + j * nx;

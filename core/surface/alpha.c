@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* (zeta^e - 1)/e, log(zeta) at e = 0. */
+/* Returns (zeta^e - 1)/e, and log(zeta) at e = 0. */
 static double power_integral(double zeta, double e) {
     double x = e * log(zeta);
     return e == 0 ? log(zeta) : expm1(x) / e;

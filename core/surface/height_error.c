@@ -32,7 +32,7 @@ static double mode_weight(const struct grid *grid, size_t mx) {
     return mx == 0 || 2 * mx == grid->nx ? 1 : 2;
 }
 
-/* Power of the stored mode (mx, row) of a half spectrum, 0 outside the band. */
+/* Returns the power of the stored mode (mx, row) of a half spectrum, 0 outside the band. */
 static double row_power(const struct modes *modes, size_t mx, size_t row) {
     size_t ny = modes->grid.ny;
     if (mx > modes->mode_x)
@@ -137,7 +137,7 @@ static double squared_modulus(double complex z) {
     return creal(z) * creal(z) + cimag(z) * cimag(z);
 }
 
-/* eps_s of F5.2 over the non-null modes. Returns the power of z_h in them. */
+/* Computes eps_s of F5.2 over the non-null modes. Returns the power of z_h in them. */
 static double band_errors(const struct height_error *e, const double complex *spectrum,
                           struct surface_report *report) {
     const struct modes *modes = e->modes;
@@ -161,7 +161,7 @@ static double band_errors(const struct height_error *e, const double complex *sp
     return power;
 }
 
-/* Sum over the null modes of the squared powers of z_h. */
+/* Returns the sum over the null modes of the squared powers of z_h. */
 static double null_squares(const struct height_error *e, const double *z_h,
                            const double complex *spectrum) {
     const struct modes *modes = e->modes;

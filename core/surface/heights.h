@@ -46,15 +46,15 @@ struct distribution {
     double (*quantile)(double shape, double probability); /* of the raw variable */
     double (*cdf)(double shape, double raw);
 };
-/* NULL for HEIGHTS_QUANTILE, which has no row. */
+/* Returns NULL for HEIGHTS_QUANTILE, which has no row. */
 const struct distribution *heights_distribution(enum heights_type type);
 
 /* ERROR_INPUT: shape out of range, quantile function not rising or without finite moments. */
 int heights_moments(const struct heights *heights, struct height_moments *out, struct error *err);
-/* Standardised quantile at probability in (0, 1), given the moments above. */
+/* Returns the standardised quantile at a probability in (0, 1), given the moments above. */
 double heights_quantile(const struct heights *heights, const struct height_moments *moments,
                         double probability);
-/* Standardised cumulative probability; NaN for HEIGHTS_QUANTILE. */
+/* Returns the cumulative probability of a standardised height; NaN for HEIGHTS_QUANTILE. */
 double heights_cdf(const struct heights *heights, const struct height_moments *moments, double z);
 
 #endif

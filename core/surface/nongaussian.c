@@ -166,7 +166,7 @@ static void amplitudes_impose(const struct nongaussian *g, double complex *spect
 
 /* The steps below start from the transform's spectrum of an iterate and leave that of the next. */
 
-/* z becomes z_s: the surface of exact spectrum nearest to the iterate. */
+/* Makes z_s of z: the surface of exact spectrum nearest to the iterate. */
 static void spectral_surface(const struct nongaussian *g, struct transform *transform, double *z) {
     amplitudes_impose(g, transform_spectrum(transform));
     transform_inverse(transform, z);

@@ -140,7 +140,7 @@ static int map_set(struct ranker *ranker, const double *key, struct error *err) 
         high[0] = high[a] > high[0] ? high[a] : high[0];
     }
     double scale = (double)ranker->cells * JUST_BELOW_ONE / (high[0] - low[0]);
-    /* Equal keys, a denormal range, a range beyond DBL_MAX: all in cell 0. */
+    /* Equal keys, a denormal range and a range beyond DBL_MAX put all keys into cell 0. */
     bool usable = isfinite(scale) && isfinite(high[0] - low[0]);
     ranker->lowest = usable ? low[0] : 0;
     ranker->scale = usable ? scale : 0;

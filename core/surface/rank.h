@@ -7,7 +7,7 @@
 
 struct ranker;
 
-/* Workspace for n values; memory is stated in rank.c. */
+/* Makes a workspace for n values; rank.c states its memory. */
 int ranker_create(struct ranker **out, size_t n, struct error *err);
 void ranker_destroy(struct ranker **ranker);
 size_t ranker_bytes(size_t n);
@@ -17,7 +17,7 @@ size_t ranker_bytes(size_t n);
  * (placed is then undefined). */
 int rank_place(struct ranker *ranker, const double *key, const double *sorted, double *placed,
                struct error *err);
-/* Sorts z rising. ERROR_NUMERIC as above. */
+/* Sorts z so that it rises; fails with ERROR_NUMERIC as above. */
 int rank_sort(struct ranker *ranker, double *z, struct error *err);
 
 #endif

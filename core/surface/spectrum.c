@@ -67,7 +67,7 @@ static int spectrum_check(const struct spectrum *s, const struct grid *grid, str
     return error_set(err, ERROR_INPUT, "spectrum type %d is unknown", (int)s->type);
 }
 
-/* Unscaled self-affine density (F2.1) at the frequency q = |k|/(2 pi). */
+/* Returns the unscaled self-affine density (F2.1) at the frequency q = |k|/(2 pi). */
 static double self_affine_density(const struct spectrum *s, bool profile, double q) {
     if (q * s->wavelength_long < 1 - EDGE || q * s->wavelength_short > 1 + EDGE)
         return 0;
@@ -77,14 +77,14 @@ static double self_affine_density(const struct spectrum *s, bool profile, double
     return pow(relative, profile ? -1 - 2 * s->hurst : -2 * (s->hurst + 1));
 }
 
-/* Unscaled density of the exponential autocorrelation (F2.2). */
+/* Returns the unscaled density of the exponential autocorrelation (F2.2). */
 static double exponential_density(const struct spectrum *s, bool profile, double kx, double ky) {
     double x = kx * s->correlation_x, y = profile ? 0 : ky * s->correlation_y;
     double base = 1 + x * x + y * y;
     return profile ? 1 / base : 1 / (base * sqrt(base));
 }
 
-/* Log-log interpolation; linear where an end of the interval is zero. */
+/* Interpolates between logarithms, or linearly where an end of the interval is zero. */
 static double table_density(const struct spectrum *s, double k) {
     const double *x = s->table_wave_number, *y = s->table_density;
     size_t low = 0, high = s->table_count - 1;
@@ -218,7 +218,7 @@ void modes_destroy(struct modes **modes) {
     *modes = NULL;
 }
 
-/* kx^p ky^q of the moments, in the order of their fields. */
+/* The moments weigh the power by kx^p ky^q; powers stand in the order of their fields. */
 static const unsigned char POWERS[][2] = {{0, 0}, {2, 0}, {0, 2}, {1, 1}, {2, 2},
                                           {4, 0}, {0, 4}, {3, 1}, {1, 3}};
 enum { MOMENTS = sizeof POWERS / sizeof *POWERS };

@@ -60,7 +60,7 @@ struct moments {
     double nayak_alpha;                          /* m0 m4 / m2^2 (F2.4) */
     double rms_height, rms_slope, rms_curvature; /* F1.2 */
 };
-/* Pairwise or compensated sums: relative error about 1e-15. */
+/* Sums pairwise or compensated, with a relative error of about 1e-15. */
 void modes_moments(const struct modes *modes, struct moments *out);
 
 /* Nayak parameter of the continuous self-affine spectrum (F2.5) of dimension 1 or 2; ratio_long is

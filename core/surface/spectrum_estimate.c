@@ -5,7 +5,7 @@ static const double TWO_PI = 6.283185307179586;
 
 enum { STEPS = 200 }; /* midpoints of the integrals over log k */
 
-/* Radial density at k > 0, any scale (F2.1, F2.2). */
+/* Returns the radial density at k > 0 in any scale (F2.1, F2.2). */
 static double radial_density(const struct spectrum *spectrum, int dimension, double k) {
     double exponent = dimension;
     if (spectrum->type == SPECTRUM_SELF_AFFINE)

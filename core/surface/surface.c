@@ -96,7 +96,7 @@ static uint64_t row_first_word(long my) {
     return zigzag << 32;
 }
 
-/* The row of a wave number my in a column of ny values. */
+/* Returns the row of a wave number my in a column of ny values. */
 static size_t column_row(long my, size_t ny) {
     return my >= 0 ? (size_t)my : ny - (size_t)-my;
 }

@@ -19,7 +19,7 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
                      const struct grid *grid, const struct surface_options *options,
                      struct error *err);
 void generator_destroy(struct generator **generator);
-/* The discrete spectrum in use; lives as long as the generator. */
+/* Returns the discrete spectrum in use, which lives as long as the generator. */
 const struct modes *generator_modes(const struct generator *generator);
 /* Peak bytes of a generator with these settings, the caller's z of grid_points doubles included. */
 double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,

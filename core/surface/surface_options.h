@@ -29,7 +29,7 @@ extern const struct surface_options SURFACE_DEFAULTS; /* Gaussian, and the defau
 /* END_DIRECT: Gaussian. END_LIMIT: the schedule of the relaxed iteration, or max_iterations, ended
  * it; the errors say how near it came. */
 enum surface_end { END_DIRECT, END_CONVERGED, END_STALLED, END_LIMIT };
-/* What one generation did. Errors are of the returned pair of iterates. */
+/* Tells what one generation did. Errors are those of the returned pair of iterates. */
 struct surface_report {
     size_t iterations;
     enum surface_end end;

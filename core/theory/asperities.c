@@ -18,7 +18,7 @@ struct asperity_contact {
 /* An integrand is negligible in double precision where it is exp(-DEPTH) of its peak. */
 static const double DEPTH = 42;
 
-/* E[max(0, t - x)], t standard normal. */
+/* Returns E[max(0, t - x)] of a standard normal t. */
 static double first_moment(double x) {
     double density = M_SQRT1_2 / sqrt(M_PI) * exp(-x * x / 2);
     if (x < 5)
@@ -133,7 +133,7 @@ static void ellipses_fill(struct ellipses *t, double alpha) {
     t->area = density * sqrt(alpha) / 6 * t->deviation;
 }
 
-/* Both integrands over s, over heights and shapes already integrated. */
+/* Returns both integrands over s, already integrated over heights and shapes. */
 static struct asperity_contact ellipses_of_curvature(const struct ellipses *t, double separation,
                                                      double s) {
     double area = 0, load = 0;
@@ -261,7 +261,7 @@ static void approach(struct inversion *inversion, double low, double high) {
     gsl_root_fsolver_free(solver);
 }
 
-/* Loads whose separation is far from where loads underflow or overflow. */
+/* Between these loads, separations are far from where loads underflow or overflow. */
 static const double LEAST_LOAD = 1e-250, GREATEST_LOAD = 1e6;
 
 static double area_at_load(contact_at *at, const void *theory, double load) {

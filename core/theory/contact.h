@@ -8,13 +8,13 @@
 
 #include <stddef.h>
 
-/* Persson (2001): contact fraction erf(sqrt(2) load), load >= 0. */
+/* Returns Persson's (2001) contact fraction erf(sqrt(2) load), load >= 0. */
 double persson_area(double load);
 /* Density of the pressure x = p/(E* h') over the nominal area, x >= 0 (its integral over x > 0 is
  * the contact fraction). */
 double persson_pressure_pdf(double x, double load);
 
-/* Slope kappa of the fraction over the load, as it tends to 0. */
+/* Returns the slope kappa of the fraction over the load as the load tends to 0. */
 double persson_light_load(void); /* sqrt(8/pi) */
 double bgt_light_load(void);     /* sqrt(2 pi); Bush, Gibson & Thomas (1975) */
 
@@ -37,7 +37,7 @@ double gw_mccool_area(double load, double alpha);
 double westergaard_area(double ratio);
 /* Local over mean pressure at the position x, in wavelengths from a crest; ratio > 0. */
 double westergaard_pressure(double x, double ratio);
-/* Mean gap over the amplitude: 1 - ratio + ratio ln(ratio). */
+/* Returns the mean gap over the amplitude: 1 - ratio + ratio ln(ratio). */
 double westergaard_gap(double ratio);
 
 #endif

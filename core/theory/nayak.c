@@ -13,7 +13,7 @@ static bool in_domain(double alpha) {
     return alpha > 1.5 && isfinite(alpha);
 }
 
-/* w(s) without the cancellation of its three terms, s^4/4 for small s. */
+/* Returns w(s) without the cancellation of its three terms, s^4/4 for small s. */
 static double weight(double s) {
     double h = s * s / 2;
     if (h > 0.05)

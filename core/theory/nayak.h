@@ -9,7 +9,7 @@ double nayak_summit_pdf(double z, double alpha);
 double nayak_summit_cdf(double z, double alpha);
 /* Joint density of summit height and equivalent curvature (F6.1); 0 for t1 >= 0. */
 double nayak_joint_pdf(double z, double t1, double alpha);
-/* Expected mean curvature of summits at height z over sqrt(m4) (F6.5). */
+/* Returns the expected mean curvature of summits at height z over sqrt(m4) (F6.5). */
 double nayak_mean_curvature(double z, double alpha);
 /* Summits per area (F6.7); m2 and m4 are the isotropic moments. NaN unless both are finite, m2 > 0
  * and m4 >= 0. */
@@ -23,7 +23,7 @@ double nayak_overall_curvature(void);
 /* Peaks of profiles, alpha = m0 m4/m2^2 > 1 (F7.1, F7.2; Rice 1945; Cartwright & Longuet-Higgins
  * 1956): density of peak heights, its integral, joint density with t1 = z''/sqrt(m4) < 0, expected
  * curvature -z''/sqrt(m4) of peaks at height z, and peaks per length. */
-/* Density and mean curvature at a height together, for the work of one. */
+/* Computes density and mean curvature at a height together, for the work of one. */
 void profile_peak(double z, double alpha, double *pdf, double *curvature);
 double profile_peak_pdf(double z, double alpha);
 double profile_peak_cdf(double z, double alpha);

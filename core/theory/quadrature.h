@@ -7,7 +7,7 @@
 
 typedef double integrand(double s, const void *context);
 
-/* Integral of f from low to high over equal panels; 0 when high <= low. */
+/* Integrates f from low to high over equal panels; 0 when high <= low. */
 double quadrature(integrand *f, const void *context, double low, double high, size_t panels);
 
 /* One panel's rule, for sums that share their nodes: the nodes in rising order, their weights. */

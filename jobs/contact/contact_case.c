@@ -31,7 +31,7 @@ int contact_case_scale(const struct contact_case *one_case, double *rms_height, 
     return 0;
 }
 
-/* Height of the block in lambda_s; INFINITY, or NaN where it is not given. */
+/* Reads the height of the block in lambda_s: INFINITY, or NaN where it is not given. */
 static int read_height(const struct contact_case *one_case, struct values *values, double *out,
                        struct error *err) {
     int unit;
@@ -51,7 +51,7 @@ static int read_height(const struct contact_case *one_case, struct values *value
     return status;
 }
 
-/* What each model alone asks of the case. */
+/* Checks what each model alone asks of the case. */
 static int check_models(struct contact_case *out, struct values *values, struct error *err) {
     int status = 0;
     for (size_t m = 0; m < out->model_count && status == 0; m++)
@@ -195,7 +195,7 @@ static int read_levels(struct contact_case *out, struct values *values, struct e
     return 0;
 }
 
-/* Layers that a block takes on each mesh. */
+/* Checks the layers that a block takes on each mesh. */
 static void check_layers(const struct contact_case *one_case, struct values *values) {
     double thickness[LAYERS_MOST];
     for (size_t m = 0; m < one_case->model_count; m++)
@@ -212,7 +212,7 @@ static void check_layers(const struct contact_case *one_case, struct values *val
             }
 }
 
-/* Position of a load among the study's, load_count where it is none of them. */
+/* Returns the position of a load among the study's; load_count where it is none of them. */
 static size_t load_find(const struct contact_case *one_case, double load) {
     size_t k = 0;
     while (k < one_case->load_count && !(fabs(one_case->loads[k] - load) <= ROUNDING * load))

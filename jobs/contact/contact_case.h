@@ -41,7 +41,7 @@ struct contact_case {
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
     struct bins pressure; /* of p/(E* h') */
 };
-/* As surface_case_read. */
+/* Reads a case as surface_case_read does. */
 int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,
                       struct error *err);
 void contact_case_clear(struct contact_case *one_case);
@@ -66,7 +66,7 @@ bool contact_case_has_scale(const struct contact_case *one_case);
 int contact_case_scale(const struct contact_case *one_case, double *rms_height, double *rms_slope,
                        struct error *err);
 
-/* Memory, time and error of one realisation, before anything ran. */
+/* Estimates memory, time and error of one realisation before anything ran. */
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out);
 
 #endif

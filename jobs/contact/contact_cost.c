@@ -6,7 +6,7 @@
 #include "jobs/publishing_cost.h"
 #include <math.h>
 
-/* The program, its libraries, and tables that do not grow with the grid. */
+/* The program, its libraries and tables that do not grow with the grid take so much. */
 static const double PROCESS_BYTES = 1.2e7;
 
 /* Curves of a model and level: areas by four estimators or five, and eight other quantities. */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What all curves of a case are made from. */
+/* All curves of a case are made from this. */
 struct contact_curve_maker {
     const struct contact_case *one_case;
     const struct modes *modes;
@@ -24,7 +24,7 @@ struct row {
     double factor; /* y is so many times the measure */
 };
 
-/* Room for one source's errors at each load. */
+/* Makes room for one source's errors at each load. */
 static int error_create(struct contact_curve_maker *maker, double **value, double **standard_error,
                         struct curve_error *out, struct error *err) {
     size_t n = maker->one_case->load_count;
@@ -37,7 +37,7 @@ static int error_create(struct contact_curve_maker *maker, double **value, doubl
     return 0;
 }
 
-/* Finest minus limit. */
+/* Fills in the discretisation error: the finest level minus the limit. */
 static int put_discretisation(struct contact_curve_maker *maker, const struct row *row,
                               size_t model, struct curve_error *out, struct error *err) {
     struct contact_extrapolation rule = contact_extrapolate(maker->tally, row->measure, model);
@@ -103,13 +103,13 @@ static void add_theories(const struct contact_curve_maker *maker, const struct r
     }
 }
 
-/* Of strain; NULL where there is nothing to choose. */
+/* Returns the kinematics of strain; NULL where there is nothing to choose. */
 static const char *kinematics_of(const struct contact_case *one_case, size_t model) {
     const struct contact_model *of = one_case->models[model];
     return of->kinematics != NULL ? of->kinematics(one_case) : NULL;
 }
 
-/* What tells the curves of a model and level apart. */
+/* Makes a curve with the attributes of its model and level. */
 static struct curve curve_of(const struct contact_case *one_case, size_t model, size_t level,
                              const char *quantity, const char *x_label, const char *y_label) {
     struct curve curve = curve_named(quantity, x_label, y_label);
@@ -183,7 +183,7 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
     return status != 0 ? status : result_add_curve(maker->result, &curve, err);
 }
 
-/* Every level of a model, the finest first. */
+/* Appends every level of a model, the finest first. */
 static int append_model(struct contact_curve_maker *maker, const struct row *row, size_t model,
                         struct error *err) {
     int status = 0;
@@ -231,7 +231,7 @@ static int append_others(struct contact_curve_maker *maker, struct error *err) {
     return append_rows(maker, sizeof rows / sizeof *rows, rows, err);
 }
 
-/* Curves that a model alone has. */
+/* Appends the curves that a model alone has. */
 static int append_own(struct contact_curve_maker *maker, size_t m, struct error *err) {
     const struct contact_model *model = maker->one_case->models[m];
     int status = 0;

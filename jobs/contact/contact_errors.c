@@ -15,7 +15,7 @@ static double assumed_order(const struct contact_case *one_case, enum contact_me
     }
 }
 
-/* h of a level over that of the next finer one. */
+/* Returns h of a level over that of the next finer one. */
 static double refinement(const struct contact_case *one_case, size_t level) {
     return (double)one_case->levels[level + 1].grid.nx / (double)one_case->levels[level].grid.nx;
 }

@@ -10,7 +10,7 @@ struct contact_extrapolation {
     double order, factor;
     bool observed; /* order: fitted to the three finest levels; else assumed */
 };
-/* Of a paired measure of a model. Needs two levels. */
+/* Extrapolates a paired measure of a model, which needs two levels. */
 struct contact_extrapolation contact_extrapolate(const struct contact_tally *tally,
                                                  enum contact_measure measure, size_t model);
 

@@ -57,7 +57,7 @@ const char *contact_scalar_name(size_t scalar) {
     return place.model != NULL ? place.model->scalars[place.at] : NAMES[place.at];
 }
 
-/* Position of a model in a case; model_count where it is none of its. */
+/* Returns the position of a model in a case; model_count where it is none of its. */
 static size_t position_of(const struct contact_case *one_case, const struct contact_model *model) {
     size_t m = 0;
     while (m < one_case->model_count && one_case->models[m] != model)
@@ -65,7 +65,7 @@ static size_t position_of(const struct contact_case *one_case, const struct cont
     return m;
 }
 
-/* Of a measure on the finest level, by load. */
+/* Returns the values of a measure on the finest level, by load. */
 static const double *finest_values(struct contact_tally *tally, enum contact_measure measure,
                                    size_t model) {
     const struct contact_case *one_case = tally->one_case;
@@ -95,7 +95,7 @@ static void measure_models(struct contact_tally *tally, double *out) {
     }
 }
 
-/* Fits of the fraction against the load. */
+/* Fits the fraction against the load. */
 static int measure_fits(const struct contact_case *one_case, const double *fraction, double *out,
                         struct error *err) {
     struct fit line = {NAN, NAN, NAN, NAN, 0}, power = line, erf = line;

@@ -119,7 +119,7 @@ int contact_level_sample(const struct contact_case *one_case, const struct conta
     return 0;
 }
 
-/* Measures of a solved load into a cell. */
+/* Puts the measures of a solved load into a cell. */
 static void measure(struct contact_scene *scene, size_t model, size_t level,
                     const struct contact_pressed *pressed, struct contact_tally *tally,
                     size_t cell) {
@@ -154,7 +154,7 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
             pressed->own[a];
 }
 
-/* On areas as they are now, whose forces are those on the undeformed ones. */
+/* Counts pressures on areas as they are now, whose forces are those on the undeformed ones. */
 static void count_pressures(const struct contact_scene *scene, size_t model, size_t load,
                             const double *p, double now, struct contact_tally *tally) {
     const struct contact_case *one_case = scene->one_case;
@@ -175,7 +175,7 @@ static struct contact_pressed not_pressed(void) {
     return out;
 }
 
-/* All loads of one model and level, rising, each from the last. */
+/* Solves all loads of one model and level as they rise, each from the last. */
 static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
                        struct contact_tally *tally, const struct stopper *stopper,
                        struct error *err) {

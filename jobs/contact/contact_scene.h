@@ -14,7 +14,7 @@ int contact_compliances_create(struct contact_compliances *out, const struct con
                                struct error *err);
 void contact_compliances_clear(struct contact_compliances *compliances);
 
-/* Heights on the own grid of the case, sampled on that of a level. */
+/* Samples heights on the own grid of the case on that of a level. */
 int contact_level_sample(const struct contact_case *one_case, const struct contact_level *level,
                          const double *z, double *out, struct error *err);
 
@@ -24,7 +24,7 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
                          const struct moments *moments,
                          const struct contact_compliances *compliances, struct error *err);
 void contact_scene_destroy(struct contact_scene **scene);
-/* Bytes of both, without the surface itself. */
+/* Returns the bytes of both, without the surface itself. */
 double contact_scene_bytes(const struct contact_case *one_case);
 
 /* Solves every level, model and load of one realisation, z on the own grid of the case, into the

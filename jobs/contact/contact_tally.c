@@ -32,7 +32,7 @@ static void sums_clear(struct contact_sums *sums) {
     tally_clear(&sums->counts);
 }
 
-/* A realisation's value, if it has one. */
+/* Adds a realisation's value, if it has one. */
 static void sums_add(struct contact_sums *sums, size_t cell, double value) {
     if (isnan(value))
         return;

@@ -56,10 +56,10 @@ void contact_tally_add(struct contact_tally *tally);
 
 struct estimate contact_tally_mean(const struct contact_tally *tally, enum contact_measure measure,
                                    size_t cell);
-/* Sum over the realisations, exact. */
+/* Returns the exact sum over the realisations. */
 double contact_tally_total(const struct contact_tally *tally, enum contact_measure measure,
                            size_t cell);
-/* Realisations without a value. */
+/* Counts the realisations without a value. */
 uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact_measure measure,
                                  size_t cell);
 /* Means of the paired differences; NaN with one level, or for the most complete model. */
@@ -70,12 +70,12 @@ struct estimate contact_tally_model(const struct contact_tally *tally, enum cont
 /* Area of a bin over that of the cell, over the realisations with values there. */
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
                                        size_t bin);
-/* In how many parts a node's area is counted: 1 where all are equal. */
+/* Returns in how many parts a node's area is counted: 1 where all are equal. */
 uint64_t contact_tally_units(const struct contact_case *one_case, size_t model);
 /* First cell of the pressures of a model and load: underflow, the bins, overflow. */
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at);
 
-/* As job_kind has them. Counts that add up can be, and belong together. */
+/* These are what job_kind asks for. Counts that add up are possible, and belong together. */
 void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally);
 void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally);
 bool contact_tally_adds_up(const struct contact_tally *tally);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* One wave and its conjugate (or, at the Nyquist frequency, itself). */
+/* Says whether a spectrum is one wave and its conjugate (or, at the Nyquist frequency, itself). */
 static bool is_one_wave(const struct contact_case *one_case, const struct modes *modes) {
     return one_case->surface.dimension == 1 && modes->count <= 2;
 }
@@ -24,14 +24,14 @@ static double westergaard_ratio(double load) {
     return fmin(sqrt(2) * load, 1);
 }
 
-/* Where the next theory's values go: room for THEORIES_MOST of them. */
+/* The next theory's values go here, where there is room for THEORIES_MOST of them. */
 struct theory_list {
     const struct contact_case *one_case;
     struct contact_theories *out;
     double *values;
 };
 
-/* Fractions beyond 1 are none. */
+/* Puts fractions of contact; those beyond 1 become NaN. */
 static void put_area(struct theory_list *list, const char *name,
                      double (*area)(double load, double alpha), double alpha) {
     size_t n = list->one_case->load_count;

@@ -17,7 +17,7 @@ int contact_theories_make(struct contact_theories *out, const struct contact_cas
                           const struct modes *modes, const struct moments *moments,
                           struct case_result *result, struct error *err);
 
-/* Mean density of the pressures in each bin; false where there is no theory. */
+/* Computes the mean density of the pressures in each bin; false where there is no theory. */
 bool contact_theory_pressures(const struct contact_case *one_case, const struct modes *modes,
                               double load, double *pdf);
 

@@ -37,7 +37,7 @@ struct model_values {
     const double *facts;             /* MODEL_FACTS_MOST, as begin filled them */
 };
 
-/* Over the loads that have values, which come first; 0 without any. */
+/* Sums over the loads that have values, which come first; 0 without any. */
 double model_sum(size_t n, const double *values);
 double model_largest(size_t n, const double *values);
 
@@ -54,7 +54,7 @@ struct contact_model {
     size_t scalar_count; /* of its own */
     const char *const *scalars;
 
-    /* Of the strains; NULL where there is nothing to choose. */
+    /* Names the kinematics of the strains; NULL where there is nothing to choose. */
     const char *(*kinematics)(const struct contact_case *one_case);
     /* Adds faults that only this model finds in a case; `model` is its position there. NULL: none.
      */
@@ -90,7 +90,7 @@ struct contact_model {
  * there, at most CONTACT_MODELS_MOST. */
 extern const struct contact_model *const CONTACT_MODELS[];
 extern const struct choice CONTACT_MODEL_CHOICES[];
-/* In studies and curves; NULL for a model outside of the table. */
+/* Returns the name in studies and curves; NULL for a model outside of the table. */
 const char *contact_model_name(const struct contact_model *model);
 
 /* Defines both from a list of structs with their names:

@@ -11,7 +11,7 @@ static const double SLOPE_MOST = 2;
  * of 32 to 2048 points and surfaces of 16 or 32 a side none mesh at 1, few to most at 2 and 3, all
  * at 4. */
 static const double HEIGHT_LEAST = 4;
-/* Measures, facts and scalars of its own. */
+/* The model has these measures, facts and scalars of its own. */
 enum {
     FULL_CUTS,    /* of load steps */
     FULL_CHANGES, /* of single nodes of the active set */

@@ -5,9 +5,9 @@
 #include "core/full/full.h"
 #include "jobs/contact/contact_case.h"
 
-/* What a study asks of the model. */
+/* Returns what a study asks of the model. */
 struct full_options full_model_options(const struct contact_case *one_case);
-/* write_mesh of struct contact_model. */
+/* Implements write_mesh of struct contact_model. */
 int full_write_mesh(const char *path, const struct contact_case *one_case, size_t model,
                     const double *z, double pressure, struct error *err);
 

@@ -4,7 +4,7 @@
 
 #include "jobs/contact/contact_case.h"
 
-/* Functions of struct contact_model. */
+/* These functions go into a struct contact_model. */
 double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid);
 double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid);
 int linear_create(struct contact_solver **out, const struct contact_case *one_case, size_t model,

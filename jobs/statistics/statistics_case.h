@@ -19,7 +19,7 @@ struct statistics_case {
     struct bins height;     /* of z* = z/sqrt(m0) */
     struct bins equivalent; /* of t1 = -sqrt(3/m4) kappa_m; profiles z''/sqrt(m4) */
 };
-/* As surface_case_read. */
+/* Reads a case as surface_case_read does. */
 int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
                          struct fault_list *faults, struct error *err);
 void statistics_case_clear(struct statistics_case *one_case);

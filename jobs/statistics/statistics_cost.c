@@ -6,7 +6,7 @@
 #include "jobs/statistics/statistics_tally.h"
 #include <math.h>
 
-/* CPU seconds of one realisation. */
+/* Returns the CPU seconds of one realisation. */
 static double expected_seconds(const struct statistics_case *one_case) {
     double points = (double)grid_points(&one_case->surface.grid);
     double nanoseconds = cost_generation(&one_case->surface.options);

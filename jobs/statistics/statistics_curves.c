@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What all curves of a case are made from. */
+/* All curves of a case are made from this. */
 struct statistics_curve_maker {
     const struct statistics_case *one_case;
     const struct statistics_tally *tally;
@@ -30,7 +30,7 @@ static int curve_points_create(struct statistics_curve_maker *maker, size_t n,
     return 0;
 }
 
-/* Room for theories of the heights of the next curves. */
+/* Makes room for theories of the heights of the next curves. */
 static int theories_create(struct statistics_curve_maker *maker, struct error *err) {
     size_t n = maker->one_case->height.count;
     maker->pdf = result_numbers(maker->result, 3 * n);
@@ -54,7 +54,7 @@ static const char *equivalent_label(const struct statistics_curve_maker *maker) 
     return maker->one_case->surface.dimension == 2 ? "-sqrt(3/m4) kappa_m" : "z''/sqrt(m4)";
 }
 
-/* A histogram as a density over its bins. */
+/* A histogram becomes a density over its bins. */
 struct histogram {
     const char *quantity, *x_label;
     const struct bins *bins;
@@ -88,7 +88,7 @@ static int add_density(struct statistics_curve_maker *maker, const struct histog
     return result_add_curve(maker->result, &curve, err);
 }
 
-/* Cumulative probability at the upper edges of the bins. */
+/* Adds the cumulative probability at the upper edges of the bins. */
 static int add_cumulative(struct statistics_curve_maker *maker, const char *quantity,
                           const struct tally *below, const struct tally_total *total,
                           const char *theory_name, struct error *err) {

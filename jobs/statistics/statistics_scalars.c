@@ -120,7 +120,7 @@ static struct estimate summit_estimate(const struct scalar_columns *columns,
     return estimate_weighted(columns->n, variance, number);
 }
 
-/* What theory expects of the summits. */
+/* Fills in what theory expects of the summits. */
 static void theory_of_summits(const struct statistics_case *one_case, const struct moments *moments,
                               double *out) {
     int dimension = one_case->surface.dimension;
@@ -139,7 +139,7 @@ static void theory_of_summits(const struct statistics_case *one_case, const stru
     out[SCALAR_SUMMIT_CURVATURE_MEAN] = expected.curvature;
 }
 
-/* What theory expects of each scalar, NaN where there is none. */
+/* Fills in what theory expects of each scalar, NaN where there is none. */
 static void theory_of_scalars(const struct statistics_case *one_case, const struct moments *moments,
                               double out[SCALAR_COUNT]) {
     struct height_moments heights;
@@ -165,7 +165,7 @@ static void theory_of_scalars(const struct statistics_case *one_case, const stru
         theory_of_summits(one_case, moments, out);
 }
 
-/* A scalar with a fixed name. */
+/* Adds a scalar with a fixed name. */
 static int add_scalar(struct case_result *out, const char *name, struct estimate estimate,
                       double theory, struct error *err) {
     const struct scalar scalar = {.name = name,

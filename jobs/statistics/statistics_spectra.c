@@ -130,7 +130,7 @@ static size_t correlation_side(const struct statistics_case *one_case) {
     return needed > ACF_GRID ? needed : ACF_GRID;
 }
 
-/* The prescribed autocorrelation; *n lags. */
+/* Computes the prescribed autocorrelation at *n lags. */
 static int prescribed_correlation(const struct statistics_case *one_case, const struct modes *modes,
                                   struct case_result *result, struct spectrum_columns *out,
                                   size_t *n, struct error *err) {

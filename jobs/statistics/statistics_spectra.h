@@ -6,7 +6,7 @@
 #include "jobs/statistics/statistics_tally.h"
 #include "schema/result/result.h"
 
-/* Entries of the two tallies: 0 where nothing is measured. */
+/* These count the entries of the two tallies: 0 where nothing is measured. */
 size_t spectra_densities(const struct statistics_case *one_case);
 size_t spectra_correlations(const struct statistics_case *one_case);
 

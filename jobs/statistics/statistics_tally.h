@@ -40,7 +40,7 @@ void statistics_tally_summits(struct statistics_tally *tally, const struct summi
 void statistics_tally_put(struct bytes *bytes, const struct statistics_tally *tally);
 void statistics_tally_get(struct byte_reader *reader, struct statistics_tally *tally);
 bool statistics_tally_adds_up(const struct statistics_tally *tally);
-/* Exact: any order gives the same bits. */
+/* Merges exactly: any order gives the same bits. */
 void statistics_tally_merge(struct statistics_tally *into, const struct statistics_tally *from);
 
 #endif

@@ -16,9 +16,9 @@ int statistics_theory_heights(const struct statistics_case *one_case, double *pd
 /* Summit heights likewise, and the mean curvature kappa_m/sqrt(m4) of the summits in each bin. */
 void statistics_theory_summits(const struct statistics_case *one_case, double alpha, double *pdf,
                                double *cdf, double *curvature);
-/* Mean density of each t1 bin. */
+/* Computes the mean density of each t1 bin. */
 void statistics_theory_equivalent(const struct statistics_case *one_case, double *pdf);
-/* height.count x equivalent.count, t1 runs fastest. */
+/* Fills height.count x equivalent.count values, in which t1 runs fastest. */
 void statistics_theory_joint(const struct statistics_case *one_case, double alpha, double *pdf);
 
 #endif

@@ -27,7 +27,7 @@ int base64_encode(const unsigned char *data, size_t size, char **out, struct err
     return 0;
 }
 
-/* -1 for what is no digit. */
+/* Returns the value of a digit; -1 for what is no digit. */
 static int digit_value(char c) {
     if (c >= 'A' && c <= 'Z')
         return c - 'A';

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The largest integer that every JSON reader keeps exactly. */
+/* This is the largest integer that every JSON reader keeps exactly. */
 static const double INTEGER_MOST = 9007199254740992.0; /* 2^53 */
 
 bool field_put(cJSON *object, const char *key, cJSON *item) {

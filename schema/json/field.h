@@ -15,21 +15,21 @@ bool field_put_count(cJSON *object, const char *key, uint64_t count);
 /* The finished value, or NULL and nothing left behind where it is not complete. */
 cJSON *fields_finish(cJSON *value, bool complete);
 
-/* Borrows; NULL where it is absent, or object is NULL. */
+/* Returns a borrowed member; NULL where it is absent, or object is NULL. */
 const cJSON *field_at(const cJSON *object, const char *key);
-/* NaN for what is no number. */
+/* Returns NaN for what is no number. */
 double field_number(const cJSON *object, const char *key);
 /* Sets "KEY must be WHAT"; ERROR_INPUT, as every reader below that does not like what it finds. */
 int field_fault(const char *key, const char *what, struct error *err);
-/* A non-empty string of less than `size` bytes; *out borrows. */
+/* Reads a non-empty string of less than `size` bytes; *out borrows it. */
 int field_text(const cJSON *object, const char *key, size_t size, const char **out,
                struct error *err);
-/* The same into out[0..size). */
+/* Copies the same into out[0..size). */
 int field_copy(const cJSON *object, const char *key, size_t size, char *out, struct error *err);
-/* An integer of 0 to 2^53. */
+/* Reads an integer of 0 to 2^53. */
 int field_count(const cJSON *object, const char *key, uint64_t *out, struct error *err);
 int field_seconds(const cJSON *object, const char *key, double *out, struct error *err);
-/* false where it is absent. */
+/* Reads true or false; false where it is absent. */
 int field_bool(const cJSON *object, const char *key, bool *out, struct error *err);
 
 #endif

@@ -57,7 +57,7 @@ static size_t utf8_length(const unsigned char *s, size_t room) {
     return 0;
 }
 
-/* Four hex digits behind \u; their value or -1. */
+/* Reads four hex digits behind \u and returns their value, or -1. */
 static long scan_hex(struct gate *gate) {
     long value = 0;
     for (int i = 0; i < 4; i++, gate->at++) {
@@ -282,7 +282,7 @@ static const char *duplicate_name(const cJSON *object, bool *failed) {
     return name;
 }
 
-/* Depth is bounded by the gate. */
+/* Recurses no deeper than the gate allows. */
 static int check_names(const cJSON *value, struct error *err) {
     bool failed = false;
     const char *name = cJSON_IsObject(value) ? duplicate_name(value, &failed) : NULL;

@@ -27,15 +27,15 @@ char *json_print(const cJSON *value);
 char *json_print_pretty(const cJSON *value);
 /* The fewest digits that read back to the same double; null for NaN and infinities. */
 void json_print_number(FILE *file, double number);
-/* The string in quotes, escaped; false when out of memory. */
+/* Prints the string in quotes, escaped; false when out of memory. */
 bool json_print_text(FILE *file, const char *text);
-/* Value at an RFC 6901 pointer, or NULL. */
+/* Returns the value at an RFC 6901 pointer, or NULL. */
 const cJSON *json_at(const cJSON *root, const char *pointer);
-/* A number, or null where it is NaN or infinite. NULL when out of memory. */
+/* Makes a number, or null where it is NaN or infinite. Returns NULL when out of memory. */
 cJSON *json_number(double value);
 cJSON *json_numbers(const double *values, size_t n);
 
-/* RFC 4648 base64 with padding. Caller frees *out. */
+/* These encode and decode RFC 4648 base64 with padding. The caller frees *out. */
 int base64_encode(const unsigned char *data, size_t size, char **out, struct error *err);
 int base64_decode(const char *text, unsigned char **out, size_t *size, struct error *err);
 

@@ -24,7 +24,7 @@ void json_print_number(FILE *file, double number) {
     fputs(text, file);
 }
 
-/* Strings, true, false, null: false when out of memory. */
+/* Prints strings, true, false and null; returns false when out of memory. */
 static bool put_plain(FILE *file, const cJSON *value) {
     char *text = cJSON_PrintUnformatted(value);
     if (text != NULL) {
@@ -41,7 +41,7 @@ bool json_print_text(FILE *file, const char *text) {
     return done;
 }
 
-/* Indentation of a text on one line. */
+/* This stands for the indentation of a text on one line. */
 enum { COMPACT = -1 };
 
 /* Starts a line of `depth` steps of two spaces; nothing in a text on one line. */

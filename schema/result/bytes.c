@@ -57,7 +57,7 @@ void bytes_seal(struct bytes *bytes) {
     put_word(bytes, hash_bytes(HASH_START, bytes->size, bytes->data));
 }
 
-/* Number of entries from `from` on that are all zero, or all not. */
+/* Counts the entries from `from` on that are all zero, or all not. */
 static size_t run_length(size_t n, const uint64_t *counts, size_t from, int zero) {
     size_t a = from;
     while (a < n && (counts[a] == 0) == zero)
@@ -65,7 +65,7 @@ static size_t run_length(size_t n, const uint64_t *counts, size_t from, int zero
     return a - from;
 }
 
-/* Zeros, how many; others, how many, each; and so on until n. */
+/* Puts how many zeros come; how many others, and each of them; and so on until n. */
 void bytes_put_counts(struct bytes *bytes, size_t n, const uint64_t *counts) {
     for (size_t a = 0; a < n;) {
         size_t zeros = run_length(n, counts, a, 1);

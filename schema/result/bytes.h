@@ -15,7 +15,7 @@ void bytes_clear(struct bytes *bytes);
 void bytes_put_unsigned(struct bytes *bytes, uint64_t value);
 void bytes_put_fixed(struct bytes *bytes, fixed_point value);
 void bytes_put_double(struct bytes *bytes, double value);
-/* Sparse array: runs of zeros cost two bytes. */
+/* Puts a sparse array, in which runs of zeros cost two bytes. */
 void bytes_put_counts(struct bytes *bytes, size_t n, const uint64_t *counts);
 
 /* Ends the string with a hash of all before it. */
@@ -25,9 +25,9 @@ struct byte_reader {
     const unsigned char *at, *end; /* borrowed */
     bool failed; /* set by a read past the end or a malformed number; reads give 0 */
 };
-/* A reader of what comes before the seal; failed where that does not match. */
+/* Makes a reader of what comes before the seal; it has failed where that does not match. */
 struct byte_reader bytes_open(const unsigned char *data, size_t size);
-/* Only the shortest form of a number is taken. */
+/* Takes only the shortest form of a number. */
 uint64_t bytes_get_unsigned(struct byte_reader *reader);
 fixed_point bytes_get_fixed(struct byte_reader *reader);
 double bytes_get_double(struct byte_reader *reader);

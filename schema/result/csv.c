@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Theories of any of the curves printed: a column each. Names are borrowed. */
+/* Theories of any of the curves printed get a column each. Names are borrowed. */
 struct theory_columns {
     size_t count;
     const char **names; /* owned: room for every theory of every curve */
@@ -20,7 +20,7 @@ static void collect_theories(struct theory_columns *columns, const struct curve 
     }
 }
 
-/* Quoted where RFC 4180 asks for it. */
+/* Prints a text, quoted where RFC 4180 asks for it. */
 static void print_text(FILE *file, const char *text) {
     if (strpbrk(text, ",\"\r\n") == NULL) {
         fputs(text, file);
@@ -60,7 +60,7 @@ static double theory_at(const struct curve *curve, const char *name, size_t at) 
     return NAN;
 }
 
-/* Value number `n` of the curve: a point, or an occupied cell of a matrix. */
+/* Prints value number `n` of the curve: a point, or an occupied cell of a matrix. */
 static void print_line(FILE *file, uint64_t case_number, const struct curve *curve, size_t n,
                        const struct theory_columns *theories) {
     bool matrix = curve->columns > 0;

@@ -51,7 +51,7 @@ static void put_attributes(struct bytes *bytes, const struct curve *curve) {
     bytes_put_unsigned(bytes, PART_END);
 }
 
-/* Cells as distances from one to the next, the first from -1. */
+/* Puts cells as distances from one to the next, the first from -1. */
 static void put_values(struct bytes *bytes, const struct curve *curve) {
     size_t count = value_count(curve);
     bytes_put_unsigned(bytes, curve->n);

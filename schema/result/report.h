@@ -14,7 +14,7 @@
 #include "schema/result/result.h"
 #include "schema/result/work_time.h"
 
-/* All errors are relative; NaN: not known. */
+/* All errors are relative; NaN means that one is not known. */
 struct curve_report {
     struct curve place;          /* quantity and attributes alone, without points */
     double seconds, cpu_seconds; /* of the solves behind the curve: shares of the case's time */
@@ -63,7 +63,7 @@ void case_report_spend(struct case_report *report, const struct work_time *time)
  * times the processor time that was spent. NaN without a main curve. */
 double case_report_seconds_to_halve(const struct case_report *report);
 
-/* The document of `rugo report`: as study_print_head and result_print. */
+/* These print the document of `rugo report` as study_print_head and result_print do theirs. */
 bool case_report_print(FILE *file, const struct case_report *report);
 bool study_report_print(FILE *file, const struct study_report *report);
 /* *out is untouched on failure. */

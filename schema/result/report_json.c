@@ -37,7 +37,7 @@ static bool put_errors(FILE *file, const struct curve_report *report) {
     return done;
 }
 
-/* The errors of the main curve; without one, nothing is known. */
+/* Prints the errors of the main curve; without one, nothing is known. */
 static bool put_main(FILE *file, const struct case_report *report) {
     if (report->main != NULL)
         return put_text(file, "main_curve", report->main->place.quantity) &&

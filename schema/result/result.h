@@ -47,7 +47,7 @@ struct curve_error {
     double order;        /* of convergence; NaN: none */
     bool order_observed; /* on three levels; else assumed */
 };
-/* The same of a single number. */
+/* A single number owes this to one source. */
 struct scalar_error {
     bool applies, known;
     double value, bound, standard_error;
@@ -91,9 +91,9 @@ struct curve {
     double underflow, overflow; /* counts */
 };
 
-/* A curve without points, attributes and errors. */
+/* Makes a curve without points, attributes and errors. */
 struct curve curve_named(const char *quantity, const char *x_label, const char *y_label);
-/* n points; of a matrix n rows, whose values are those of its cells. */
+/* Gives the curve n points; a matrix n rows, whose values are those of its cells. */
 void curve_set_points(struct curve *curve, size_t n, const double *x, const double *y,
                       const double *standard_error);
 
@@ -109,7 +109,7 @@ enum { CURVE_ATTRIBUTE_COUNT = 6 };
 extern const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT];
 /* Those that have a column, in the order of the columns, n from 0; NULL behind the last one. */
 const struct curve_attribute *curve_column(size_t n);
-/* NULL for a number's; NaN for a text's. */
+/* Returns the attribute: NULL for the text of a number, NaN for the number of a text. */
 const char *curve_attribute_text(const struct curve *curve, const struct curve_attribute *row);
 double curve_attribute_number(const struct curve *curve, const struct curve_attribute *row);
 
@@ -162,7 +162,7 @@ struct study_result {
 void result_clear(struct case_result *result);
 void study_result_clear(struct study_result *study);
 
-/* From the arena; NULL when out of memory. Zeroed. */
+/* Returns zeroed room from the arena; NULL when out of memory. */
 void *result_room(struct case_result *result, size_t count, size_t size);
 double *result_numbers(struct case_result *result, size_t n);
 const char *result_text(struct case_result *result, const char *text); /* NULL for NULL */
@@ -177,11 +177,11 @@ const struct scalar *result_scalar(const struct case_result *result,
                                    const char *name); /* or NULL */
 /* The first curve of a quantity, or NULL; those behind it of the same quantity follow it. */
 const struct curve *result_curve(const struct case_result *result, const char *quantity);
-/* NULL, or the parameter at that pointer. */
+/* Returns the parameter at that pointer, or NULL. */
 const struct result_parameter *result_parameter(const struct case_result *result,
                                                 const char *pointer);
 
-/* Also where both are NULL, or both NaN. */
+/* Two are the same also where both are NULL, or both NaN. */
 bool same_text(const char *a, const char *b);
 bool same_number(double a, double b);
 /* Whether two curves are of the same quantity and of the same series (attributes that tell it). */

@@ -21,7 +21,7 @@
  * file's own flag, here and below. */
 bool study_print_head(FILE *file, const struct study_result *study, const struct work_time *time);
 bool result_print(FILE *file, const struct case_result *result);
-/* All of the study. */
+/* Prints all of the study. */
 bool study_print(FILE *file, const struct study_result *study);
 
 /* Parts of other documents: `, "series": ...`, all attributes or those that stand in tables;
@@ -29,13 +29,13 @@ bool study_print(FILE *file, const struct study_result *study);
 bool curve_print_attributes(FILE *file, const struct curve *curve, bool all);
 bool result_print_parameters(FILE *file, size_t count, const struct result_parameter *parameters);
 bool result_print_notes(FILE *file, uint64_t all, size_t count, const struct result_note *notes);
-/* `, "error": ...` where the case has one. */
+/* Prints `, "error": ...` where the case has one. */
 bool result_print_error(FILE *file, const struct case_result *result);
 
 /* Fills what tells the curve apart; texts are copied into the result's arena. */
 int curve_read_attributes(struct case_result *result, const cJSON *object, struct curve *curve,
                           struct error *err);
-/* Likewise the parameters, notes and error of a case, which may be missing. */
+/* Likewise read the parameters, notes and error of a case, which may be missing. */
 int result_read_parameters(struct case_result *result, const cJSON *parameters, struct error *err);
 int result_read_notes(struct case_result *result, const cJSON *notes, struct error *err);
 int result_read_error(struct case_result *result, const cJSON *error, struct error *err);

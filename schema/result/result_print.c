@@ -1,7 +1,7 @@
 #include "schema/result/result_json.h"
 #include <math.h>
 
-/* "key": with a comma in front of all but an object's first member. */
+/* Prints "key": with a comma in front of all but an object's first member. */
 static bool put_key(FILE *file, bool *first, const char *key) {
     if (!*first)
         fputc(',', file);
@@ -37,7 +37,7 @@ static bool put_numbers(FILE *file, bool *first, const char *key, size_t n, cons
     return done;
 }
 
-/* A matrix by its occupied cells; every other cell is `empty`. */
+/* Prints a matrix by its occupied cells; every other cell is `empty`. */
 static void print_cells(FILE *file, const struct curve *curve, const double *values, double empty) {
     size_t at = 0;
     fputc('[', file);
@@ -66,7 +66,7 @@ static bool put_values(FILE *file, bool *first, const char *key, const struct cu
 
 /* --- a curve --- */
 
-/* All attributes, or those that have a column; NULL behind the last one. */
+/* Walks through all attributes, or those that have a column; NULL behind the last one. */
 static const struct curve_attribute *attribute_at(size_t n, bool all) {
     if (!all)
         return curve_column(n);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is being read, for messages, and where it goes. */
+/* Readers pass on where the result goes, and the error. */
 struct reading {
     struct case_result *result;
     struct error *err;
@@ -27,7 +27,7 @@ static int read_text(const struct reading *reading, const cJSON *object, const c
     return *out != NULL ? 0 : no_memory(reading);
 }
 
-/* The array of `n` numbers or nulls under a key. */
+/* Reads the array of `n` numbers or nulls under a key. */
 static int read_numbers(const struct reading *reading, const cJSON *object, const char *key,
                         size_t n, const double **out) {
     const cJSON *array = field_at(object, key);
@@ -45,7 +45,7 @@ static int read_numbers(const struct reading *reading, const cJSON *object, cons
 
 /* --- matrices --- */
 
-/* All cells of an array of rows, dense. */
+/* Reads all cells of an array of rows. */
 static int read_dense(const struct reading *reading, const cJSON *object, const char *key,
                       const struct curve *curve, double **out) {
     const cJSON *rows = field_at(object, key);
@@ -265,7 +265,7 @@ int result_read_error(struct case_result *result, const cJSON *error, struct err
     return text == NULL || result->error != NULL ? 0 : no_memory(&reading);
 }
 
-/* A flat object of parameters, as it was printed. */
+/* Reads an object of parameters as it was printed. */
 int result_read_parameters(struct case_result *result, const cJSON *parameters, struct error *err) {
     const struct reading reading = {result, err};
     size_t count = (size_t)cJSON_GetArraySize(parameters), n = 0;

@@ -175,7 +175,7 @@ struct due_case {
     char study[STUDY_ID_SIZE];
     uint64_t case_number, revision;
 };
-/* Whether any case is. */
+/* Sets *due to whether any case is due. */
 int store_is_due(struct store *store, bool *due, struct error *err);
 struct publication {
     /* Publishes one case by store_publish. ERROR_INPUT and ERROR_NUMERIC mark the case; any other
@@ -196,7 +196,7 @@ struct publish_counts {
  * to stop. */
 int store_publish_due(struct store *store, const struct publication *publication,
                       struct publish_counts *counts, struct error *err);
-/* Cost and time of a case for the report. */
+/* The report tells this cost of a case. */
 struct case_cost {
     uint64_t case_number, realisations_done, realisations, jobs, attempts;
     struct work_time time; /* of completed jobs */

@@ -134,7 +134,7 @@ static int count_claim(struct store *store, const struct found_study *study, str
     return status;
 }
 
-/* 1 and a job, or 0 when nothing waits. */
+/* Claims one job: returns 1, or 0 when nothing waits. */
 static int claim_one(struct store *store, const struct claim *claim, int64_t only,
                      struct claimed_job *job, struct error *err) {
     struct found_study study = {0};

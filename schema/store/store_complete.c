@@ -71,7 +71,7 @@ void block_text_clear(struct block_text *text) {
 
 /* --- the change --- */
 
-/* The row of this list of names, which most jobs share. */
+/* Finds or makes the row of this list of names, which most jobs share. */
 static int names_row(struct store *store, const char *names, int64_t *id, struct error *err) {
     int status =
         store_integer(store, id, err, "SELECT id FROM scalar_names WHERE names = ?", "t", names);
@@ -94,7 +94,7 @@ static int insert_result(struct store *store, const struct job_row *job,
     return status;
 }
 
-/* Jobs of the case that have not ended. */
+/* Reads how many jobs of the case have not ended. */
 static int read_left(struct store *store, const struct job_row *job, int64_t *left,
                      struct error *err) {
     int status = store_integer(store, left, err,
@@ -157,7 +157,7 @@ static int check_block(const struct job_row *job, const struct block_result *res
                      (long long)job->id, (long long)job->count, (long long)job->first);
 }
 
-/* Within a change. *again: it was completed before, under this token. */
+/* Completes within a change. *again: it was completed before, under this token. */
 static int complete(struct store *store, int64_t id, const char *token,
                     const struct block_result *result, const struct block_text *text, bool *again,
                     int64_t *left, struct error *err) {

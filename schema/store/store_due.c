@@ -5,7 +5,7 @@
 
 #define DUE "jobs_left = 0 AND revision > settled"
 
-/* What find_due walks through: its position, and what is there. */
+/* find_due moves this along: its position, and the case that is due there. */
 struct cursor {
     int64_t study;
     struct due_case due;
@@ -74,7 +74,7 @@ static int fail_publication(struct store *store, const struct due_case *due, con
     return change_end(store, status, err);
 }
 
-/* Neither is cured by trying again. */
+/* Says whether trying again is of no use. */
 static bool is_final(int status) {
     return status == ERROR_INPUT || status == ERROR_NUMERIC;
 }

@@ -29,7 +29,7 @@ struct store {
  * t text or NULL (copied), b blob (const void *, size_t; copied). */
 int store_query(struct store *store, sqlite3_stmt **out, struct error *err, const char *sql,
                 const char *format, ...);
-/* 1 a row, 0 the end (the statement is reset), or an error. */
+/* Returns 1 for a row, 0 at the end (the statement is reset), or an error. */
 int store_step(struct store *store, sqlite3_stmt *statement, struct error *err);
 /* Runs a statement that gives no rows. Neither this nor store_integer copies what is bound. */
 int store_run(struct store *store, struct error *err, const char *sql, const char *format, ...);
@@ -48,17 +48,17 @@ int version_bring_up(struct store *store, struct error *err);
 
 int store_error(struct store *store, struct error *err); /* from SQLite's last error */
 int64_t store_now(const struct store *store);
-/* Now, for people: UTC, ISO 8601; good until the next call. */
+/* Returns the time for people: UTC, ISO 8601; it is good until the next call. */
 const char *store_time(struct store *store);
 int random_text(char *text, size_t digits,
                 struct error *err); /* hex digits from the kernel, NUL-terminated */
 char *column_copy(sqlite3_stmt *statement, int column); /* "" for NULL; NULL out of memory */
-/* How the study of this row draws its random numbers. */
+/* Reads how the study of this row draws its random numbers. */
 enum study_random column_random(sqlite3_stmt *row, int column);
 /* Reads a JSON text that this program stored, whatever its size; caller deletes *out. */
 int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 
-/* Row of a study; ERROR_ABSENT with a sentence when there is none. */
+/* Finds the row of a study; ERROR_ABSENT with a sentence when there is none. */
 int study_row(struct store *store, const char *id, int64_t *row, struct error *err);
 /* Ends the study when nothing of it waits or runs; raises its revision. */
 int study_settle(struct store *store, int64_t study, struct error *err);
@@ -69,7 +69,7 @@ int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t
 /* Takes the marks off all cases of a study that cannot be published: they are due again. */
 int marks_clear(struct store *store, int64_t study, struct error *err);
 
-/* What a change of a job needs to know of it. */
+/* A change of a job needs to know this of it. */
 struct job_row {
     int64_t id, study, case_number, first, count, attempts;
     bool running, done, cancelled;
@@ -77,9 +77,9 @@ struct job_row {
 };
 int job_read(struct store *store, int64_t id, const char *token, struct job_row *job,
              struct error *err);
-/* ERROR_STATE unless the job runs under this token. */
+/* Fails with ERROR_STATE unless the job runs under this token. */
 int job_check_lease(const struct job_row *job, struct error *err);
-/* The attempt failed: the job waits again or has failed. */
+/* Ends an attempt that failed: the job waits again or has failed. */
 int job_give_up(struct store *store, const struct job_row *job, const char *reason, bool permanent,
                 struct error *err);
 

@@ -119,7 +119,7 @@ static int clear_case(const struct target *target, struct error *err) {
     return status;
 }
 
-/* What is published of a case as texts. */
+/* These texts of a case are published. */
 struct case_texts {
     uint64_t revision;
     const struct case_result *result;

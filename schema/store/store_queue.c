@@ -47,7 +47,7 @@ int job_check_lease(const struct job_row *job, struct error *err) {
     return 0;
 }
 
-/* The job, if the token is that of its live lease. */
+/* Reads the job, if the token is that of its live lease. */
 static int read_leased(struct store *store, int64_t id, const char *token, struct job_row *job,
                        struct error *err) {
     int status = job_read(store, id, token, job, err);

@@ -11,7 +11,7 @@ enum { APPLICATION_ID = 0x5255474f /* "RUGO" */ };
 extern const char _binary_migrations_sql_start[];
 extern const char _binary_migrations_sql_end[];
 
-/* NULL behind the last. */
+/* Returns a migration, or NULL behind the last. */
 static const char *migration_at(int64_t version) {
     const char *text = _binary_migrations_sql_start;
     for (int64_t v = 0; v < version && text < _binary_migrations_sql_end; v++)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Stands for a text that there was no memory for. */
+/* This stands for a text that there was no memory for. */
 static char no_text[] = "";
 
 static char *text_copy(const char *text) {

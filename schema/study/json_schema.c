@@ -44,7 +44,7 @@ static cJSON *choice_schema(const struct parameter *parameter) {
     return checked(schema, complete);
 }
 
-/* {"anyOf": [first, second]}; takes both. */
+/* Makes {"anyOf": [first, second]}, which takes both. */
 static cJSON *either(cJSON *first, cJSON *second) {
     cJSON *schema = cJSON_CreateObject();
     cJSON *forms = schema != NULL ? cJSON_AddArrayToObject(schema, "anyOf") : NULL;
@@ -58,7 +58,7 @@ static cJSON *either(cJSON *first, cJSON *second) {
     return checked(schema, complete);
 }
 
-/* One choice alone, or an array of different ones. */
+/* Makes the schema of one choice alone, or an array of different ones. */
 static cJSON *choices_schema(const struct parameter *parameter) {
     cJSON *list = cJSON_CreateObject();
     bool complete = field_put_text(list, "type", "array") &&
@@ -68,7 +68,7 @@ static cJSON *choices_schema(const struct parameter *parameter) {
     return either(choice_schema(parameter), checked(list, complete));
 }
 
-/* A choice, or an object of one number named by its unit. */
+/* Makes the schema of a choice, or an object of one number named by its unit. */
 static cJSON *measure_schema(const struct parameter *parameter) {
     cJSON *object = cJSON_CreateObject(), *units = cJSON_CreateObject();
     bool complete = units != NULL;
@@ -114,7 +114,7 @@ static void seed_pattern(char *text, size_t size) {
         snprintf(text + used, size - (size_t)used, ")$");
 }
 
-/* An integer that JSON numbers hold exactly, or any of 64 bits as a string. */
+/* Makes the schema of an integer that JSON numbers hold exactly, or any of 64 bits as a string. */
 static cJSON *seed_schema(const struct parameter *parameter) {
     char pattern[1024];
     seed_pattern(pattern, sizeof pattern);
@@ -124,7 +124,7 @@ static cJSON *seed_schema(const struct parameter *parameter) {
     return either(number_schema(parameter), checked(string, complete));
 }
 
-/* Schema of one value, without sweeps. */
+/* Makes the schema of one value, without sweeps. */
 static cJSON *value_schema(const struct parameter *parameter) {
     switch (parameter->type) {
     case PARAMETER_NUMBER:
@@ -146,7 +146,7 @@ static cJSON *value_schema(const struct parameter *parameter) {
     return NULL;
 }
 
-/* What is told of a value beside its form. */
+/* Puts what is said of a value beside its form. */
 static bool put_remarks(cJSON *schema, const struct parameter *parameter) {
     char text[600];
     snprintf(text, sizeof text, "%s%s%s%s", parameter->help, parameter->unit != NULL ? " [" : "",
@@ -166,7 +166,7 @@ static bool put_remarks(cJSON *schema, const struct parameter *parameter) {
     return false;
 }
 
-/* One value, or where it can be swept a list of at least one. */
+/* Makes the schema of one value, or where it can be swept a list of at least one. */
 static cJSON *parameter_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
     bool complete = put_remarks(schema, parameter);
@@ -242,7 +242,7 @@ static cJSON *common_schema(const struct study_kind *const *kinds) {
     return checked(schema, complete);
 }
 
-/* {"properties": {"kind": {"const": name}}, "required": ["kind"]} */
+/* Makes {"properties": {"kind": {"const": name}}, "required": ["kind"]}. */
 static cJSON *condition_schema(const struct study_kind *kind) {
     cJSON *schema = cJSON_CreateObject();
     cJSON *properties = schema != NULL ? cJSON_AddObjectToObject(schema, "properties") : NULL;
@@ -252,7 +252,7 @@ static cJSON *condition_schema(const struct study_kind *kind) {
     return checked(schema, complete);
 }
 
-/* What a study of the kind has beside what all have, and nothing else. */
+/* Makes the schema of what a study of the kind has beside what all have, and nothing else. */
 static cJSON *kind_schema(const struct study_kind *kind) {
     cJSON *schema = object_schema();
     const struct parameter *row;

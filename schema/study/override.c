@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The value as JSON, or as a string where it is none. */
+/* Reads the value as JSON, or as a string where it is none. */
 static int override_value(const char *text, cJSON **out, struct error *err) {
     struct error parsed = {0};
     if (json_parse(text, strlen(text), NULL, out, &parsed) == 0)
@@ -14,7 +14,7 @@ static int override_value(const char *text, cJSON **out, struct error *err) {
     return *out != NULL ? 0 : error_memory(err, strlen(text), "a value");
 }
 
-/* The member `name` of object, made if missing; NULL when it is no object. */
+/* Returns the member `name` of object, made if missing; NULL when it is no object. */
 static cJSON *member_object(cJSON *object, const char *name) {
     cJSON *member = cJSON_GetObjectItemCaseSensitive(object, name);
     if (member == NULL)

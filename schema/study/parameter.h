@@ -60,9 +60,9 @@ const struct parameter *parameter_find(const struct parameter_table *const *tabl
                                        const char *path, size_t *index);
 size_t parameter_count(const struct parameter_table *const *tables);
 
-/* The choice of a name, or NULL; name may be NULL. */
+/* Returns the choice of a name, or NULL; name may be NULL. */
 const struct choice *choice_find(const struct choice *choices, const char *name);
-/* The name of a value, or NULL. */
+/* Returns the name of a value, or NULL. */
 const char *choice_name(const struct choice *choices, int value);
 
 #endif

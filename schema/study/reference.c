@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the writers share: all kinds, and the choices that /kind has by them. */
+/* The writers share all kinds, and the choices that /kind has by them. */
 struct reference {
     const struct study_kind *const *kinds; /* NULL at the end */
     struct choice *names;                  /* owned */
@@ -29,7 +29,7 @@ static void describe_type(const struct parameter *row, char *text, size_t size) 
         snprintf(text, size, "%s", WORDS[row->type]);
 }
 
-/* What a value may be: names, a range, or both. */
+/* Writes what a value may be: names, a range, or both. */
 static void describe_range(const struct parameter *row, char *text, size_t size) {
     char range[80], names[CELL_SIZE / 4], units[CELL_SIZE / 4];
     value_range(row, range, sizeof range);
@@ -52,7 +52,7 @@ static const char *or_dash(const char *text) {
     return text != NULL ? text : "-";
 }
 
-/* The default of a row; that of /realisations is the kinds' own. */
+/* Writes the default of a row; that of /realisations is the kinds' own. */
 static void describe_default(const struct reference *reference, const struct parameter *row,
                              char *text, size_t size) {
     snprintf(text, size, "%s", or_dash(row->default_json));
@@ -85,7 +85,7 @@ static bool was_shown(const struct reference *reference, size_t kind,
     return false;
 }
 
-/* "statistics, contact" */
+/* Writes the kinds that have a table: "statistics, contact". */
 static void kinds_of(const struct reference *reference, const struct parameter_table *table,
                      char *text, size_t size) {
     size_t used = 0;
@@ -99,7 +99,7 @@ static void kinds_of(const struct reference *reference, const struct parameter_t
 typedef void table_writer(FILE *file, const struct reference *reference,
                           const struct parameter_table *table, const char *path);
 
-/* Every table once: what all studies have, then those of the kinds. */
+/* Writes every table once: what all studies have, then those of the kinds. */
 static void write_tables(FILE *file, const struct reference *reference, const char *path,
                          table_writer *write) {
     write(file, reference, &COMMON_PARAMETERS, path);
@@ -159,7 +159,7 @@ static void print_table(FILE *file, const struct reference *reference,
 
 /* --- Markdown --- */
 
-/* A cell; '|' would end it. */
+/* Prints a cell, which '|' would end. */
 static void print_cell(FILE *file, const char *text, bool code) {
     fputs(code ? "| `" : "| ", file);
     for (; *text != '\0'; text++) {

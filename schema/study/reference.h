@@ -12,7 +12,7 @@
  * the text arrived is for the caller to ask of the file. */
 int reference_print(FILE *file, const struct study_kind *const *kinds, const char *path,
                     struct error *err);
-/* The same of all parameters as Markdown, with an introduction. */
+/* Prints the same of all parameters as Markdown, with an introduction. */
 int reference_markdown(FILE *file, const struct study_kind *const *kinds, struct error *err);
 
 #endif

@@ -13,10 +13,10 @@
  * realisation by realisation and their errors go together, or each of its own. */
 enum study_random { RANDOM_COMMON, RANDOM_INDEPENDENT };
 extern const struct choice STUDY_RANDOM[];
-/* The sequence of random numbers (core/random.h) that a case is made of. */
+/* Returns the sequence of random numbers (core/random.h) that a case is made of. */
 uint64_t study_sequence(enum study_random random, uint64_t case_number);
 
-/* What a case costs; rough, before anything ran. */
+/* A case costs roughly this; estimated before anything ran. */
 struct study_cost {
     size_t nx, ny;         /* grid of one realisation (the finest) */
     double memory_bytes;   /* peak of one worker thread */
@@ -25,7 +25,7 @@ struct study_cost {
     double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
 };
 
-/* What the reader must know of a kind of study. */
+/* The reader must know this of a kind of study. */
 struct study_kind {
     const char *name;
     const struct parameter_table *const *tables; /* of its parameters; NULL at the end */

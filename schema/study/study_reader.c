@@ -33,7 +33,7 @@ static size_t name_distance(const char *a, const char *b) {
     return row[length];
 }
 
-/* The path of a row of every study, or of the kind; NULL behind the last. */
+/* Returns the path of a row of every study, or of the kind; NULL behind the last. */
 static const char *known_path(const struct study_kind *kind, size_t index) {
     if (index < COMMON_PARAMETERS.count)
         return COMMON_PARAMETERS.rows[index].path;
@@ -58,7 +58,7 @@ static enum place pointer_place(const struct study_kind *kind, const char *point
     return PLACE_UNKNOWN;
 }
 
-/* "; did you mean ...?" where a sibling's name is near. */
+/* Writes "; did you mean ...?" where a sibling's name is near. */
 static void suggestion(const struct study_kind *kind, const char *prefix, const char *name,
                        char *text, size_t size) {
     size_t best = strlen(name) / 3 + 1, length = strlen(prefix);
@@ -149,7 +149,7 @@ static void merge_faults(struct fault_list *all, const struct fault_list *found)
     }
 }
 
-/* Blocks of equal size that take about JOB_SECONDS each. */
+/* Returns the size of equal blocks that take about JOB_SECONDS each. */
 static uint64_t block_size(uint64_t realisations, double seconds) {
     double most = seconds > 0 ? floor(JOB_SECONDS / seconds + 0.5) : (double)realisations;
     most = fmin(fmax(most, 1), fmin(JOB_REALISATIONS, (double)realisations));

@@ -20,7 +20,7 @@ struct origin {
     cJSON *usual;            /* owned default */
 };
 
-/* Axes of the document's lists, in its own order. */
+/* Finds the axes of the document's lists, in its own order. */
 static size_t find_axes(const struct study_kind *kind, const cJSON *object, const char *prefix,
                         struct axis *axes, size_t count) {
     for (const cJSON *member = object->child; member != NULL; member = member->next) {
@@ -75,7 +75,7 @@ static void origins_destroy(struct origin *origins, size_t count) {
     free(origins);
 }
 
-/* Of every parameter that is given or has a default; *count of them. */
+/* Makes an origin for every parameter that is given or has a default; *count of them. */
 static int origins_create(struct origin **out, size_t *count, const struct study_kind *kind,
                           const cJSON *document, const struct axis *axes, size_t axis_count,
                           struct error *err) {

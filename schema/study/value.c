@@ -13,7 +13,7 @@ void value_describe(const cJSON *value, char *text, size_t size) {
     free(printed);
 }
 
-/* The fewest digits, of 15 or more, that read back to the bound. */
+/* Prints the fewest digits, of 15 or more, that read back to the bound. */
 static void bound_print(double bound, char *text, size_t size) {
     if (isinf(bound)) {
         snprintf(text, size, "%sinfinity", bound < 0 ? "-" : "");
@@ -42,7 +42,7 @@ static bool in_range(const struct parameter *parameter, double value) {
     return above && below;
 }
 
-/* "TEXT is not WHAT", of the value as it was written. */
+/* Adds the fault "TEXT is not WHAT" of the value as it was written. */
 static bool is_not(const cJSON *value, const char *pointer, struct fault_list *faults,
                    const char *what) {
     char text[48];
@@ -71,7 +71,7 @@ static bool number_check(const struct parameter *parameter, const cJSON *value, 
     return range_check(parameter, value, pointer, faults);
 }
 
-/* Characters of UTF-8: bytes that do not continue one. */
+/* Counts characters of UTF-8: bytes that do not continue one. */
 static size_t characters(const char *text) {
     size_t n = 0;
     for (; *text != '\0'; text++)
@@ -121,7 +121,7 @@ static bool seed_check(const struct parameter *parameter, const cJSON *value, co
     return is_not(value, pointer, faults, what);
 }
 
-/* "first", "second" */
+/* Writes the names of choices: "first", "second". */
 void value_choices(const struct choice *choices, char *text, size_t size) {
     size_t used = 0;
     for (*text = 0; choices->name != NULL && used < size - 1; choices++)

@@ -15,7 +15,7 @@ bool value_check(const struct parameter *parameter, const cJSON *value, const ch
                  struct fault_list *faults);
 /* Whether value is a list of values (a sweep) of the parameter. */
 bool value_is_list(const struct parameter *parameter, const cJSON *value);
-/* The value as it was written, cut to fit: for messages. */
+/* Writes the value as it was given, cut to fit, for messages. */
 void value_describe(const cJSON *value, char *text, size_t size);
 /* Adds the fault of a required value that is not there. */
 void value_missing(const struct parameter *parameter, struct fault_list *faults);
@@ -23,9 +23,9 @@ void value_missing(const struct parameter *parameter, struct fault_list *faults)
 cJSON *value_default(const struct parameter *parameter);
 /* The seed that a checked value gives; false for a string that is no decimal number of 64 bits. */
 bool value_seed(const cJSON *value, uint64_t *seed);
-/* The names of choices: "\"first\", \"second\"". */
+/* Writes the names of choices: "\"first\", \"second\"". */
 void value_choices(const struct choice *choices, char *text, size_t size);
-/* The allowed range: "(0, 1]". */
+/* Writes the allowed range: "(0, 1]". */
 void value_range(const struct parameter *parameter, char *text, size_t size);
 
 #endif

@@ -23,9 +23,9 @@ int values_create(struct values **out, const cJSON *parameters,
                   struct error *err);
 void values_destroy(struct values **values);
 
-/* Numbers and integers; NaN where the value is absent and has no default. */
+/* Returns a number or an integer; NaN where the value is absent and has no default. */
 double values_number(struct values *values, const char *path);
-/* What the choice stands for; 0 where it is absent and has no default. */
+/* Returns what the choice stands for; 0 where it is absent and has no default. */
 int values_choice(struct values *values, const char *path);
 /* What the choices stand for, in the order given, into out (room for all of the row's choices); how
  * many, 0 where absent. */
