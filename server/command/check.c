@@ -32,6 +32,10 @@ static double largest_memory(const struct study *study) {
     return most;
 }
 
+static const char *random_name(const struct study *study) {
+    return choice_name(STUDY_RANDOM, (int)study->random);
+}
+
 /* --- text --- */
 
 static void print_value(struct text_table *table, const cJSON *value) {
@@ -94,9 +98,12 @@ static void print_text(const struct study *study) {
     char cpu[48], wall[48];
     duration_text(total_seconds(study), cpu, sizeof cpu);
     duration_text(total_seconds(study) / processors(), wall, sizeof wall);
-    printf("%s (%s), seed %llu: %zu cases of %llu realisations\n", study->name, study->kind->name,
+    printf("%s (%s), seed %llu: %zu cases of %llu realisations", study->name, study->kind->name,
            (unsigned long long)study->seed, study->case_count,
            (unsigned long long)study->realisations);
+    if (study->case_count > 1)
+        printf(", %s random numbers", random_name(study));
+    putchar('\n');
     print_values(study, study->cases[0].parameters, "");
     print_cases(study);
     printf("in all about %s of CPU, %s on %u processors; up to %.0f MiB a worker\n", cpu, wall,
@@ -149,6 +156,7 @@ static int print_study_json(const struct study *study, struct error *err) {
         document != NULL && field_put(document, "name", cJSON_CreateString(study->name)) &&
         field_put(document, "kind", cJSON_CreateString(study->kind->name)) &&
         field_put(document, "seed", cJSON_CreateString(seed)) &&
+        field_put(document, "random", cJSON_CreateString(random_name(study))) &&
         field_put(document, "realisations", cJSON_CreateNumber((double)study->realisations)) &&
         field_put(document, "seconds", json_number(total_seconds(study))) &&
         field_put(document, "memory_bytes", json_number(largest_memory(study))) &&

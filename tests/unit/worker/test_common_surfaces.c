@@ -14,6 +14,8 @@ static const char POISSON_SWEEP[] =
     "\"model\":[\"halfspace\",\"layered\"],\"poisson\":[0.1,0.3,0.49],\"levels\":[4,8],"
     "\"pressures\":{\"to\":0.4,\"steps\":4}}}";
 
+enum { CASES = 3 };
+
 /* Runs the study and gives its results. */
 static void run(const char *format, const char *random, unsigned threads, uint64_t block,
                 struct study_result *out) {
@@ -31,6 +33,7 @@ static void run(const char *format, const char *random, unsigned threads, uint64
     if (workers_run(&options, &err) != 0 ||
         aggregate_study(fixture.store, fixture.study, &filter, out, &err) != 0)
         fail_msg("%s", err.text);
+    assert_int_equal(out->case_count, CASES);
     fixture_close(&fixture);
 }
 
@@ -44,6 +47,8 @@ enum likeness { ALL_DIFFER, SOME_DIFFER, ALL_SAME };
 static enum likeness areas_of(const struct case_result *a, const struct case_result *b,
                               const char *model) {
     size_t same = 0, all = 0;
+    if (a == NULL || b == NULL)
+        return SOME_DIFFER; /* which no test expects */
     assert_int_equal(a->curve_count, b->curve_count);
     for (size_t n = 0; n < a->curve_count; n++) {
         const struct curve *one = &a->curves[n], *two = &b->curves[n];
@@ -63,8 +68,7 @@ static void cases_that_differ_in_contact_alone_see_the_same_surfaces(void **stat
     (void)state;
     struct study_result study = {0};
     run(POISSON_SWEEP, "", 2, 4, &study);
-    assert_int_equal(study.case_count, 3);
-    for (size_t c = 1; c < 3; c++) {
+    for (size_t c = 1; c < CASES; c++) {
         assert_int_equal(areas_of(&study.cases[0], &study.cases[c], "halfspace"), ALL_SAME);
         assert_int_equal(areas_of(&study.cases[0], &study.cases[c], "layered"), ALL_DIFFER);
     }
@@ -97,7 +101,7 @@ static void workers_and_blocks_leave_the_bits(void **state) {
         for (size_t n = 0; n < 2; n++) {
             struct study_result again = {0};
             run(POISSON_SWEEP, RANDOM[r], TABLE[n].threads, TABLE[n].block, &again);
-            for (size_t c = 0; c < first.case_count; c++) {
+            for (size_t c = 0; c < CASES; c++) {
                 assert_int_equal(areas_of(&first.cases[c], &again.cases[c], "layered"), ALL_SAME);
             }
             study_result_clear(&again);

@@ -136,6 +136,49 @@ static void a_store_of_version_1_goes_on(void **state) {
     store_close(&store);
 }
 
+/* What older programs did not count: the processor time of their jobs, in the counters and in the
+ * published report of a case. */
+static void check_clock_stands_in(struct store *store, const char *study) {
+    struct study_report report = {0};
+    struct error err = {0};
+    if (aggregate_report(store, study, &report, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_string_equal(report.random, "independent");
+    for (size_t c = 0; c < report.case_count; c++) {
+        const struct case_report *one = &report.cases[c];
+        assert_true(one->time.seconds > 0 && one->curve_count > 0);
+        assert_int_equal(one->time.jobs_without_cpu, one->jobs);
+        assert_true(fabs(one->time.cpu_seconds - one->time.seconds) <= 0);
+        for (size_t a = 0; a < one->curve_count; a++)
+            assert_true(one->curves[a].seconds > 0 &&
+                        fabs(one->curves[a].cpu_seconds - one->curves[a].seconds) <= 0);
+    }
+    study_report_clear(&report);
+}
+
+/* A sweep that was half done with a surface of its own for each case ends with just these. */
+static void a_store_of_version_3_goes_on(void **state) {
+    (void)state;
+    struct store *store = NULL;
+    struct study_status *list = NULL;
+    struct error err = {0};
+    size_t count = 0;
+    load("version-3.sql", "third.db");
+    work_off("third.db");
+    if (store_open(&store, "third.db", NULL, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
+    assert_int_equal(count, 2);
+    check_clock_stands_in(store, list[0].id);
+    assert_int_equal(list[1].time.jobs_without_cpu, 3); /* of six */
+    for (size_t s = 0; s < count; s++) {
+        check_study("third.db", &list[s]);
+        study_status_clear(&list[s]);
+    }
+    free(list);
+    store_close(&store);
+}
+
 static void execute(const char *path, const char *sql) {
     sqlite3 *db = NULL;
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
@@ -198,6 +241,7 @@ static void the_first_layout_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_store_of_version_1_goes_on),
+        cmocka_unit_test(a_store_of_version_3_goes_on),
         cmocka_unit_test(an_early_layout_is_mended),
         cmocka_unit_test(a_reader_reads_it),
         cmocka_unit_test(the_first_layout_is_refused),
