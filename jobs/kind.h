@@ -87,8 +87,8 @@ struct job_kind {
     void (*put)(struct bytes *bytes, const void *tally);
     /* Reads into a new tally. Fails the reader for what put cannot have made. */
     void (*get)(struct byte_reader *reader, void *tally);
-    /* Whether a tally that was read can be, and whether it is of these scalars. Either may be NULL:
-     * then any tally will do. */
+    /* Returns whether a tally that was read can be, and whether it is of these scalars. Either may
+     * be NULL: then any tally will do. */
     bool (*adds_up)(const void *tally);
     bool (*belongs)(const void *tally, const struct block_result *result);
 

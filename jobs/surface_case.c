@@ -73,8 +73,8 @@ static int solve_ratio(struct surface_case *out, struct values *values, double a
     return 0;
 }
 
-/* Whether a wave vector of the cell lies in the self-affine band; else the spectrum would be empty.
- */
+/* Returns whether a wave vector of the cell lies in the self-affine band; else the spectrum would
+ * be empty. */
 static bool band_has_mode(int dimension, double low, double high) {
     low *= 1 - ROUNDING;
     high *= 1 + ROUNDING;

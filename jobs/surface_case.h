@@ -26,7 +26,7 @@ int surface_case_read(struct surface_case *out, const cJSON *parameters, struct 
 int surface_case_fill(struct surface_case *out, struct values *values, struct error *err);
 void surface_case_clear(struct surface_case *surface);
 
-/* Whether the returned surfaces have the prescribed spectrum exactly. */
+/* Returns whether the returned surfaces have the prescribed spectrum exactly. */
 static inline bool surface_case_exact(const struct surface_case *surface) {
     return surface->options.heights.type == HEIGHTS_GAUSSIAN ||
            surface->options.keep == KEEP_SPECTRUM;

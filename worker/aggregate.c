@@ -18,7 +18,7 @@ static int merge_block(void *context, const struct block_result *block, struct e
     return status != 0 ? status : merger_add(merge->merger, block, err);
 }
 
-/* All stored blocks of a case, in the order of their realisations. */
+/* Merges all stored blocks of a case in the order of their realisations. */
 static int merge_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
                       const cJSON *parameters, struct case_result *out, struct error *err) {
     struct merge merge = {.kind = aggregate->kind};
@@ -83,8 +83,8 @@ static int fresh_result(struct store *store, const struct aggregate *aggregate,
     return merge_case(store, aggregate, case_number, info->parameters, out, err);
 }
 
-/* Whether it is the case's stored results that are at fault: trying again does not help, and other
- * cases may well be read. */
+/* Returns whether it is the case's stored results that are at fault: trying again does not help,
+ * and other cases may well be read. */
 static bool is_final(int status) {
     return status == ERROR_INPUT || status == ERROR_NUMERIC;
 }
@@ -206,7 +206,7 @@ static void spend(struct case_report *report, const struct case_cost *cost) {
     report->attempts = cost->attempts;
 }
 
-/* Published as such, or measured now. */
+/* Reads what is published of the report, or measures it now. */
 static int read_report(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
                        const struct case_info *info, struct case_report *out, struct error *err) {
     const struct published_part all = {0};

@@ -19,7 +19,7 @@ void aggregate_end(struct aggregate *aggregate);
 /* What a document of the study begins with (study_print_head); borrows from the aggregate. */
 struct study_result aggregate_head(const struct aggregate *aggregate);
 
-/* Which cases, and what of them. */
+/* A filter says which cases are asked for, and what of them. */
 struct result_filter {
     int64_t case_number; /* -1: all */
     struct published_part part;

@@ -28,7 +28,7 @@ struct reply {
     size_t size;
 };
 
-/* Where the body of one reply goes. */
+/* The body of one reply goes here. */
 struct sink {
     CURL *curl;
     struct reply *reply;
@@ -186,7 +186,7 @@ static size_t sink_keep(struct sink *sink, const char *bytes, size_t size) {
     return size;
 }
 
-/* CURLOPT_WRITEFUNCTION: fewer bytes than given end the exchange. */
+/* Takes a part as CURLOPT_WRITEFUNCTION; fewer bytes than given end the exchange. */
 static size_t sink_write(char *bytes, size_t unit, size_t count, void *context) {
     struct sink *sink = context;
     size_t size = unit * count; /* unit is always 1 */

@@ -14,7 +14,7 @@ void client_global_cleanup(void);
 
 struct client;
 
-/* url: http(s)://host:port without path; token may be NULL. */
+/* Makes a client; url is http(s)://host:port without path, token may be NULL. */
 int client_create(struct client **out, const char *url, const char *token, struct error *err);
 void client_destroy(struct client **client);
 

@@ -5,7 +5,7 @@
 #include <pthread.h>
 #include <stdint.h>
 
-/* Milliseconds since an arbitrary start. */
+/* Returns the milliseconds since an arbitrary start. */
 int64_t clock_ms(void);
 /* Initialises a condition for clock_cond_wait; returns what pthread_cond_init returns. */
 int clock_cond_init(pthread_cond_t *cond);

@@ -13,7 +13,7 @@
 #include <stdbool.h>
 
 struct lease_keeper;
-/* options are those of the source; options->worker must outlive the keeper. */
+/* Makes a keeper; options are those of the source, and options->worker must outlive the keeper. */
 int lease_keeper_create(struct lease_keeper **out, const struct source_options *options,
                         unsigned slots, struct error *err);
 /* Accepts NULL. */
@@ -24,8 +24,8 @@ void lease_keeper_hold(struct lease_keeper *keeper, unsigned slot, const struct 
 void lease_keeper_let_go(struct lease_keeper *keeper, unsigned slot);
 /* Sets the number of finished realisations that the next heartbeat reports. */
 void lease_keeper_progress(struct lease_keeper *keeper, unsigned slot, uint64_t done);
-/* Whether nobody wants the result of the slot's job: its lease is lost or given back, or its study
- * is cancelled. */
+/* Returns whether nobody wants the result of the slot's job: its lease is lost or given back, or
+ * its study is cancelled. */
 bool lease_keeper_is_lost(struct lease_keeper *keeper, unsigned slot);
 /* Gives back the leases of all jobs held now, while they still run, so that other workers can claim
  * them before a long realisation ends. */

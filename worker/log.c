@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-/* A line under construction; once full, what follows is dropped. */
+/* A line is built here; once it is full, what follows is dropped. */
 struct line {
     char *text;
     size_t size, length; /* size leaves room for the newline and the NUL */

@@ -14,7 +14,7 @@
 enum { LOG_LINE_MOST = 1024 };
 enum log_level { LEVEL_DEBUG, LEVEL_INFO, LEVEL_WARNING, LEVEL_ERROR };
 
-/* What a line is about. Fields left zero are left out; all borrowed. */
+/* A line is about these. Fields left zero are left out; all are borrowed. */
 struct log_about {
     const char *worker, *study;
     int64_t job;

@@ -87,7 +87,7 @@ static int worker_pool_work(struct worker_pool *pool, struct worker_thread *thre
     return status;
 }
 
-/* The name of the process where the caller gave none. */
+/* Makes up the name of the process where the caller gave none. */
 static void name_default(char *name, size_t size, const char *host) {
     snprintf(name, size, "%s-%ld", host, (long)getpid());
 }

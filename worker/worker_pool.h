@@ -24,7 +24,7 @@ struct worker_pool {
     struct error err;       /* belongs to status */
 };
 
-/* The length of a thread's last pause in milliseconds; initialise to {0}. */
+/* A thread remembers the length of its last pause in milliseconds; initialise to {0}. */
 struct backoff {
     int64_t ms;
 };

@@ -12,7 +12,7 @@ enum {
     AWAY_MOST_MS = 30000, /* longest pause between two requests while nobody answers */
 };
 
-/* How a job ended, as the source is to learn it. */
+/* The source is to learn that a job ended in one of these ways. */
 enum outcome { OUTCOME_COMPLETE, OUTCOME_FAIL, OUTCOME_RELEASE };
 struct job_report {
     enum outcome outcome;

@@ -39,7 +39,7 @@ static int block_refused(const struct block *block, double transition, struct er
     return 0;
 }
 
-/* Whether half as many columns suffice from this depth on. */
+/* Returns whether half as many columns suffice from this depth on. */
 static bool widens(const struct mesh *mesh, const struct level *above, double depth,
                    double transition) {
     bool profile = mesh->dimension == 2;

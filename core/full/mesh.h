@@ -47,7 +47,7 @@ void mesh_destroy(struct mesh **mesh);
  * call. */
 int mesh_shape(struct mesh *mesh, const double *z, struct error *err);
 
-/* Whether the columns of the level below the layer are wider than those above it. */
+/* Returns whether the columns of the level below the layer are wider than those above it. */
 static inline bool mesh_widens(const struct mesh *mesh, size_t layer) {
     return mesh->level[layer].width != mesh->level[layer + 1].width;
 }

@@ -235,8 +235,8 @@ static bool evaluate(struct newton *n) {
     return n->evaluated;
 }
 
-/* Whether a factorisation is affordable: with Netlib's BLAS it takes about ten seconds and a
- * gigabyte at these sizes. */
+/* Returns whether a factorisation is affordable: with Netlib's BLAS it takes about ten seconds and
+ * a gigabyte at these sizes. */
 static bool factorable(const struct mesh *mesh) {
     return mesh_degrees_of_freedom(mesh) <= (mesh->dimension == 2 ? 500000 : 20000);
 }
@@ -283,8 +283,8 @@ static int newton_change(struct newton *n, double off, struct newton_end *end, s
     return (n->factored ? solve_factored : solve_iterated)(n, tolerance, end, err);
 }
 
-/* Whether a cell of the face is turned away from the flat. The contact condition compares heights
- * alone, so that the face could pass through itself there. */
+/* Returns whether a cell of the face is turned away from the flat. The contact condition compares
+ * heights alone, so that the face could pass through itself there. */
 static bool face_folds(const struct newton *n) {
     const struct level *face = &n->mesh->level[0];
     for (size_t j = 0; j < face->ny; j++)

@@ -57,7 +57,7 @@ INLINE void jacobi_rotate(pointwise a[3][3], pointwise axis[3][3], int p, int r,
     }
 }
 
-/* Whether the matrix of any point has off-diagonal entries larger than rounding. */
+/* Returns whether the matrix of any point has off-diagonal entries larger than rounding. */
 INLINE bool off_diagonal(pointwise a[3][3]) {
     int any = 0;
     for (int q = 0; q < POINTS_MOST; q++) {

@@ -60,8 +60,8 @@ static inline size_t contact_case_cells(const struct contact_case *one_case) {
 
 /* The most complete of the models: that from which the errors of the others are counted. */
 size_t contact_case_complete(const struct contact_case *one_case);
-/* Whether the surface has lengths of its own, and its RMS height and slope by the prescribed
- * spectrum, in lambda_s; NaN where it has none. */
+/* Returns whether the surface has lengths of its own, and its RMS height and slope by the
+ * prescribed spectrum, in lambda_s; NaN where it has none. */
 bool contact_case_has_scale(const struct contact_case *one_case);
 int contact_case_scale(const struct contact_case *one_case, double *rms_height, double *rms_slope,
                        struct error *err);

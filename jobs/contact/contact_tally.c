@@ -245,8 +245,8 @@ void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally) 
     notes_get(reader, &tally->notes);
 }
 
-/* Whether a cell has as many values as it can: none more than there are realisations, one of each
- * where all have one, and of a model that may fail no more than at the load before. */
+/* Returns whether a cell has as many values as it can: none more than there are realisations, one
+ * of each where all have one, and of a model that may fail no more than at the load before. */
 static bool count_fits(const struct contact_tally *tally, enum contact_measure measure,
                        size_t cell) {
     const struct contact_case *one_case = tally->one_case;
@@ -275,7 +275,8 @@ static uint64_t unsolved(const struct contact_tally *tally) {
     return count;
 }
 
-/* Whether the pressures of a load lie on as much area as is in contact, but for rounding. */
+/* Returns whether the pressures of a load lie on as much area as is in contact, but for rounding.
+ */
 static bool pressures_fit(const struct contact_tally *tally, size_t model, size_t at) {
     const struct contact_case *one_case = tally->one_case;
     size_t cell =

@@ -9,7 +9,7 @@ static bool is_one_wave(const struct contact_case *one_case, const struct modes 
     return one_case->surface.dimension == 1 && modes->count <= 2;
 }
 
-/* Whether theories of Gaussian isotropic asperities apply. */
+/* Returns whether theories of Gaussian isotropic asperities apply. */
 static bool has_asperities(const struct contact_case *one_case, const struct moments *moments) {
     const struct spectrum *spectrum = &one_case->surface.spectrum;
     return one_case->surface.dimension == 2 && moments->nayak_alpha > 1.5 &&

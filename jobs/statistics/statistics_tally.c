@@ -147,7 +147,7 @@ void statistics_tally_get(struct byte_reader *reader, struct statistics_tally *t
     tally_sums_get(reader, &tally->correlation);
 }
 
-/* Whether every thing of a histogram is in one of its cells. */
+/* Returns whether every thing of a histogram is in one of its cells. */
 static bool adds_up(const struct tally *tally, const struct tally_total *total) {
     fixed_point sum = 0;
     for (size_t cell = 0; cell < tally->size; cell++)

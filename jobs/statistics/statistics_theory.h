@@ -4,7 +4,8 @@
 
 #include "jobs/statistics/statistics_case.h"
 
-/* Whether summit theory applies: an isotropic spectrum with alpha above 3/2 (profiles: 1). */
+/* Returns whether summit theory applies: an isotropic spectrum with alpha above 3/2 (profiles: 1).
+ */
 bool statistics_theory_applies(const struct statistics_case *one_case,
                                const struct moments *moments);
 /* Its name: "nayak", and for profiles "longuet_higgins" (Cartwright & Longuet-Higgins 1956). */

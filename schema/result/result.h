@@ -184,7 +184,8 @@ const struct result_parameter *result_parameter(const struct case_result *result
 /* Two are the same also where both are NULL, or both NaN. */
 bool same_text(const char *a, const char *b);
 bool same_number(double a, double b);
-/* Whether two curves are of the same quantity and of the same series (attributes that tell it). */
+/* Returns whether two curves are of the same quantity and of the same series (attributes that tell
+ * it). */
 bool curve_same_series(const struct curve *a, const struct curve *b);
 
 #endif

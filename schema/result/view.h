@@ -29,7 +29,7 @@ struct result_view {
     const struct logarithmic_picture *logarithmic; /* ends with a quantity of NULL; NULL: none */
 };
 
-/* Whether a NULL-terminated list, or NULL, has the name. */
+/* Returns whether a NULL-terminated list, or NULL, has the name. */
 bool view_lists(const char *const *names, const char *name);
 
 #endif

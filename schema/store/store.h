@@ -104,7 +104,7 @@ struct claim {
  * attempt fails the job with "lease ran out ..."). Oldest study first. *count may be 0. */
 int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs,
                 size_t *count, struct error *err);
-/* Whether the last claim failed a job for good, which may have left its case due. */
+/* Returns whether the last claim failed a job for good, which may have left its case due. */
 bool store_claim_failed_jobs(const struct store *store);
 /* Renews the lease; done: realisations so far. ERROR_STATE when the lease is lost or the study
  * cancelled (the text says which). */

@@ -76,7 +76,7 @@ static bool has_table(const struct study_kind *kind, const struct parameter_tabl
     return false;
 }
 
-/* Whether an earlier kind has the table, so that it was shown. */
+/* Returns whether an earlier kind has the table, so that it was shown. */
 static bool was_shown(const struct reference *reference, size_t kind,
                       const struct parameter_table *table) {
     for (size_t k = 0; k < kind; k++)

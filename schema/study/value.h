@@ -13,7 +13,7 @@ enum { POINTER_SIZE = 256 };
  * good. */
 bool value_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
                  struct fault_list *faults);
-/* Whether value is a list of values (a sweep) of the parameter. */
+/* Returns whether value is a list of values (a sweep) of the parameter. */
 bool value_is_list(const struct parameter *parameter, const cJSON *value);
 /* Writes the value as it was given, cut to fit, for messages. */
 void value_describe(const cJSON *value, char *text, size_t size);

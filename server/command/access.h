@@ -31,7 +31,7 @@ int access_open(struct access **out, const struct access_options *options, enum 
                 struct error *err);
 void access_close(struct access **access);
 
-/* Documents as in openapi.yaml; the caller deletes them. */
+/* These give documents as in openapi.yaml; the caller deletes them. */
 int access_submit(struct access *access, const char *text, size_t size,
                   const char *const *overrides, cJSON **out, struct fault_list *faults,
                   struct error *err);
@@ -39,12 +39,12 @@ int access_status(struct access *access, const char *id, cJSON **out, struct err
 int access_list(struct access *access, cJSON **out, struct error *err); /* of all studies */
 int access_cancel(struct access *access, const char *id, cJSON **out, struct error *err);
 int access_retry(struct access *access, const char *id, cJSON **out, struct error *err);
-/* Results and reports, whose theories a server completes in any case. */
+/* These give results and reports, whose theories a server completes in any case. */
 int access_results(struct access *access, const char *id, const struct result_filter *filter,
                    struct study_result *out, struct error *err);
 int access_report(struct access *access, const char *id, struct study_report *out,
                   struct error *err);
-/* path must not exist. */
+/* Copies the store to a file; path must not exist. */
 int access_snapshot(struct access *access, const char *path, struct error *err);
 
 #endif

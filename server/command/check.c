@@ -76,7 +76,7 @@ static void print_cases(const struct study *study) {
     table_clear(&table);
 }
 
-/* Effective values of all cases; what is swept stands in the table. */
+/* Prints the effective values of all cases; what is swept stands in the table. */
 static void print_values(const struct study *study, const cJSON *object, const char *prefix) {
     for (const cJSON *member = object->child; member != NULL; member = member->next) {
         char pointer[256];
@@ -136,7 +136,7 @@ static int print_document(cJSON *document, struct error *err) {
     return status;
 }
 
-/* As the service gives it (GET /v1/study.schema.json). */
+/* Prints the schema as the service gives it (GET /v1/study.schema.json). */
 static int print_schema(struct error *err) {
     cJSON *schema = study_schema(JOB_KINDS);
     char *text = schema != NULL ? json_print_pretty(schema) : NULL;

@@ -37,7 +37,7 @@ void signals_catch(void);
 
 /* Prints "rugo COMMAND: text" to standard error and gives the exit status of an error code. */
 int command_fail(const char *command, const struct error *err);
-/* The same for what is wrong in a file: "FILE: pointer: detail", one a line. */
+/* Prints what is wrong in a file likewise: "FILE: pointer: detail", one a line. */
 int command_fail_faults(const char *file, const struct fault_list *faults);
 /* Prints "rugo COMMAND: no results: error" to standard error where a result has an error. */
 void command_warn_missing(const char *command, const struct case_result *result);
@@ -46,7 +46,7 @@ void command_warn_missing(const char *command, const struct case_result *result)
 int output_flush(struct error *err);
 /* Prints a JSON document as one line; NULL: out of memory. */
 int output_document(const cJSON *document, struct error *err);
-/* The file's bytes, NUL-terminated; "-" is standard input. Caller frees. */
+/* Reads the file's bytes and puts a NUL behind them; "-" is standard input. The caller frees. */
 int file_read(const char *path, size_t limit, char **text, size_t *size, struct error *err);
 /* The study in a file, read and checked with these changes (--set); errors name the file. */
 int study_file_read(struct study **out, const char *path, const char *const *overrides,

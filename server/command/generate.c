@@ -33,7 +33,7 @@ static const struct option_row OPTIONS[] = {
     {"set", 0, OPTION_LIST, 0, 0, AT(overrides), "PATH=VALUE", NULL, SET_HELP},
     {0}};
 
-/* What to do, from the options. */
+/* The options ask for this. */
 struct generate_order {
     const struct generate_options *options;
     const char *study, *output; /* output NULL: standard output */

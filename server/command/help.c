@@ -3,7 +3,7 @@
 #include "schema/study/reference.h"
 #include <string.h>
 
-/* What `rugo help` tells beside the commands. */
+/* `rugo help` explains these topics beside the commands. */
 struct topic {
     const char *name, *summary;
     void (*print)(FILE *file); /* NULL: help_study */

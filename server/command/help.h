@@ -9,11 +9,11 @@ void help_commands(FILE *file);
 void help_command(const struct command *command, FILE *file);
 void help_man(FILE *file);  /* rugo(1), as roff */
 void help_bash(FILE *file); /* completion for bash */
-/* "-o, --output FILE" */
+/* Writes "-o, --output FILE". */
 void help_option_name(const struct option_row *row, char *text, size_t size);
-/* What an option does, with its default. */
+/* Writes what an option does, with its default. */
 void help_option_text(const struct option_row *row, char *text, size_t size);
-/* NULL: there is none of this name. */
+/* Returns NULL where there is none of this name. */
 const struct command *command_find(const char *name);
 
 #endif

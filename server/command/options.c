@@ -66,7 +66,7 @@ bool rising_numbers(const char *text, size_t most, double *out, size_t *count) {
     }
 }
 
-/* The number of a word in "one|two|three"; -1 where it is none of them. */
+/* Returns the number of a word in "one|two|three"; -1 where it is none of them. */
 static int read_choice(const char *words, const char *text) {
     size_t length = strlen(text);
     for (int n = 0;; n++) {
@@ -216,7 +216,7 @@ static int unknown_option(const char *command, const struct option_row *rows, co
     return usage_error(command, "unknown option %.60s", typed);
 }
 
-/* getopt's own names of the table. */
+/* Fills in getopt's own names of the table. */
 static void fill_names(const struct option_row *rows, struct option *names, char *letters) {
     *letters++ = ':'; /* tell a missing argument from an unknown option */
     for (int r = 0; rows[r].name != NULL && r < ROWS_MOST; r++) {

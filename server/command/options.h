@@ -40,11 +40,11 @@ __attribute__((format(printf, 2, 3))) int usage_error(const char *command, const
  * than `most`. */
 bool rising_numbers(const char *text, size_t most, double *out, size_t *count);
 
-/* Whether `name` is nearer than *best to what was typed (letters changed, left out, put in or
- * swapped): *best, 3 at first, becomes its distance. What is typed whole in `name` is near. */
+/* Returns whether `name` is nearer than *best to what was typed (letters changed, left out, put in
+ * or swapped): *best, 3 at first, becomes its distance. What is typed whole in `name` is near. */
 bool name_is_nearer(const char *typed, const char *name, size_t *best);
 
-/* Processors that this process may use, at least 1. */
+/* Returns the processors that this process may use, at least 1. */
 unsigned processors(void);
 
 #endif

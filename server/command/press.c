@@ -15,7 +15,7 @@
 
 enum { LOADS_MOST = 1000 };
 
-/* What --model may name. */
+/* --model may name these. */
 static const struct choice MODELS[] = {
     {"halfspace", MODEL_HALFSPACE}, {"layered", MODEL_LAYERED}, {NULL, 0}};
 
@@ -39,7 +39,7 @@ static const struct option_row OPTIONS[] = {
      "write the pressures p/(E* h') of the last load there, as a map"},
     {0}};
 
-/* What to do, from the options. */
+/* The options ask for this. */
 struct press_order {
     const char *path, *output;
     struct block block;
@@ -49,7 +49,7 @@ struct press_order {
     double load[LOADS_MOST]; /* p/(E* h'), rising */
 };
 
-/* What is told of a load; lengths over the RMS height, pressures over E* h'. */
+/* The table has these columns; lengths are over the RMS height, pressures over E* h'. */
 enum column {
     LOAD,
     EDGES,

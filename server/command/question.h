@@ -4,7 +4,8 @@
 
 #include "server/command/access.h"
 
-/* id: of a study, as given on the command line; options: the command's. */
+/* A command asks and shows by these; id is that of a study, as given on the command line, and
+ * options are the command's. */
 struct question {
     const char *command;
     enum access_mode mode;
@@ -12,7 +13,7 @@ struct question {
                struct error *err);
     int (*show)(const cJSON *document, const char *id, const void *options, struct error *err);
 };
-/* Checks the place, asks, shows; an exit status. */
+/* Checks the place, asks and shows; returns an exit status. */
 int question_answer(const struct question *question, const struct access_options *place,
                     const char *id, const void *options);
 /* A command that changes one study and shows its progress then; its only options are the place. */
@@ -24,10 +25,10 @@ struct change_options {
     struct access_options place;
 };
 extern const struct option_row CHANGE_OPTIONS[];
-/* An exit status. */
+/* Makes the change and shows the progress; returns an exit status. */
 int change_answer(const struct change_question *change, const struct change_options *options,
                   const char *id);
-/* A study's progress, as text. */
+/* Prints a study's progress as text. */
 int show_progress(const cJSON *document, const char *id, const void *options, struct error *err);
 
 #endif

@@ -112,7 +112,7 @@ static int check_published(const struct run *run, const struct study_status *now
                      run->id, counts->postponed > 0 ? counts->reason.text : "?");
 }
 
-/* What the table needs: all curves only where files are written. */
+/* Returns what the table needs: all curves only where files are written. */
 static struct result_filter filter_of(const struct run *run, const char *kind) {
     const struct job_kind *found = kind_find(kind);
     const struct result_view *view = found != NULL ? found->view : NULL;

@@ -43,7 +43,7 @@ struct serve {
     struct http *http;
 };
 
-/* "127.0.0.1:8080" or "[::1]:8080". */
+/* Reads "127.0.0.1:8080" or "[::1]:8080". */
 static int read_listen(struct serve *serve, struct error *err) {
     const char *text = serve->options->listen, *colon = strrchr(text, ':');
     char *end = NULL;
@@ -119,7 +119,7 @@ static int local_workers_start(struct local_workers *workers, struct error *err)
     return 0;
 }
 
-/* A token of this run alone, for the workers in this process. */
+/* Makes a token of this run alone, for the workers in this process. */
 static int local_workers_token(struct local_workers *workers, struct error *err) {
     struct tokens *tokens = workers->serve->service.tokens;
     unsigned char bytes[(TOKEN_SIZE - 1) / 2];

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* The q among the parameters of a range. */
+/* Returns the q among the parameters of a range. */
 static double weight(const char *parameters, size_t size) {
     for (const char *at = parameters; at < parameters + size; at++) {
         if (*at != ';')

@@ -10,7 +10,7 @@
 struct checker;
 int checker_create(struct checker **out, struct error *err);
 void checker_destroy(struct checker **checker);
-/* ERROR_INPUT when the result is none of this job's case. */
+/* Fails with ERROR_INPUT when the result is none of this job's case. */
 int checker_check(struct checker *checker, const struct claimed_job *job,
                   const struct block_result *result, struct error *err);
 

@@ -34,7 +34,7 @@ static bool has_ended(const cJSON *status) {
     return state == NULL || (strcmp(state, "queued") != 0 && strcmp(state, "running") != 0);
 }
 
-/* The text of the next event, NULL when there is nothing new. */
+/* Returns the text of the next event, or NULL when there is nothing new. */
 static char *read_event(struct event_stream *stream) {
     struct store *reader;
     struct error err = {0};

@@ -273,7 +273,7 @@ int exchange_socket(const struct exchange *exchange) {
 
 /* --- start and stop --- */
 
-/* The name in a Host header, without its port and brackets. */
+/* Writes the name in a Host header without its port and brackets. */
 static void host_name(const char *host, char *name, size_t size) {
     size_t length = *host == '[' ? strcspn(host + 1, "]") : strcspn(host, ":");
     snprintf(name, size, "%.*s", (int)length, host + (*host == '['));

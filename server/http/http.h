@@ -45,11 +45,11 @@ const char *exchange_header(const struct exchange *exchange, const char *name);
 
 int exchange_socket(const struct exchange *exchange);
 
-/* Takes the document. */
+/* Answers with a document, which it takes. */
 void answer_json(struct exchange *exchange, unsigned status, cJSON *document);
-/* Takes text (malloc). */
+/* Answers with a text, which it takes (malloc). */
 void answer_text(struct exchange *exchange, unsigned status, const char *type, char *text);
-/* Static data that outlives the server. */
+/* Answers with static data that outlives the server. */
 void answer_static(struct exchange *exchange, const char *type, const char *data, size_t size);
 void answer_empty(struct exchange *exchange, unsigned status);
 /* Adds a header to the answer. */
@@ -57,10 +57,10 @@ void answer_header(struct exchange *exchange, const char *name, const char *valu
 /* Makes well-formed UTF-8 of a text, which JSON must be: messages quote what a peer sent as it
  * came, or cut within a character. Accepts NULL. */
 void answer_mend(char *text);
-/* RFC 9457. */
+/* Answers with a problem as RFC 9457 has it. */
 void answer_problem(struct exchange *exchange, unsigned status, const char *detail,
                     const struct fault_list *faults);
-/* The status that an error code stands for, and its text. */
+/* Answers with the status that an error code stands for, and its text. */
 void answer_error(struct exchange *exchange, const struct error *err);
 /* Gives the peer the whole deadline again; for streams, each time that it takes a part. */
 void exchange_renew(struct exchange *exchange);

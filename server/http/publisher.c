@@ -23,7 +23,7 @@ static bool is_stopping(void *context) {
     return stopping;
 }
 
-/* True when cases stay due that are to be tried again. */
+/* Publishes all that is due; returns true when cases stay due that are to be tried again. */
 static bool publish_all(struct publisher *publisher) {
     struct error err = {0};
     struct publish_counts counts = {0};

@@ -1,4 +1,4 @@
-/* The query of a request: what it may hold, and numbers in it. */
+/* The query of a request is checked for what it may hold, and numbers are read from it. */
 #include "server/http/route.h"
 #include <errno.h>
 #include <stdio.h>

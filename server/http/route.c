@@ -35,7 +35,7 @@ static const struct route {
 };
 enum { ROUTE_COUNT = sizeof ROUTES / sizeof *ROUTES };
 
-/* Whether a path fits a pattern; the starred segment goes to id. */
+/* Returns whether a path fits a pattern; the starred segment goes to id. */
 static bool fits(const char *pattern, const char *path, char id[SEGMENT_SIZE]) {
     for (; *pattern != '\0'; pattern++) {
         if (*pattern != '*') {
@@ -66,7 +66,7 @@ static const struct route *find_route(const struct exchange *exchange, char id[S
     return NULL;
 }
 
-/* The methods of a path: "" for a path that there is not. */
+/* Writes the methods of a path: "" for a path that there is not. */
 static void allowed_methods(const char *path, char *text, size_t size) {
     char id[SEGMENT_SIZE];
     size_t used = 0;

@@ -14,13 +14,13 @@ route_handler handle_claim, handle_heartbeat, handle_complete, handle_fail, hand
 route_handler handle_health, handle_metrics, handle_snapshot, handle_openapi, handle_schema,
     handle_page, handle_script, handle_style;
 
-/* Whether there is a body; false after a 400. */
+/* Returns whether there is a body; false after a 400. */
 bool check_body(struct exchange *exchange);
-/* The body as JSON; answers 400 itself and gives NULL where it is none. */
+/* Returns the body as JSON; answers 400 itself and returns NULL where it is none. */
 cJSON *body_json(struct exchange *exchange);
 
-/* Whether the query holds nothing but these names (the rest NULL), each once and with a value;
- * false after a 422. */
+/* Returns whether the query holds nothing but these names (the rest NULL), each once and with a
+ * value; false after a 422. */
 bool query_check(struct exchange *exchange, const char *const names[QUERY_NAMES_MOST]);
 /* A whole number of the query: left alone where it is not there. False after a 422. */
 bool query_number(struct exchange *exchange, const char *name, int64_t least, int64_t most,

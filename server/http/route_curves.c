@@ -14,7 +14,7 @@
 
 enum { CSV_CASES_MOST = 64 }; /* a table is made as a whole: its columns depend on all cases */
 
-/* An answer on its way. */
+/* An answer is sent from this, part by part. */
 struct stream {
     struct exchange *exchange; /* lives as long as the library calls next_part */
     struct aggregate study;    /* owned */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A message that does not read: 422 with what is wrong. */
+/* Answers 422 to a message that cannot be read, with what is wrong. */
 static void refuse_message(struct exchange *exchange, const struct error *err) {
     struct fault_list faults = {0};
     fault_add(&faults, "", "%s", err->text);

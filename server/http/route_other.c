@@ -82,7 +82,7 @@ void handle_metrics(struct exchange *exchange, const char *id) {
 
 enum { SNAPSHOTS_MOST = 4 }; /* at a time: each is a copy of the whole database */
 
-/* A copy on its way. */
+/* A copy of the database is sent from this, part by part. */
 struct download {
     struct exchange *exchange; /* lives as long as the library calls read_download */
     struct service *service;

@@ -39,7 +39,7 @@ static void submit(struct exchange *exchange, const struct study *study) {
     answer_header(exchange, "Location", location);
 }
 
-/* A key that can be told again in an answer. */
+/* Checks that the key is one that an answer can repeat. */
 static bool check_key(struct exchange *exchange) {
     const char *key = exchange_header(exchange, "Idempotency-Key");
     size_t length = 0;

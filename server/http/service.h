@@ -35,11 +35,11 @@ int service_open(struct service *service, const char *database, int64_t lease_ms
                  struct error *err);
 void service_close(struct service *service);
 
-/* A read-only handle, one thread's at a time; give it back. */
+/* Lends a read-only handle to one thread at a time, which gives it back. */
 int service_reader(struct service *service, struct store **out, struct error *err);
 void service_give_back(struct service *service, struct store *reader);
 
-/* Prometheus text; caller frees. */
+/* Makes the Prometheus text; the caller frees it. */
 int service_metrics(struct service *service, char **out, struct error *err);
 
 /* The publisher merges and publishes, on a thread of its own, every case that is due; the store

@@ -33,7 +33,7 @@ int tokens_add(struct tokens *tokens, enum role role, const char *token, struct 
     return 0;
 }
 
-/* The role in front of a line's colon; 0 for an unknown one. */
+/* Returns the role in front of a line's colon; 0 for an unknown one. */
 static unsigned role_of(const char *line, size_t length) {
     static const struct {
         const char *name;

@@ -11,12 +11,12 @@
 enum role { ROLE_NONE = 0, ROLE_READ = 1, ROLE_SUBMIT = 2, ROLE_WORK = 4 };
 struct tokens;
 
-/* ERROR_INPUT names the line at fault, never the token. */
+/* Reads tokens; ERROR_INPUT names the line at fault, never the token. */
 int tokens_read(struct tokens **out, const char *file, struct error *err);
 void tokens_destroy(struct tokens **tokens);
 /* Adds one more token, for this process's own workers. */
 int tokens_add(struct tokens *tokens, enum role role, const char *token, struct error *err);
-/* The roles (bits) of a token; 0 for an unknown one or NULL. */
+/* Returns the roles (bits) of a token; 0 for an unknown one or NULL. */
 unsigned tokens_roles(const struct tokens *tokens, const char *token);
 
 #endif

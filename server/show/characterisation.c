@@ -105,7 +105,7 @@ int characterise_heights(struct characterisation *out, const struct grid *grid, 
     return find_summits(out, grid, z, mode_x, mode_y, err);
 }
 
-/* Whether entry n is the first one of its group. */
+/* Returns whether entry n is the first one of its group. */
 static bool begins_group(const struct characterisation *characterisation, size_t n) {
     const struct characteristic *list = characterisation->list;
     return n == 0 || strcmp(list[n].group, list[n - 1].group) != 0;

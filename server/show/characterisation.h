@@ -9,7 +9,7 @@
 
 enum { CHARACTERISTICS_MOST = 48 };
 
-/* Numbers by name, in groups that follow each other. */
+/* This holds numbers by name, in groups that follow each other. */
 struct characterisation {
     size_t count;
     struct characteristic {
@@ -22,9 +22,9 @@ struct characterisation {
  */
 int characterise_heights(struct characterisation *out, const struct grid *grid, const double *z,
                          size_t mode_x, size_t mode_y, struct error *err);
-/* One value a line, name before it. */
+/* Prints one value a line, its name before it. */
 void characterisation_print(FILE *file, const struct characterisation *characterisation);
-/* {group: {name: value}}, null for NaN. False when out of memory. */
+/* Prints {group: {name: value}}, null for NaN. Returns false when out of memory. */
 bool characterisation_print_json(FILE *file, const struct characterisation *characterisation);
 
 #endif

@@ -10,7 +10,7 @@
 
 enum { PATH_SIZE = 4096 };
 
-/* A file of the folder, closed with a check: a full disk shows at the end. */
+/* Opens a file of the folder. close_file checks it, since a full disk shows at the end. */
 static int open_file(FILE **file, const char *folder, const char *name, struct error *err) {
     char path[PATH_SIZE];
     if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path)
@@ -41,7 +41,7 @@ static int write_json(const struct study_result *study, const char *folder, stru
 
 /* --- curves --- */
 
-/* "case-3-contact_area-edges-full-hencky-8.csv" */
+/* Writes a name such as "case-3-contact_area-edges-full-hencky-8.csv". */
 static void curve_name(const struct case_result *one, const struct curve *curve, char *name,
                        size_t size) {
     const char *const parts[] = {curve->series, curve->model, curve->kinematics};
@@ -106,7 +106,7 @@ static int write_plots_of(const struct study_result *study, const struct curve *
     return status;
 }
 
-/* The quantities of the first case that has begun; no matrices. */
+/* Draws the quantities of the first case that has begun, but no matrices. */
 static int write_plots(const struct study_result *study, const char *folder, struct error *err) {
     size_t c = 0;
     while (c < study->case_count && study->cases[c].curve_count == 0)

@@ -10,11 +10,11 @@
 /* The picture, in SVG user units, and its legend at the right. LETTER: about a letter's width. */
 enum { WIDTH = 960, HEIGHT = 570, LEGEND = FRAME_RIGHT + 48, LETTER = 7 };
 
-/* The first seven after Okabe & Ito (2008): told apart by every reader. */
+/* The first seven are those of Okabe & Ito (2008), which every reader can tell apart. */
 static const char *const COLOURS[PLOT_LINES] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                 "#e69f00", "#56b4e9", "#000000", "#8a8a00",
                                                 "#7f3b08", "#6a51a3", "#999999", "#a50026"};
-/* Of theories, told apart by their dashes. */
+/* Theories differ by their dashes. */
 static const char *const DASHES[] = {"7 4", "2 3", "12 3 2 3", "4 2 1 2 1 2", "14 5", "1 5"};
 enum { DASH_COUNT = sizeof DASHES / sizeof *DASHES };
 
@@ -24,7 +24,7 @@ static const char *const LEVEL_STYLES[] = {
     " stroke-opacity=\".45\" stroke-width=\".9\"", " stroke-opacity=\".3\" stroke-width=\".7\""};
 enum { STYLE_COUNT = sizeof LEVEL_STYLES / sizeof *LEVEL_STYLES };
 
-/* What the pen is about to draw of a quantity. */
+/* The pen draws a quantity from this. */
 struct plot {
     FILE *file;
     struct frame frame;
@@ -35,7 +35,7 @@ struct plot {
 
 /* --- curves --- */
 
-/* A bar of one standard error to either side, where the error can be seen. */
+/* Draws a bar of one standard error to either side, where the error can be seen. */
 static void draw_bars(FILE *file, const struct frame *frame, const struct curve *curve,
                       const char *colour) {
     for (size_t n = 0; n < curve->n; n++) {
@@ -58,7 +58,7 @@ static bool is_inside(const struct frame *frame, double x, double y) {
            y <= frame->y.high && y >= frame->y.low;
 }
 
-/* An open circle where some realisations have no value. */
+/* Draws an open circle where some realisations have no value. */
 static void draw_partial(struct plot *plot, const struct curve *curve, const char *colour) {
     for (size_t n = 0; n < curve->n && curve->valueless != NULL; n++) {
         double x = curve->x[n], y = curve->y[n];
@@ -71,7 +71,7 @@ static void draw_partial(struct plot *plot, const struct curve *curve, const cha
     }
 }
 
-/* Through n points; style: attributes of the path. */
+/* Draws a line through n points; style has the attributes of the path. */
 static void draw_line(FILE *file, const struct frame *frame, size_t n, const double *x,
                       const double *y, const char *style) {
     bool pen_down = false;
@@ -136,7 +136,7 @@ static void draw_curves(struct plot *plot) {
 
 /* --- theories --- */
 
-/* NULL: the line has no such theory. */
+/* Returns NULL where the line has no such theory. */
 static const double *theory_of(const struct plot_line *line, const char *name) {
     for (size_t t = 0; t < line->curve->theory_count; t++)
         if (strcmp(line->curve->theories[t].name, name) == 0)
@@ -151,7 +151,7 @@ static bool same_numbers(size_t n, const double *a, const double *b) {
     return true;
 }
 
-/* Whether two lines have the same theory of this name, or one of them has none. */
+/* Returns whether two lines have the same theory of this name, or one of them has none. */
 static bool same_theory(const struct plot_line *a, const struct plot_line *b, const char *name) {
     const double *one = theory_of(a, name), *other = theory_of(b, name);
     size_t n = a->curve->n;
@@ -160,8 +160,8 @@ static bool same_theory(const struct plot_line *a, const struct plot_line *b, co
             same_numbers(n, one, other));
 }
 
-/* Whether the theory of this name was met at a line before this one; alike: with the same values.
- */
+/* Returns whether the theory of this name was met at a line before this one; alike: with the same
+ * values. */
 static bool met_before(const struct plot_choice *choice, size_t line, const char *name,
                        bool alike) {
     for (size_t n = 0; n < line; n++)
@@ -199,7 +199,7 @@ static void draw_theory(struct plot *plot, const char *name, size_t dash) {
     draw_legend(plot, label, style);
 }
 
-/* On top of all curves, in the order in which they are met. */
+/* Draws theories on top of all curves, in the order in which they are met. */
 static void draw_theories(struct plot *plot) {
     size_t dash = 0;
     for (size_t n = 0; n < plot->choice.count; n++) {
@@ -238,7 +238,7 @@ static void include(struct frame *frame, const struct curve *curve, bool theorie
             frame_include(frame, curve->n, curve->x, curve->theories[t].y);
 }
 
-/* logarithmic: as the view has the quantity. */
+/* Fits the frame to the curves; axes are logarithmic as the view has the quantity. */
 static bool fit(struct plot *plot, const struct plot_request *request, bool logarithmic) {
     const struct plot_choice *choice = &plot->choice;
     const struct curve *first = choice->lines[0].curve;
@@ -249,7 +249,7 @@ static bool fit(struct plot *plot, const struct plot_request *request, bool loga
     return frame_finish(&plot->frame);
 }
 
-/* As wide as the longest label of the legend needs. */
+/* Returns the width that the longest label of the legend needs. */
 static int width_of(const struct plot_choice *choice) {
     int width = WIDTH;
     for (size_t n = 0; n < choice->count; n++) {
@@ -262,7 +262,7 @@ static int width_of(const struct plot_choice *choice) {
     return note > width ? note : width;
 }
 
-/* title for readers of the file and for those of the picture. */
+/* Draws the title for readers of the file and for those of the picture. */
 static void draw_title(const struct plot *plot, const char *name, const char *quantity) {
     char title[PLOT_LABEL_SIZE];
     snprintf(title, sizeof title, "%.120s: %.60s", name, quantity);

@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-/* How narrow the choice is: each step keeps what those before it keep. */
+/* The choice narrows by steps, each of which keeps no more than those before it. */
 enum { KEEP_ESTIMATES = 1, KEEP_FINEST, KEEP_SERIES, KEEP_MODEL, KEEP_FIRST };
 
 struct choosing {
@@ -13,7 +13,7 @@ struct choosing {
     int narrow;
 };
 
-/* No matrices. */
+/* Says whether a curve may be drawn; matrices may not. */
 static bool is_candidate(const struct choosing *choosing, const struct curve *curve) {
     return strcmp(curve->quantity, choosing->quantity) == 0 && curve->columns == 0 &&
            (choosing->y_label == NULL || same_text(curve->y_label, choosing->y_label));
@@ -23,7 +23,7 @@ static bool same_colour(const struct curve *a, const struct curve *b) {
     return curve_same_series(a, b) && same_text(a->model, b->model);
 }
 
-/* Levels of the same series that are finer. */
+/* Counts the levels of the same series that are finer. */
 static size_t finer_levels(const struct case_result *one, const struct curve *curve) {
     size_t finer = 0;
     for (size_t a = 0; a < one->curve_count; a++)
@@ -41,7 +41,7 @@ static bool is_kept(const struct choosing *choosing, const struct case_result *o
            (narrow < KEEP_MODEL || same_text(curve->model, choosing->first->model));
 }
 
-/* That of an earlier line of the series, or a new one. */
+/* Returns the colour of an earlier line of the series, or a new one. */
 static size_t colour_of(const struct plot_choice *choice, const struct plot_line *line) {
     size_t colours = 0;
     for (const struct plot_line *l = choice->lines; l < line; l++) {
@@ -52,7 +52,7 @@ static size_t colour_of(const struct plot_choice *choice, const struct plot_line
     return colours;
 }
 
-/* Curves kept; the first of them fill the choice. */
+/* Counts the curves kept; the first of them fill the choice. */
 static size_t collect(struct plot_choice *choice, const struct choosing *choosing) {
     size_t found = 0;
     choice->count = 0;
@@ -133,7 +133,7 @@ void plot_choose(struct plot_choice *choice, const struct study_result *study, c
 
 /* --- labels --- */
 
-/* Whether some case of the study has another value than this one at its parameter p. */
+/* Returns whether some case of the study has another value than this one at its parameter p. */
 static bool varies(const struct study_result *study, const struct case_result *one, size_t p) {
     const struct result_parameter *value = &one->parameters[p];
     for (size_t c = 0; c < study->case_count; c++)

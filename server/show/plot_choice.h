@@ -24,7 +24,7 @@ struct plot_choice {
  * where no case has the quantity. */
 void plot_choose(struct plot_choice *choice, const struct study_result *study, const char *quantity,
                  const char *y_label);
-/* "hurst 0.8, halfspace, edges, level 8": what tells a line from the others. */
+/* Writes what tells a line from the others: "hurst 0.8, halfspace, edges, level 8". */
 void plot_label(const struct plot_choice *choice, size_t line, char label[PLOT_LABEL_SIZE]);
 
 #endif

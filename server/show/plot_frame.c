@@ -75,7 +75,7 @@ static double tick_step(const struct plot_axis *axis) {
     return power * (relative < 1.5 ? 1 : relative < 3.5 ? 2 : relative < 7.5 ? 5 : 10);
 }
 
-/* Zero, where a multiple of the step misses it by rounding. */
+/* Returns the value of a tick: zero where a multiple of the step misses it by rounding. */
 static double tick_value(double value, const struct plot_axis *axis) {
     return fabs(value) < 1e-12 * (axis->high - axis->low) ? 0.0 : value;
 }

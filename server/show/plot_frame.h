@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* The area of the curves, in SVG user units. */
+/* Curves are drawn in this area, in SVG user units. */
 enum { FRAME_LEFT = 80, FRAME_RIGHT = 700, FRAME_TOP = 40, FRAME_BOTTOM = 500 };
 
 struct plot_axis {
@@ -21,14 +21,14 @@ void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic);
 void frame_include(struct frame *frame, size_t n, const double *x, const double *y);
 bool frame_finish(struct frame *frame);
 
-/* Where a value stands on the picture. */
+/* Returns where a value stands on the picture. */
 double frame_x(const struct frame *frame, double x);
 double frame_y(const struct frame *frame, double y);
-/* Whether a point has a place: two finite numbers, above 0 on logarithmic axes. */
+/* Returns whether a point has a place: two finite numbers, above 0 on logarithmic axes. */
 bool frame_has_place(const struct frame *frame, double x, double y);
 
 void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label);
-/* Text with what XML reserves escaped. */
+/* Prints a text, in which what XML reserves is escaped. */
 void svg_text(FILE *file, const char *text);
 
 #endif

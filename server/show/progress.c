@@ -20,7 +20,7 @@ static double estimate_left(struct study_progress *progress, const struct study_
     return left < 0 ? 0 : left;
 }
 
-/* What is left at the pace so far where all realisations cost the same. */
+/* Estimates what is left at the pace so far, as if all realisations cost the same. */
 static double seconds_left(struct study_progress *progress, const struct study_status *now,
                            int64_t clock) {
     double elapsed = (double)(clock - progress->start_ms) / 1000;

@@ -14,7 +14,7 @@ struct study_progress {
     int64_t estimate_ms;
     bool shown;
 };
-/* For worker_options.tick; context is a struct study_progress. */
+/* Draws the bar, as worker_options.tick; context is a struct study_progress. */
 int progress_tick(void *context);
 /* Finishes the bar's line. */
 void progress_end(struct study_progress *progress);

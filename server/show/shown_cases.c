@@ -19,7 +19,7 @@ bool parameter_same(const struct result_parameter *a, const struct result_parame
     return a->text == b->text && a->number == b->number;
 }
 
-/* Whether some case has another value than the first one at its parameter p. */
+/* Returns whether some case has another value than the first one at its parameter p. */
 static bool varies(const struct shown_cases *shown, size_t p) {
     const struct result_parameter *first = &shown->list[0]->parameters[p];
     for (size_t c = 1; c < shown->count; c++)

@@ -18,7 +18,7 @@ struct shown_cases {
     bool partial; /* some curve has points without the values of all realisations */
 };
 
-/* False when out of memory. The results must outlive what is made of them. */
+/* These return false when out of memory. The results must outlive what is made of them. */
 bool shown_of_results(const struct study_result *study, struct shown_cases *out);
 bool shown_of_report(const struct study_report *report, struct shown_cases *out);
 void shown_clear(struct shown_cases *shown);
@@ -27,16 +27,16 @@ void shown_clear(struct shown_cases *shown);
  * case, which is looked at first. */
 const struct result_parameter *parameter_at(const struct case_result *one, const char *pointer,
                                             size_t place);
-/* NULL: a case without the parameter. */
+/* Compares two values; NULL stands for a case without the parameter. */
 bool parameter_same(const struct result_parameter *a, const struct result_parameter *b);
-/* "hurst" of "/surface/hurst". */
+/* Returns "hurst" of "/surface/hurst". */
 const char *last_name(const char *pointer);
 
-/* "hurst 0.8, weibull_min, ": the values of case c of what was swept. */
+/* Prints "hurst 0.8, weibull_min, ": the values of case c of what was swept. */
 void print_swept(const struct shown_cases *shown, size_t c, FILE *file);
-/* Notes of all cases, at most so many of them; nothing where there are none. */
+/* Prints notes of all cases, at most so many of them; nothing where there are none. */
 void print_notes(const struct shown_cases *shown, size_t most, FILE *file);
-/* Why cases have no results, a line each; nothing where all have. */
+/* Prints why cases have no results, a line each; nothing where all have. */
 void print_missing(const struct shown_cases *shown, FILE *file);
 /* What "(n of N)" means, where some case is partial. x: what the values are at, "load". */
 void print_partial(const struct shown_cases *shown, const char *x, FILE *file);

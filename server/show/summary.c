@@ -5,7 +5,7 @@
 
 /* --- scalars --- */
 
-/* Whether some case has this scalar; with its theory. */
+/* Returns whether some case has this scalar; with its theory. */
 static bool has_scalar(const struct shown_cases *shown, const char *name, bool with_theory) {
     for (size_t c = 0; c < shown->count; c++) {
         const struct scalar *scalar = result_scalar(shown->list[c], name);
@@ -46,7 +46,7 @@ static void scalar_cells(struct text_table *table, const struct scalar *scalar, 
 
 /* --- a row a case --- */
 
-/* What such a table has beside the swept parameters. */
+/* Such a table has this beside the swept parameters. */
 struct scalar_table {
     const struct shown_cases *shown;
     const struct study_report *report; /* or NULL */

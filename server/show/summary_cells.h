@@ -6,25 +6,26 @@
 #include "server/show/shown_cases.h"
 #include "server/show/text_table.h"
 
-/* A heading a swept parameter; the values of case c. */
+/* These add a heading for each swept parameter, and the values of case c. */
 void varied_headings(struct text_table *table, const struct shown_cases *shown);
 void varied_cells(struct text_table *table, const struct shown_cases *shown, size_t c);
-/* "0.25772 +- 0.00022": as many digits as the error has sense for. */
+/* Writes "0.25772 +- 0.00022" with as many digits as the error has sense for. */
 void measured_text(double value, double error, char *out, size_t size);
 void measured_cell(struct text_table *table, double value, double error);
-/* " (2 of 3)" where a mean is not over all realisations; "" otherwise. */
+/* Writes " (2 of 3)" where a mean is not over all realisations; "" otherwise. */
 const char *partial_text(double realisations, double valueless, char *out, size_t size);
-/* A share of one in percent, with two digits; "-" for NaN. */
+/* Adds a share of one in percent, with two digits; "-" for NaN. */
 void percent_cell(struct text_table *table, double share);
-/* Headings of sources of error: what `words` calls it (NULL: its own name). */
+/* Returns what `words` calls a source of error; its own name where that is NULL. */
 const char *source_word(const char *const *words, enum error_source source);
 /* "Not known: cell, block." in a line of its own; nothing where none is unknown. */
 void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file);
 /* "layered", or "full (hencky)" where the model has several kinematics; "-" without one. */
 const char *model_text(const char *model, const char *kinematics, char *out, size_t size);
-/* Whether a series is a bracket of another one, and no estimate: nodes_lower, nodes_upper. */
+/* Returns whether a series is a bracket of another one, and no estimate: nodes_lower, nodes_upper.
+ */
 bool is_bracket(const char *series);
-/* "2 h 5 min", "12 s", "-" for NaN. */
+/* Writes "2 h 5 min", "12 s", or "-" for NaN. */
 void duration_text(double seconds, char *out, size_t size);
 void duration_cell(struct text_table *table, double seconds);
 /* "15 s of CPU time in 2 min 21 s", or what is known of it. */

@@ -54,7 +54,7 @@ static size_t place_count(const struct finest_curves *finest) {
     return finest->model_count > 0 ? finest->curves[0]->n : 0;
 }
 
-/* NaN for what is not there. */
+/* Returns NaN for what is not there. */
 static double number_at(const double *numbers, const struct curve *curve, size_t k) {
     return numbers != NULL && k < curve->n ? numbers[k] : (double)NAN;
 }
@@ -87,7 +87,7 @@ static void value_cell(struct text_table *table, const struct case_result *one,
     table_cell(table, "%s%s", text, partial);
 }
 
-/* "kappa 2.80 +- 0.08 (theory 1.5958)" */
+/* Prints "kappa 2.80 +- 0.08 (theory 1.5958)". */
 static void print_scalar(const struct case_result *one, const char *name, FILE *file) {
     const struct scalar *scalar = result_scalar(one, name);
     char text[64];
@@ -100,7 +100,7 @@ static void print_scalar(const struct case_result *one, const char *name, FILE *
 
 /* --- a table a case --- */
 
-/* Whether anything is known of the source. */
+/* Returns whether anything is known of the source. */
 static bool has_column(const struct finest_curves *finest, enum error_source source) {
     bool known = false;
     for (size_t m = 0; m < finest->model_count; m++)
@@ -108,7 +108,7 @@ static bool has_column(const struct finest_curves *finest, enum error_source sou
     return known;
 }
 
-/* Sources that bear on a curve and of which nothing is known. */
+/* Finds the sources that bear on a curve and of which nothing is known. */
 static void find_unknown(const struct finest_curves *finest, bool unknown[ERROR_SOURCES]) {
     for (size_t m = 0; m < finest->model_count; m++)
         for (size_t s = 0; s < ERROR_SOURCES; s++) {
@@ -161,7 +161,7 @@ static void put_place(const struct case_result *one, const struct finest_curves 
     }
 }
 
-/* At most PLACES_SHOWN of the places, with the first and the last. */
+/* Prints at most PLACES_SHOWN of the places, with the first and the last. */
 static void print_table(const struct quantity_table *words, const struct case_result *one,
                         const struct finest_curves *finest, FILE *file) {
     const struct curve *first = finest->curves[0];
@@ -220,7 +220,7 @@ static size_t sample_place(const struct finest_curves *finest, size_t n) {
     return places > 0 ? n * (places - 1) / (SAMPLES - 1) : 0;
 }
 
-/* x of each sample, NaN where cases differ in it. */
+/* Finds x of each sample, NaN where cases differ in it. */
 static void find_samples(const struct quantity_table *words, const struct shown_cases *shown,
                          double x[SAMPLES]) {
     bool begun = false;
@@ -235,7 +235,7 @@ static void find_samples(const struct quantity_table *words, const struct shown_
     }
 }
 
-/* Sources that are known of a case's main curve. */
+/* Finds the sources that are known of a case's main curve. */
 static void find_known(const struct study_report *report, const struct shown_cases *shown,
                        bool known[ERROR_SOURCES]) {
     for (size_t c = 0; c < shown->count; c++) {

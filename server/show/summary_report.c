@@ -11,7 +11,7 @@ enum { TABLES_MOST = 4, SERIES_MOST = 64, NOTES_SHOWN = 40 };
 
 enum { ERROR_COLUMNS = ERROR_SOURCES + 2 };
 
-/* Which columns a table has: sources of which anything is known. */
+/* A table has columns for the sources of which anything is known. */
 struct error_columns {
     bool shown[ERROR_COLUMNS], unknown[ERROR_SOURCES];
     size_t count;
@@ -24,7 +24,7 @@ static void find_columns(const struct curve_report *curve, struct error_columns 
     }
 }
 
-/* Of all curves of the main quantities. */
+/* Finds the columns for all curves of the main quantities. */
 static struct error_columns columns_of(const struct study_report *report) {
     struct error_columns columns = {.shown = {[0] = true, [ERROR_COLUMNS - 1] = true}};
     for (size_t c = 0; c < report->case_count; c++) {
@@ -53,7 +53,7 @@ static void error_cells(const struct error_columns *columns, const double errors
             percent_cell(table, errors[e]);
 }
 
-/* NaN without a curve. */
+/* Fills in NaN without a curve. */
 static void errors_of(const struct curve_report *curve, double errors[ERROR_COLUMNS]) {
     errors[0] = curve != NULL ? curve->statistical : (double)NAN;
     for (int source = 0; source < ERROR_SOURCES; source++)
@@ -99,7 +99,7 @@ static void print_cases(const struct study_report *report, const struct shown_ca
 
 /* --- a row a series: model, level, estimator --- */
 
-/* Sums over the cases that have the series. */
+/* These sums are over the cases that have the series. */
 struct series_cost {
     const struct curve *place; /* of the first case */
     double cpu_seconds, realisations, valueless, squares[ERROR_COLUMNS];
@@ -139,7 +139,7 @@ static void add_curve(struct series_cost *series, const struct case_report *one,
         }
 }
 
-/* The series of the case's main quantity that have a model; estimates alone. */
+/* Adds the series of the case's main quantity that have a model; estimates alone. */
 static void add_case(struct series_list *list, const struct case_report *one) {
     for (size_t a = 0; a < one->curve_count && one->main != NULL; a++) {
         const struct curve *place = &one->curves[a].place;
@@ -168,7 +168,7 @@ static void put_series(const struct series_cost *series, const struct error_colu
     error_cells(columns, errors, table);
 }
 
-/* Of the cases `first` to `end` - 1 together. */
+/* Prints the series of the cases `first` to `end` - 1 together. */
 static void print_series(const struct study_report *report, size_t first, size_t end,
                          const char *title, const struct shown_cases *swept,
                          const struct error_columns *columns, FILE *file) {

@@ -8,13 +8,13 @@ static const char *text_of(const cJSON *object, const char *key) {
     return text != NULL ? text : "-";
 }
 
-/* NaN for what is absent or no number. */
+/* Returns NaN for what is absent or no number. */
 static double number_of(const cJSON *object, const char *key) {
     const cJSON *number = field_at(object, key);
     return cJSON_IsNumber(number) ? number->valuedouble : (double)NAN;
 }
 
-/* Of a job; without one, of a case whose curves could not be published. */
+/* Prints the failure of a job; without one, that of a case that could not be published. */
 static void print_failure(const cJSON *failure, FILE *file) {
     const char *reason = text_of(failure, "reason");
     double one = number_of(failure, "case"), first = number_of(failure, "first");

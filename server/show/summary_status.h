@@ -5,7 +5,7 @@
 #include <cjson/cJSON.h>
 #include <stdio.h>
 
-/* Progress of one study, with its failures; of a list of them. */
+/* These print the progress of one study with its failures, and of a list of studies. */
 void summary_of_status(const cJSON *status, FILE *file);
 void summary_of_list(const cJSON *studies, FILE *file);
 

@@ -42,7 +42,7 @@ void table_number(struct text_table *table, double value) {
         table_cell(table, "%.5g", value);
 }
 
-/* Characters on a screen: bytes that begin a UTF-8 sequence. */
+/* Counts characters on a screen: bytes that begin a UTF-8 sequence. */
 static size_t width_of(const char *text) {
     size_t width = 0;
     for (; *text != '\0'; text++)
@@ -99,7 +99,7 @@ static size_t width_between(const struct column_shape *shapes, size_t begin, siz
     return width;
 }
 
-/* Columns of the terminal; everything else has room. */
+/* Returns the columns of the terminal; everything else has room. */
 static size_t room_of(FILE *file) {
     struct winsize size;
     bool known = isatty(fileno(file)) != 0 && ioctl(fileno(file), TIOCGWINSZ, &size) == 0;

@@ -17,12 +17,12 @@ struct text_table {
 /* Before a cell of the heading: a table too wide for its terminal may be folded here. Columns
  * before the first fold stand at the left of every part. */
 void table_fold(struct text_table *table);
-/* The next cell, filled from left to right, top to bottom. */
+/* Fills the next cell, from left to right and top to bottom. */
 __attribute__((format(printf, 2, 3))) void table_cell(struct text_table *table, const char *format,
                                                       ...);
-/* The same with up to four significant digits, "-" for NaN. */
+/* Fills it with a number of up to four significant digits, "-" for NaN. */
 void table_number(struct text_table *table, double value);
-/* Numbers to the right, texts to the left; the first row is a heading. */
+/* Prints numbers to the right, texts to the left; the first row is a heading. */
 void table_print(const struct text_table *table, FILE *file);
 void table_clear(struct text_table *table);
 

@@ -6,7 +6,7 @@
 
 /* That of a kind; a plain one for a kind without a view, or of another program (NULL). */
 const struct result_view *view_of(const char *kind);
-/* The picture of a quantity with logarithmic axes, or NULL. */
+/* Returns the picture of a quantity with logarithmic axes, or NULL. */
 const struct logarithmic_picture *view_logarithmic(const struct result_view *view,
                                                    const char *quantity);
 
