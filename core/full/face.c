@@ -55,8 +55,8 @@ static double line_integral(const double *x, const double *value) {
     return (x[1] - x[0]) * (value[0] + value[1]) / 2;
 }
 
-/* The integral over the unit square of value (dx/ds dy/dt - dy/ds dx/dt), all three bilinear in s
- * and t: of degree 2 in each, which two Gauss points along each integrate exactly. */
+/* Returns the integral over the unit square of value (dx/ds dy/dt - dy/ds dx/dt), all three
+ * bilinear in s and t: of degree 2 in each, which two Gauss points along each integrate exactly. */
 static double square_integral(const double *x, const double *y, const double *value) {
     static const double POINT[2] = {0.21132486540518712, 0.78867513459481288};
     double sum = 0;

@@ -7,15 +7,15 @@
 
 #include "core/full/mesh.h"
 
-/* Mean relative area of the cells around the nodes in contact (active: by node of the face); NaN
- * where there are none. */
+/* Returns the mean relative area of the cells around the nodes in contact (active: by node of the
+ * face); NaN where there are none. */
 double face_contact_stretch(const struct mesh *mesh, const double *u, const bool *active);
 
-/* Volume between the face and the flat over the area of the periodic cell. gap: by node of the
- * face, bilinear in between; exact. u may be NULL: of the cells as they are undeformed. */
+/* Returns the volume between the face and the flat over the area of the periodic cell. gap: by node
+ * of the face, bilinear in between; exact. u may be NULL: of the cells as they are undeformed. */
 double face_mean_gap(const struct mesh *mesh, const double *u, const double *gap);
-/* Its change, to first order, when the displacements change by `change` and the flat stays; with
- * u = NULL the cells stay too. */
+/* Returns its change, to first order, when the displacements change by `change` and the flat stays;
+ * with u = NULL the cells stay too. */
 double face_mean_gap_change(const struct mesh *mesh, const double *u, const double *gap,
                             const double *change);
 

@@ -46,8 +46,9 @@ struct full_report {
     double penetration, weighted_penetration;
     double stretch; /* deformed over undeformed tributary area of the nodes in contact; NaN without
                        contact */
-    double slope;   /* steepest edge of the face */
-    double quality; /* smallest quality of an element (element_quality); 1 for bricks */
+    double open_stretch; /* the same of the nodes out of contact; 1 where there are none */
+    double slope;        /* steepest edge of the face */
+    double quality;      /* smallest quality of an element (element_quality); 1 for bricks */
     double history[NEWTON_HISTORY]; /* residuals of Newton's method, the latest last */
     size_t unchanged;               /* residuals in history since the active set last changed */
 };

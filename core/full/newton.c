@@ -417,7 +417,7 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
     }
 }
 
-/* Displacements under which the face's cells change; NULL where strains are small. */
+/* Returns the displacements under which the face's cells change; NULL where strains are small. */
 static const double *face_displacement(const struct newton *n) {
     return n->material.kinematics != KINEMATICS_SMALL ? n->u : NULL;
 }

@@ -75,8 +75,8 @@ void newton_measure_gaps(struct newton *newton);
 /* Tributary area of a node in squares (profiles: steps) of the mesh's unit; all nodes have the
  * same. */
 double newton_node_area(const struct newton *newton);
-/* Mean gap over the face as it is under load (face.h); over the undeformed one where strains are
- * small. Of the gaps last measured. */
+/* Returns the mean gap over the face as it is under load (face.h); over the undeformed one where
+ * strains are small. Of the gaps last measured. */
 double newton_mean_gap(const struct newton *newton);
 /* Computes -d(mean gap)/d(pressure) >= 0 from the tangent at u, of the gaps last measured. */
 int newton_compliance(struct newton *newton, double *out, struct error *err);

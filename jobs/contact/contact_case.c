@@ -31,6 +31,10 @@ int contact_case_scale(const struct contact_case *one_case, double *rms_height, 
     return 0;
 }
 
+bool contact_case_stretches(const struct contact_case *one_case, size_t model) {
+    return one_case->models[model]->stretches && one_case->kinematics != KINEMATICS_SMALL;
+}
+
 /* Reads the height of the block in lambda_s: INFINITY, or NaN where it is not given. */
 static int read_height(const struct contact_case *one_case, struct values *values, double *out,
                        struct error *err) {

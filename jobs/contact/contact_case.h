@@ -66,6 +66,9 @@ bool contact_case_has_scale(const struct contact_case *one_case);
 int contact_case_scale(const struct contact_case *one_case, double *rms_height, double *rms_slope,
                        struct error *err);
 
+/* Returns whether the areas of a model are told as they are under load. */
+bool contact_case_stretches(const struct contact_case *one_case, size_t model);
+
 /* Estimates memory, time and error of one realisation before anything ran. */
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out);
 

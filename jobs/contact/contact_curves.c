@@ -207,9 +207,15 @@ static int append_areas(struct contact_curve_maker *maker, struct error *err) {
         {"contact_area", "nodes", "A/A0", MEASURE_NODES, 1},
         {"contact_area", "nodes_lower", "A/A0", MEASURE_NODES_LOWER, 1},
         {"contact_area", "nodes_upper", "A/A0", MEASURE_NODES_UPPER, 1}};
+    static const struct row STRETCHED = {"contact_area", "edges_stretched", "A/A0",
+                                         MEASURE_EDGES_STRETCHED, 1};
     static const struct row PERIMETER = {"contact_area", "perimeter", "A/A0", MEASURE_PERIMETER, 1};
     const struct contact_case *one_case = maker->one_case;
     int status = append_rows(maker, one_case->edges ? 1 : 0, &EDGES, err);
+    for (size_t m = 0; m < one_case->model_count && status == 0; m++)
+        if (one_case->edges && contact_case_has_scale(one_case) &&
+            !contact_case_stretches(one_case, m))
+            status = append_model(maker, &STRETCHED, m, err);
     if (status == 0)
         status = append_rows(maker, one_case->nodes ? sizeof NODES / sizeof *NODES : 0, NODES, err);
     return status != 0 ? status : append_rows(maker, one_case->perimeter ? 1 : 0, &PERIMETER, err);

@@ -7,6 +7,7 @@ static double assumed_order(const struct contact_case *one_case, enum contact_me
                             size_t model) {
     switch (measure) {
     case MEASURE_EDGES:
+    case MEASURE_EDGES_STRETCHED:
         return one_case->models[model]->edge_order[one_case->surface.dimension - 1];
     case MEASURE_GAP:
         return 2;

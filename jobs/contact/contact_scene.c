@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_scene.h"
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
+#include "core/contact/stretch.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,7 @@ static const double STIFFNESS_MOST = 1e6;
 struct contact_scene {
     const struct contact_case *one_case;
     double rms_slope, rms_height; /* of the prescribed spectrum */
+    bool scaled;                  /* these are the surface's, and not of an arbitrary unit */
     struct contact_solver *solvers[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct area_workspace *areas[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
@@ -67,6 +69,7 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
     scene->one_case = one_case;
     scene->rms_slope = moments->rms_slope;
     scene->rms_height = moments->rms_height;
+    scene->scaled = contact_case_has_scale(one_case);
     int status = scene_fill(scene, compliances, err);
     if (status != 0)
         contact_scene_destroy(&scene);
@@ -131,10 +134,14 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
     struct patches patches;
     contact_area(scene->areas[model][level], state->p, state->opening, &area);
     patches_find(scene->finders[level], state->p, &patches, NULL);
+    /* Edges lie within the cells of outer nodes in contact, near which hardly any pressure acts. */
+    double open_now = area.nodes < 1 ? (1 - now * area.nodes) / (1 - area.nodes) : 1;
     const double values[MEASURE_OWN] = {
         [MEASURE_NODES] = now * area.nodes,
-        [MEASURE_EDGES] = now * area.edges,
-        [MEASURE_PERIMETER] = now * area.perimeter,
+        [MEASURE_EDGES] = stretch_fraction(area.edges, open_now),
+        [MEASURE_EDGES_STRETCHED] =
+            scene->scaled ? stretch_fraction(area.edges, pressed->open_stretch) : NAN,
+        [MEASURE_PERIMETER] = stretch_fraction(area.perimeter, open_now),
         [MEASURE_GAP] = state->mean_gap / scene->rms_height,
         [MEASURE_NODES_LOWER] = now * area.lower,
         [MEASURE_NODES_UPPER] = now * area.upper,
@@ -169,7 +176,7 @@ struct stopper {
 };
 
 static struct contact_pressed not_pressed(void) {
-    struct contact_pressed out = {.stretch = 1, .reached = NAN};
+    struct contact_pressed out = {.stretch = 1, .open_stretch = NAN, .reached = NAN};
     for (size_t a = 0; a < MODEL_MEASURES_MOST; a++)
         out.own[a] = NAN;
     return out;

@@ -6,9 +6,10 @@ enum { MODEL_MEASURES_MOST = 5 };
 enum contact_measure {
     MEASURE_NODES, /* share of the cell, as all areas */
     MEASURE_EDGES,
-    MEASURE_PERIMETER, /* surfaces alone */
-    MEASURE_GAP,       /* mean gap/sqrt(m0) */
-    MEASURE_PAIRED,    /* measures above: differences are summed too */
+    MEASURE_EDGES_STRETCHED, /* edges as they are under load; surfaces with a scale alone */
+    MEASURE_PERIMETER,       /* surfaces alone */
+    MEASURE_GAP,             /* mean gap/sqrt(m0) */
+    MEASURE_PAIRED,          /* measures above: differences are summed too */
     MEASURE_NODES_LOWER = MEASURE_PAIRED,
     MEASURE_NODES_UPPER,
     MEASURE_STIFFNESS, /* -d(p/(E* h'))/d(gap/sqrt(m0)); none in full contact */

@@ -17,8 +17,10 @@ struct contact_solver; /* each model's own */
 
 /* What came out of a load. */
 struct contact_pressed {
-    struct contact_state state;      /* its work in points x transforms */
-    double stretch;                  /* areas as they are under load over those undeformed */
+    struct contact_state state; /* its work in points x transforms */
+    double stretch; /* nodes in contact: area under load over that undeformed; 1 where areas are
+                       told undeformed */
+    double open_stretch;             /* the same of the open face, told or not; NaN: not known */
     double own[MODEL_MEASURES_MOST]; /* the model's own measures; NaN: none */
     double reached; /* where no answer was found: the load reached; NaN: not told */
 };
@@ -74,7 +76,7 @@ struct contact_model {
     int (*begin)(struct contact_solver *solver, const double *z, int (*stop)(void *context),
                  void *context, double *facts, struct error *err);
     /* To a mean pressure in E*. ERROR_NUMERIC where it finds no answer. Of *out, stretch is 1,
-     * reached and own are NaN before the call. */
+     * open_stretch, reached and own are NaN before the call. */
     int (*press)(struct contact_solver *solver, double pressure, struct contact_pressed *out,
                  struct error *err);
     /* Its own scalars of a realisation, NaN before the call. NULL where it has none. */

@@ -164,6 +164,7 @@ static int press(struct contact_solver *solver, double pressure, struct contact_
     out->state.work *= solver->transforms;
     if (report.kinematics != KINEMATICS_SMALL && isfinite(report.stretch))
         out->stretch = report.stretch;
+    out->open_stretch = report.open_stretch;
     out->own[FULL_CUTS] = (double)report.cuts;
     out->own[FULL_CHANGES] = (double)report.changes;
     out->own[FULL_DEEPEST] = report.penetration;

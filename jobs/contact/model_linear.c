@@ -1,9 +1,11 @@
 #include "jobs/contact/model_linear.h"
+#include "core/contact/stretch.h"
 #include "core/cost.h"
 #include <stdlib.h>
 
 struct contact_solver {
     struct contact *contact;
+    double poisson;
 };
 
 double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
@@ -19,12 +21,12 @@ double linear_bytes(const struct contact_case *one_case, size_t model, const str
 
 int linear_create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err) {
-    (void)model;
     struct contact_options options = CONTACT_DEFAULTS;
     struct contact_solver *solver = array_create(1, sizeof *solver);
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
     options.tolerance = one_case->tolerance;
+    solver->poisson = one_case->blocks[model].poisson;
     int status = contact_create(&solver->contact, compliance, &options, err);
     if (status != 0)
         linear_destroy(&solver);
@@ -49,5 +51,6 @@ int linear_begin(struct contact_solver *solver, const double *z, int (*stop)(voi
 
 int linear_press(struct contact_solver *solver, double pressure, struct contact_pressed *out,
                  struct error *err) {
+    out->open_stretch = stretch_open(solver->poisson, pressure);
     return contact_press(solver->contact, pressure, &out->state, err);
 }

@@ -14,6 +14,13 @@ struct face_work {
     double flat;
 };
 
+static double *numbers(size_t n) {
+    double *x = array_create(n, sizeof *x);
+    if (x == NULL)
+        abort();
+    return x;
+}
+
 /* A quarter of a step at most, so that no cell folds; random, but the far side moves as one. */
 static void fill(const struct mesh *mesh, uint64_t seed, double *u) {
     size_t n = mesh_degrees_of_freedom(mesh), far_side = mesh_far_side(mesh);
@@ -39,10 +46,9 @@ static void open_face(struct face_work *w, struct grid grid, double transition) 
     if (mesh_create(&w->mesh, &grid, &block, transition, &err) != 0)
         fail_msg("%s", err.text);
     size_t n = mesh_degrees_of_freedom(w->mesh), face = w->mesh->face;
-    w->u = array_create(n, sizeof *w->u);
-    w->change = array_create(n, sizeof *w->change);
-    w->gap = array_create(face, sizeof *w->gap);
-    assert_true(w->u != NULL && w->change != NULL && w->gap != NULL);
+    w->u = numbers(n);
+    w->change = numbers(n);
+    w->gap = numbers(face);
     for (size_t i = 0; i < face; i++)
         w->gap[i] = 0.4 * sin(2 * (double)i);
     if (mesh_shape(w->mesh, w->gap, &err) != 0)
@@ -99,8 +105,7 @@ static void changes_are_those_of_differences(void **state) {
             struct face_work w;
             open_face(&w, CASES[c].grid, CASES[c].transition);
             size_t n = mesh_degrees_of_freedom(w.mesh);
-            double *moved = array_create(n, sizeof *moved), at[2];
-            assert_non_null(moved);
+            double *moved = numbers(n), at[2];
             double *u = deforms ? w.u : NULL;
             double told = face_mean_gap_change(w.mesh, u, w.gap, w.change);
             for (int side = 0; side < 2; side++) {

@@ -73,7 +73,9 @@ static void fixture_close(struct scene_fixture *f) {
     free(f->z);
 }
 
-/* Areas of a state, each `now` times that on the undeformed face. */
+/* Areas of a state whose nodes in contact cover `now` times what they do on the undeformed face:
+ * all that nodes tell is as many times as large. Edges lie where hardly any pressure acts: what is
+ * open beyond them has grown as the open nodes have. */
 static void check_areas(struct scene_fixture *f, size_t cell, const struct compliance *compliance,
                         const struct contact_state *state, double now) {
     struct area_workspace *workspace;
@@ -86,26 +88,45 @@ static void check_areas(struct scene_fixture *f, size_t cell, const struct compl
     must(patch_finder_create(&finder, &compliance->grid, &err), &err);
     contact_area(workspace, state->p, state->opening, &area);
     patches_find(finder, state->p, &patches, NULL);
+    double open = (1 - now * area.nodes) / (1 - area.nodes);
     const struct {
         enum contact_measure measure;
         double share;
-    } AREAS[] = {{MEASURE_NODES, area.nodes},
-                 {MEASURE_EDGES, area.edges},
-                 {MEASURE_PERIMETER, area.perimeter},
-                 {MEASURE_NODES_LOWER, area.lower},
-                 {MEASURE_NODES_UPPER, area.upper},
-                 {MEASURE_PATCH_MEAN, patches.mean / points},
-                 {MEASURE_PATCH_LARGEST, (double)patches.largest / points}};
+    } AREAS[] = {{MEASURE_NODES, now * area.nodes},
+                 {MEASURE_EDGES, 1 - (1 - area.edges) * open},
+                 {MEASURE_PERIMETER, 1 - (1 - area.perimeter) * open},
+                 {MEASURE_NODES_LOWER, now * area.lower},
+                 {MEASURE_NODES_UPPER, now * area.upper},
+                 {MEASURE_PATCH_MEAN, now * patches.mean / points},
+                 {MEASURE_PATCH_LARGEST, now * (double)patches.largest / points}};
     size_t active = 0;
+    assert_true(area.nodes < 1);
     for (size_t i = 0; i < grid_points(&compliance->grid); i++)
         active += state->p[i] > 0;
     check_relative(area.nodes, (double)active / points, 1e-14);
     for (size_t a = 0; a < sizeof AREAS / sizeof *AREAS; a++)
         if (!isnan(AREAS[a].share))
-            check_relative(contact_tally_values(&f->tally, AREAS[a].measure)[cell],
-                           now * AREAS[a].share, 1e-12);
+            check_relative(contact_tally_values(&f->tally, AREAS[a].measure)[cell], AREAS[a].share,
+                           1e-12);
     patch_finder_destroy(&finder);
     area_workspace_destroy(&workspace);
+}
+
+/* Poisson's ratio 0.3: (1 - 2 nu)/(1 - nu) = 4/7. Of full the stretched edges are those it tells
+ * unless strains are small. */
+static void check_stretched(struct scene_fixture *f, size_t cell, size_t model,
+                            const struct contact_pressed *pressed) {
+    double edges = contact_tally_values(&f->tally, MEASURE_EDGES)[cell];
+    double stretched = contact_tally_values(&f->tally, MEASURE_EDGES_STRETCHED)[cell];
+    double pressure = pressed->state.pressure;
+    if (model == LAYERED)
+        check_relative(stretched, edges - 4.0 / 7 * pressure * (1 - edges), 1e-12);
+    else if (contact_case_stretches(&f->one_case, model))
+        check_relative(stretched, edges, 1e-12);
+    else
+        check_relative(stretched, 1 - (1 - edges) * pressed->open_stretch, 1e-12);
+    assert_true(model == FULL || stretched < edges);
+    assert_true(edges < 1 && pressure > 0.01);
 }
 
 /* By a solver of its own, which presses the same surface to the same loads. */
@@ -131,14 +152,15 @@ static void areas_are_those_now(void **state) {
             must(model->create(&solver, &f.one_case, m, compliance, &err), &err);
             must(model->begin(solver, f.z, go_on, NULL, facts, &err), &err);
             for (size_t k = 0; k < f.one_case.load_count; k++) {
-                struct contact_pressed pressed = {.stretch = 1};
+                struct contact_pressed pressed = {.stretch = 1, .open_stretch = NAN};
                 must(
                     model->press(solver, f.one_case.loads[k] * f.moments.rms_slope, &pressed, &err),
                     &err);
                 bool stretched = m == FULL && CASES[c].stretches;
                 assert_true(stretched == (fabs(pressed.stretch - 1) > 1e-3));
-                check_areas(&f, contact_case_cell(&f.one_case, m, 0, k), compliance, &pressed.state,
-                            pressed.stretch);
+                size_t cell = contact_case_cell(&f.one_case, m, 0, k);
+                check_areas(&f, cell, compliance, &pressed.state, pressed.stretch);
+                check_stretched(&f, cell, m, &pressed);
             }
             model->destroy(&solver);
         }
@@ -173,10 +195,37 @@ static void pressures_carry_the_load(void **state) {
     }
 }
 
+/* Where the model does not tell edges so anyway, and where a slope is known. */
+static void stretched_edges_need_a_slope(void **state) {
+    (void)state;
+    static const struct {
+        const char *study;
+        bool layered, full;
+    } CASES[] = {{PRESSED("1", "hencky"), true, false},
+                 {PRESSED("1", "small"), true, true},
+                 {"{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2,"
+                  " \"length_ratio\": 2, \"points_per_wavelength\": 4}, \"contact\": {\"model\":"
+                  " \"layered\", \"pressures\": {\"values\": [0.1, 0.3]}}}",
+                  false, false}};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        cJSON *document = solve(CASES[c].study, 2);
+        bool layered = false, full = false;
+        const cJSON *curve;
+        cJSON_ArrayForEach(curve, json_at(document, "/curves")) {
+            bool stretched = text_is(curve, "/series", "edges_stretched");
+            layered = layered || (stretched && text_is(curve, "/model", "layered"));
+            full = full || (stretched && text_is(curve, "/model", "full"));
+        }
+        assert_true(layered == CASES[c].layered && full == CASES[c].full);
+        cJSON_Delete(document);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(areas_are_those_now),
         cmocka_unit_test(pressures_carry_the_load),
+        cmocka_unit_test(stretched_edges_need_a_slope),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
