@@ -9,12 +9,13 @@ static const double GAUSSIAN_NS = 6;
 /* bench_nongaussian: nanoseconds a point and iteration; iterations after which plain alternation
  * stalls; plain iterations behind the relaxed ones. */
 static const double ITERATION_NS = 15, PLAIN_ITERATIONS = 120, LAST_ITERATIONS = 3;
-/* bench_summits: nanoseconds a point of refined summits and of spectral curvatures. */
+/* Refined summits and spectral curvatures take so many nanoseconds a point (bench_summits). */
 static const double REFINED_NS = 15, SPECTRAL_CURVATURE_NS = 4;
-/* Nanoseconds a point of psd_measure and acf_measure together, fitted to surfaces of 256 x 256 to
- * 8192 x 8192 points. */
+/* psd_measure and acf_measure together take so many nanoseconds a point, fitted to surfaces of 256
+ * x 256 to 8192 x 8192 points. */
 static const double SPECTRA_NS = 17;
-/* bench_surface: slower by this much a doubling of the points, from 2^20 points on. */
+/* Surfaces become slower by this much with each doubling of the points from 2^20 on
+ * (bench_surface). */
 static const double CACHE_SLOPE = 0.4, CACHE_DOUBLINGS = 20;
 
 double cost_generation(const struct surface_options *options) {
@@ -91,7 +92,8 @@ static const double PROFILE_LINEAR_NS = 36, SURFACE_LINEAR_NS = 80, PRESSURE_NS 
 static const double PROFILE_FACTORED_NS = 5000, SURFACE_FACTORED_NS = 7e4;
 /* A factorisation takes so many bytes a degree of freedom. */
 static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
-/* Transforms of a point in the time of an iteration of Newton's method on a degree of freedom. */
+/* So many transforms of a point take the time of an iteration of Newton's method on a degree of
+ * freedom. */
 static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
 
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,

@@ -21,7 +21,8 @@ static int print_areas(struct rugo_contact *contact, double rms_slope, double al
 }
 
 int main(void) {
-    /* 256 x 256 points, waves from a quarter to a 32nd of the cell: 8 points a shortest wave */
+    /* The cell has 256 x 256 points and waves from a quarter to a 32nd of it: 8 points a shortest
+     * wave. */
     const struct rugo_grid grid = {256, 256, 1, 1};
     const double rms_slope = 0.1;
     const struct rugo_spectrum spectrum =

@@ -69,7 +69,8 @@ struct rugo_spectrum {
     const double *table_density;              /* at these, in any unit; borrowed */
     double rms_height, rms_slope; /* scale: one of them above 0, the other 0; both 0: height 1 */
 };
-/* A self-affine spectrum without roll-off, of a given RMS slope h' (surface: of the gradient). */
+/* Returns a self-affine spectrum without roll-off, of a given RMS slope h' (surface: of the
+ * gradient). */
 RUGO_API struct rugo_spectrum rugo_spectrum_self_affine(double hurst, double wavelength_long,
                                                         double wavelength_short, double rms_slope);
 
@@ -127,8 +128,8 @@ struct rugo_surface_report {
 
 /* A workspace for all realisations of one kind of surface. */
 struct rugo_generator;
-/* options NULL: the defaults. INPUT as rugo_spectrum_moments, or for options out of range; MEMORY.
- */
+/* Makes a generator; options may be NULL for the defaults. Fails with INPUT as
+ * rugo_spectrum_moments does, or for options out of range, or with MEMORY. */
 RUGO_API int rugo_generator_create(struct rugo_generator **out,
                                    const struct rugo_spectrum *spectrum,
                                    const struct rugo_grid *grid,
@@ -200,15 +201,16 @@ struct rugo_summits {
     struct rugo_summit *summits; /* owned: rugo_summits_clear */
     size_t count;
 };
-/* Summits of a surface, peaks of a profile, in row order; curvatures by finite differences, of
- * refined ones exact. */
+/* Finds the summits of a surface, or the peaks of a profile, in the order of rows. Curvatures are
+ * finite differences, those of refined summits are exact. */
 RUGO_API int rugo_summits_find(struct rugo_summits *out, const struct rugo_grid *grid,
                                const double *z, enum rugo_summit_rule rule, struct rugo_error *err);
 RUGO_API void rugo_summits_clear(struct rugo_summits *summits);
 
 /* --- theory of Gaussian isotropic surfaces (Nayak 1971), alpha > 3/2 --- */
 
-/* Density of the summits' heights z, in units of sqrt(m0), and its integral from below. */
+/* These return the density of the summits' heights z, in units of sqrt(m0), and its integral from
+ * below. */
 RUGO_API double rugo_nayak_summit_pdf(double z, double alpha);
 RUGO_API double rugo_nayak_summit_cdf(double z, double alpha);
 /* Joint density of height z and t1 = -sqrt(3/m4) kappa, kappa the mean curvature; 0 for t1 >= 0. */
@@ -220,8 +222,8 @@ RUGO_API double rugo_nayak_summit_density(double m2, double m4);
 
 /* --- theories of contact; load = p/(E* h') --- */
 
-/* Contact fraction by Persson (2001), load >= 0; and the density of the local pressure over E* h'.
- */
+/* These return the contact fraction by Persson (2001), load >= 0, and the density of the local
+ * pressure over E* h'. */
 RUGO_API double rugo_persson_area(double load);
 RUGO_API double rugo_persson_pressure_pdf(double pressure, double load);
 /* Contact fraction by asperities pressed alone, load in [1e-250, 1e6], alpha > 3/2; it may exceed
@@ -249,7 +251,8 @@ struct rugo_block {
     double height;       /* in the unit of the grid; HUGE_VAL for a half-space alone */
     double layer_growth; /* finite elements: thickness of a layer over that above it, [1, 2] */
 };
-/* Poisson's ratio 0.3, growth 1.1; height: infinite for a half-space, else 1.5 grid.lx. */
+/* Returns a block of Poisson's ratio 0.3 and growth 1.1, whose height is infinite for a half-space,
+ * else 1.5 grid.lx. */
 RUGO_API struct rugo_block rugo_block_defaults(enum rugo_model model, const struct rugo_grid *grid);
 
 /* One load. Fractions are of the cell; arrays have nx*ny values and are the solver's, valid until

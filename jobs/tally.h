@@ -32,7 +32,8 @@ void tally_clear(struct tally *tally);
 static inline double tally_bytes(size_t size) {
     return 40.0 * (double)size;
 }
-/* One realisation's n of its N things in a cell; once a cell and realisation, none for n = 0. */
+/* Adds one realisation's n of its N things to a cell; to be called once a cell and realisation, and
+ * not for n = 0. */
 static inline void tally_add(struct tally *tally, size_t cell, uint64_t n, uint64_t things) {
     tally->count[cell] += n;
     tally->square[cell] += (fixed_point)n * n;

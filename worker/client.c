@@ -90,7 +90,7 @@ static bool token_is_valid(const char *token) {
 
 static int client_options(struct client *client, bool loopback, struct error *err) {
     CURL *curl = client->curl;
-    /* CURLOPT_PROXY "" switches off what the environment names */
+    /* CURLOPT_PROXY "" switches off what the environment names. */
     bool good =
         curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L) == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https") == CURLE_OK &&

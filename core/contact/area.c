@@ -70,12 +70,13 @@ struct crossing {
     double step, across;                                           /* spacings, along and beside */
 };
 
-/* Signed distance to the edge of constant c = 1/u, u2 = u^2 and ug = u^(2/3). */
+/* Returns the signed distance to the edge of constant c = 1/u, u2 = u^2 and ug = u^(2/3). */
 static double distance(double rise, double u2, double ug) {
     return rise > 0 ? rise * u2 : rise * ug;
 }
 
-/* Cosine, without its sign, of the angle between the grid line and the edge's normal. */
+/* Returns the cosine, without its sign, of the angle between the grid line and the edge's normal.
+ */
 static double crossing_cosine(const struct crossing *x, const double *rise, double p1, double g1) {
     double cosine = 1;
     for (int a = 0; a < ANGLE_STEPS; a++) {

@@ -13,7 +13,7 @@ static const double BEND_MOST = 0.5;
 enum { BEND_STEPS = 2, ANGLE_STEPS = 40 };
 
 double edge_guess(double pressure_squared, double gap_rise) {
-    /* s = ratio (1 - s)^3, solved for 1 - s by the hyperbolic form of Cardano's formula. */
+    /* Solves s = ratio (1 - s)^3 for 1 - s by the hyperbolic form of Cardano's formula. */
     double ratio = pressure_squared / (gap_rise * gap_rise * gap_rise), k = sqrt(3 * ratio);
     if (!(k < 1e150))
         return 1;

@@ -21,8 +21,8 @@ struct edge_law {               /* a sample a phase, in rising order */
     double share[EDGE_PHASES];  /* edge beyond the node inside, in steps; from about -0.2 to 1 */
 };
 
-/* The law of grid lines along x (columns false) or y; some milliseconds. Errors of
- * compliance_create and contact_press. */
+/* Makes the law of grid lines along x (columns false) or y, which takes some milliseconds. Fails as
+ * compliance_create and contact_press do. */
 int edge_law_make(const struct grid *grid, const struct block *block, bool columns,
                   struct edge_law *out, struct error *err);
 

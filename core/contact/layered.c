@@ -112,7 +112,7 @@ struct symmetric {
     double xx, xy, yy, xz, yz, zz;
 };
 
-/* H = L D L^T, L with ones on its diagonal. */
+/* Factors of H = L D L^T, where L has ones on its diagonal. */
 struct cholesky {
     double x, y, z;    /* 1/D */
     double yx, zx, zy; /* L */
@@ -142,7 +142,7 @@ static inline double product(struct cholesky f, struct layer_row u, struct layer
     return u.x * v.x * f.x + u.y * v.y * f.y + u.z * v.z * f.z;
 }
 
-/* M = N - G H^-1 G^T, rows of G as given, into lane l. */
+/* Puts M = N - G H^-1 G^T, with the rows of G as given, into lane l. */
 static inline void condense(struct wave_lanes *w, size_t l, struct symmetric n, struct symmetric h,
                             struct layer_row gx, struct layer_row gy, struct layer_row gz) {
     struct cholesky f = factorise(h);

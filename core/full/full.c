@@ -12,7 +12,7 @@ const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
                                            .max_iterations = 60,
                                            .least_step = 1.0 / 256};
 
-/* Largest change of the relative area of a cell of the face in one load step. */
+/* Returns the largest change of the relative area of a cell of the face in one load step. */
 static const double STRETCH_MOST = 0.25;
 
 /* All lengths in this file are in units of dx, the mesh's unit. */

@@ -54,7 +54,8 @@ struct strained {
 bool material_strain(int dimension, const struct material *material, pointwise h[3][3],
                      struct strained *out);
 
-/* Number of component ik of a symmetric tensor in the order xx, yy, (zz,) xy, (xz, yz); i <= k. */
+/* Returns the number of component ik of a symmetric tensor in the order xx, yy, (zz,) xy, (xz, yz);
+ * i <= k. */
 enum { SYMMETRIC_MOST = 6 };
 static inline int symmetric_index(int dimension, int i, int k) {
     return i == k ? i : dimension + i + k - 1;
@@ -74,7 +75,7 @@ struct moduli {
 void material_moduli(int dimension, const struct material *material, const struct strained *point,
                      double pull, const pointwise weight, struct moduli *out);
 
-/* A law as a table of functions, one in each material_NAME.c. For core/full alone. */
+/* A law is a table of functions, and each material_NAME.c fills one. For core/full alone. */
 struct material_law {
     bool logarithmic;    /* an element's mean strain is ln(1 + growth), otherwise growth itself,
                             growth being the mean of strained.dilatation (element.h) */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum { COLUMNS_LEAST = 4 };
-/* Steepest slope of an edge of the face: steeper ones shear elements by more than 80 degrees. */
+/* No edge of the face may be steeper: those would shear elements by more than 80 degrees. */
 static const double SLOPE_MOST = 6;
 /* Depth of the fine zone in RMS heights, and its least depth in largest heights: the factor of
  * mesh.h falls by 3/2 over the zone at most, so that 4 heights keep elements upright. */

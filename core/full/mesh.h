@@ -63,7 +63,7 @@ struct mesh_element {
 };
 void mesh_element(const struct mesh *mesh, size_t layer, size_t j, size_t i,
                   struct mesh_element *out);
-/* Values of a nodal field, field[node*components + k], at the element's corners. */
+/* Gathers the values of a nodal field, field[node*components + k], at the element's corners. */
 void mesh_corners(const struct mesh *mesh, const struct mesh_element *element, const double *field,
                   size_t components, double out[8][3]);
 /* The transpose of mesh_corners: adds values at the corners, such as forces, to a nodal field.

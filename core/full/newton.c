@@ -106,8 +106,8 @@ static double largest_force(const struct newton *n) {
     return most;
 }
 
-/* By how much force a node's state (active or not) contradicts its contact force and gap; 0 where
- * it agrees or contradicts by less than `least`. */
+/* Returns by how much force a node's state (active or not) contradicts its contact force and gap; 0
+ * where it agrees or contradicts by less than `least`. */
 static double contradiction(const struct newton *n, size_t node, double least) {
     double gap = COMPLEMENTARITY * n->opening[node];
     double wrong = n->active[node] ? gap - contact_force(n, node) : -gap;

@@ -166,7 +166,8 @@ struct principal_moduli {
     pointwise normal[3][3], shear[3][3];
 };
 
-/* A value by symmetric_index(p, r) of two principal axes and symmetric_index(i, k) in space. */
+/* Values stand by symmetric_index(p, r) of two principal axes and symmetric_index(i, k) in space.
+ */
 typedef pointwise by_pairs[SYMMETRIC_MOST][SYMMETRIC_MOST];
 
 /* Computes the symmetric dyads of axes p and r. */
@@ -219,8 +220,8 @@ INLINE void turn_moduli(int d, const struct principal_moduli *m, const struct st
                 }
 }
 
-/* The stress part of the second variation (material.h): Kirchhoff's stress and pull x spread, times
- * the weight. */
+/* Sets the stress part of the second variation (material.h): Kirchhoff's stress and pull x spread,
+ * times the weight. */
 INLINE void weigh_stress(int d, const struct strained *point, double pull, const pointwise weight,
                          struct moduli *out) {
     for (int i = 0; i < d; i++)

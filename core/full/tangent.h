@@ -26,7 +26,8 @@ int tangent_create(struct tangent **out, const struct mesh *mesh, bool pressures
 void tangent_destroy(struct tangent **tangent);
 double tangent_bytes(const struct mesh *mesh, bool pressures);
 
-/* Neighbours, by slot, of a level's node in row j and column i; SIZE_MAX below the far side. */
+/* Finds the neighbours, by slot, of a level's node in row j and column i; SIZE_MAX below the far
+ * side. */
 void tangent_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t i,
                         size_t neighbour[NEIGHBOURS_MOST]);
 /* Computes y = K x; x and y have mesh_degrees_of_freedom values. */

@@ -16,8 +16,8 @@ double richardson_fit_ratio(const struct richardson_fit *fit) {
     return fit->product / fit->square;
 }
 
-/* Change between the two coarser of three levels over that between the two finer ones, at an order:
- * fine^q (coarse^q - 1)/(fine^q - 1), rising in q. */
+/* Returns the change between the two coarser of three levels over that between the two finer ones,
+ * at an order: fine^q (coarse^q - 1)/(fine^q - 1), rising in q. */
 static double change_ratio(double order, double fine, double coarse) {
     return pow(fine, order) * expm1(order * log(coarse)) / expm1(order * log(fine));
 }

@@ -15,7 +15,7 @@ struct richardson_fit {
 /* Adds a point: fine is f_next - f_finest, coarse is f_third - f_next. Leaves it out where one of
  * them is not finite. */
 void richardson_fit_add(struct richardson_fit *fit, double fine, double coarse);
-/* The multiple s that brings s * fine nearest to coarse; NaN where nothing changes. */
+/* Returns the multiple s that brings s * fine nearest to coarse; NaN where nothing changes. */
 double richardson_fit_ratio(const struct richardson_fit *fit);
 
 /* The order q whose changes have this ratio, held within 1 and 3: orders outside of these say that

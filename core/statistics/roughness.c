@@ -19,7 +19,7 @@ static double lanes_total(const double *lanes) {
            ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
 
-/* One point into lane l: z[i] with its neighbours; up == middle == down for a profile. */
+/* Adds one point to lane l: z[i] with its neighbours; up == middle == down for a profile. */
 static inline void point_add(struct row_sums *sums, size_t l, double left, double z, double right,
                              double up, double down, double mean) {
     double h = z - mean, h2 = h * h;

@@ -4,8 +4,8 @@
 
 #include "core/surface/spectrum.h"
 
-/* Parameters by finite differences on the periodic grid (FORMULAS.md, F1.3): forward differences
- * for slopes, central second ones for curvatures, as in the reference
+/* These parameters come from finite differences on the periodic grid (FORMULAS.md, F1.3): forward
+ * differences for slopes, central second ones for curvatures, as in the reference
  * (core/theory/BIBLIOGRAPHY.md). */
 struct roughness {
     double mean, rms_height, rms_slope, rms_curvature; /* about the mean; profile: |z'|, z'' */
@@ -20,8 +20,8 @@ void roughness_measure(const struct grid *grid, const double *z, struct roughnes
 int roughness_spectral(const struct grid *grid, const double *z, struct moments *out,
                        struct error *err);
 
-/* Number of radial bins of the functions below for a grid: rings of width one in |m| (min(lx,ly)).
- */
+/* Returns the number of radial bins of the functions below for a grid: rings of width one in |m|
+ * (min(lx,ly)). */
 size_t radial_bins(const struct grid *grid);
 /* Power spectral density, radially averaged for surfaces: C(k) such that m00 = integral of
  * C dkx dky (surface) or of C dk over both signs (profile). wave_number and density have
@@ -30,8 +30,8 @@ int psd_measure(const struct grid *grid, const double *z, double *wave_number, d
                 struct error *err);
 /* Does likewise for a discrete spectrum, which costs no transform. */
 void psd_of_modes(const struct modes *modes, double *wave_number, double *density);
-/* Autocorrelation R(r)/R(0) at lags 0, dx, 2dx … (nx/2 + 1 of them), radially averaged for
- * surfaces. */
+/* Measures the autocorrelation R(r)/R(0) at lags 0, dx, 2dx … (nx/2 + 1 of them), radially averaged
+ * for surfaces. */
 int acf_measure(const struct grid *grid, const double *z, double *lag, double *correlation,
                 struct error *err);
 int acf_of_modes(const struct modes *modes, double *lag, double *correlation, struct error *err);

@@ -75,7 +75,7 @@ double summit_finder_bytes(const struct grid *grid, enum summit_stencil stencil,
     return bytes;
 }
 
-/* -(z_xx + z_yy)/2 of every point (profiles -z_xx), exact for a band-limited surface. */
+/* Fills in -(z_xx + z_yy)/2 of every point (profiles -z_xx), exact for a band-limited surface. */
 static void curvature_fill(struct summit_finder *f, const double *z) {
     const struct grid *grid = &f->grid;
     size_t ny = grid->ny;

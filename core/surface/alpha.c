@@ -23,7 +23,7 @@ double spectrum_alpha_continuous(int dimension, double hurst, double ratio_long,
         m[order] =
             -expm1(plateau * log(xi)) / plateau + power_integral(zeta, 2 * order - 2 * hurst);
     }
-    /* One ring or line of waves: the limit of a vanishing band. */
+    /* One ring or line of waves is the limit of a vanishing band. */
     if (!(m[1] > 0))
         return dimension == 2 ? 1.5 : 1;
     return (dimension == 2 ? 1.5 : 1) * (m[0] / m[1]) * (m[2] / m[1]);

@@ -123,7 +123,7 @@ void height_error_start(struct height_error *e, const struct height_moments *mom
     histogram_count(e, sorted, e->target);
 }
 
-/* eps_h of F5.2: the integral of the difference between the histogram densities. */
+/* Returns eps_h of F5.2: the integral of the difference between the histogram densities. */
 static double heights_distance(const struct height_error *e, const double *z_s) {
     histogram_count(e, z_s, e->count);
     uint64_t difference = 0;

@@ -49,7 +49,8 @@ struct distribution {
 /* Returns NULL for HEIGHTS_QUANTILE, which has no row. */
 const struct distribution *heights_distribution(enum heights_type type);
 
-/* ERROR_INPUT: shape out of range, quantile function not rising or without finite moments. */
+/* Fails with ERROR_INPUT for a shape out of range, or a quantile function that does not rise or has
+ * no finite moments. */
 int heights_moments(const struct heights *heights, struct height_moments *out, struct error *err);
 /* Returns the standardised quantile at a probability in (0, 1), given the moments above. */
 double heights_quantile(const struct heights *heights, const struct height_moments *moments,

@@ -21,7 +21,8 @@ void nongaussian_destroy(struct nongaussian **nongaussian);
 int nongaussian_run(struct nongaussian *g, struct transform *transform, struct random_key key,
                     double *z, struct surface_report *report, struct error *err);
 
-/* Peak bytes held by one of these on a grid and band; z and the caller's transform not counted. */
+/* Returns the peak bytes that one of these holds on a grid and band; z and the caller's transform
+ * not counted. */
 double nongaussian_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
                          const struct surface_options *options);
 

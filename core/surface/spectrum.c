@@ -116,8 +116,8 @@ static double density(const struct spectrum *s, bool profile, double kx, double 
     return 0;
 }
 
-/* Highest wave number along a side of `length` with `points`: the band edge, or Nyquist for a
- * spectrum without one. */
+/* Returns the highest wave number along a side of `length` with `points`: the band edge, or Nyquist
+ * for a spectrum without one. */
 static int band_edge(const struct spectrum *s, double length, size_t points, size_t *mode,
                      struct error *err) {
     size_t nyquist = points / 2;

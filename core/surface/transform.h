@@ -15,12 +15,14 @@
 
 struct transform;
 
-/* Band: |mx| <= mode_x <= nx/2, |my| <= mode_y <= ny/2. Memory: about one band of columns. */
+/* Makes a plan for the band |mx| <= mode_x <= nx/2, |my| <= mode_y <= ny/2. Memory: about one band
+ * of columns. */
 int transform_create(struct transform **out, const struct grid *grid, size_t mode_x, size_t mode_y,
                      struct error *err);
 void transform_destroy(struct transform **transform);
 
-/* The plan's own half spectrum, (mode_x + 1) * ny values, aligned; valid as long as the plan. */
+/* Returns the plan's own half spectrum, (mode_x + 1) * ny values, aligned; valid as long as the
+ * plan. */
 double complex *transform_spectrum(struct transform *transform);
 /* z[ny*nx] from the plan's spectrum, which it destroys. Rows beyond mode_y are taken as zero.
  * Self-conjugate modes must be real; the mx = 0 column must be conjugate-symmetric. */

@@ -60,8 +60,8 @@ void bin_averages_summits(int dimension, double alpha, const struct bins *bins, 
     }
 }
 
-/* Density of t1 over all summits: F6.6 with s = -t1; of profiles the Rayleigh density (Rice 1945).
- */
+/* Returns the density of t1 over all summits: F6.6 with s = -t1; of profiles the Rayleigh density
+ * (Rice 1945). */
 static double curvature_pdf(int dimension, double t1) {
     static const double FRONT = 0.4886025119029199; /* sqrt(3)/(2 sqrt(pi)) */
     if (!(t1 < 0))

@@ -27,15 +27,17 @@ double bgt_light_load(void);     /* sqrt(2 pi); Bush, Gibson & Thomas (1975) */
  *   spherical asperities, Gaussian heights of summits. */
 void bgt_curve(double alpha, size_t n, const double *separation, double *load, double *area);
 void gw_mccool_curve(double alpha, size_t n, const double *separation, double *load, double *area);
-/* The fraction at a given load from 1e-250 to 1e6, by inversion of the above to 1e-11 relative; a
- * rising function of the load. NaN also when a few hundred bytes cannot be allocated. */
+/* These return the fraction at a given load from 1e-250 to 1e6, by inversion of the above to 1e-11
+ * relative; a rising function of the load. NaN also when a few hundred bytes cannot be allocated.
+ */
 double bgt_area(double load, double alpha);
 double gw_mccool_area(double load, double alpha);
 
-/* Westergaard (1939): one wave z = amplitude cos(2 pi x/wavelength), ratio = p/p* in [0, 1],
- * p* = pi E* amplitude/wavelength. */
+/* Returns Westergaard's (1939) contact fraction of one wave z = amplitude cos(2 pi x/wavelength),
+ * ratio = p/p* in [0, 1], p* = pi E* amplitude/wavelength. */
 double westergaard_area(double ratio);
-/* Local over mean pressure at the position x, in wavelengths from a crest; ratio > 0. */
+/* Returns the local over the mean pressure at the position x, in wavelengths from a crest; ratio >
+ * 0. */
 double westergaard_pressure(double x, double ratio);
 /* Returns the mean gap over the amplitude: 1 - ratio + ratio ln(ratio). */
 double westergaard_gap(double ratio);

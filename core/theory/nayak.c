@@ -41,7 +41,8 @@ static double tilted_weight(double s, const void *context) {
 static const double DEPTH = 80;
 enum { PANELS = 24 };
 
-/* Integral over s > 0 of s^order w(s) exp(b s - C1 s^2/2 - peak), peak = max(0, b |b|)/(2 C1). */
+/* Returns the integral over s > 0 of s^order w(s) exp(b s - C1 s^2/2 - peak), peak = max(0, b
+ * |b|)/(2 C1). */
 static double tilted_moment(double alpha, double z, int order) {
     double c1 = alpha / (2 * alpha - 3), b = c1 * sqrt(3 / alpha) * z;
     double centre = b / c1, reach = sqrt(2 * DEPTH / c1);

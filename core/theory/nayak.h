@@ -4,10 +4,11 @@
 #ifndef RUGO_CORE_THEORY_NAYAK_H
 #define RUGO_CORE_THEORY_NAYAK_H
 
-/* Probability density of summit heights (F6.2), and its integral from -infinity (F6.3). */
+/* These return the probability density of summit heights (F6.2), and its integral from -infinity
+ * (F6.3). */
 double nayak_summit_pdf(double z, double alpha);
 double nayak_summit_cdf(double z, double alpha);
-/* Joint density of summit height and equivalent curvature (F6.1); 0 for t1 >= 0. */
+/* Returns the joint density of summit height and equivalent curvature (F6.1); 0 for t1 >= 0. */
 double nayak_joint_pdf(double z, double t1, double alpha);
 /* Returns the expected mean curvature of summits at height z over sqrt(m4) (F6.5). */
 double nayak_mean_curvature(double z, double alpha);
@@ -31,7 +32,7 @@ double profile_peak_joint_pdf(double z, double t1, double alpha);
 double profile_mean_curvature(double z, double alpha);
 double profile_peak_density(double m2, double m4);
 
-/* What theory expects of the summits of a surface (dimension 2: F6.4, F6.5, F6.7) or the peaks of a
+/* Theory expects this of the summits of a surface (dimension 2: F6.4, F6.5, F6.7) or the peaks of a
  * profile (dimension 1: F7.2, F7.3). */
 struct summit_expectation {
     double density;                      /* per area (length) */

@@ -9,7 +9,8 @@
 /* The program, its libraries and tables that do not grow with the grid take so much. */
 static const double PROCESS_BYTES = 1.2e7;
 
-/* Curves of a model and level: areas by four estimators or five, and eight other quantities. */
+/* A model and level have so many curves: areas by four estimators or five, and eight other
+ * quantities. */
 enum { LEVEL_CURVES = 13 };
 
 static double case_seconds(const struct contact_case *one_case) {

@@ -17,7 +17,7 @@ static int no_room(struct error *err) {
     return error_set(err, ERROR_MEMORY, "no memory left for curves");
 }
 
-/* A curve over the loads. */
+/* A curve over the loads is made from this. */
 struct row {
     const char *quantity, *series, *y_label;
     enum contact_measure measure;

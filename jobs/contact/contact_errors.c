@@ -21,7 +21,8 @@ static double refinement(const struct contact_case *one_case, size_t level) {
     return (double)one_case->levels[level + 1].grid.nx / (double)one_case->levels[level].grid.nx;
 }
 
-/* The ratio of the changes between levels over the whole curve; NaN where nothing changes. */
+/* Returns the ratio of the changes between levels over the whole curve; NaN where nothing changes.
+ */
 static double observed_ratio(const struct contact_tally *tally, enum contact_measure measure,
                              size_t model) {
     const struct contact_case *one_case = tally->one_case;

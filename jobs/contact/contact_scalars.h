@@ -29,8 +29,8 @@ enum contact_scalar {
     CONTACT_SCALAR_EPS_S0,
     CONTACT_SCALAR_COUNT
 };
-/* The name of a scalar of one realisation: those above, then those of the models; NULL behind the
- * last. */
+/* Returns the name of a scalar of one realisation: those above, then those of the models; NULL
+ * behind the last. */
 const char *contact_scalar_name(size_t scalar);
 
 /* Of the realisation whose values the tally holds. nayak_alpha: of its own spectrum. Fails only

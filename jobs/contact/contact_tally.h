@@ -67,12 +67,13 @@ struct estimate contact_tally_level(const struct contact_tally *tally, enum cont
                                     size_t model, size_t load);
 struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load);
-/* Area of a bin over that of the cell, over the realisations with values there. */
+/* Estimates the area of a bin over that of the cell from the realisations with values there. */
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
                                        size_t bin);
 /* Returns in how many parts a node's area is counted: 1 where all are equal. */
 uint64_t contact_tally_units(const struct contact_case *one_case, size_t model);
-/* First cell of the pressures of a model and load: underflow, the bins, overflow. */
+/* Returns the first cell of the pressures of a model and load, which are underflow, the bins,
+ * overflow. */
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at);
 
 /* These are what job_kind asks for. Counts that add up are possible, and belong together. */

@@ -15,7 +15,7 @@ enum { CONTACT_MODELS_MOST = 8, MODEL_FACTS_MOST = 2 };
 struct contact_case;
 struct contact_solver; /* each model's own */
 
-/* What came out of a load. */
+/* A load gives this. */
 struct contact_pressed {
     struct contact_state state; /* its work in points x transforms */
     double stretch; /* nodes in contact: area under load over that undeformed; 1 where areas are
@@ -62,7 +62,8 @@ struct contact_model {
      */
     int (*check)(struct contact_case *one_case, size_t model, struct values *values,
                  struct error *err);
-    /* Of a solver on one grid, and CPU seconds of all loads there on a 3 GHz core. */
+    /* These return the bytes of a solver on one grid, and the CPU seconds of all loads there on a 3
+     * GHz core. */
     double (*bytes)(const struct contact_case *one_case, size_t model, const struct grid *grid);
     double (*seconds)(const struct contact_case *one_case, size_t model, const struct grid *grid);
 

@@ -24,7 +24,7 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
                          struct fault_list *faults, struct error *err);
 void statistics_case_clear(struct statistics_case *one_case);
 
-/* Memory, time and error of one realisation, before anything ran (statistics_cost.c). */
+/* Estimates memory, time and error of one realisation before anything ran (statistics_cost.c). */
 void statistics_case_estimate(const struct statistics_case *one_case, struct study_cost *out);
 
 #endif

@@ -16,7 +16,7 @@ static double expected_seconds(const struct statistics_case *one_case) {
     return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points);
 }
 
-/* CPU seconds of the theories of a bin of summit heights, as publishing_cost.h. */
+/* The theories of a bin of summit heights take so many CPU seconds, as in publishing_cost.h. */
 static const double PROFILE_BIN_SECONDS = 1.3e-5, SURFACE_BIN_SECONDS = 8.4e-5;
 enum { CURVES = 9, HEIGHT_CURVES = 5 };
 

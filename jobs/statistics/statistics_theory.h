@@ -8,7 +8,8 @@
  */
 bool statistics_theory_applies(const struct statistics_case *one_case,
                                const struct moments *moments);
-/* Its name: "nayak", and for profiles "longuet_higgins" (Cartwright & Longuet-Higgins 1956). */
+/* Returns its name: "nayak", and for profiles "longuet_higgins" (Cartwright & Longuet-Higgins
+ * 1956). */
 const char *statistics_theory_name(const struct statistics_case *one_case);
 
 /* Prescribed height distribution: mean density of each bin; cumulative at its upper edge. */

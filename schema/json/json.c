@@ -34,8 +34,8 @@ static bool next_is(const struct gate *gate, char c) {
     return gate->at < gate->end && *gate->at == c;
 }
 
-/* Bytes of one UTF-8 sequence (RFC 3629: shortest form, no surrogates, up to U+10FFFF); 0 if none.
- */
+/* Counts the bytes of one UTF-8 sequence (RFC 3629: shortest form, no surrogates, up to U+10FFFF);
+ * 0 where it is none. */
 static size_t utf8_length(const unsigned char *s, size_t room) {
     static const struct {
         unsigned char lead_low, lead_high, next_low, next_high, length;

@@ -131,7 +131,7 @@ struct result_note {
     const char *text;
 };
 
-/* A parameter of the case as people filter by it: "/surface/hurst". */
+/* People filter cases by such parameters: "/surface/hurst". */
 struct result_parameter {
     const char *pointer;
     const char *text; /* NULL: a number */

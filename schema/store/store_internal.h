@@ -17,7 +17,7 @@ struct store {
     char time_text[24];   /* "" at first */
     bool claim_failed_jobs;
     int batch; /* inside store_begin .. store_commit */
-    /* Prepared once, found by the address of their text. */
+    /* Statements are prepared once, and found by the address of their text. */
     struct {
         const char *sql;
         sqlite3_stmt *statement;

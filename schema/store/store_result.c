@@ -75,7 +75,7 @@ static int fill_scalars(const struct stored_block *block, struct block_result *o
     return 0;
 }
 
-/* NaN for NULL. */
+/* Reads a number; NULL becomes NaN. */
 static double column_number(sqlite3_stmt *row, int column) {
     return sqlite3_column_type(row, column) == SQLITE_NULL ? (double)NAN
                                                            : sqlite3_column_double(row, column);

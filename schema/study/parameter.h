@@ -53,7 +53,7 @@ struct parameter_table {
     size_t count;
 };
 
-/* Row number `index` of all tables one after the other; NULL behind the last. */
+/* Returns row number `index` of all tables one after the other; NULL behind the last. */
 const struct parameter *parameter_row(const struct parameter_table *const *tables, size_t index);
 /* The row of a path, and its index where index is not NULL; NULL for an unknown path. */
 const struct parameter *parameter_find(const struct parameter_table *const *tables,

@@ -57,8 +57,8 @@ enum { STUDY_CASES_MOST = 10000 };
 
 void study_destroy(struct study **study);
 
-/* JSON Schema (draft 2020-12) of studies of these kinds; caller deletes. NULL when out of memory.
- */
+/* Makes the JSON Schema (draft 2020-12) of studies of these kinds; the caller deletes it. Returns
+ * NULL when out of memory. */
 cJSON *study_schema(const struct study_kind *const *kinds);
 
 #endif

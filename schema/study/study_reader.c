@@ -43,7 +43,7 @@ static const char *known_path(const struct study_kind *kind, size_t index) {
 
 enum place { PLACE_UNKNOWN, PLACE_INSIDE, PLACE_PARAMETER };
 
-/* Whether a pointer names a parameter, an object on the way to one, or nothing. */
+/* Returns whether a pointer names a parameter, an object on the way to one, or nothing. */
 static enum place pointer_place(const struct study_kind *kind, const char *pointer) {
     size_t length = strlen(pointer);
     const char *path;

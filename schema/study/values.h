@@ -42,7 +42,7 @@ int values_numbers(struct values *values, const char *path, double **out, size_t
 void values_bins(struct values *values, const char *path, size_t most, struct bins *out);
 /* Returns whether the value of row number `index` is its default, or absent. */
 bool values_is_default(const struct values *values, size_t index);
-/* The value of row number `index` as JSON, given or default; NULL where absent. */
+/* Returns the value of row number `index` as JSON, given or default; NULL where it is absent. */
 const cJSON *values_json(const struct values *values, size_t index);
 
 /* Adds a fault that no single range shows. */

@@ -62,7 +62,7 @@ void access_close(struct access **access) {
     *access = NULL;
 }
 
-/* An identifier in a path: anything but letters and digits would change the path's meaning. */
+/* Checks an identifier for a path, whose meaning anything but letters and digits would change. */
 static bool is_study_id(const char *id) {
     size_t length = strlen(id);
     return length != 0 && length < STUDY_ID_SIZE && strspn(id, "0123456789abcdef") == length;

@@ -45,7 +45,7 @@ static bool writes_surface(const struct generate_order *order) {
     return order->options->mesh == NULL || order->output != NULL;
 }
 
-/* The format asked for, or that of the output's name, or npy; 0 or EXIT_USAGE. */
+/* Chooses the format asked for, or that of the output's name, or npy; returns 0 or EXIT_USAGE. */
 static int choose_format(struct generate_order *order) {
     const char *name = order->options->format;
     order->format = HEIGHT_MAP_FORMATS;

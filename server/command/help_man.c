@@ -2,7 +2,8 @@
 #include "server/command/help.h"
 #include <string.h>
 
-/* A text of a roff line: hyphens and quotes as typed, nothing taken for a request. */
+/* Prints a text of a roff line with hyphens and quotes as typed, and nothing taken for a request.
+ */
 static void print_roff(FILE *file, const char *text) {
     if (*text == '.' || *text == '\'')
         fputs("\\&", file);

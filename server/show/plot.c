@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The picture, in SVG user units, and its legend at the right. LETTER: about a letter's width. */
+/* The picture has this size in SVG user units, with its legend at the right. LETTER is about a
+ * letter's width. */
 enum { WIDTH = 960, HEIGHT = 570, LEGEND = FRAME_RIGHT + 48, LETTER = 7 };
 
 /* The first seven are those of Okabe & Ito (2008), which every reader can tell apart. */

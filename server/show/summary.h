@@ -13,9 +13,9 @@ struct shown_cases;
  * the report, which may be NULL, also the time that each case took. */
 void summary_of_curves(const struct study_result *study, const struct study_report *report,
                        FILE *file);
-/* The tables of a quantity: for a few cases, one each of its values at up to ten places x, by
- * model, with their statistical errors and those of every other source in percent of the value, and
- * the theories; for many cases, a row each with the values at three places. */
+/* Prints the tables of a quantity: for a few cases, one each of its values at up to ten places x,
+ * by model, with their statistical errors and those of every other source in percent of the value,
+ * and the theories; for many cases, a row each with the values at three places. */
 void summary_of_quantity(const struct quantity_table *words, const struct shown_cases *shown,
                          const struct study_report *report, FILE *file);
 /* Speed against error: a row a case, and, where there are models and levels, what each of them and

@@ -32,7 +32,7 @@ void duration_cell(struct text_table *table, double seconds);
 void work_time_text(const struct work_time *time, char *out, size_t size);
 /* A line where the clock stands for the processor time of some jobs. */
 void print_without_cpu(const struct work_time *time, FILE *file);
-/* A line where errors of cases go together; random as in study_result. */
+/* Prints a line where errors of cases go together; random is as in study_result. */
 void print_random(const char *random, size_t cases, FILE *file);
 /* The report of a case, or NULL where the report, which may be NULL, has none. */
 const struct case_report *report_of(const struct study_report *report,

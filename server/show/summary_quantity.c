@@ -6,7 +6,7 @@
 
 enum { TABLES_MOST = 4, PLACES_SHOWN = 10, MODELS_MOST = 8, NOTES_SHOWN = 3 };
 
-/* The finest curve of each model, of the first estimator of the case. */
+/* A case is shown by the finest curve of each model, of the first estimator. */
 struct finest_curves {
     size_t model_count, theory_count;
     bool more_models; /* than there is room for: told below the table */

@@ -4,7 +4,8 @@
 
 #include "schema/result/view.h"
 
-/* That of a kind; a plain one for a kind without a view, or of another program (NULL). */
+/* Returns the view of a kind; a plain one for a kind without a view, or of another program (NULL).
+ */
 const struct result_view *view_of(const char *kind);
 /* Returns the picture of a quantity with logarithmic axes, or NULL. */
 const struct logarithmic_picture *view_logarithmic(const struct result_view *view,
