@@ -175,6 +175,34 @@ static void drawn_heights_are_standardised(void **state) {
     free(again);
 }
 
+/* What lets cases of other shapes be compared: drawn heights of every distribution are quantiles of
+ * the same uniform numbers, those of the key. Weibull heights are (-log(1 - p))^(1/C); shift and
+ * scale, which the sample sets, drop out of the ratio. */
+static void shapes_are_drawn_by_the_same_numbers(void **state) {
+    (void)state;
+    enum { N = 500 };
+    static const double SHAPES[] = {0.8, 1, 2, 3.602};
+    double p[N], drawn[N];
+    struct ranker *ranker = NULL;
+    random_uniform(KEY, STREAM_HEIGHTS, 0, N, p);
+    qsort(p, N, sizeof *p, by_value);
+    assert_int_equal(ranker_create(&ranker, N, NULL), 0);
+    for (size_t c = 0; c < sizeof SHAPES / sizeof *SHAPES; c++) {
+        struct heights heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = SHAPES[c]};
+        struct height_moments moments;
+        double z[N];
+        assert_int_equal(heights_moments(&heights, &moments, NULL), 0);
+        assert_int_equal(
+            target_heights_draw(&heights, &moments, DRAW_RANDOM, KEY, N, ranker, drawn, NULL), 0);
+        for (size_t i = 0; i < N; i++)
+            z[i] = pow(-log1p(-p[i]), 1 / SHAPES[c]);
+        for (size_t i = 0; i < N; i++)
+            check_close((drawn[i] - drawn[0]) / (drawn[N - 1] - drawn[0]),
+                        (z[i] - z[0]) / (z[N - 1] - z[0]), 1e-9);
+    }
+    ranker_destroy(&ranker);
+}
+
 /* The errors from their definitions (3.33, 3.34), by a transform of the whole grid and a histogram
  * of its own, for the pair of which KEEP_SPECTRUM and KEEP_HEIGHTS return one each. */
 static void errors_are_those_of_the_pair(void **state) {
@@ -370,6 +398,7 @@ int main(void) {
         cmocka_unit_test(kept_spectrum_is_exact),
         cmocka_unit_test(kept_heights_are_exact),
         cmocka_unit_test(drawn_heights_are_standardised),
+        cmocka_unit_test(shapes_are_drawn_by_the_same_numbers),
         cmocka_unit_test(errors_are_those_of_the_pair),
         cmocka_unit_test(hard_cases_end),
         cmocka_unit_test(runs_end_as_they_should),

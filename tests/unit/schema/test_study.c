@@ -300,6 +300,11 @@ static void schema_has_what_the_reader_asks(void **state) {
     assert_true(json_at(schema, "/properties/name/anyOf/0/maxLength")->valuedouble == 200);
     assert_true(json_at(schema, "/allOf/0/then/properties/realisations/default")->valuedouble ==
                 100);
+    const cJSON *random = json_at(schema, "/properties/random");
+    assert_string_equal(json_at(random, "/default")->valuestring, "common");
+    assert_string_equal(json_at(random, "/anyOf/0/enum/1")->valuestring, "independent");
+    assert_null(json_at(random, "/anyOf/1")); /* it cannot be swept */
+    assert_non_null(json_at(schema, "/allOf/0/then/properties/random"));
     const cJSON *shapes = json_at(schema, "/allOf/0/then/properties/shapes/anyOf/0");
     assert_string_equal(json_at(shapes, "/anyOf/0/enum/2")->valuestring, "oval");
     assert_string_equal(json_at(shapes, "/anyOf/1/items/enum/2")->valuestring, "oval");
