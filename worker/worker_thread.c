@@ -94,9 +94,8 @@ static int job_run(struct worker_thread *thread, const struct claimed_job *job,
         return error_set(err, ERROR_SYSTEM, "this worker knows no kind '%.64s'", job->kind);
     struct job_control control = {.poll = thread_poll, .context = thread};
     int status = runner_prepare(thread, job, report->kind, err);
-    if (status == 0) {
+    if (status == 0)
         status = runner_run(thread->runner, job->first, job->count, &control, &report->result, err);
-    }
     return status;
 }
 

@@ -7,9 +7,8 @@
 static const double INTEGER_MOST = 9007199254740992.0; /* 2^53 */
 
 bool field_put(cJSON *object, const char *key, cJSON *item) {
-    if (item != NULL && cJSON_AddItemToObject(object, key, item)) {
+    if (item != NULL && cJSON_AddItemToObject(object, key, item))
         return true;
-    }
     cJSON_Delete(item);
     return false;
 }
@@ -23,9 +22,8 @@ bool field_put_count(cJSON *object, const char *key, uint64_t count) {
 }
 
 cJSON *fields_finish(cJSON *value, bool complete) {
-    if (complete) {
+    if (complete)
         return value;
-    }
     cJSON_Delete(value);
     return NULL;
 }
@@ -57,36 +55,32 @@ int field_text(const cJSON *object, const char *key, size_t size, const char **o
 int field_copy(const cJSON *object, const char *key, size_t size, char *out, struct error *err) {
     const char *text = "";
     int status = field_text(object, key, size, &text, err);
-    if (status == 0) {
+    if (status == 0)
         memcpy(out, text, strlen(text) + 1);
-    }
     return status;
 }
 
 int field_count(const cJSON *object, const char *key, uint64_t *out, struct error *err) {
     const cJSON *item = field_at(object, key);
     if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= INTEGER_MOST) ||
-        item->valuedouble != floor(item->valuedouble)) {
+        item->valuedouble != floor(item->valuedouble))
         return field_fault(key, "an integer of 0 to 2^53", err);
-    }
     *out = (uint64_t)item->valuedouble;
     return 0;
 }
 
 int field_seconds(const cJSON *object, const char *key, double *out, struct error *err) {
     const cJSON *item = field_at(object, key);
-    if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= 1e12)) {
+    if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= 1e12))
         return field_fault(key, "a number of seconds", err);
-    }
     *out = item->valuedouble;
     return 0;
 }
 
 int field_bool(const cJSON *object, const char *key, bool *out, struct error *err) {
     const cJSON *item = field_at(object, key);
-    if (item != NULL && !cJSON_IsBool(item)) {
+    if (item != NULL && !cJSON_IsBool(item))
         return field_fault(key, "true or false", err);
-    }
     *out = cJSON_IsTrue(item);
     return 0;
 }

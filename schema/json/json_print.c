@@ -17,9 +17,8 @@ void json_print_number(FILE *file, double number) {
     bool large = fabs(number) > 0x1p53; /* no integer to be read exactly: give it an exponent */
     for (int digits = 15; digits <= 17; digits++) {
         snprintf(text, sizeof text, large ? "%.*e" : "%.*g", digits - large, number);
-        if (strtod(text, NULL) == number) {
+        if (strtod(text, NULL) == number)
             break;
-        }
     }
     fputs(text, file);
 }
@@ -27,9 +26,8 @@ void json_print_number(FILE *file, double number) {
 /* Prints strings, true, false and null; returns false when out of memory. */
 static bool put_plain(FILE *file, const cJSON *value) {
     char *text = cJSON_PrintUnformatted(value);
-    if (text != NULL) {
+    if (text != NULL)
         fputs(text, file);
-    }
     cJSON_free(text);
     return text != NULL;
 }

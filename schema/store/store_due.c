@@ -101,12 +101,11 @@ int store_publish_due(struct store *store, const struct publication *publication
     struct cursor cursor = {0};
     int status = 0;
     *counts = (struct publish_counts){0};
-    while (status == 0 && (status = find_due(store, publication, &cursor, err)) == 1) {
+    while (status == 0 && (status = find_due(store, publication, &cursor, err)) == 1)
         if (publication->stop != NULL && publication->stop(publication->context))
             status = error_set(err, ERROR_STOPPED, "stopped");
         else
             status = offer(store, publication, &cursor.due, counts, err);
-    }
     return status;
 }
 

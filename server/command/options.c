@@ -272,13 +272,12 @@ int options_parse(int argc, char **argv, const struct option_row *rows, void *va
     fill_names(rows, names, letters);
     opterr = 0;
     optind = 0; /* from the start, also for a second command line */
-    for (int code; status == 0 && (code = getopt_long(argc, argv, letters, names, NULL)) != -1;) {
+    for (int code; status == 0 && (code = getopt_long(argc, argv, letters, names, NULL)) != -1;)
         if (code == '?')
             status = refused(argv, rows);
         else if (code == ':')
             status = usage_error(argv[0], "%.60s needs a value", argv[optind - 1]);
         else
             status = take_value(argv[0], find_row(rows, code), values, optarg);
-    }
     return status != 0 ? status : take_arguments(argc, argv, least, most, arguments);
 }

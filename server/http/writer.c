@@ -138,12 +138,11 @@ int writer_do(struct writer *writer, store_change *change, void *context, struct
         pthread_cond_signal(&writer->posted);
     }
     pthread_mutex_unlock(&writer->mutex);
-    if (taken) {
+    if (taken)
         while (sem_wait(&post.ended) != 0 && errno == EINTR)
             continue;
-    } else {
+    else
         post.status = error_set(&post.error, ERROR_SYSTEM, "the server is ending");
-    }
     sem_destroy(&post.ended);
     if (post.status != 0 && err != NULL)
         *err = post.error;
