@@ -62,6 +62,7 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
     struct claim claim = {0};
     const char *kinds[WIRE_KINDS_MOST + 1] = {NULL};
     uint64_t count = 1;
+    bool sequence = false;
     int status = field_text(value, "worker", 256, &claim.worker, err);
     const cJSON *host = field_at(value, "host");
     if (status == 0 && host != NULL && !cJSON_IsString(host))
@@ -71,9 +72,11 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
         status = read_kinds(field_at(value, "kinds"), kinds, err);
     if (status == 0 && field_at(value, "count") != NULL)
         status = field_count(value, "count", &count, err);
+    if (status == 0)
+        status = field_bool(value, "sequence", &sequence, err);
     if (status != 0)
         return status;
-    claim.independent_only = !cJSON_IsTrue(field_at(value, "sequence"));
+    claim.independent_only = !sequence;
     claim.count = count < WIRE_JOBS_MOST ? (size_t)count : WIRE_JOBS_MOST;
     memcpy(out->kinds, kinds, sizeof kinds);
     claim.kinds = field_at(value, "kinds") != NULL ? out->kinds : NULL;

@@ -99,6 +99,9 @@ static void sequences_are_by_case_for_older_ends(void **state) {
     cJSON_DeleteItemFromObject(value, "sequence");
     assert_int_equal(wire_claim_read(value, &read, &err), 0);
     assert_true(read.claim.independent_only);
+    cJSON_AddNumberToObject(value, "sequence", 1);
+    assert_int_equal(wire_claim_read(value, &read, &err), ERROR_INPUT);
+    assert_string_equal(err.text, "\"sequence\" must be true or false");
     cJSON_Delete(value);
 }
 
