@@ -1,27 +1,29 @@
-/* Richardson's extrapolation of a curve over mesh levels (FORMULAS.md, F15.3): with
- * f(h) = f_limit + c h^q, f on the finest level less the limit is factor * (f_next - f_finest),
- * factor = 1/(r^q - 1) and r = h_next/h_finest > 1.
+/* What a value on the finest of several mesh levels owes to its mesh, judged by how it changes from
+ * level to level (FORMULAS.md, F15.3). With f(h) = f_limit + c h^q, f on the finest level less the
+ * limit is factor * (f_next - f_finest), factor = 1/(r^q - 1) and r = h_next/h_finest > 1.
  *
- * The order q is fitted to the three finest levels: the changes between the two coarser ones are a
- * multiple of those between the two finer ones at all points of the curve, and that multiple
- * depends on q alone. */
+ * That is told as a signed error only where three levels shrink as the order that is known of the
+ * quantity says; else the change between the two finest levels bounds the error on both sides. */
 #ifndef RUGO_CORE_STATISTICS_RICHARDSON_H
 #define RUGO_CORE_STATISTICS_RICHARDSON_H
 
-/* Sums the least squares over the points of a curve; initialise with {0}. */
-struct richardson_fit {
-    double product, square;
-};
-/* Adds a point: fine is f_next - f_finest, coarse is f_third - f_next. Leaves it out where one of
- * them is not finite. */
-void richardson_fit_add(struct richardson_fit *fit, double fine, double coarse);
-/* Returns the multiple s that brings s * fine nearest to coarse; NaN where nothing changes. */
-double richardson_fit_ratio(const struct richardson_fit *fit);
+#include <stdbool.h>
 
-/* The order q whose changes have this ratio, held within 1 and 3: orders outside of these say that
- * the levels are too coarse to show one. fine is h_next/h_finest, coarse is h_third/h_next. */
-double richardson_order(double ratio, double fine, double coarse);
-/* Returns the factor above at an order; fine is h_next/h_finest. */
-double richardson_factor(double order, double fine);
+/* Of one value from level to level. */
+struct mesh_changes {
+    double fine;         /* finest less next */
+    double coarse;       /* next less third; NaN: there is no third level */
+    double fine_ratio;   /* h_next/h_finest */
+    double coarse_ratio; /* h_third/h_next */
+};
+/* Finest less limit lies within error +- bound. */
+struct mesh_error {
+    double error;  /* 0 where no order is seen */
+    double bound;  /* NaN where fine is */
+    double weight; /* by how much a change of `fine` changes error and bound together */
+    double order;  /* seen on the three levels; NaN: none, or not near the known one */
+};
+/* order: the one that is known of the quantity. */
+struct mesh_error mesh_error(const struct mesh_changes *changes, double order);
 
 #endif

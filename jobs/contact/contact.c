@@ -117,7 +117,7 @@ static int result(const void *one_case, const struct surface_basis *basis, const
                   const struct realisations *realisations, struct case_result *out,
                   struct error *err) {
     const struct contact_tally *contact = tally;
-    int status = contact_scalars(one_case, &basis->moments, realisations, out, err);
+    int status = contact_scalars(one_case, &basis->moments, contact, realisations, out, err);
     if (status == 0)
         status = contact_curves(one_case, basis->modes, &basis->moments, contact, out, err);
     return status != 0 ? status : notes_result(&contact->notes, out, err);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 static const double ROUNDING = 1e-9; /* relative: numbers that are meant to be equal */
-enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
+enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000, PROBE_POINTS = 4 };
 const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
                                                         NULL};
 
@@ -199,6 +199,34 @@ static int read_levels(struct contact_case *out, struct values *values, struct e
     return 0;
 }
 
+double contact_case_block_bound(const struct contact_case *one_case, size_t model) {
+    static const double SAFETY = 10;
+    /* 1 - (cosh 2x - 1)/(sinh 2x + 2x) (compliance.h), without what overflows and cancels. */
+    double x = 2 * M_PI * one_case->blocks[model].height / one_case->surface.grid.lx;
+    double falling = exp(-2 * x);
+    if (!(falling > 0))
+        return 0;
+    return SAFETY * 2 * falling * (1 + 2 * x - falling) / (1 - falling * falling + 4 * x * falling);
+}
+
+/* Where a block is low, what its height changes is told on a mesh as coarse as will do. */
+static void choose_probe(struct contact_case *out) {
+    const struct contact_level *coarsest = &out->levels[0];
+    bool low = false;
+    for (size_t m = 0; m < out->model_count; m++)
+        low = low || contact_case_block_bound(out, m) > CONTACT_BLOCK_LOW;
+    if (!low || out->level_count == 0)
+        return;
+    out->probe = *coarsest;
+    if (coarsest->stride == 0 || coarsest->grid.nx % 2 != 0 || coarsest->points < 2 * PROBE_POINTS)
+        return;
+    out->probe.points /= 2;
+    out->probe.stride *= 2;
+    out->probe.grid.nx /= 2;
+    if (!grid_is_profile(&out->probe.grid))
+        out->probe.grid.ny /= 2;
+}
+
 /* Checks the layers that a block takes on each mesh. */
 static void check_layers(const struct contact_case *one_case, struct values *values) {
     double thickness[LAYERS_MOST];
@@ -265,6 +293,7 @@ static int read_contact(struct contact_case *out, struct values *values, struct 
         status = read_loads(out, values, err);
     if (status == 0)
         status = read_levels(out, values, err);
+    choose_probe(out);
     if (status == 0)
         status = read_pdf(out, values, err);
     if (status == 0)

@@ -33,6 +33,8 @@ struct contact_case {
     double rms_slope; /* of the prescribed spectrum; 0 where no model asks for it */
     size_t level_count;
     struct contact_level levels[CONTACT_LEVELS_MOST]; /* rising: the last is the finest */
+    struct contact_level probe; /* of blocks' heights (contact_probe.h): half as fine as the
+                                   coarsest where that leaves 4 points; no points without one */
     size_t load_count;
     double *loads;                /* owned: p/(E* h'), rising, > 0 */
     bool nodes, edges, perimeter; /* estimators shown */
@@ -57,6 +59,23 @@ static inline size_t contact_case_cell(const struct contact_case *one_case, size
 static inline size_t contact_case_cells(const struct contact_case *one_case) {
     return contact_case_cell(one_case, one_case->model_count, 0, 0);
 }
+/* Behind these, of the probe: the half-space (block 0) and the block of each model, by load; and
+ * how many cells there are with them. */
+static inline size_t contact_case_probe_cell(const struct contact_case *one_case, size_t block,
+                                             size_t load) {
+    return contact_case_cells(one_case) + block * one_case->load_count + load;
+}
+static inline size_t contact_case_all_cells(const struct contact_case *one_case) {
+    bool probed = one_case->probe.grid.nx > 0;
+    return contact_case_probe_cell(one_case, probed ? one_case->model_count + 1 : 0, 0);
+}
+
+/* By how much the height of a model's block changes what is measured, relative to it, at most:
+ * several times what the compliance of the longest wave of the cell lacks of that of a half-space.
+ */
+double contact_case_block_bound(const struct contact_case *one_case, size_t model);
+/* Beyond this a block's height is probed (contact_probe.h). */
+#define CONTACT_BLOCK_LOW 1e-4
 
 /* The most complete of the models: that from which the errors of the others are counted. */
 size_t contact_case_complete(const struct contact_case *one_case);

@@ -10,7 +10,8 @@ struct contact_curve_maker {
     const struct modes *modes;
     const struct contact_tally *tally;
     struct contact_theories theories;
-    struct case_result *result; /* its arena owns all arrays */
+    struct case_result *result;   /* its arena owns all arrays */
+    struct contact_error *errors; /* scratch: one a load */
 };
 
 static int no_room(struct error *err) {
@@ -23,64 +24,6 @@ struct row {
     enum contact_measure measure;
     double factor; /* y is so many times the measure */
 };
-
-/* Makes room for one source's errors at each load. */
-static int error_create(struct contact_curve_maker *maker, double **value, double **standard_error,
-                        struct curve_error *out, struct error *err) {
-    size_t n = maker->one_case->load_count;
-    *value = result_numbers(maker->result, 2 * n);
-    if (*value == NULL)
-        return no_room(err);
-    *standard_error = *value + n;
-    *out = (struct curve_error){
-        .applies = true, .value = *value, .standard_error = *standard_error, .order = NAN};
-    return 0;
-}
-
-/* Fills in the discretisation error: the finest level minus the limit. */
-static int put_discretisation(struct contact_curve_maker *maker, const struct row *row,
-                              size_t model, struct curve_error *out, struct error *err) {
-    struct contact_extrapolation rule = contact_extrapolate(maker->tally, row->measure, model);
-    double factor = rule.factor * row->factor, *value, *standard_error;
-    int status = error_create(maker, &value, &standard_error, out, err);
-    if (status != 0)
-        return status;
-    for (size_t k = 0; k < maker->one_case->load_count; k++) {
-        struct estimate change = contact_tally_level(maker->tally, row->measure, model, k);
-        value[k] = -factor * change.value;
-        standard_error[k] = factor * change.standard_error;
-    }
-    out->order = rule.order;
-    out->order_observed = rule.observed;
-    return 0;
-}
-
-/* Of a model against the most complete one, on the same realisations: of the limits where levels
- * tell them, or else of the finest level, whose own error is then in it. */
-static int put_model(struct contact_curve_maker *maker, const struct row *row, size_t model,
-                     struct curve_error *out, struct error *err) {
-    size_t complete = contact_case_complete(maker->one_case);
-    bool limits = maker->one_case->level_count > 1;
-    double factor = 0, best = 0, *value, *standard_error;
-    int status = error_create(maker, &value, &standard_error, out, err);
-    if (status != 0)
-        return status;
-    if (limits) {
-        factor = contact_extrapolate(maker->tally, row->measure, model).factor;
-        best = contact_extrapolate(maker->tally, row->measure, complete).factor;
-    }
-    for (size_t k = 0; k < maker->one_case->load_count; k++) {
-        struct estimate difference = contact_tally_model(maker->tally, row->measure, model, k);
-        double own = 0, other = 0;
-        if (limits) {
-            own = factor * contact_tally_level(maker->tally, row->measure, model, k).value;
-            other = best * contact_tally_level(maker->tally, row->measure, complete, k).value;
-        }
-        value[k] = row->factor * (difference.value + own - other);
-        standard_error[k] = row->factor * difference.standard_error;
-    }
-    return 0;
-}
 
 static void add_theories(const struct contact_curve_maker *maker, const struct row *row,
                          struct curve *curve) {
@@ -120,37 +63,59 @@ static struct curve curve_of(const struct contact_case *one_case, size_t model, 
     return curve;
 }
 
-/* Marks the sources that bear on what is measured of contact: not on what it cost. A model that
- * leaves out finite slopes errs by them, unless the surface has no lengths of its own: then it is
- * the limit of small slopes that is asked for. */
-static void mark_sources(const struct contact_case *one_case, size_t model, double valueless,
-                         struct curve *curve) {
-    bool complete = true;
-    for (size_t m = 0; CONTACT_MODELS[m] != NULL; m++)
-        complete = complete && one_case->models[model]->rank >= CONTACT_MODELS[m]->rank;
-    curve->errors[ERROR_DISCRETISATION].applies = true;
-    curve->errors[ERROR_CELL].applies = true;
-    curve->errors[ERROR_BLOCK].applies = isfinite(one_case->blocks[model].height);
-    curve->errors[ERROR_MODEL].applies = !complete && contact_case_has_scale(one_case);
-    curve->errors[ERROR_SOLVER].applies = true;
-    curve->errors[ERROR_MISSING].applies = valueless > 0;
+/* The mean of the orders that the levels show; NaN where they show none. */
+static double mean_order(size_t n, const struct contact_error *errors) {
+    double sum = 0, count = 0;
+    for (size_t k = 0; k < n; k++)
+        if (!isnan(errors[k].order)) {
+            sum += errors[k].order;
+            count++;
+        }
+    return sum / count;
 }
 
+/* Of one source, `factor` times that of the measure. */
+static int put_errors(struct contact_curve_maker *maker, double factor,
+                      const struct contact_error *errors, struct curve_error *out,
+                      struct error *err) {
+    size_t n = maker->one_case->load_count;
+    double *value = result_numbers(maker->result, 3 * n);
+    if (value == NULL)
+        return no_room(err);
+    double *bound = value + n, *standard_error = bound + n;
+    for (size_t k = 0; k < n; k++) {
+        value[k] = factor * errors[k].value;
+        bound[k] = factor * errors[k].bound;
+        standard_error[k] = factor * errors[k].standard_error;
+    }
+    double order = mean_order(n, errors);
+    *out = (struct curve_error){.applies = true,
+                                .value = value,
+                                .bound = bound,
+                                .standard_error = standard_error,
+                                .order = order,
+                                .order_observed = !isnan(order)};
+    return 0;
+}
+
+/* All sources that bear on a measure; those of the finest level are known. */
 static int add_errors(struct contact_curve_maker *maker, const struct row *row, size_t model,
-                      struct curve *curve, struct error *err) {
+                      size_t level, struct curve *curve, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
+    bool finest = level + 1 == one_case->level_count;
     int status = 0;
-    if (one_case->level_count > 1)
-        status = put_discretisation(maker, row, model, &curve->errors[ERROR_DISCRETISATION], err);
-    if (status == 0 && one_case->model_count > 1 && model != contact_case_complete(one_case))
-        status = put_model(maker, row, model, &curve->errors[ERROR_MODEL], err);
+    for (enum error_source s = 0; s < ERROR_SOURCES && status == 0; s++) {
+        curve->errors[s].applies =
+            contact_error_applies(maker->tally, row->measure, model, level, s);
+        if (finest && contact_errors(maker->tally, row->measure, model, s, maker->errors))
+            status = put_errors(maker, row->factor, maker->errors, &curve->errors[s], err);
+    }
     return status;
 }
 
 static int append(struct contact_curve_maker *maker, const struct row *row, size_t model,
                   size_t level, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
-    double valueless_most = 0;
     struct curve curve =
         curve_of(one_case, model, level, row->quantity, "p/(E* h'_rms)", row->y_label);
     size_t n = one_case->load_count;
@@ -162,24 +127,18 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
         factor *= curve.points;
     for (size_t k = 0; k < n; k++) {
         size_t cell = contact_case_cell(one_case, model, level, k);
-        struct estimate mean = contact_tally_mean(maker->tally, row->measure, cell);
+        struct estimate mean = contact_errors_mean(maker->tally, row->measure, model, level, k);
         x[k] = one_case->loads[k];
         y[k] = factor * mean.value;
         standard_error[k] = factor * mean.standard_error;
         valueless[k] = (double)contact_tally_valueless(maker->tally, row->measure, cell);
-        valueless_most = fmax(valueless_most, valueless[k]);
     }
     curve.series = row->series != NULL ? row->series : "";
     curve_set_points(&curve, n, x, y, standard_error);
     if (row->measure == MEASURE_STIFFNESS || one_case->models[model]->may_fail)
         curve.valueless = valueless;
     add_theories(maker, row, &curve);
-    if (row->measure <= MEASURE_PATCH_LARGEST)
-        mark_sources(one_case, model, valueless_most, &curve);
-    bool finest = level + 1 == one_case->level_count;
-    int status = 0;
-    if (finest && row->measure < MEASURE_PAIRED)
-        status = add_errors(maker, row, model, &curve, err);
+    int status = add_errors(maker, row, model, level, &curve, err);
     return status != 0 ? status : result_add_curve(maker->result, &curve, err);
 }
 
@@ -277,7 +236,9 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     struct curve curve = curve_of(one_case, model, finest, "contact_pressure_pdf",
                                   "local p/(E* h'_rms)", "probability density");
     curve.pressure = load;
-    mark_sources(one_case, model, valueless[0], &curve);
+    for (enum error_source s = 0; s < ERROR_SOURCES; s++)
+        curve.errors[s].applies =
+            contact_error_applies(maker->tally, MEASURE_NODES, model, finest, s);
     curve_set_points(&curve, n, x, y, standard_error);
     if (contact_theory_pressures(one_case, maker->modes, load, pdf))
         curve.theories[curve.theory_count++] = (struct theory){"persson", pdf};
@@ -294,6 +255,9 @@ int contact_curves(const struct contact_case *one_case, const struct modes *mode
                    struct case_result *out, struct error *err) {
     struct contact_curve_maker maker = {
         .one_case = one_case, .modes = modes, .tally = tally, .result = out};
+    maker.errors = result_room(out, one_case->load_count, sizeof *maker.errors);
+    if (maker.errors == NULL)
+        return no_room(err);
     int status = contact_theories_make(&maker.theories, one_case, modes, moments, out, err);
     if (status == 0)
         status = append_areas(&maker, err);

@@ -2,14 +2,41 @@
 #include "core/statistics/richardson.h"
 #include <math.h>
 
-/* As measured on rough profiles and surfaces; the gap has no clear order, its error is small. */
-static double assumed_order(const struct contact_case *one_case, enum contact_measure measure,
-                            size_t model) {
+/* The block's share of a value is that of a half-space on a coarse mesh; for other models and
+ * meshes it holds within this part of itself. */
+static const double BLOCK_MARGIN = 0.25;
+/* An answer is within so many times the solver's tolerance of the exact one: what varies smoothly
+ * with the forces, and what counts points, one of which may fall on either side. Measured by
+ * tests/validation/jobs/test_contact_errors.c. */
+static const double SMOOTH_TOLERANCES = 100, COUNTED_TOLERANCES = 1000;
+/* Realisations without a value differ from the others by so many deviations. */
+static const double MISSING_DEVIATIONS = 2;
+
+static const struct contact_error UNKNOWN = {NAN, NAN, NAN, NAN};
+
+static size_t finest_of(const struct contact_case *one_case) {
+    return one_case->level_count - 1;
+}
+
+static struct estimate finest_mean(const struct contact_tally *tally, enum contact_measure measure,
+                                   size_t model, size_t load) {
+    return contact_errors_mean(tally, measure, model, finest_of(tally->one_case), load);
+}
+
+/* --- the mesh --- */
+
+/* The order in which a measure converges on rough profiles and surfaces. */
+static double known_order(const struct contact_case *one_case, enum contact_measure measure,
+                          size_t model) {
     switch (measure) {
     case MEASURE_EDGES:
     case MEASURE_EDGES_STRETCHED:
+    case MEASURE_KAPPA:
+    case MEASURE_POWER_LAW_A:
+    case MEASURE_POWER_LAW_B:
         return one_case->models[model]->edge_order[one_case->surface.dimension - 1];
     case MEASURE_GAP:
+    case MEASURE_STIFFNESS:
         return 2;
     default:
         return 1;
@@ -21,37 +48,256 @@ static double refinement(const struct contact_case *one_case, size_t level) {
     return (double)one_case->levels[level + 1].grid.nx / (double)one_case->levels[level].grid.nx;
 }
 
-/* Returns the ratio of the changes between levels over the whole curve; NaN where nothing changes.
- */
-static double observed_ratio(const struct contact_tally *tally, enum contact_measure measure,
-                             size_t model) {
+/* Changes of a value whose change between a level and the next coarser one is `change`. */
+struct level_changes {
+    struct mesh_changes of;
+    double standard_error; /* of the finest change */
+};
+typedef struct estimate change_at(const struct contact_tally *tally, enum contact_measure measure,
+                                  size_t model, size_t level, size_t load);
+
+static struct level_changes changes_of(const struct contact_tally *tally,
+                                       enum contact_measure measure, size_t model, size_t load,
+                                       change_at *change) {
     const struct contact_case *one_case = tally->one_case;
-    size_t finest = one_case->level_count - 1;
-    struct richardson_fit fit = {0};
-    for (size_t k = 0; k < one_case->load_count; k++) {
-        double fine = contact_tally_level(tally, measure, model, k).value;
-        double coarse =
-            contact_tally_mean(tally, measure, contact_case_cell(one_case, model, finest - 1, k))
-                .value -
-            contact_tally_mean(tally, measure, contact_case_cell(one_case, model, finest - 2, k))
-                .value;
-        richardson_fit_add(&fit, fine, coarse);
+    size_t finest = finest_of(one_case);
+    struct estimate fine = change(tally, measure, model, finest, load);
+    struct level_changes out = {.of = {.fine = fine.value,
+                                       .coarse = NAN,
+                                       .fine_ratio = refinement(one_case, finest - 1),
+                                       .coarse_ratio = NAN},
+                                .standard_error = fine.standard_error};
+    if (finest > 1) {
+        out.of.coarse = change(tally, measure, model, finest - 1, load).value;
+        out.of.coarse_ratio = refinement(one_case, finest - 2);
     }
-    return richardson_fit_ratio(&fit);
+    return out;
 }
 
-struct contact_extrapolation contact_extrapolate(const struct contact_tally *tally,
-                                                 enum contact_measure measure, size_t model) {
-    const struct contact_case *one_case = tally->one_case;
-    size_t next = one_case->level_count - 2;
-    struct contact_extrapolation out = {.order = assumed_order(one_case, measure, model)};
-    double fine = refinement(one_case, next);
-    if (one_case->level_count > 2) {
-        double ratio = observed_ratio(tally, measure, model);
-        out.observed = isfinite(ratio);
-        if (out.observed)
-            out.order = richardson_order(ratio, fine, refinement(one_case, next - 1));
+static double size_of(const struct contact_error *error, double value) {
+    return (fabs(error->value) + error->bound) / fabs(value);
+}
+
+/* A change between levels may vanish by chance at a load where the error changes sign: where no
+ * order is seen, the bound is at least that of the neighbouring loads, relative to the values. */
+static void spread_bounds(const struct contact_tally *tally, enum contact_measure measure,
+                          size_t model, struct contact_error *out) {
+    size_t n = tally->one_case->load_count;
+    double before = 0, own = size_of(&out[0], finest_mean(tally, measure, model, 0).value);
+    for (size_t k = 0; k < n; k++) {
+        double y = finest_mean(tally, measure, model, k).value;
+        double next =
+            k + 1 < n ? size_of(&out[k + 1], finest_mean(tally, measure, model, k + 1).value) : 0;
+        double most = fmax(before, next);
+        if (isnan(out[k].order) && most > own)
+            out[k].bound = most * fabs(y) - fabs(out[k].value);
+        before = own;
+        own = next;
     }
-    out.factor = richardson_factor(out.order, fine);
-    return out;
+}
+
+static bool mesh_errors(const struct contact_tally *tally, enum contact_measure measure,
+                        size_t model, struct contact_error *out) {
+    const struct contact_case *one_case = tally->one_case;
+    if (one_case->level_count < 2)
+        return false;
+    for (size_t k = 0; k < one_case->load_count; k++) {
+        struct level_changes changes = changes_of(tally, measure, model, k, contact_tally_level);
+        struct mesh_error error = mesh_error(&changes.of, known_order(one_case, measure, model));
+        out[k] = (struct contact_error){.value = isnan(error.bound) ? (double)NAN : error.error,
+                                        .bound = error.bound,
+                                        .standard_error = error.weight * changes.standard_error,
+                                        .order = error.order};
+    }
+    spread_bounds(tally, measure, model, out);
+    return true;
+}
+
+/* --- the model --- */
+
+/* Of the difference between a model and the most complete one. */
+static struct estimate difference_change(const struct contact_tally *tally,
+                                         enum contact_measure measure, size_t model, size_t level,
+                                         size_t load) {
+    size_t complete = contact_case_complete(tally->one_case);
+    struct estimate own = contact_tally_level(tally, measure, model, level, load);
+    struct estimate other = contact_tally_level(tally, measure, complete, level, load);
+    return (struct estimate){own.value - other.value,
+                             hypot(own.standard_error, other.standard_error)};
+}
+
+/* The difference in the limit of the levels: it holds none of the meshes' own errors, but a bound
+ * of what these leave of it. */
+static bool model_errors(const struct contact_tally *tally, enum contact_measure measure,
+                         size_t model, struct contact_error *out) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t complete = contact_case_complete(one_case);
+    if (model == complete || one_case->level_count < 2)
+        return false;
+    double order =
+        fmin(known_order(one_case, measure, model), known_order(one_case, measure, complete));
+    for (size_t k = 0; k < one_case->load_count; k++) {
+        struct estimate difference = contact_tally_model(tally, measure, model, k);
+        struct level_changes changes = changes_of(tally, measure, model, k, difference_change);
+        struct mesh_error mesh = mesh_error(&changes.of, order);
+        out[k] = (struct contact_error){
+            .value = isnan(mesh.bound) ? (double)NAN : difference.value - mesh.error,
+            .bound = mesh.bound,
+            .standard_error =
+                hypot(difference.standard_error, mesh.weight * changes.standard_error),
+            .order = mesh.order};
+    }
+    spread_bounds(tally, measure, model, out);
+    return true;
+}
+
+/* --- block, solver, missing realisations --- */
+
+static bool block_errors(const struct contact_tally *tally, enum contact_measure measure,
+                         size_t model, struct contact_error *out) {
+    const struct contact_case *one_case = tally->one_case;
+    double bound = contact_case_block_bound(one_case, model);
+    for (size_t k = 0; k < one_case->load_count; k++) {
+        double y = finest_mean(tally, measure, model, k).value;
+        if (bound <= CONTACT_BLOCK_LOW) { /* as good as infinitely high */
+            out[k] = (struct contact_error){.value = 0 * y, .bound = bound * fabs(y), .order = NAN};
+            continue;
+        }
+        struct estimate change = contact_tally_block(tally, measure, model, k);
+        double cell =
+            contact_tally_mean(tally, measure, contact_case_probe_cell(one_case, model + 1, k))
+                .value;
+        double scale = cell != 0 ? y / cell : (double)NAN;
+        out[k] = (struct contact_error){.value = scale * change.value,
+                                        .bound = BLOCK_MARGIN * fabs(scale * change.value),
+                                        .standard_error = fabs(scale) * change.standard_error,
+                                        .order = NAN};
+    }
+    return true;
+}
+
+static bool solver_errors(const struct contact_tally *tally, enum contact_measure measure,
+                          size_t model, struct contact_error *out) {
+    const struct contact_case *one_case = tally->one_case;
+    bool smooth = measure == MEASURE_EDGES || measure == MEASURE_GAP || measure == MEASURE_KAPPA ||
+                  measure == MEASURE_POWER_LAW_A || measure == MEASURE_POWER_LAW_B;
+    double share = one_case->tolerance * (smooth ? SMOOTH_TOLERANCES : COUNTED_TOLERANCES);
+    for (size_t k = 0; k < one_case->load_count; k++) {
+        double y = finest_mean(tally, measure, model, k).value;
+        out[k] = (struct contact_error){.value = 0 * y, .bound = share * fabs(y), .order = NAN};
+    }
+    return true;
+}
+
+/* The most complete of the other models that has a value of every realisation at this load of the
+ * finest level; model_count without one. */
+static size_t control_of(const struct contact_tally *tally, enum contact_measure measure,
+                         size_t load) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t found = one_case->model_count;
+    for (size_t m = 0; m < one_case->model_count; m++) {
+        size_t cell = contact_case_cell(one_case, m, finest_of(one_case), load);
+        bool better = found == one_case->model_count ||
+                      one_case->models[m]->rank > one_case->models[found]->rank;
+        if (m != contact_case_complete(one_case) && better &&
+            contact_tally_valueless(tally, measure, cell) == 0)
+            found = m;
+    }
+    return found;
+}
+
+static bool controlled(const struct contact_tally *tally, enum contact_measure measure,
+                       size_t model, size_t level, size_t load) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t cell = contact_case_cell(one_case, model, level, load);
+    uint64_t valueless = contact_tally_valueless(tally, measure, cell);
+    return measure < MEASURE_PAIRED && valueless > 0 && valueless < tally->realisations &&
+           model == contact_case_complete(one_case) && level == finest_of(one_case) &&
+           control_of(tally, measure, load) < one_case->model_count;
+}
+
+struct estimate contact_errors_mean(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t level, size_t load) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t cell = contact_case_cell(one_case, model, level, load);
+    if (!controlled(tally, measure, model, level, load))
+        return contact_tally_mean(tally, measure, cell);
+    size_t control = control_of(tally, measure, load);
+    struct estimate all =
+        contact_tally_mean(tally, measure, contact_case_cell(one_case, control, level, load));
+    struct estimate less = contact_tally_model(tally, measure, control, load);
+    /* The two errors may go together. */
+    return (struct estimate){all.value - less.value, all.standard_error + less.standard_error};
+}
+
+static bool missing_errors(const struct contact_tally *tally, enum contact_measure measure,
+                           size_t model, struct contact_error *out) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t finest = finest_of(one_case);
+    bool any = false;
+    for (size_t k = 0; k < one_case->load_count; k++) {
+        size_t cell = contact_case_cell(one_case, model, finest, k);
+        double missing = (double)contact_tally_valueless(tally, measure, cell);
+        double share = missing / (double)tally->realisations;
+        out[k] = missing > 0 ? UNKNOWN : (struct contact_error){.order = NAN};
+        if (controlled(tally, measure, model, finest, k)) {
+            struct estimate pairs =
+                contact_tally_model(tally, measure, control_of(tally, measure, k), k);
+            double deviation = pairs.standard_error * sqrt((double)tally->realisations - missing);
+            out[k] = (struct contact_error){.bound = share * MISSING_DEVIATIONS * deviation,
+                                            .order = NAN};
+        }
+        any = any || missing == 0 || !isnan(out[k].value);
+    }
+    return any;
+}
+
+/* --- all --- */
+
+typedef bool errors_of(const struct contact_tally *tally, enum contact_measure measure,
+                       size_t model, struct contact_error *out);
+
+bool contact_errors(const struct contact_tally *tally, enum contact_measure measure, size_t model,
+                    enum error_source source, struct contact_error *out) {
+    static errors_of *const SOURCES[ERROR_SOURCES] = {
+        [ERROR_DISCRETISATION] = mesh_errors, [ERROR_BLOCK] = block_errors,
+        [ERROR_MODEL] = model_errors,         [ERROR_SOLVER] = solver_errors,
+        [ERROR_MISSING] = missing_errors,
+    };
+    return SOURCES[source] != NULL &&
+           contact_error_applies(tally, measure, model, finest_of(tally->one_case), source) &&
+           SOURCES[source](tally, measure, model, out);
+}
+
+/* A model that leaves out finite slopes errs by them, unless the surface has no lengths of its own:
+ * then it is the limit of small slopes that is asked for, or another model that stands in the same
+ * case. */
+static bool model_applies(const struct contact_case *one_case, size_t model) {
+    bool complete = true;
+    for (size_t m = 0; CONTACT_MODELS[m] != NULL; m++)
+        complete = complete && one_case->models[model]->rank >= CONTACT_MODELS[m]->rank;
+    return model != contact_case_complete(one_case) ||
+           (!complete && contact_case_has_scale(one_case));
+}
+
+bool contact_error_applies(const struct contact_tally *tally, enum contact_measure measure,
+                           size_t model, size_t level, enum error_source source) {
+    const struct contact_case *one_case = tally->one_case;
+    bool missing = false;
+    if (measure >= MEASURE_PAIRED)
+        return false;
+    switch (source) {
+    case ERROR_BLOCK:
+        return isfinite(one_case->blocks[model].height);
+    case ERROR_MODEL:
+        return model_applies(one_case, model);
+    case ERROR_MISSING:
+        for (size_t k = 0; k < one_case->load_count; k++)
+            missing = missing ||
+                      contact_tally_valueless(tally, measure,
+                                              contact_case_cell(one_case, model, level, k)) > 0;
+        return missing && one_case->models[model]->may_fail;
+    default:
+        return true;
+    }
 }

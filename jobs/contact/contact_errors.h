@@ -1,17 +1,29 @@
-/* What a curve on the finest level owes to its mesh and to its model. */
+/* What the values on the finest level owe to each source of error but the statistical one, point by
+ * point, from differences of pairs: what is told less what is true lies within value +- bound. */
 #ifndef RUGO_JOBS_CONTACT_CONTACT_ERRORS_H
 #define RUGO_JOBS_CONTACT_CONTACT_ERRORS_H
 
 #include "jobs/contact/contact_tally.h"
+#include "schema/result/result.h"
 
-/* Richardson: with f = f_limit + C h^order on the two finest levels, finest minus limit is
- * factor * (next minus finest). */
-struct contact_extrapolation {
-    double order, factor;
-    bool observed; /* order: fitted to the three finest levels; else assumed */
+struct contact_error {
+    double value; /* NaN: not known at this load */
+    double bound, standard_error;
+    double order; /* of the mesh, where the levels show it; else NaN */
 };
-/* Extrapolates a paired measure of a model, which needs two levels. */
-struct contact_extrapolation contact_extrapolate(const struct contact_tally *tally,
-                                                 enum contact_measure measure, size_t model);
+/* Of a measure below MEASURE_PAIRED, at every load, into out[load_count]; false, and nothing in
+ * out, where the source is not known at all. */
+bool contact_errors(const struct contact_tally *tally, enum contact_measure measure, size_t model,
+                    enum error_source source, struct contact_error *out);
+/* Whether the source bears on what is measured of contact with a model. */
+bool contact_error_applies(const struct contact_tally *tally, enum contact_measure measure,
+                           size_t model, size_t level, enum error_source source);
+
+/* The mean of a measure over the realisations. On the finest level, where the most complete model
+ * lacks values that another one has in all realisations, it is the mean of that one over all, less
+ * the mean of their difference over those that have both: a control variate (Glasserman 2004,
+ * section 4.1). */
+struct estimate contact_errors_mean(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t level, size_t load);
 
 #endif

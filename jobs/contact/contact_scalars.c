@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_scalars.h"
 #include "core/statistics/fit.h"
 #include "core/theory/contact.h"
+#include "jobs/contact/contact_errors.h"
 #include "jobs/estimate.h"
 #include <math.h>
 #include <stdlib.h>
@@ -163,9 +164,91 @@ static void theories(const struct contact_case *one_case, const struct moments *
     }
 }
 
+/* --- scalars of the tally --- */
+
+/* Fractions up to these are fitted (FORMULAS.md, F16.1 and F16.2). */
+static const double LIGHT_LOAD_MOST = 0.1, POWER_LAW_MOST = 0.5;
+
+/* Number of loads, from the lightest on, at which the mean area is at most this. */
+static size_t loads_within(const struct contact_tally *tally, double most) {
+    size_t n = 0;
+    while (
+        n < tally->one_case->load_count &&
+        contact_errors_mean(tally, MEASURE_EDGES, 0, tally->one_case->level_count - 1, n).value <=
+            most)
+        n++;
+    return n;
+}
+
+/* A measure of the first model at the last of the first `loads` loads; none without loads. */
+static int put_measure(const struct contact_tally *tally, enum contact_measure measure,
+                       size_t loads, struct scalar *out, struct error *err) {
+    const struct contact_case *one_case = tally->one_case;
+    struct estimate mean = {NAN, NAN};
+    struct contact_error *errors = array_create(one_case->load_count, sizeof *errors);
+    if (errors == NULL)
+        return error_memory(err, one_case->load_count * sizeof *errors, "errors of a scalar");
+    if (loads > 0)
+        mean = contact_errors_mean(tally, measure, 0, one_case->level_count - 1, loads - 1);
+    out->value = mean.value;
+    out->standard_error = mean.standard_error;
+    for (enum error_source s = 0; s < ERROR_SOURCES; s++) {
+        struct scalar_error *to = &out->errors[s];
+        to->applies = contact_error_applies(tally, measure, 0, one_case->level_count - 1, s);
+        if (loads == 0 || !contact_errors(tally, measure, 0, s, errors))
+            continue;
+        const struct contact_error *from = &errors[loads - 1];
+        *to = (struct scalar_error){.applies = true,
+                                    .known = !isnan(from->value),
+                                    .value = from->value,
+                                    .bound = from->bound,
+                                    .standard_error = from->standard_error};
+    }
+    free(errors);
+    return 0;
+}
+
+/* Replaces the mean over realisations of what the tally holds at a load. */
+static int put_tallied(const struct contact_tally *tally, size_t scalar, struct scalar *out,
+                       struct error *err) {
+    size_t all = tally->one_case->load_count;
+    switch (scalar) {
+    case CONTACT_SCALAR_KAPPA:
+        return put_measure(tally, MEASURE_KAPPA, loads_within(tally, LIGHT_LOAD_MOST), out, err);
+    case CONTACT_SCALAR_POWER_LAW_A:
+        return put_measure(tally, MEASURE_POWER_LAW_A, loads_within(tally, POWER_LAW_MOST), out,
+                           err);
+    case CONTACT_SCALAR_POWER_LAW_B:
+        return put_measure(tally, MEASURE_POWER_LAW_B, loads_within(tally, POWER_LAW_MOST), out,
+                           err);
+    case CONTACT_SCALAR_AREA_LAST:
+        return put_measure(tally, MEASURE_EDGES, all, out, err);
+    case CONTACT_SCALAR_GAP_LAST:
+        return put_measure(tally, MEASURE_GAP, all, out, err);
+    default:
+        return 0;
+    }
+}
+
+/* How many loads a fit is over, and the highest of them; none without loads. */
+static int add_range(const struct contact_tally *tally, const char *count_name,
+                     const char *load_name, double most, struct case_result *out,
+                     struct error *err) {
+    size_t n = loads_within(tally, most);
+    int status = result_add_scalar(
+        out, &(struct scalar){.name = count_name, .value = (double)n, .theory = NAN}, err);
+    return status != 0 || n == 0
+               ? status
+               : result_add_scalar(out,
+                                   &(struct scalar){.name = load_name,
+                                                    .value = tally->one_case->loads[n - 1],
+                                                    .theory = NAN},
+                                   err);
+}
+
 static int add_scalars(const struct contact_case *one_case, const struct moments *moments,
-                       const struct realisations *realisations, double *column,
-                       struct case_result *out, struct error *err) {
+                       const struct contact_tally *tally, const struct realisations *realisations,
+                       double *column, struct case_result *out, struct error *err) {
     double theory[CONTACT_SCALAR_COUNT];
     size_t count = scalar_count();
     int status = 0;
@@ -180,13 +263,20 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
         if (!own && place.at == CONTACT_SCALAR_NAYAK_ALPHA &&
             surface_case_exact(&one_case->surface))
             mean = (struct estimate){moments->nayak_alpha, 0};
-        status = result_add_scalar(out,
-                                   &(struct scalar){.name = contact_scalar_name(a),
-                                                    .value = mean.value,
-                                                    .standard_error = mean.standard_error,
-                                                    .theory = own ? (double)NAN : theory[place.at]},
-                                   err);
+        struct scalar scalar = {.name = contact_scalar_name(a),
+                                .value = mean.value,
+                                .standard_error = mean.standard_error,
+                                .theory = own ? (double)NAN : theory[place.at]};
+        if (!own)
+            status = put_tallied(tally, place.at, &scalar, err);
+        if (status == 0)
+            status = result_add_scalar(out, &scalar, err);
     }
+    if (status == 0)
+        status = add_range(tally, "kappa_loads", "kappa_highest_load", LIGHT_LOAD_MOST, out, err);
+    if (status == 0)
+        status =
+            add_range(tally, "power_law_loads", "power_law_highest_load", POWER_LAW_MOST, out, err);
     if (status != 0)
         return status;
     /* as given, or as solved for nayak_alpha */
@@ -198,13 +288,13 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
 }
 
 int contact_scalars(const struct contact_case *one_case, const struct moments *moments,
-                    const struct realisations *realisations, struct case_result *out,
-                    struct error *err) {
+                    const struct contact_tally *tally, const struct realisations *realisations,
+                    struct case_result *out, struct error *err) {
     size_t n = (size_t)realisations->count;
     double *column = array_create(n, sizeof *column);
     if (column == NULL)
         return error_memory(err, n * sizeof *column, "scalars");
-    int status = add_scalars(one_case, moments, realisations, column, out, err);
+    int status = add_scalars(one_case, moments, tally, realisations, column, out, err);
     free(column);
     return status;
 }

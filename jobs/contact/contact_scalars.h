@@ -39,9 +39,11 @@ int contact_scalars_measure(struct contact_tally *tally, const struct roughness 
                             double nayak_alpha, const struct surface_report *report, double *out,
                             struct error *err);
 
-/* Appends the scalars over the realisations to the result. */
+/* Appends the scalars over the realisations to the result: of the tally what stands at a load
+ * there, with its errors by source. Fits are over the loads at which the mean area is within their
+ * range, the same ones for every realisation, and say how many these are. */
 int contact_scalars(const struct contact_case *one_case, const struct moments *moments,
-                    const struct realisations *realisations, struct case_result *out,
-                    struct error *err);
+                    const struct contact_tally *tally, const struct realisations *realisations,
+                    struct case_result *out, struct error *err);
 
 #endif

@@ -1,14 +1,10 @@
 #include "jobs/contact/contact_scene.h"
-#include "core/contact/area.h"
-#include "core/contact/patches.h"
-#include "core/contact/stretch.h"
+#include "jobs/contact/contact_measure.h"
+#include "jobs/contact/contact_probe.h"
+#include "jobs/contact/contact_sample.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Stiffness beyond this, in units of E* h'/sqrt(m0), is that of full contact but for rounding; its
- * square must fit into exact sums. */
-static const double STIFFNESS_MOST = 1e6;
 
 struct contact_scene {
     const struct contact_case *one_case;
@@ -17,7 +13,8 @@ struct contact_scene {
     struct contact_solver *solvers[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct area_workspace *areas[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
-    double *z; /* a level's sampling; room for the finest */
+    struct contact_probe *probe; /* NULL: none is needed */
+    double *z;                   /* a level's sampling; room for the finest */
 };
 
 int contact_compliances_create(struct contact_compliances *out, const struct contact_case *one_case,
@@ -71,6 +68,8 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
     scene->rms_height = moments->rms_height;
     scene->scaled = contact_case_has_scale(one_case);
     int status = scene_fill(scene, compliances, err);
+    if (status == 0)
+        status = contact_probe_create(&scene->probe, one_case, moments, err);
     if (status != 0)
         contact_scene_destroy(&scene);
     *out = scene;
@@ -89,13 +88,15 @@ void contact_scene_destroy(struct contact_scene **scene) {
                 s->one_case->models[m]->destroy(&s->solvers[m][l]);
         }
     }
+    contact_probe_destroy(&s->probe);
     free(s->z);
     free(s);
     *scene = NULL;
 }
 
 double contact_scene_bytes(const struct contact_case *one_case) {
-    double bytes = 8.0 * (double)grid_points(&contact_case_finest(one_case)->grid);
+    double bytes = 8.0 * (double)grid_points(&contact_case_finest(one_case)->grid) +
+                   contact_probe_bytes(one_case);
     for (size_t l = 0; l < one_case->level_count; l++) {
         const struct grid *grid = &one_case->levels[l].grid;
         bytes += 32.0 * (double)grid_points(grid); /* patches */
@@ -108,52 +109,19 @@ double contact_scene_bytes(const struct contact_case *one_case) {
     return bytes;
 }
 
-int contact_level_sample(const struct contact_case *one_case, const struct contact_level *level,
-                         const double *z, double *out, struct error *err) {
-    const struct grid *own = &one_case->surface.grid, *grid = &level->grid;
-    size_t band = one_case->band;
-    if (level->stride == 0)
-        return surface_resample(own, z, grid, out, band, grid_is_profile(own) ? 0 : band, err);
-    for (size_t j = 0; j < grid->ny; j++) {
-        const double *row = z + j * level->stride * own->nx;
-        for (size_t i = 0; i < grid->nx; i++)
-            out[j * grid->nx + i] = row[i * level->stride];
-    }
-    return 0;
-}
-
 /* Puts the measures of a solved load into a cell. */
 static void measure(struct contact_scene *scene, size_t model, size_t level,
                     const struct contact_pressed *pressed, struct contact_tally *tally,
                     size_t cell) {
-    double points = (double)grid_points(&scene->one_case->levels[level].grid);
-    const struct contact_state *state = &pressed->state;
-    double stiffness = state->stiffness * scene->rms_height / scene->rms_slope;
-    double now = pressed->stretch;
-    struct contact_area area;
-    struct patches patches;
-    contact_area(scene->areas[model][level], state->p, state->opening, &area);
-    patches_find(scene->finders[level], state->p, &patches, NULL);
-    /* Edges lie within the cells of outer nodes in contact, near which hardly any pressure acts. */
-    double open_now = area.nodes < 1 ? (1 - now * area.nodes) / (1 - area.nodes) : 1;
-    const double values[MEASURE_OWN] = {
-        [MEASURE_NODES] = now * area.nodes,
-        [MEASURE_EDGES] = stretch_fraction(area.edges, open_now),
-        [MEASURE_EDGES_STRETCHED] =
-            scene->scaled ? stretch_fraction(area.edges, pressed->open_stretch) : NAN,
-        [MEASURE_PERIMETER] = stretch_fraction(area.perimeter, open_now),
-        [MEASURE_GAP] = state->mean_gap / scene->rms_height,
-        [MEASURE_NODES_LOWER] = now * area.lower,
-        [MEASURE_NODES_UPPER] = now * area.upper,
-        [MEASURE_STIFFNESS] = stiffness < STIFFNESS_MOST ? stiffness : NAN,
-        [MEASURE_PATCHES] = (double)patches.count,
-        [MEASURE_PATCH_MEAN] = now * patches.mean / points,
-        [MEASURE_PATCH_LARGEST] = now * (double)patches.largest / points,
-        [MEASURE_ITERATIONS] = (double)state->iterations,
-        [MEASURE_WORK] = state->work / points,
-        [MEASURE_VIOLATION] = state->violation,
-        [MEASURE_PENETRATION] = state->penetration,
-    };
+    const struct contact_meter meter = {
+        .area = scene->areas[model][level],
+        .finder = scene->finders[level],
+        .points = (double)grid_points(&scene->one_case->levels[level].grid),
+        .rms_slope = scene->rms_slope,
+        .rms_height = scene->rms_height,
+        .scaled = scene->scaled};
+    double values[MEASURE_OWN];
+    contact_measure(&meter, pressed, values);
     for (size_t a = 0; a < MEASURE_OWN; a++)
         contact_tally_values(tally, (enum contact_measure)a)[cell] = values[a];
     for (size_t a = 0; a < MODEL_MEASURES_MOST; a++)
@@ -252,5 +220,7 @@ int contact_scene_solve(struct contact_scene *scene, const double *z, struct con
         for (size_t m = 0; m < one_case->model_count && status == 0; m++)
             status = solve_model(scene, m, l, tally, &stopper, err);
     }
+    if (status == 0 && contact_probe_due(one_case, tally->realisation))
+        status = contact_probe_solve(scene->probe, z, tally, stop, context, err);
     return status;
 }

@@ -14,10 +14,6 @@ int contact_compliances_create(struct contact_compliances *out, const struct con
                                struct error *err);
 void contact_compliances_clear(struct contact_compliances *compliances);
 
-/* Samples heights on the own grid of the case on that of a level. */
-int contact_level_sample(const struct contact_case *one_case, const struct contact_level *level,
-                         const double *z, double *out, struct error *err);
-
 struct contact_scene;
 /* Borrows all three. moments: of the prescribed spectrum, which sets the scale. */
 int contact_scene_create(struct contact_scene **out, const struct contact_case *one_case,

@@ -1,4 +1,5 @@
 #include "jobs/contact/contact_tally.h"
+#include "jobs/contact/contact_measure.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -46,8 +47,19 @@ static struct estimate sums_mean(const struct contact_sums *sums, size_t cell,
     return (struct estimate){mean.value / scale, mean.standard_error / scale};
 }
 
+/* Place of a level's difference from the next coarser one. */
+static size_t level_pair(const struct contact_case *one_case, size_t model, size_t level,
+                         size_t load) {
+    return (model * (one_case->level_count - 1) + level - 1) * one_case->load_count + load;
+}
+
+/* Differences of blocks, if any is probed. */
+static size_t block_pairs(const struct contact_case *one_case) {
+    return one_case->probe.grid.nx > 0 ? one_case->model_count * one_case->load_count : 0;
+}
+
 static void values_begin(struct contact_tally *tally) {
-    size_t n = MEASURE_COUNT * contact_case_cells(tally->one_case);
+    size_t n = MEASURE_COUNT * contact_case_all_cells(tally->one_case);
     for (size_t a = 0; a < n; a++)
         tally->values[a] = NAN;
     for (size_t m = 0; m < CONTACT_MODELS_MOST; m++)
@@ -57,7 +69,7 @@ static void values_begin(struct contact_tally *tally) {
 
 int contact_tally_create(struct contact_tally *out, const struct contact_case *one_case,
                          struct error *err) {
-    size_t cells = contact_case_cells(one_case), bins = bins_of(one_case);
+    size_t cells = contact_case_all_cells(one_case), bins = bins_of(one_case);
     *out = (struct contact_tally){.one_case = one_case,
                                   .values = array_create(cells, MEASURE_COUNT * sizeof(double)),
                                   .bin = array_create(bins, sizeof *out->bin)};
@@ -67,11 +79,13 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
     for (size_t a = 0; a < MEASURE_COUNT && status == 0; a++)
         status = sums_create(&out->sums[a], cells, err);
     for (size_t a = 0; a < MEASURE_PAIRED && status == 0; a++) {
-        size_t pairs = one_case->level_count > 1 ? one_case->model_count * one_case->load_count : 0;
+        size_t pairs = level_pair(one_case, one_case->model_count, 1, 0);
         status = sums_create(&out->sums[SUMS_LEVELS + a], pairs, err);
         if (status == 0)
             status = sums_create(&out->sums[SUMS_MODELS + a],
                                  (one_case->model_count - 1) * one_case->load_count, err);
+        if (status == 0)
+            status = sums_create(&out->sums[SUMS_BLOCKS + a], block_pairs(one_case), err);
     }
     if (status == 0)
         status =
@@ -93,8 +107,9 @@ void contact_tally_clear(struct contact_tally *tally) {
 }
 
 double contact_tally_bytes(const struct contact_case *one_case) {
-    size_t cells = contact_case_cells(one_case), bins = bins_of(one_case);
-    size_t pairs = (2 * one_case->model_count - 1) * one_case->load_count;
+    size_t cells = contact_case_all_cells(one_case), bins = bins_of(one_case);
+    size_t pairs = (one_case->model_count * one_case->level_count - 1) * one_case->load_count +
+                   block_pairs(one_case);
     double a_cell = tally_sums_bytes(1) + tally_bytes(1);
     return MEASURE_COUNT * (double)cells * (a_cell + sizeof(double)) +
            MEASURE_PAIRED * (double)pairs * a_cell +
@@ -125,13 +140,13 @@ void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t a
 static void add_level_pairs(struct contact_tally *tally, enum contact_measure measure) {
     const struct contact_case *one_case = tally->one_case;
     const double *values = contact_tally_values(tally, measure);
-    size_t finest = one_case->level_count - 1;
     for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t k = 0; k < one_case->load_count; k++)
-            sums_add(&tally->sums[SUMS_LEVELS + measure], m * one_case->load_count + k,
-                     (values[contact_case_cell(one_case, m, finest, k)] -
-                      values[contact_case_cell(one_case, m, finest - 1, k)]) *
-                         scale_of(one_case, measure, k));
+        for (size_t l = 1; l < one_case->level_count; l++)
+            for (size_t k = 0; k < one_case->load_count; k++)
+                sums_add(&tally->sums[SUMS_LEVELS + measure], level_pair(one_case, m, l, k),
+                         (values[contact_case_cell(one_case, m, l, k)] -
+                          values[contact_case_cell(one_case, m, l - 1, k)]) *
+                             scale_of(one_case, measure, k));
 }
 
 /* Place of a model and load among the differences from the most complete model, which has none. */
@@ -151,9 +166,33 @@ static void add_model_pairs(struct contact_tally *tally, enum contact_measure me
                          scale_of(one_case, measure, k));
 }
 
+static void add_block_pairs(struct contact_tally *tally, enum contact_measure measure) {
+    const struct contact_case *one_case = tally->one_case;
+    const double *values = contact_tally_values(tally, measure);
+    for (size_t pair = 0; pair < block_pairs(one_case); pair++) {
+        size_t m = pair / one_case->load_count, k = pair % one_case->load_count;
+        sums_add(&tally->sums[SUMS_BLOCKS + measure], pair,
+                 (values[contact_case_probe_cell(one_case, m + 1, k)] -
+                  values[contact_case_probe_cell(one_case, 0, k)]) *
+                     scale_of(one_case, measure, k));
+    }
+}
+
+/* Of every series of loads, from its areas. */
+static void fill_fits(struct contact_tally *tally) {
+    const struct contact_case *one_case = tally->one_case;
+    for (size_t cell = 0; cell < contact_case_all_cells(one_case); cell += one_case->load_count)
+        contact_measure_fits(one_case->load_count, one_case->loads,
+                             contact_tally_values(tally, MEASURE_EDGES) + cell,
+                             contact_tally_values(tally, MEASURE_KAPPA) + cell,
+                             contact_tally_values(tally, MEASURE_POWER_LAW_A) + cell,
+                             contact_tally_values(tally, MEASURE_POWER_LAW_B) + cell);
+}
+
 void contact_tally_add(struct contact_tally *tally) {
     const struct contact_case *one_case = tally->one_case;
-    size_t cells = contact_case_cells(one_case);
+    size_t cells = contact_case_all_cells(one_case);
+    fill_fits(tally);
     for (size_t a = 0; a < MEASURE_COUNT; a++) {
         const double *values = contact_tally_values(tally, (enum contact_measure)a);
         for (size_t cell = 0; cell < cells; cell++)
@@ -162,10 +201,10 @@ void contact_tally_add(struct contact_tally *tally) {
                          scale_of(one_case, (enum contact_measure)a, cell % one_case->load_count));
     }
     for (size_t a = 0; a < MEASURE_PAIRED; a++) {
-        if (one_case->level_count > 1)
-            add_level_pairs(tally, (enum contact_measure)a);
+        add_level_pairs(tally, (enum contact_measure)a);
         if (one_case->model_count > 1)
             add_model_pairs(tally, (enum contact_measure)a);
+        add_block_pairs(tally, (enum contact_measure)a);
     }
     tally_total_add(&tally->points, grid_points(&contact_case_finest(one_case)->grid));
     tally->realisations++;
@@ -190,11 +229,9 @@ uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact
 }
 
 struct estimate contact_tally_level(const struct contact_tally *tally, enum contact_measure measure,
-                                    size_t model, size_t load) {
-    if (tally->one_case->level_count < 2)
-        return (struct estimate){NAN, NAN};
+                                    size_t model, size_t level, size_t load) {
     return sums_mean(&tally->sums[SUMS_LEVELS + measure],
-                     model * tally->one_case->load_count + load, tally->realisations,
+                     level_pair(tally->one_case, model, level, load), tally->realisations,
                      scale_of(tally->one_case, measure, load));
 }
 
@@ -204,6 +241,15 @@ struct estimate contact_tally_model(const struct contact_tally *tally, enum cont
         return (struct estimate){NAN, NAN};
     return sums_mean(&tally->sums[SUMS_MODELS + measure], model_pair(tally->one_case, model, load),
                      tally->realisations, scale_of(tally->one_case, measure, load));
+}
+
+struct estimate contact_tally_block(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t load) {
+    if (block_pairs(tally->one_case) == 0)
+        return (struct estimate){NAN, NAN};
+    return sums_mean(&tally->sums[SUMS_BLOCKS + measure],
+                     model * tally->one_case->load_count + load, tally->realisations,
+                     scale_of(tally->one_case, measure, load));
 }
 
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at) {

@@ -1,6 +1,7 @@
 /* What a block of realisations adds up to: exact sums and counts, encoded into a partial result.
  *
- * Each realisation is solved for every model, level and load (a cell of contact_case_cell) and
+ * Each realisation is solved for every model, level and load (a cell of contact_case_cell; some
+ * for those of the probe, too) and
  * gives a value of each measure there, or none (NaN): a measure that is not defined there, or any
  * where a model found no answer. Differences between levels and between models
  * are summed on their own: both see the same surface, so that their errors are those of pairs. */
@@ -18,10 +19,13 @@ struct contact_sums {
 };
 /* Which sums: those of each measure, by cell; then differences of the paired measures. */
 enum {
-    SUMS_LEVELS = MEASURE_COUNT,                /* finest level less the next; by model and load */
+    SUMS_LEVELS = MEASURE_COUNT,                /* a level less the next coarser one; by model,
+                                                   level but the coarsest, and load */
     SUMS_MODELS = SUMS_LEVELS + MEASURE_PAIRED, /* finest level: a model less the most complete
                                                    one; by model and load */
-    CONTACT_SUMS = SUMS_MODELS + MEASURE_PAIRED
+    SUMS_BLOCKS = SUMS_MODELS + MEASURE_PAIRED, /* probe: a model's block less the half-space; by
+                                                   model and load */
+    CONTACT_SUMS = SUMS_BLOCKS + MEASURE_PAIRED
 };
 struct contact_tally {
     const struct contact_case *one_case; /* borrowed */
@@ -45,7 +49,7 @@ double contact_tally_bytes(const struct contact_case *one_case);
 /* The realisation under way: values of a measure, by cell; NaN until they are set. */
 static inline double *contact_tally_values(struct contact_tally *tally,
                                            enum contact_measure measure) {
-    return tally->values + (size_t)measure * contact_case_cells(tally->one_case);
+    return tally->values + (size_t)measure * contact_case_all_cells(tally->one_case);
 }
 /* Counts the pressures, scale * p at the points of the finest level where p > 0, on area times the
  * undeformed area of a node each. at: position in pdf_loads. */
@@ -62,12 +66,16 @@ double contact_tally_total(const struct contact_tally *tally, enum contact_measu
 /* Counts the realisations without a value. */
 uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact_measure measure,
                                  size_t cell);
-/* Means of the paired differences; NaN with one level, or for the most complete model. */
+/* Means of the paired differences: of a level, not the coarsest one, less the next coarser; of a
+ * model less the most complete one, for which it is NaN. */
 struct estimate contact_tally_level(const struct contact_tally *tally, enum contact_measure measure,
-                                    size_t model, size_t load);
+                                    size_t model, size_t level, size_t load);
 struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load);
-/* Estimates the area of a bin over that of the cell from the realisations with values there. */
+/* Likewise of the block of a model less the half-space, by the realisations that were probed. */
+struct estimate contact_tally_block(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t load);
+/* Area of a bin over that of the cell, over the realisations with values there. */
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
                                        size_t bin);
 /* Returns in how many parts a node's area is counted: 1 where all are equal. */

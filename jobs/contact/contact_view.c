@@ -12,8 +12,9 @@ static const struct quantity_table TABLE = {
     .x = "load",
     .error_words = {[ERROR_DISCRETISATION] = "mesh"},
     .legend =
-        "load: p/(E* h'_rms); area: A/A0, +- one standard error; mesh %: error from the limit "
-        "of the levels, model %: of the limit from that of the most complete model",
+        "load: p/(E* h'_rms); area: A/A0, +- one standard error; errors in percent of it, what is "
+        "told less what is true: mesh, from the limit of the levels; block, from an infinitely "
+        "high one; model, from the limit of the most complete one",
     .scalars = SCALARS,
     .left_out = LEFT_OUT,
 };

@@ -9,14 +9,17 @@ enum contact_measure {
     MEASURE_EDGES_STRETCHED, /* edges as they are under load; surfaces with a scale alone */
     MEASURE_PERIMETER,       /* surfaces alone */
     MEASURE_GAP,             /* mean gap/sqrt(m0) */
-    MEASURE_PAIRED,          /* measures above: differences are summed too */
-    MEASURE_NODES_LOWER = MEASURE_PAIRED,
+    MEASURE_NODES_LOWER,
     MEASURE_NODES_UPPER,
     MEASURE_STIFFNESS, /* -d(p/(E* h'))/d(gap/sqrt(m0)); none in full contact */
     MEASURE_PATCHES,
     MEASURE_PATCH_MEAN, /* share of the cell; none without patches */
     MEASURE_PATCH_LARGEST,
-    MEASURE_ITERATIONS,
+    MEASURE_KAPPA, /* of the line area = kappa load through the loads up to this one, by edges */
+    MEASURE_POWER_LAW_A, /* likewise of area = a load^b; none at the first load */
+    MEASURE_POWER_LAW_B,
+    MEASURE_PAIRED, /* measures above: differences are summed too */
+    MEASURE_ITERATIONS = MEASURE_PAIRED,
     MEASURE_WORK, /* transforms of the level's grid */
     MEASURE_VIOLATION,
     MEASURE_PENETRATION, /* of the weighted gap */

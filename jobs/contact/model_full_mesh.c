@@ -1,6 +1,6 @@
 /* The block of the model full on its true geometry, as a file for other programs. */
 #include "core/full/mesh_file.h"
-#include "jobs/contact/contact_scene.h"
+#include "jobs/contact/contact_sample.h"
 #include "jobs/contact/model_full.h"
 #include <errno.h>
 #include <stdio.h>

@@ -57,14 +57,23 @@ const char *source_word(const char *const *words, enum error_source source) {
     return words != NULL && words[source] != NULL ? words[source] : ERROR_SOURCE_ROWS[source].name;
 }
 
-void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file) {
-    size_t listed = 0;
+static void print_sources(const char *title, const bool chosen[ERROR_SOURCES],
+                          const char *const *words, FILE *file) {
+    size_t told = 0;
     for (size_t s = 0; s < ERROR_SOURCES; s++)
-        if (unknown[s])
-            fprintf(file, "%s%s", listed++ > 0 ? ", " : "Errors not known: ",
+        if (chosen[s])
+            fprintf(file, "%s%s", told++ > 0 ? ", " : title,
                     source_word(words, (enum error_source)s));
-    if (listed > 0)
+    if (told > 0)
         fputs(".\n", file);
+}
+
+void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file) {
+    print_sources("Errors not known: ", unknown, words, file);
+}
+
+void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE *file) {
+    print_sources("Errors below 0.01 %: ", small, words, file);
 }
 
 const char *model_text(const char *model, const char *kinematics, char *out, size_t size) {

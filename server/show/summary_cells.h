@@ -18,8 +18,12 @@ const char *partial_text(double realisations, double valueless, char *out, size_
 void percent_cell(struct text_table *table, double share);
 /* Returns what `words` calls a source of error; its own name where that is NULL. */
 const char *source_word(const char *const *words, enum error_source source);
-/* "Not known: cell, block." in a line of its own; nothing where none is unknown. */
+/* Errors below this share of a value have no column of their own. */
+#define ERROR_SHOWN 1e-4
+/* "Errors not known: cell." and "Errors below 0.01 %: solver." in lines of their own; nothing where
+ * there are none. */
 void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file);
+void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE *file);
 /* "layered", or "full (hencky)" where the model has several kinematics; "-" without one. */
 const char *model_text(const char *model, const char *kinematics, char *out, size_t size);
 /* Returns whether a series is a bracket of another one, and no estimate: nodes_lower, nodes_upper.

@@ -100,12 +100,33 @@ static void print_scalar(const struct case_result *one, const char *name, FILE *
 
 /* --- a table a case --- */
 
-/* Returns whether anything is known of the source. */
-static bool has_column(const struct finest_curves *finest, enum error_source source) {
-    bool known = false;
+/* The largest of the errors of a curve by a source, within their bounds, over its values; NaN where
+ * nothing is known. */
+static double largest_error(const struct curve *curve, enum error_source source) {
+    const struct curve_error *error = &curve->errors[source];
+    double largest = NAN;
+    for (size_t k = 0; k < curve->n && error->value != NULL; k++) {
+        double bound = number_at(error->bound, curve, k);
+        double size = fabs(error->value[k]) + (isnan(bound) ? 0 : bound);
+        largest = fmax(largest, size / fabs(curve->y[k]));
+    }
+    return largest;
+}
+
+static double largest_of_all(const struct finest_curves *finest, enum error_source source) {
+    double largest = NAN;
     for (size_t m = 0; m < finest->model_count; m++)
-        known = known || finest->curves[m]->errors[source].value != NULL;
-    return known;
+        largest = fmax(largest, largest_error(finest->curves[m], source));
+    return largest;
+}
+
+static bool has_column(const struct finest_curves *finest, enum error_source source) {
+    return largest_of_all(finest, source) >= ERROR_SHOWN;
+}
+
+static void find_small(const struct finest_curves *finest, bool small[ERROR_SOURCES]) {
+    for (enum error_source s = 0; s < ERROR_SOURCES; s++)
+        small[s] = largest_of_all(finest, s) < ERROR_SHOWN;
 }
 
 /* Finds the sources that bear on a curve and of which nothing is known. */
@@ -184,6 +205,9 @@ static void print_table(const struct quantity_table *words, const struct case_re
     bool unknown[ERROR_SOURCES] = {false};
     find_unknown(finest, unknown);
     print_unknown(unknown, words->error_words, file);
+    bool small[ERROR_SOURCES];
+    find_small(finest, small);
+    print_small(small, words->error_words, file);
 }
 
 static void print_case(const struct quantity_table *words, const struct shown_cases *shown,
@@ -235,13 +259,18 @@ static void find_samples(const struct quantity_table *words, const struct shown_
     }
 }
 
-/* Finds the sources that are known of a case's main curve. */
+/* Finds the sources that are known of a case's main curve: of size, or small in all cases. */
 static void find_known(const struct study_report *report, const struct shown_cases *shown,
-                       bool known[ERROR_SOURCES]) {
-    for (size_t c = 0; c < shown->count; c++) {
-        const struct case_report *cost = report_of(report, shown->list[c]);
-        for (size_t s = 0; s < ERROR_SOURCES && cost != NULL && cost->main != NULL; s++)
-            known[s] = known[s] || !isnan(cost->main->errors[s]);
+                       bool known[ERROR_SOURCES], bool small[ERROR_SOURCES]) {
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        double largest = NAN;
+        for (size_t c = 0; c < shown->count; c++) {
+            const struct case_report *cost = report_of(report, shown->list[c]);
+            if (cost != NULL && cost->main != NULL)
+                largest = fmax(largest, cost->main->errors[s]);
+        }
+        known[s] = largest >= ERROR_SHOWN;
+        small[s] = largest < ERROR_SHOWN;
     }
 }
 
@@ -293,9 +322,9 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
 
 static void print_rows(const struct quantity_table *words, const struct shown_cases *shown,
                        const struct study_report *report, FILE *file) {
-    bool known[ERROR_SOURCES] = {false}, unknown[ERROR_SOURCES] = {false};
+    bool known[ERROR_SOURCES], small[ERROR_SOURCES], unknown[ERROR_SOURCES] = {false};
     size_t scalars = 0, sources = 0;
-    find_known(report, shown, known);
+    find_known(report, shown, known, small);
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         sources += known[s];
     while (words->scalars != NULL && words->scalars[scalars] != NULL)
@@ -313,6 +342,7 @@ static void print_rows(const struct quantity_table *words, const struct shown_ca
     table_print(&table, file);
     table_clear(&table);
     print_unknown(unknown, words->error_words, file);
+    print_small(small, words->error_words, file);
 }
 
 void summary_of_quantity(const struct quantity_table *words, const struct shown_cases *shown,

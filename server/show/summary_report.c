@@ -13,13 +13,14 @@ enum { ERROR_COLUMNS = ERROR_SOURCES + 2 };
 
 /* A table has columns for the sources of which anything is known. */
 struct error_columns {
-    bool shown[ERROR_COLUMNS], unknown[ERROR_SOURCES];
+    bool shown[ERROR_COLUMNS], unknown[ERROR_SOURCES], small[ERROR_SOURCES];
     size_t count;
 };
 
 static void find_columns(const struct curve_report *curve, struct error_columns *columns) {
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        columns->shown[1 + s] = columns->shown[1 + s] || !isnan(curve->errors[s]);
+        columns->shown[1 + s] = columns->shown[1 + s] || curve->errors[s] >= ERROR_SHOWN;
+        columns->small[s] = columns->small[s] || curve->errors[s] < ERROR_SHOWN;
         columns->unknown[s] = columns->unknown[s] || (curve->applies[s] && isnan(curve->errors[s]));
     }
 }
@@ -33,6 +34,8 @@ static struct error_columns columns_of(const struct study_report *report) {
             if (strcmp(one->curves[a].place.quantity, one->main->place.quantity) == 0)
                 find_columns(&one->curves[a], &columns);
     }
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        columns.small[s] = columns.small[s] && !columns.shown[1 + s];
     for (size_t e = 0; e < ERROR_COLUMNS; e++)
         columns.count += columns.shown[e];
     return columns;
@@ -228,6 +231,7 @@ void summary_of_report(const struct study_report *report, FILE *file) {
     print_cases(report, &shown, &columns, file);
     print_all_series(report, &shown, &columns, file);
     print_unknown(columns.unknown, NULL, file);
+    print_small(columns.small, NULL, file);
     print_partial(&shown, words != NULL ? words->x : "point", file);
     print_notes(&shown, NOTES_SHOWN, file);
     print_missing(&shown, file);

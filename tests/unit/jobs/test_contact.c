@@ -1,6 +1,7 @@
 /* The kind "contact" from parameters to curves: any split into blocks and any order of merging
  * gives the same document, foreign and damaged results are refused whole, and means, errors and
  * paired differences are those that the realisations themselves give. */
+#include "core/statistics/richardson.h"
 #include "jobs/kind.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
@@ -18,6 +19,8 @@
 #include <cmocka.h>
 
 enum { REALISATIONS = 12, SEED = 5, CASE = 2 };
+/* As the models tell of edges of profiles. */
+static const double HALFSPACE_EDGE_ORDER = 2, LAYERED_EDGE_ORDER = 2;
 
 static const char LEVELS[] = /* three levels, two models */
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
@@ -314,36 +317,50 @@ static void assert_near(double value, double expected, double tolerance) {
         fail_msg("%.17g, expected %.17g within %g", value, expected, tolerance);
 }
 
-/* Means, errors, the extrapolation and the model error against the realisations one by one. 1e-10:
- * rounding of squares that cancel. */
+/* Mean change from one level to the next finer one, over realisations. */
+static double change_of(const double *fine, const double *coarse, double *standard_error) {
+    double change[REALISATIONS];
+    for (size_t r = 0; r < REALISATIONS; r++)
+        change[r] = fine[r] - coarse[r];
+    return mean_of(change, standard_error);
+}
+
+/* Means, errors of the mesh and of the model against the realisations one by one. 1e-10: rounding
+ * of squares that cancel. Where no order is seen the bound may be that of another load. */
 static void against_each_realisation(void **state) {
     (void)state;
+    static const double POINTS[] = {2, 4, 8};
     const int point = 1;
-    double fine[REALISATIONS], next[REALISATIONS], half[REALISATIONS], standard_error;
-    each_realisation("edges", "layered", 8, point, fine);
-    each_realisation("edges", "layered", 4, point, next);
-    each_realisation("edges", "halfspace", 8, point, half);
+    double layered[3][REALISATIONS], half[3][REALISATIONS], standard_error, unused;
+    for (size_t l = 0; l < 3; l++) {
+        each_realisation("edges", "layered", POINTS[l], point, layered[l]);
+        each_realisation("edges", "halfspace", POINTS[l], point, half[l]);
+    }
     cJSON *document = document_of(LEVELS, REALISATIONS);
     const cJSON *curve = curve_of(document, "contact_area", "edges", "layered", 8);
-    assert_near(at(curve, "/y", point), mean_of(fine, &standard_error), 1e-12);
+    assert_near(at(curve, "/y", point), mean_of(layered[2], &standard_error), 1e-12);
     assert_near(at(curve, "/standard_error", point), standard_error, 1e-10);
     assert_null(json_at(curve, "/model_error")); /* it is the most complete model */
-    for (size_t r = 0; r < REALISATIONS; r++) {
-        next[r] = fine[r] - next[r];
-        half[r] -= fine[r];
-    }
-    double order = json_at(curve, "/discretisation_order")->valuedouble;
-    double factor = 1 / (pow(2, order) - 1);
-    assert_true(order >= 1 && order <= 3);
-    assert_true(text_is(curve, "/discretisation_order_from", "levels"));
-    assert_near(at(curve, "/discretisation_error", point), -factor * mean_of(next, &standard_error),
+    struct mesh_changes changes = {change_of(layered[2], layered[1], &standard_error),
+                                   change_of(layered[1], layered[0], &unused), 2, 2};
+    struct mesh_error mesh = mesh_error(&changes, LAYERED_EDGE_ORDER);
+    assert_near(at(curve, "/discretisation_error", point), mesh.error, 1e-10);
+    assert_true(at(curve, "/discretisation_bound", point) >= mesh.bound * (1 - 1e-9));
+    assert_near(at(curve, "/discretisation_standard_error", point), mesh.weight * standard_error,
                 1e-10);
-    assert_near(at(curve, "/discretisation_standard_error", point), factor * standard_error, 1e-10);
-    double beyond = at(curve, "/discretisation_error", point);
+    /* models are compared at their limits */
+    double difference[3][REALISATIONS], paired;
+    for (size_t l = 0; l < 3; l++)
+        for (size_t r = 0; r < REALISATIONS; r++)
+            difference[l][r] = half[l][r] - layered[l][r];
+    changes = (struct mesh_changes){change_of(difference[2], difference[1], &unused),
+                                    change_of(difference[1], difference[0], &unused), 2, 2};
+    mesh = mesh_error(&changes, fmin(HALFSPACE_EDGE_ORDER, LAYERED_EDGE_ORDER));
     curve = curve_of(document, "contact_area", "edges", "halfspace", 8);
-    beyond -= at(curve, "/discretisation_error", point); /* models are compared at their limits */
-    assert_near(at(curve, "/model_error", point), mean_of(half, &standard_error) + beyond, 1e-10);
-    assert_near(at(curve, "/model_error_standard_error", point), standard_error, 1e-10);
+    assert_near(at(curve, "/model_error", point), mean_of(difference[2], &paired) - mesh.error,
+                1e-10);
+    assert_true(at(curve, "/model_bound", point) >= mesh.bound * (1 - 1e-9));
+    assert_true(at(curve, "/model_error_standard_error", point) >= paired);
     curve = curve_of(document, "contact_area", "edges", "layered", 4);
     assert_true(cJSON_IsNull(json_at(curve, "/discretisation_error")));
     cJSON_Delete(document);
@@ -439,7 +456,6 @@ static void no_realisation_yet(void **state) {
     assert_true(json_at(document, "/realisations")->valuedouble == 0);
     const cJSON *curve = curve_of(document, "contact_area", "edges", "layered", 8);
     assert_true(isnan(at(curve, "/y", 0)) && isnan(at(curve, "/discretisation_error", 0)));
-    assert_true(text_is(curve, "/discretisation_order_from", "assumed"));
     cJSON_Delete(document);
     merger_destroy(&merger);
 }

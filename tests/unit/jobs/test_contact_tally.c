@@ -1,7 +1,5 @@
 /* Sums of contact realisations: values at very light loads keep their digits, realisations without
- * a value are left out and counted, pressures lie on the area in contact, and orders of convergence
- * that were put in come out. */
-#include "jobs/contact/contact_errors.h"
+ * a value are left out and counted, and pressures lie on the area in contact. */
 #include "jobs/contact/contact_tally.h"
 #include "jobs/partial.h"
 #include "tests/support/check.h"
@@ -76,7 +74,6 @@ static void valueless_realisations_are_counted(void **state) {
     check_close(contact_tally_mean(&f.tally, MEASURE_STIFFNESS, 0).value, 2, 1e-14);
     assert_int_equal(contact_tally_valueless(&f.tally, MEASURE_STIFFNESS, 0), 2);
     assert_true(isnan(contact_tally_mean(&f.tally, MEASURE_GAP, 0).value));
-    assert_true(isnan(contact_tally_level(&f.tally, MEASURE_GAP, 0, 0).value));
     assert_true(isnan(contact_tally_model(&f.tally, MEASURE_GAP, 0, 0).value));
     fixture_close(&f);
 }
@@ -120,52 +117,11 @@ static void pressures_lie_on_the_area(void **state) {
     }
 }
 
-/* Values limit + slope (points)^-order on each level. */
-static struct contact_extrapolation extrapolate(const char *text, double order, double slope) {
-    struct tally_fixture f;
-    fixture_open(&f, text);
-    double *values = contact_tally_values(&f.tally, MEASURE_EDGES);
-    for (size_t l = 0; l < f.one_case.level_count; l++)
-        for (size_t k = 0; k < f.one_case.load_count; k++)
-            values[contact_case_cell(&f.one_case, 0, l, k)] =
-                0.3 + slope * (double)(k + 1) * pow((double)f.one_case.levels[l].grid.nx, -order);
-    contact_tally_add(&f.tally);
-    struct contact_extrapolation rule = contact_extrapolate(&f.tally, MEASURE_EDGES, 0);
-    size_t finest = f.one_case.level_count - 1;
-    double change = contact_tally_level(&f.tally, MEASURE_EDGES, 0, 0).value;
-    double error = slope * pow((double)f.one_case.levels[finest].grid.nx, -order);
-    if (rule.observed && rule.order > 1 && rule.order < 3)
-        check_relative(-rule.factor * change, error, 1e-9);
-    fixture_close(&f);
-    return rule;
-}
-
-static void orders_come_out(void **state) {
-    (void)state;
-    static const char *const equal = STUDY("\"levels\": [4, 8, 16], \"pressures\": {\"steps\": 3}");
-    static const char *const uneven =
-        STUDY("\"levels\": [4, 6, 16], \"pressures\": {\"steps\": 3}");
-    static const double orders[] = {1.1, 1.5, 2, 2.5};
-    for (size_t a = 0; a < 4; a++) {
-        check_close(extrapolate(equal, orders[a], -0.1).order, orders[a], 1e-9);
-        check_close(extrapolate(uneven, orders[a], 0.2).order, orders[a], 1e-9);
-    }
-    check_close(extrapolate(equal, 5, 1).order, 3, 1e-9); /* clamped */
-    check_close(extrapolate(equal, 0.5, 0.1).order, 1, 1e-9);
-    struct contact_extrapolation flat = extrapolate(equal, 1, 0);
-    assert_true(!flat.observed && flat.order == 2); /* edges of profiles */
-    struct contact_extrapolation two =
-        extrapolate(STUDY("\"levels\": [4, 8], \"pressures\": {\"steps\": 3}"), 1, 0.1);
-    assert_true(!two.observed && two.order == 2);
-    check_close(two.factor, 1.0 / 3, 1e-14);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_loads_keep_their_digits),
         cmocka_unit_test(valueless_realisations_are_counted),
         cmocka_unit_test(pressures_lie_on_the_area),
-        cmocka_unit_test(orders_come_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,15 @@
+#include "jobs/contact/contact_sample.h"
+
+int contact_level_sample(const struct contact_case *one_case, const struct contact_level *level,
+                         const double *z, double *out, struct error *err) {
+    const struct grid *own = &one_case->surface.grid, *grid = &level->grid;
+    size_t band = one_case->band;
+    if (level->stride == 0)
+        return surface_resample(own, z, grid, out, band, grid_is_profile(own) ? 0 : band, err);
+    for (size_t j = 0; j < grid->ny; j++) {
+        const double *row = z + j * level->stride * own->nx;
+        for (size_t i = 0; i < grid->nx; i++)
+            out[j * grid->nx + i] = row[i * level->stride];
+    }
+    return 0;
+}

@@ -1,0 +1,186 @@
+/* Errors by source, from tallies filled by hand: limits of meshes and of models come out where they
+ * were put in, a finite block and missing realisations are told, and what is not known is not. */
+#include "core/statistics/richardson.h"
+#include "jobs/contact/contact_errors.h"
+#include "jobs/contact/contact_probe.h"
+#include "tests/support/check.h"
+
+#define STUDY(contact)                                                                             \
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2,"                    \
+    " \"length_ratio\": 1, \"rms_slope\": 0.1, \"points_per_wavelength\": 16}, \"contact\": {"     \
+    "\"pressures\": {\"values\": [0.1, 0.2, 0.3]}, " contact "}}"
+enum { LOADS = 3 };
+
+struct errors_fixture {
+    struct contact_case one_case;
+    struct contact_tally tally;
+};
+
+static void fixture_open(struct errors_fixture *f, const char *text) {
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse(text);
+    assert_non_null(parameters);
+    if (contact_case_read(&f->one_case, parameters, NULL, &err) != 0 ||
+        contact_tally_create(&f->tally, &f->one_case, &err) != 0)
+        fail_msg("%s", err.text);
+    cJSON_Delete(parameters);
+}
+
+static void fixture_close(struct errors_fixture *f) {
+    contact_tally_clear(&f->tally);
+    contact_case_clear(&f->one_case);
+}
+
+/* limit + slope (points)^-order on each level, with the slope of the load. */
+static void fill_levels(struct errors_fixture *f, size_t model, double limit, double order,
+                        const double slope[LOADS]) {
+    double *values = contact_tally_values(&f->tally, MEASURE_EDGES);
+    for (size_t l = 0; l < f->one_case.level_count; l++)
+        for (size_t k = 0; k < LOADS; k++)
+            values[contact_case_cell(&f->one_case, model, l, k)] =
+                limit + slope[k] * pow((double)f->one_case.levels[l].grid.nx, -order);
+}
+
+static void limits_of_meshes_come_out(void **state) {
+    (void)state;
+    static const double SLOPE[LOADS] = {0.5, -0.5, 1};
+    struct errors_fixture f;
+    struct contact_error errors[LOADS];
+    fixture_open(&f, STUDY("\"levels\": [4, 8, 16]"));
+    fill_levels(&f, 0, 0.3, 2, SLOPE); /* the known order of edges of profiles */
+    contact_tally_add(&f.tally);
+    assert_true(contact_errors(&f.tally, MEASURE_EDGES, 0, ERROR_DISCRETISATION, errors));
+    for (size_t k = 0; k < LOADS; k++) {
+        check_relative(errors[k].value, SLOPE[k] / (32.0 * 32.0), 1e-9);
+        check_close(errors[k].order, 2, 1e-6);
+    }
+    fixture_close(&f);
+}
+
+/* At the load in the middle nothing changes from level to level, which is chance: its bound is that
+ * of its neighbours, relative to the values. */
+static void a_change_that_vanishes_is_no_proof(void **state) {
+    (void)state;
+    static const double SLOPE[LOADS] = {0.5, 0, 1};
+    struct errors_fixture f;
+    struct contact_error errors[LOADS];
+    fixture_open(&f, STUDY("\"levels\": [8, 16]"));
+    fill_levels(&f, 0, 0.3, 1, SLOPE);
+    contact_tally_add(&f.tally);
+    assert_true(contact_errors(&f.tally, MEASURE_EDGES, 0, ERROR_DISCRETISATION, errors));
+    for (size_t k = 0; k < LOADS; k++)
+        assert_true(errors[k].value == 0 && isnan(errors[k].order));
+    double change = 1.0 / 16 - 1.0 / 32, y = 0.3 + 1.0 / 32;
+    check_relative(errors[2].bound, 1.25 * change, 1e-9);
+    check_relative(errors[1].bound, 1.25 * change / y * 0.3, 1e-9);
+    fixture_close(&f);
+}
+
+/* Each model has an error of its own mesh, which the difference of the limits is free of. */
+static void models_are_compared_in_their_limits(void **state) {
+    (void)state;
+    static const double SLOPE[LOADS] = {0.5, 0.5, 0.5}, OTHER[LOADS] = {-0.25, -0.25, -0.25};
+    struct errors_fixture f;
+    struct contact_error errors[LOADS];
+    fixture_open(&f, STUDY("\"model\": [\"halfspace\", \"full\"], \"levels\": [4, 8, 16]"));
+    double order = fmin(f.one_case.models[0]->edge_order[0], f.one_case.models[1]->edge_order[0]);
+    fill_levels(&f, 0, 0.32, order, SLOPE);
+    fill_levels(&f, 1, 0.3, order, OTHER);
+    contact_tally_add(&f.tally);
+    assert_true(contact_errors(&f.tally, MEASURE_EDGES, 0, ERROR_MODEL, errors));
+    for (size_t k = 0; k < LOADS; k++)
+        check_relative(errors[k].value, 0.02, 1e-9);
+    assert_false(contact_errors(&f.tally, MEASURE_EDGES, 1, ERROR_MODEL, errors));
+    assert_false(contact_error_applies(&f.tally, MEASURE_EDGES, 1, 2, ERROR_MODEL));
+    fixture_close(&f);
+    /* with one level the meshes' errors are not known, and so the models' is not */
+    fixture_open(&f, STUDY("\"model\": [\"halfspace\", \"full\"]"));
+    fill_levels(&f, 0, 0.32, order, SLOPE);
+    fill_levels(&f, 1, 0.3, order, OTHER);
+    contact_tally_add(&f.tally);
+    assert_false(contact_errors(&f.tally, MEASURE_EDGES, 0, ERROR_MODEL, errors));
+    assert_true(contact_error_applies(&f.tally, MEASURE_EDGES, 0, 0, ERROR_MODEL));
+    fixture_close(&f);
+}
+
+static void a_low_block_is_told(void **state) {
+    (void)state;
+    struct errors_fixture f;
+    struct contact_error errors[LOADS];
+    fixture_open(&f, STUDY("\"model\": [\"halfspace\", \"layered\"]"));
+    assert_false(
+        contact_probe_due(&f.one_case, 0)); /* 1.5 sides of the cell are as good as infinite */
+    assert_true(contact_errors(&f.tally, MEASURE_EDGES, 1, ERROR_BLOCK, errors));
+    fixture_close(&f);
+    fixture_open(&f, STUDY("\"model\": \"layered\", \"block_height\": {\"lengths\": 0.25}"));
+    assert_true(contact_probe_due(&f.one_case, 3) && !contact_probe_due(&f.one_case, 17) &&
+                contact_probe_due(&f.one_case, 32));
+    for (int r = 0; r < 3; r++) { /* of which one is not probed */
+        double *values = contact_tally_values(&f.tally, MEASURE_EDGES);
+        for (size_t k = 0; k < LOADS; k++) {
+            values[contact_case_cell(&f.one_case, 0, 0, k)] = 0.4;
+            if (r == 2)
+                continue;
+            values[contact_case_probe_cell(&f.one_case, 0, k)] = 0.5;
+            values[contact_case_probe_cell(&f.one_case, 1, k)] = r == 0 ? 0.45 : 0.43;
+        }
+        contact_tally_add(&f.tally);
+    }
+    assert_true(contact_errors(&f.tally, MEASURE_EDGES, 0, ERROR_BLOCK, errors));
+    check_relative(errors[1].value, 0.4 / 0.44 * -0.06, 1e-9);
+    check_relative(errors[1].bound, fabs(errors[1].value) / 4, 1e-9);
+    /* a ratio over three realisations, of which two are counted */
+    check_relative(errors[1].standard_error, 0.4 / 0.44 * sqrt(1.5 * 2e-4) / 2, 1e-6);
+    fixture_close(&f);
+    fixture_open(&f, STUDY("\"model\": \"halfspace\""));
+    assert_false(contact_error_applies(&f.tally, MEASURE_EDGES, 0, 0, ERROR_BLOCK));
+    fixture_close(&f);
+}
+
+/* Of four realisations the model full lacks one: its mean is that of layered over all, and of the
+ * difference over three. */
+static void missing_realisations_bias_no_mean(void **state) {
+    (void)state;
+    static const double FULL[] = {0.2, 0.21, 0.22, NAN}, LAYERED[] = {0.22, 0.23, 0.25, 0.5};
+    struct errors_fixture f;
+    struct contact_error errors[LOADS];
+    fixture_open(&f, STUDY("\"model\": [\"full\", \"layered\"]"));
+    for (int r = 0; r < 4; r++) {
+        double *values = contact_tally_values(&f.tally, MEASURE_EDGES);
+        for (size_t k = 0; k < LOADS; k++) {
+            values[contact_case_cell(&f.one_case, 0, 0, k)] = k == 0 ? 0.1 : FULL[r];
+            values[contact_case_cell(&f.one_case, 1, 0, k)] = LAYERED[r];
+        }
+        contact_tally_add(&f.tally);
+    }
+    check_relative(contact_errors_mean(&f.tally, MEASURE_EDGES, 0, 0, 0).value, 0.1, 1e-12);
+    check_relative(contact_errors_mean(&f.tally, MEASURE_EDGES, 0, 0, 1).value,
+                   0.3 - (0.02 + 0.02 + 0.03) / 3, 1e-12);
+    assert_true(contact_errors_mean(&f.tally, MEASURE_EDGES, 0, 0, 1).standard_error >
+                contact_tally_mean(&f.tally, MEASURE_EDGES, contact_case_cell(&f.one_case, 1, 0, 1))
+                    .standard_error);
+    assert_true(contact_errors(&f.tally, MEASURE_EDGES, 0, ERROR_MISSING, errors));
+    assert_true(errors[0].bound == 0 && errors[1].value == 0 && errors[1].bound > 0);
+    fixture_close(&f);
+    /* nothing to go by: said as such */
+    fixture_open(&f, STUDY("\"model\": \"full\""));
+    for (int r = 0; r < 4; r++) {
+        for (size_t k = 0; k < LOADS; k++)
+            contact_tally_values(&f.tally, MEASURE_EDGES)[k] = FULL[r];
+        contact_tally_add(&f.tally);
+    }
+    assert_true(contact_error_applies(&f.tally, MEASURE_EDGES, 0, 0, ERROR_MISSING));
+    assert_false(contact_errors(&f.tally, MEASURE_EDGES, 0, ERROR_MISSING, errors));
+    fixture_close(&f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(limits_of_meshes_come_out),
+        cmocka_unit_test(a_change_that_vanishes_is_no_proof),
+        cmocka_unit_test(models_are_compared_in_their_limits),
+        cmocka_unit_test(a_low_block_is_told),
+        cmocka_unit_test(missing_realisations_bias_no_mean),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
