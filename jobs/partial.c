@@ -29,7 +29,7 @@ int partial_decode(const struct job_kind *kind, uint64_t fingerprint, const unsi
     if (bytes_get_unsigned(&reader) != kind->format)
         return error_set(err, ERROR_INPUT, "the partial result is not one of %s", kind->study.name);
     if (bytes_get_unsigned(&reader) != kind->format_version)
-        return refuse(err, "is of another version of its format");
+        return refuse(err, "is of another version of its format; rugo retry computes it anew");
     if (bytes_get_unsigned(&reader) != fingerprint)
         return refuse(err, "is of a case with other parameters");
     kind->get(&reader, tally);

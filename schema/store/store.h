@@ -65,8 +65,8 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
 int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
                size_t *count, struct error *err);
 int store_cancel(struct store *store, const char *id, struct error *err); /* ERROR_STATE if ended */
-/* Failed and cancelled jobs wait again with fresh attempts, *count of them; cases that could not be
- * published are due again. */
+/* Failed and cancelled jobs wait again with fresh attempts, and so do the jobs of cases that could
+ * not be published, whose results are given up: *count of them. */
 int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err);
 
 /* A job that failed, or a case that cannot be published. */

@@ -313,6 +313,40 @@ int store_cancel(struct store *store, const char *id, struct error *err) {
     return change_end(store, status, err);
 }
 
+#define DONE_IN_VAIN                                                                               \
+    "state = 'done' AND study_id = ?1 AND case_number IN (SELECT number FROM study_case WHERE "    \
+    "study_id = ?1 AND publish_error IS NOT NULL)"
+
+/* Gives up the results of cases that could not be published, such as those of an older program,
+ * which merging again would not change: their jobs count as failed. */
+static int discard_results(struct store *store, int64_t row, struct error *err) {
+    int status = store_run(store, err,
+                           "DELETE FROM result WHERE job_id IN (SELECT id FROM job WHERE "
+                           "" DONE_IN_VAIN ")",
+                           "i", row);
+    if (status == 0)
+        status = store_run(
+            store, err,
+            "UPDATE study SET jobs_done = jobs_done - n, jobs_failed = jobs_failed + n, "
+            "realisations_done = realisations_done - r, realisations_failed = realisations_failed "
+            "+ r, seconds = seconds - s, cpu_seconds = cpu_seconds - c, jobs_without_cpu = "
+            "jobs_without_cpu - w FROM (SELECT count(*) AS n, total(count) AS r, total(seconds) AS "
+            "s, total(coalesce(cpu_seconds, seconds)) AS c, total(cpu_seconds IS NULL) AS w FROM "
+            "job WHERE " DONE_IN_VAIN ") WHERE id = ?1",
+            "i", row);
+    if (status == 0)
+        status =
+            store_run(store, err, "UPDATE job SET state = 'failed' WHERE " DONE_IN_VAIN, "i", row);
+    if (status == 0)
+        status =
+            store_run(store, err,
+                      "UPDATE study_case SET realisations_done = 0, seconds = 0, cpu_seconds = "
+                      "0, jobs_without_cpu = 0 WHERE study_id = ? AND publish_error IS NOT "
+                      "NULL",
+                      "i", row);
+    return status;
+}
+
 static int retry_jobs(struct store *store, int64_t row, struct error *err) {
     int status = marks_clear(store, row, err);
     if (status == 0)
@@ -344,6 +378,8 @@ int store_retry(struct store *store, const char *id, uint64_t *count, struct err
     if (status != 0)
         return status;
     status = study_row(store, id, &row, err);
+    if (status == 0)
+        status = discard_results(store, row, err);
     if (status == 0)
         status =
             store_integer(store, &jobs, err,

@@ -1,4 +1,5 @@
-/* `rugo retry`: queues failed jobs of a study again, and publishes cases that could not be. */
+/* `rugo retry`: queues failed jobs of a study again, and those of cases that could not be
+ * published. */
 #include "server/command/question.h"
 
 static int run(const void *options, const char *const *arguments) {

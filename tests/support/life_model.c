@@ -140,6 +140,8 @@ int life_retry(struct life *life, int study) {
     int n = 0;
     for (int j = 0; j < life->job_count; j++) {
         struct life_job *job = &life->jobs[j];
+        if (job->study == study && job->state == LIFE_DONE && one->of[job->case_number].marked)
+            job->state = LIFE_FAILED; /* its result is given up */
         if (job->study != study || (job->state != LIFE_FAILED && job->state != LIFE_CANCELLED))
             continue;
         job->state = LIFE_WAITING;

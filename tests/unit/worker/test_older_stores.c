@@ -130,6 +130,15 @@ static void a_store_of_version_1_goes_on(void **state) {
     }
     free(list);
     work_off("old.db");
+    /* what an older program left half-way in another format is given up, and computed anew */
+    assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
+    for (size_t s = 0; s < count; s++) {
+        if (list[s].cases_failed > 0)
+            assert_int_equal(store_retry(store, list[s].id, &retried, &err), 0);
+        study_status_clear(&list[s]);
+    }
+    free(list);
+    work_off("old.db");
     assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
     for (size_t s = 0; s < count; s++) {
         check_study("old.db", &list[s]);

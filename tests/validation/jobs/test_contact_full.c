@@ -33,7 +33,8 @@ static void small_slopes_are_layered(void **state) {
             for (int k = 0; k < points(full); k++) {
                 double y = at(full, "/y", k), load = at(full, "/x", k);
                 assert_near(at(linear, "/y", k), y, CASES[c].bound * y, load);
-                assert_near(at(linear, "/model_error", k), at(linear, "/y", k) - y, 1e-15, load);
+                /* one level does not tell its own error, which would be in the difference */
+                assert_true(cJSON_IsNull(json_at(linear, "/model_error")));
                 assert_near(at(full, "/valueless", k), 0, 0, load);
             }
         }
