@@ -235,15 +235,12 @@ static int add_range(const struct contact_tally *tally, const char *count_name,
                      const char *load_name, double most, struct case_result *out,
                      struct error *err) {
     size_t n = loads_within(tally, most);
-    int status = result_add_scalar(
-        out, &(struct scalar){.name = count_name, .value = (double)n, .theory = NAN}, err);
-    return status != 0 || n == 0
-               ? status
-               : result_add_scalar(out,
-                                   &(struct scalar){.name = load_name,
-                                                    .value = tally->one_case->loads[n - 1],
-                                                    .theory = NAN},
-                                   err);
+    struct scalar count = scalar_named(count_name, (double)n, 0, NAN), load;
+    int status = result_add_scalar(out, &count, err);
+    if (status != 0 || n == 0)
+        return status;
+    load = scalar_named(load_name, tally->one_case->loads[n - 1], 0, NAN);
+    return result_add_scalar(out, &load, err);
 }
 
 static int add_scalars(const struct contact_case *one_case, const struct moments *moments,
@@ -263,10 +260,8 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
         if (!own && place.at == CONTACT_SCALAR_NAYAK_ALPHA &&
             surface_case_exact(&one_case->surface))
             mean = (struct estimate){moments->nayak_alpha, 0};
-        struct scalar scalar = {.name = contact_scalar_name(a),
-                                .value = mean.value,
-                                .standard_error = mean.standard_error,
-                                .theory = own ? (double)NAN : theory[place.at]};
+        struct scalar scalar = scalar_named(contact_scalar_name(a), mean.value, mean.standard_error,
+                                            own ? (double)NAN : theory[place.at]);
         if (!own)
             status = put_tallied(tally, place.at, &scalar, err);
         if (status == 0)
@@ -280,11 +275,9 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
     if (status != 0)
         return status;
     /* as given, or as solved for nayak_alpha */
-    return result_add_scalar(out,
-                             &(struct scalar){.name = "wavelength_ratio",
-                                              .value = one_case->surface.wavelength_ratio,
-                                              .theory = NAN},
-                             err);
+    const struct scalar ratio =
+        scalar_named("wavelength_ratio", one_case->surface.wavelength_ratio, 0, NAN);
+    return result_add_scalar(out, &ratio, err);
 }
 
 int contact_scalars(const struct contact_case *one_case, const struct moments *moments,

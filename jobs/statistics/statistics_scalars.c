@@ -168,10 +168,8 @@ static void theory_of_scalars(const struct statistics_case *one_case, const stru
 /* Adds a scalar with a fixed name. */
 static int add_scalar(struct case_result *out, const char *name, struct estimate estimate,
                       double theory, struct error *err) {
-    const struct scalar scalar = {.name = name,
-                                  .value = estimate.value,
-                                  .standard_error = estimate.standard_error,
-                                  .theory = theory};
+    const struct scalar scalar =
+        scalar_named(name, estimate.value, estimate.standard_error, theory);
     return result_add_scalar(out, &scalar, err);
 }
 

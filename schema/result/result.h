@@ -125,6 +125,8 @@ struct scalar {
     double theory;                /* NaN: none */
     struct scalar_error errors[ERROR_SOURCES];
 };
+/* A scalar on which no source of error bears. */
+struct scalar scalar_named(const char *name, double value, double standard_error, double theory);
 
 struct result_note {
     uint64_t realisation;

@@ -19,8 +19,7 @@ static inline void sample_result(struct case_result *out) {
     struct curve plain = curve_named("q", "z/\302\265m", "density");
     struct curve matrix = curve_named("joint", "z", "density");
     struct curve full = curve_named("area", "load", "A/A0");
-    struct scalar m0 = {.name = "m0", .value = 1, .standard_error = 0.5, .theory = NAN};
-    const struct scalar alpha = {.name = "alpha", .value = 5, .standard_error = NAN, .theory = 6};
+    struct scalar m0 = scalar_named("m0", 1, 0.5, NAN), alpha = scalar_named("alpha", 5, NAN, 6);
     m0.errors[ERROR_CELL].applies = true;
     m0.errors[ERROR_MODEL] = (struct scalar_error){true, true, -0.5, 0.25, 0.125};
     *out = (struct case_result){.case_number = 3, .realisations = 24, .notes = notes};

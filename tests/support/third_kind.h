@@ -95,12 +95,8 @@ static int needle_result(const void *study, const struct surface_basis *basis, c
     realisations_column(realisations, 0, pi);
     struct estimate mean = estimate_mean(n, pi);
     (void)basis;
-    int status = result_add_scalar(out,
-                                   &(struct scalar){.name = "pi",
-                                                    .value = mean.value,
-                                                    .standard_error = mean.standard_error,
-                                                    .theory = M_PI},
-                                   err);
+    struct scalar scalar = scalar_named("pi", mean.value, mean.standard_error, M_PI);
+    int status = result_add_scalar(out, &scalar, err);
     return status != 0 ? status : result_add_curve(out, &curve, err);
 }
 static const struct job_kind NEEDLE_KIND = {
