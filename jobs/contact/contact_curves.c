@@ -219,15 +219,15 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     double load = one_case->loads[one_case->pdf_loads[at]], width = bins_width(bins);
     double units = (double)contact_tally_units(one_case, model);
     size_t cell = contact_case_cell(one_case, model, finest, one_case->pdf_loads[at]);
-    const uint64_t *count =
-        maker->tally->pressures.count + contact_tally_pressure_cell(maker->tally, model, at);
-    double *x = result_numbers(maker->result, 5 * n);
+    const uint64_t *count = maker->tally->pressures.count +
+                            contact_tally_pressure_cell(maker->tally, model, finest, at);
+    double *x = result_numbers(maker->result, 8 * n);
     if (x == NULL)
         return no_room(err);
     double *y = x + n, *standard_error = y + n, *valueless = standard_error + n;
-    double *pdf = valueless + n;
+    double *pdf = valueless + n, *none = pdf + n, *bound = none + n, *unknown = bound + n;
     for (size_t b = 0; b < n; b++) {
-        struct estimate share = contact_tally_pressure(maker->tally, model, at, b + 1);
+        struct estimate share = contact_tally_pressure(maker->tally, model, finest, at, b + 1);
         x[b] = bins_centre(bins, b);
         y[b] = share.value / width;
         standard_error[b] = share.standard_error / width;
@@ -239,6 +239,15 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     for (enum error_source s = 0; s < ERROR_SOURCES; s++)
         curve.errors[s].applies =
             contact_error_applies(maker->tally, MEASURE_NODES, model, finest, s);
+    if (contact_errors_pressures(maker->tally, model, at, bound)) {
+        for (size_t b = 0; b < n; b++)
+            unknown[b] = NAN;
+        curve.errors[ERROR_DISCRETISATION] = (struct curve_error){.applies = true,
+                                                                  .value = none,
+                                                                  .bound = bound,
+                                                                  .standard_error = unknown,
+                                                                  .order = NAN};
+    }
     curve_set_points(&curve, n, x, y, standard_error);
     if (contact_theory_pressures(one_case, maker->modes, load, pdf))
         curve.theories[curve.theory_count++] = (struct theory){"persson", pdf};

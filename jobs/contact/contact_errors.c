@@ -301,3 +301,28 @@ bool contact_error_applies(const struct contact_tally *tally, enum contact_measu
         return true;
     }
 }
+
+/* --- pressures --- */
+
+bool contact_errors_pressures(const struct contact_tally *tally, size_t model, size_t at,
+                              double *bound) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t finest = finest_of(one_case), n = one_case->pressure.count;
+    if (finest == 0)
+        return false;
+    double width = bins_width(&one_case->pressure), before = 0;
+    for (size_t b = 0; b < n; b++) {
+        struct mesh_changes changes = {.coarse = NAN,
+                                       .fine_ratio = refinement(one_case, finest - 1)};
+        changes.fine = (contact_tally_pressure(tally, model, finest, at, b + 1).value -
+                        contact_tally_pressure(tally, model, finest - 1, at, b + 1).value) /
+                       width;
+        bound[b] = mesh_error(&changes, 1).bound;
+    }
+    for (size_t b = 0; b < n; b++) {
+        double own = bound[b], next = b + 1 < n ? bound[b + 1] : 0;
+        bound[b] = isnan(own) ? own : fmax(own, fmax(before, next));
+        before = own;
+    }
+    return true;
+}

@@ -130,12 +130,12 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
 }
 
 /* Counts pressures on areas as they are now, whose forces are those on the undeformed ones. */
-static void count_pressures(const struct contact_scene *scene, size_t model, size_t load,
-                            const double *p, double now, struct contact_tally *tally) {
+static void count_pressures(const struct contact_scene *scene, size_t model, size_t level,
+                            size_t load, const double *p, double now, struct contact_tally *tally) {
     const struct contact_case *one_case = scene->one_case;
     for (size_t a = 0; a < one_case->pdf_count; a++)
         if (one_case->pdf_loads[a] == load)
-            contact_tally_pressures(tally, model, a, p, 1 / (now * scene->rms_slope), now);
+            contact_tally_pressures(tally, model, level, a, p, 1 / (now * scene->rms_slope), now);
 }
 
 struct stopper {
@@ -174,8 +174,8 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
                           pressed.reached / scene->rms_slope);
         else
             error_context(err, "load %g", one_case->loads[k]);
-        if (status == 0 && finest)
-            count_pressures(scene, m, k, pressed.state.p, pressed.stretch, tally);
+        if (status == 0 && contact_tally_counts(one_case, level))
+            count_pressures(scene, m, level, k, pressed.state.p, pressed.stretch, tally);
     }
     return status;
 }

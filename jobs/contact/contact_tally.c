@@ -23,6 +23,20 @@ static double scale_of(const struct contact_case *one_case, enum contact_measure
     return falls ? ldexp(1, exponent < -SCALE_BITS_MOST ? SCALE_BITS_MOST : -exponent) : 1;
 }
 
+/* Levels on which pressures are counted. */
+static size_t counted_levels(const struct contact_case *one_case) {
+    return one_case->level_count > 1 ? 2 : 1;
+}
+
+static size_t pressure_cells(const struct contact_case *one_case) {
+    return one_case->model_count * counted_levels(one_case) * one_case->pdf_count *
+           bins_of(one_case);
+}
+
+bool contact_tally_counts(const struct contact_case *one_case, size_t level) {
+    return level + counted_levels(one_case) >= one_case->level_count;
+}
+
 static int sums_create(struct contact_sums *out, size_t size, struct error *err) {
     int status = tally_sums_create(&out->sums, size, err);
     return status != 0 ? status : tally_create(&out->counts, size, err);
@@ -88,8 +102,7 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
             status = sums_create(&out->sums[SUMS_BLOCKS + a], block_pairs(one_case), err);
     }
     if (status == 0)
-        status =
-            tally_create(&out->pressures, one_case->model_count * one_case->pdf_count * bins, err);
+        status = tally_create(&out->pressures, pressure_cells(one_case), err);
     if (status == 0)
         values_begin(out);
     else
@@ -107,24 +120,23 @@ void contact_tally_clear(struct contact_tally *tally) {
 }
 
 double contact_tally_bytes(const struct contact_case *one_case) {
-    size_t cells = contact_case_all_cells(one_case), bins = bins_of(one_case);
+    size_t cells = contact_case_all_cells(one_case);
     size_t pairs = (one_case->model_count * one_case->level_count - 1) * one_case->load_count +
                    block_pairs(one_case);
     double a_cell = tally_sums_bytes(1) + tally_bytes(1);
     return MEASURE_COUNT * (double)cells * (a_cell + sizeof(double)) +
-           MEASURE_PAIRED * (double)pairs * a_cell +
-           tally_bytes(one_case->model_count * one_case->pdf_count * bins);
+           MEASURE_PAIRED * (double)pairs * a_cell + tally_bytes(pressure_cells(one_case));
 }
 
 uint64_t contact_tally_units(const struct contact_case *one_case, size_t model) {
     return one_case->models[model]->stretches ? STRETCHED_UNITS : 1;
 }
 
-void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, const double *p,
-                             double scale, double area) {
+void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t level, size_t at,
+                             const double *p, double scale, double area) {
     const struct contact_case *one_case = tally->one_case;
-    size_t first = contact_tally_pressure_cell(tally, model, at);
-    size_t n = grid_points(&contact_case_finest(one_case)->grid);
+    size_t first = contact_tally_pressure_cell(tally, model, level, at);
+    size_t n = grid_points(&one_case->levels[level].grid);
     uint64_t units = contact_tally_units(one_case, model),
              each = (uint64_t)lround(area * (double)units);
     for (size_t j = 0; j < n; j++)
@@ -252,21 +264,24 @@ struct estimate contact_tally_block(const struct contact_tally *tally, enum cont
                      scale_of(tally->one_case, measure, load));
 }
 
-size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at) {
-    return (model * tally->one_case->pdf_count + at) * bins_of(tally->one_case);
+size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t level,
+                                   size_t at) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t step = one_case->level_count - 1 - level;
+    return ((model * counted_levels(one_case) + step) * one_case->pdf_count + at) *
+           bins_of(one_case);
 }
 
-struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
-                                       size_t bin) {
+struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model,
+                                       size_t level, size_t at, size_t bin) {
     const struct contact_case *one_case = tally->one_case;
-    size_t cell =
-        contact_case_cell(one_case, model, one_case->level_count - 1, one_case->pdf_loads[at]);
-    fixed_point points = (fixed_point)grid_points(&contact_case_finest(one_case)->grid) *
+    size_t cell = contact_case_cell(one_case, model, level, one_case->pdf_loads[at]);
+    fixed_point points = (fixed_point)grid_points(&one_case->levels[level].grid) *
                          contact_tally_units(one_case, model);
     uint64_t solved = tally->sums[MEASURE_NODES].counts.count[cell];
     struct tally_total total = {solved, points * solved, points * points * solved};
-    return tally_share(&tally->pressures, contact_tally_pressure_cell(tally, model, at) + bin,
-                       &total);
+    return tally_share(&tally->pressures,
+                       contact_tally_pressure_cell(tally, model, level, at) + bin, &total);
 }
 
 void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally) {
@@ -323,12 +338,13 @@ static uint64_t unsolved(const struct contact_tally *tally) {
 
 /* Returns whether the pressures of a load lie on as much area as is in contact, but for rounding.
  */
-static bool pressures_fit(const struct contact_tally *tally, size_t model, size_t at) {
+static bool pressures_fit(const struct contact_tally *tally, size_t model, size_t level,
+                          size_t at) {
     const struct contact_case *one_case = tally->one_case;
-    size_t cell =
-        contact_case_cell(one_case, model, one_case->level_count - 1, one_case->pdf_loads[at]);
-    const uint64_t *count = tally->pressures.count + contact_tally_pressure_cell(tally, model, at);
-    double units = (double)grid_points(&contact_case_finest(one_case)->grid) *
+    size_t cell = contact_case_cell(one_case, model, level, one_case->pdf_loads[at]);
+    const uint64_t *count =
+        tally->pressures.count + contact_tally_pressure_cell(tally, model, level, at);
+    double units = (double)grid_points(&one_case->levels[level].grid) *
                    (double)contact_tally_units(one_case, model);
     double area = units * contact_tally_total(tally, MEASURE_NODES, cell), sum = 0;
     for (size_t b = 0; b < bins_of(one_case); b++)
@@ -349,9 +365,10 @@ bool contact_tally_adds_up(const struct contact_tally *tally) {
                 return false;
     }
     for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t a = 0; a < one_case->pdf_count; a++)
-            if (!pressures_fit(tally, m, a))
-                return false;
+        for (size_t l = 0; l < one_case->level_count; l++)
+            for (size_t a = 0; a < one_case->pdf_count && contact_tally_counts(one_case, l); a++)
+                if (!pressures_fit(tally, m, l, a))
+                    return false;
     return tally->points.realisations == tally->realisations &&
            tally->notes.count == unsolved(tally);
 }

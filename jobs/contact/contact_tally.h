@@ -32,9 +32,9 @@ struct contact_tally {
     uint64_t realisations;
     struct contact_sums sums[CONTACT_SUMS];
     struct tally_total points; /* of the finest level */
-    struct tally pressures;    /* finest level: by model, load of pdf_loads, bin with under- and
-                                  overflow; in contact_tally_units of a node's undeformed area;
-                                  nodes that are open are in none */
+    struct tally pressures;    /* by model, level (the finest, then the next coarser one), load of
+                                  pdf_loads, bin with under- and overflow; in contact_tally_units
+                                  of a node's undeformed area; nodes that are open are in none */
     struct notes notes;        /* why a model has no values, a realisation and level */
     uint64_t realisation;      /* the one under way, for these */
     double *values;            /* owned: the realisation under way, by measure and cell */
@@ -51,10 +51,13 @@ static inline double *contact_tally_values(struct contact_tally *tally,
                                            enum contact_measure measure) {
     return tally->values + (size_t)measure * contact_case_all_cells(tally->one_case);
 }
-/* Counts the pressures, scale * p at the points of the finest level where p > 0, on area times the
- * undeformed area of a node each. at: position in pdf_loads. */
-void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t at, const double *p,
-                             double scale, double area);
+/* Counts the pressures, scale * p at the points of a level, one of those that contact_tally_counts
+ * tells, where p > 0, on area times the undeformed area of a node each. at: position in pdf_loads.
+ */
+void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t level, size_t at,
+                             const double *p, double scale, double area);
+/* Returns whether pressures are counted on a level: the two finest. */
+bool contact_tally_counts(const struct contact_case *one_case, size_t level);
 /* Ends the realisation: adds its values, and the next one begins. */
 void contact_tally_add(struct contact_tally *tally);
 
@@ -76,13 +79,14 @@ struct estimate contact_tally_model(const struct contact_tally *tally, enum cont
 struct estimate contact_tally_block(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load);
 /* Area of a bin over that of the cell, over the realisations with values there. */
-struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model, size_t at,
-                                       size_t bin);
+struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model,
+                                       size_t level, size_t at, size_t bin);
 /* Returns in how many parts a node's area is counted: 1 where all are equal. */
 uint64_t contact_tally_units(const struct contact_case *one_case, size_t model);
-/* Returns the first cell of the pressures of a model and load, which are underflow, the bins,
- * overflow. */
-size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t at);
+/* Returns the first cell of the pressures of a model, level and load, which are underflow, the
+ * bins, overflow. */
+size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t level,
+                                   size_t at);
 
 /* These are what job_kind asks for. Counts that add up are possible, and belong together. */
 void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally);

@@ -102,10 +102,10 @@ static void pressures_lie_on_the_area(void **state) {
         for (size_t m = 0; m < 2; m++) {
             for (size_t a = 0; a < 4; a++)
                 contact_tally_values(&f.tally, always[a])[m] = (m == 1 ? 1.25 : 1) * share;
-            contact_tally_pressures(&f.tally, m, 0, pressures, 1, m == 1 ? CASES[c].told : 1);
+            contact_tally_pressures(&f.tally, m, 0, 0, pressures, 1, m == 1 ? CASES[c].told : 1);
         }
         contact_tally_add(&f.tally);
-        check_relative(contact_tally_pressure(&f.tally, 1, 0, 2).value, CASES[c].told * share,
+        check_relative(contact_tally_pressure(&f.tally, 1, 0, 0, 2).value, CASES[c].told * share,
                        1e-14);
         assert_int_equal(partial_encode(kind_find("contact"), 1, &f.tally, &data, &size, &err), 0);
         assert_int_equal(partial_decode(kind_find("contact"), 1, data, size, &copy.tally, &err),

@@ -59,9 +59,9 @@ static void count_scene(const struct scene *scene, const char *levels, const cJS
                         struct coverage *areas, struct coverage *others) {
     static const char *const MODELS[] = {"halfspace", "layered"};
     static const char *const QUANTITIES[][2] = {
-        {"contact_area", "edges"}, {"contact_area", "nodes"}, {"mean_gap", ""},
-        {"stiffness", ""},         {"patch_count", "cell"},   {"patch_mean_area", ""},
-        {"patch_largest_area", ""}};
+        {"contact_area", "edges"},  {"contact_area", "nodes"},   {"mean_gap", ""},
+        {"stiffness", ""},          {"patch_count", "cell"},     {"patch_mean_area", ""},
+        {"patch_largest_area", ""}, {"contact_pressure_pdf", ""}};
     cJSON *document = solve_levels(scene, levels);
     for (size_t m = 0; m < 2; m++)
         for (size_t q = 0; q < sizeof QUANTITIES / sizeof *QUANTITIES; q++)
