@@ -1,24 +1,31 @@
 /* `rugo report`: what each case cost and how exact it is. */
 #include "server/command/access.h"
+#include "server/show/plot_cost.h"
 #include "server/show/summary.h"
 #include <stdio.h>
 
 struct options {
     struct access_options place;
-    int json;
+    int format;
 };
+enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG };
 static const struct option_row OPTIONS[] = {ACCESS_ROWS(struct options),
                                             {"format", 0, OPTION_CHOICE, 0, 0,
-                                             offsetof(struct options, json), "text|json", "text",
-                                             "what to print"},
+                                             offsetof(struct options, format), "text|json|svg",
+                                             "text", "what to print"},
                                             {0}};
 
-static int show(const struct study_report *report, bool json, struct error *err) {
+static int show(const struct study_report *report, int format, struct error *err) {
     bool done = true;
-    if (json)
+    int status = 0;
+    if (format == FORMAT_SVG)
+        status = plot_cost(report, stdout, err);
+    else if (format == FORMAT_JSON)
         done = study_report_print(stdout, report) && putchar('\n') != EOF;
     else
         summary_of_report(report, stdout);
+    if (status != 0)
+        return status;
     return done ? output_flush(err) : error_memory(err, 0, "a document");
 }
 
@@ -33,7 +40,7 @@ static int run(const void *values, const char *const *arguments) {
     if (status == 0)
         status = access_report(access, arguments[0], &report, &err);
     if (status == 0)
-        status = show(&report, options->json, &err);
+        status = show(&report, options->format, &err);
     for (size_t c = 0; c < report.case_count && status == 0; c++)
         command_warn_missing("report", &report.cases[c].about);
     study_report_clear(&report);

@@ -5,6 +5,7 @@
 #include "schema/result/result_json.h"
 #include "server/http/accept.h"
 #include "server/http/route.h"
+#include "server/show/plot_cost.h"
 #include "worker/aggregate.h"
 #include "worker/log.h"
 #include <math.h>
@@ -280,9 +281,40 @@ void handle_curves(struct exchange *exchange, const char *id) {
     answer_header(exchange, "Vary", "Accept");
 }
 
+static int send_picture(struct exchange *exchange, const char *id, struct error *err) {
+    struct store *reader;
+    struct study_report report = {0};
+    struct memory_file picture;
+    char *text = NULL;
+    int status = service_reader(exchange->service, &reader, err);
+    if (status == 0)
+        status = aggregate_report(reader, id, &report, err);
+    service_give_back(exchange->service, reader);
+    if (status == 0 && memory_file_open(&picture)) {
+        status = plot_cost(&report, picture.file, err);
+        text = memory_file_close(&picture, NULL);
+    }
+    if (status == 0 && text == NULL)
+        status = error_memory(err, 0, "a picture");
+    if (status == 0)
+        answer_text(exchange, 200, "image/svg+xml", text);
+    else
+        free(text);
+    study_report_clear(&report);
+    return status;
+}
+
 void handle_report(struct exchange *exchange, const char *id) {
     struct error err = {0};
     struct result_filter all = {.case_number = -1};
-    if (send_json(exchange, id, &all, true, &err) != 0)
+    const char *accept = exchange_header(exchange, "Accept");
+    bool drawn =
+        accept_quality(accept, "image/svg+xml") > accept_quality(accept, "application/json");
+    int status =
+        drawn ? send_picture(exchange, id, &err) : send_json(exchange, id, &all, true, &err);
+    if (status != 0) {
         answer_error(exchange, &err);
+        return;
+    }
+    answer_header(exchange, "Vary", "Accept");
 }

@@ -1,20 +1,12 @@
 #include "server/show/plot.h"
 #include "server/show/plot_choice.h"
-#include "server/show/plot_frame.h"
+#include "server/show/plot_pen.h"
 #include "server/show/summary_cells.h"
 #include "server/show/view.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The picture has this size in SVG user units, with its legend at the right. LETTER is about a
- * letter's width. */
-enum { WIDTH = 960, HEIGHT = 570, LEGEND = FRAME_RIGHT + 48, LETTER = 7 };
-
-/* The first seven are those of Okabe & Ito (2008), which every reader can tell apart. */
-static const char *const COLOURS[PLOT_LINES] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                "#e69f00", "#56b4e9", "#000000", "#8a8a00",
-                                                "#7f3b08", "#6a51a3", "#999999", "#a50026"};
 /* Theories differ by their dashes. */
 static const char *const DASHES[] = {"7 4", "2 3", "12 3 2 3", "4 2 1 2 1 2", "14 5", "1 5"};
 enum { DASH_COUNT = sizeof DASHES / sizeof *DASHES };
@@ -25,12 +17,10 @@ static const char *const LEVEL_STYLES[] = {
     " stroke-opacity=\".45\" stroke-width=\".9\"", " stroke-opacity=\".3\" stroke-width=\".7\""};
 enum { STYLE_COUNT = sizeof LEVEL_STYLES / sizeof *LEVEL_STYLES };
 
-/* The pen draws a quantity from this. */
+/* What the picture of a quantity is drawn from. */
 struct plot {
-    FILE *file;
-    struct frame frame;
+    struct plot_pen pen;
     struct plot_choice choice;
-    int rows;     /* of the legend, so far */
     bool partial; /* some points are means over fewer realisations */
 };
 
@@ -54,65 +44,30 @@ static void draw_bars(FILE *file, const struct frame *frame, const struct curve 
     fputc('\n', file);
 }
 
-static bool is_inside(const struct frame *frame, double x, double y) {
-    return frame_has_place(frame, x, y) && x >= frame->x.low && x <= frame->x.high &&
-           y <= frame->y.high && y >= frame->y.low;
-}
-
 /* Draws an open circle where some realisations have no value. */
 static void draw_partial(struct plot *plot, const struct curve *curve, const char *colour) {
     for (size_t n = 0; n < curve->n && curve->valueless != NULL; n++) {
         double x = curve->x[n], y = curve->y[n];
-        if (!(curve->valueless[n] > 0) || !is_inside(&plot->frame, x, y))
+        if (!(curve->valueless[n] > 0) || !pen_reaches(&plot->pen, x, y))
             continue;
-        fprintf(plot->file,
+        fprintf(plot->pen.file,
                 "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" class=\"partial\" stroke=\"%s\"/>\n",
-                frame_x(&plot->frame, x), frame_y(&plot->frame, y), colour);
+                frame_x(&plot->pen.frame, x), frame_y(&plot->pen.frame, y), colour);
         plot->partial = true;
     }
-}
-
-/* Draws a line through n points; style has the attributes of the path. */
-static void draw_line(FILE *file, const struct frame *frame, size_t n, const double *x,
-                      const double *y, const char *style) {
-    bool pen_down = false;
-    fprintf(file, "<path %s d=\"", style);
-    for (size_t a = 0; a < n; a++) {
-        bool inside = is_inside(frame, x[a], y[a]);
-        if (inside)
-            fprintf(file, "%c%.2f %.2f", pen_down ? 'L' : 'M', frame_x(frame, x[a]),
-                    frame_y(frame, y[a]));
-        pen_down = inside;
-    }
-    fputs("\"/>\n", file);
 }
 
 enum { STYLE_SIZE = 128 };
 
 static void curve_style(const struct plot_line *line, char style[STYLE_SIZE]) {
     size_t level = line->coarseness < STYLE_COUNT ? line->coarseness : STYLE_COUNT - 1;
-    snprintf(style, STYLE_SIZE, "class=\"curve\" stroke=\"%s\"%s", COLOURS[line->colour],
+    snprintf(style, STYLE_SIZE, "class=\"curve\" stroke=\"%s\"%s", PEN_COLOURS[line->colour],
              LEVEL_STYLES[level]);
 }
 
 static void theory_style(size_t dash, const char *colour, char style[STYLE_SIZE]) {
     snprintf(style, STYLE_SIZE, "class=\"theory\" stroke=\"%s\" stroke-dasharray=\"%s\"", colour,
              DASHES[dash % DASH_COUNT]);
-}
-
-static void draw_legend(struct plot *plot, const char *label, const char *style) {
-    int y = FRAME_TOP + 12 + 20 * plot->rows++;
-    fprintf(plot->file, "<path d=\"M%d %dh26\" %s/><text x=\"%d\" y=\"%d\">", FRAME_RIGHT + 16,
-            y - 4, style, LEGEND, y);
-    svg_text(plot->file, label);
-    fputs("</text>\n", plot->file);
-}
-
-static void draw_note(struct plot *plot, const char *text) {
-    fprintf(plot->file, "<text x=\"%d\" y=\"%d\" class=\"note\">", FRAME_RIGHT + 16,
-            FRAME_TOP + 16 + 20 * plot->rows++);
-    svg_text(plot->file, text);
-    fputs("</text>\n", plot->file);
 }
 
 /* Coarse levels first, so that the finest lies on top; without their bars, which are much the same.
@@ -124,14 +79,14 @@ static void draw_curves(struct plot *plot) {
         const struct plot_line *line = &choice->lines[n - 1];
         curve_style(line, style);
         if (line->coarseness == 0)
-            draw_bars(plot->file, &plot->frame, line->curve, COLOURS[line->colour]);
-        draw_line(plot->file, &plot->frame, line->curve->n, line->curve->x, line->curve->y, style);
-        draw_partial(plot, line->curve, COLOURS[line->colour]);
+            draw_bars(plot->pen.file, &plot->pen.frame, line->curve, PEN_COLOURS[line->colour]);
+        pen_line(&plot->pen, line->curve->n, line->curve->x, line->curve->y, style);
+        draw_partial(plot, line->curve, PEN_COLOURS[line->colour]);
     }
     for (size_t n = 0; n < choice->count; n++) {
         curve_style(&choice->lines[n], style);
         plot_label(choice, n, label);
-        draw_legend(plot, label, style);
+        pen_legend(&plot->pen, label, style);
     }
 }
 
@@ -192,12 +147,12 @@ static void draw_theory(struct plot *plot, const char *name, size_t dash) {
         const double *theory = theory_of(line, name);
         if (theory == NULL || met_before(choice, n, name, true))
             continue;
-        theory_style(dash, shared ? "#222" : COLOURS[line->colour], style);
-        draw_line(plot->file, &plot->frame, line->curve->n, line->curve->x, theory, style);
+        theory_style(dash, shared ? "#222" : PEN_COLOURS[line->colour], style);
+        pen_line(&plot->pen, line->curve->n, line->curve->x, theory, style);
     }
     snprintf(label, sizeof label, "theory: %.80s%s", name, shared ? "" : " of each");
     theory_style(dash, shared ? "#222" : "#777", style);
-    draw_legend(plot, label, style);
+    pen_legend(&plot->pen, label, style);
 }
 
 /* Draws theories on top of all curves, in the order in which they are met. */
@@ -215,13 +170,13 @@ static void draw_theories(struct plot *plot) {
 /* --- the picture --- */
 
 static void draw_notes(struct plot *plot) {
-    draw_note(plot, "bars: one standard error");
+    pen_note(&plot->pen, "bars: one standard error");
     if (plot->partial)
-        draw_note(plot, "circles: not over all realisations");
+        pen_note(&plot->pen, "circles: not over all realisations");
     if (*plot->choice.left_out != '\0') {
         char text[PLOT_LABEL_SIZE + 16];
         snprintf(text, sizeof text, "shown: %s", plot->choice.left_out);
-        draw_note(plot, text);
+        pen_note(&plot->pen, text);
     }
 }
 
@@ -244,63 +199,39 @@ static bool fit(struct plot *plot, const struct plot_request *request, bool loga
     const struct plot_choice *choice = &plot->choice;
     const struct curve *first = choice->lines[0].curve;
     bool both = request->logarithmic || logarithmic;
-    frame_start(&plot->frame, both || is_geometric(first->n, first->x), both);
+    frame_start(&plot->pen.frame, both || is_geometric(first->n, first->x), both);
     for (size_t n = 0; n < choice->count; n++)
-        include(&plot->frame, choice->lines[n].curve, request->logarithmic);
-    return frame_finish(&plot->frame);
+        include(&plot->pen.frame, choice->lines[n].curve, request->logarithmic);
+    return frame_finish(&plot->pen.frame);
 }
 
 /* Returns the width that the longest label of the legend needs. */
 static int width_of(const struct plot_choice *choice) {
-    int width = WIDTH;
+    int width = PEN_WIDTH;
     for (size_t n = 0; n < choice->count; n++) {
         char label[PLOT_LABEL_SIZE];
         plot_label(choice, n, label);
-        int needed = LEGEND + LETTER * (int)strlen(label) + 16;
+        int needed = PEN_LEGEND + PEN_LETTER * (int)strlen(label) + 16;
         width = needed > width ? needed : width;
     }
-    int note = FRAME_RIGHT + 16 + LETTER * (int)(strlen(choice->left_out) + 8) + 16;
+    int note = FRAME_RIGHT + 16 + PEN_LETTER * (int)(strlen(choice->left_out) + 8) + 16;
     return note > width ? note : width;
-}
-
-/* Draws the title for readers of the file and for those of the picture. */
-static void draw_title(const struct plot *plot, const char *name, const char *quantity) {
-    char title[PLOT_LABEL_SIZE];
-    snprintf(title, sizeof title, "%.120s: %.60s", name, quantity);
-    fputs("<title>", plot->file);
-    svg_text(plot->file, title);
-    fprintf(plot->file, "</title>\n<text x=\"%d\" y=\"%d\" class=\"title\">", FRAME_LEFT,
-            FRAME_TOP - 14);
-    svg_text(plot->file, title);
-    fputs("</text>\n", plot->file);
-}
-
-static void draw_head(FILE *file, int width) {
-    fprintf(file,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" "
-            "height=\"%d\">\n<style>text{font:13px system-ui,sans-serif;fill:#222}"
-            ".title{font-weight:600}.middle{text-anchor:middle}.end{text-anchor:end}"
-            ".note{fill:#666;font-size:12px}.grid{stroke:#e4e4e4}.frame{fill:none;stroke:#444}"
-            ".curve{fill:none;stroke-linejoin:round}.theory{fill:none;stroke-width:1.4}"
-            ".bar{stroke-width:1.4;stroke-opacity:.45}.partial{fill:#fff}</style>\n"
-            "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
-            width, HEIGHT, width, HEIGHT, width, HEIGHT);
 }
 
 int plot_quantity(const struct study_result *study, const struct plot_request *request, FILE *file,
                   struct error *err) {
     const struct logarithmic_picture *picture =
         view_logarithmic(view_of(study->kind), request->quantity);
-    struct plot plot = {.file = file};
+    struct plot plot = {.pen = {.file = file}};
     plot_choose(&plot.choice, study, request->quantity, request->y_label);
     if (plot.choice.count == 0)
         return error_set(err, ERROR_ABSENT, "no case has the quantity \"%.60s\"",
                          request->quantity);
-    draw_head(file, width_of(&plot.choice));
-    draw_title(&plot, study->name, request->quantity);
+    pen_head(&plot.pen, width_of(&plot.choice));
+    pen_title(&plot.pen, study->name, request->quantity);
     if (fit(&plot, request, picture != NULL && picture->suffix == NULL)) {
         const struct curve *first = plot.choice.lines[0].curve;
-        frame_draw(file, &plot.frame, first->x_label, first->y_label);
+        frame_draw(file, &plot.pen.frame, first->x_label, first->y_label);
         draw_curves(&plot);
         draw_theories(&plot);
         draw_notes(&plot);

@@ -1,15 +1,12 @@
 /* Speed against error. */
+#include "server/show/report_series.h"
 #include "server/show/summary.h"
 #include "server/show/summary_cells.h"
 #include "server/show/view.h"
 #include <math.h>
 #include <string.h>
 
-enum { TABLES_MOST = 4, SERIES_MOST = 64, NOTES_SHOWN = 40 };
-
-/* --- errors: the statistical one, one a source, the total --- */
-
-enum { ERROR_COLUMNS = ERROR_SOURCES + 2 };
+enum { TABLES_MOST = 4, NOTES_SHOWN = 40 };
 
 /* A table has columns for the sources of which anything is known. */
 struct error_columns {
@@ -56,14 +53,6 @@ static void error_cells(const struct error_columns *columns, const double errors
             percent_cell(table, errors[e]);
 }
 
-/* Fills in NaN without a curve. */
-static void errors_of(const struct curve_report *curve, double errors[ERROR_COLUMNS]) {
-    errors[0] = curve != NULL ? curve->statistical : (double)NAN;
-    for (int source = 0; source < ERROR_SOURCES; source++)
-        errors[1 + source] = curve != NULL ? curve->errors[source] : (double)NAN;
-    errors[ERROR_COLUMNS - 1] = curve != NULL ? curve->total : (double)NAN;
-}
-
 /* --- a row a case --- */
 
 static void put_case(const struct shown_cases *shown, size_t c, const struct case_report *one,
@@ -102,60 +91,7 @@ static void print_cases(const struct study_report *report, const struct shown_ca
 
 /* --- a row a series: model, level, estimator --- */
 
-/* These sums are over the cases that have the series. */
-struct series_cost {
-    const struct curve *place; /* of the first case */
-    double cpu_seconds, realisations, valueless, squares[ERROR_COLUMNS];
-    size_t known[ERROR_COLUMNS];
-};
-struct series_list {
-    size_t count;
-    struct series_cost rows[SERIES_MOST];
-};
-
-static bool same_place(const struct curve *a, const struct curve *b) {
-    return same_text(a->model, b->model) && same_text(a->kinematics, b->kinematics) &&
-           same_text(a->series, b->series) && same_number(a->level, b->level);
-}
-
-static struct series_cost *find_series(struct series_list *list, const struct curve *place) {
-    for (size_t s = 0; s < list->count; s++)
-        if (same_place(list->rows[s].place, place))
-            return &list->rows[s];
-    if (list->count == SERIES_MOST)
-        return NULL;
-    list->rows[list->count] = (struct series_cost){.place = place};
-    return &list->rows[list->count++];
-}
-
-static void add_curve(struct series_cost *series, const struct case_report *one,
-                      const struct curve_report *curve) {
-    double errors[ERROR_COLUMNS];
-    errors_of(curve, errors);
-    series->cpu_seconds += curve->cpu_seconds;
-    series->realisations += (double)one->about.realisations;
-    series->valueless += fmax(curve->valueless, 0);
-    for (size_t e = 0; e < ERROR_COLUMNS; e++)
-        if (!isnan(errors[e])) {
-            series->squares[e] += errors[e] * errors[e];
-            series->known[e]++;
-        }
-}
-
-/* Adds the series of the case's main quantity that have a model; estimates alone. */
-static void add_case(struct series_list *list, const struct case_report *one) {
-    for (size_t a = 0; a < one->curve_count && one->main != NULL; a++) {
-        const struct curve *place = &one->curves[a].place;
-        if (strcmp(place->quantity, one->main->place.quantity) != 0 || place->model == NULL ||
-            is_bracket(place->series))
-            continue;
-        struct series_cost *series = find_series(list, place);
-        if (series != NULL)
-            add_curve(series, one, &one->curves[a]);
-    }
-}
-
-static void put_series(const struct series_cost *series, const struct error_columns *columns,
+static void put_series(const struct report_series *series, const struct error_columns *columns,
                        struct text_table *table) {
     double errors[ERROR_COLUMNS];
     char model[64], partial[48];
@@ -166,8 +102,7 @@ static void put_series(const struct series_cost *series, const struct error_colu
     table_cell(table, "%s", series->place->series != NULL ? series->place->series : "-");
     table_cell(table, "%.3g", series->cpu_seconds / series->realisations);
     for (size_t e = 0; e < ERROR_COLUMNS; e++)
-        errors[e] =
-            series->known[e] > 0 ? sqrt(series->squares[e] / (double)series->known[e]) : NAN;
+        errors[e] = series_error(series, e);
     error_cells(columns, errors, table);
 }
 
@@ -182,7 +117,7 @@ static void print_series(const struct study_report *report, size_t first, size_t
     const char *quantity = NULL;
     for (size_t c = first; c < end; c++) {
         const struct curve_report *main = report->cases[c].main;
-        add_case(&list, &report->cases[c]);
+        series_add_case(&list, &report->cases[c]);
         quantity = quantity == NULL && main != NULL ? main->place.quantity : quantity;
     }
     if (list.count == 0)

@@ -90,6 +90,9 @@ static void the_report_tells_what_each_part_buys(void **state) {
     check_shown((const char *[]){"\"series\":\"edges\",\"model\":\"halfspace\",\"level\":8",
                                  "\"main_curve\":\"contact_area\"", "\"model_error\":0.",
                                  "\"seconds\":", "\"total_error\":", NULL});
+    shell("one.db", "$RUGO report --db $DB --format svg $ID");
+    check_shown((const char *[]){"<svg ", "layered, level 8, edges", "<circle ",
+                                 "least error for the cost", "not known: cell", NULL});
 }
 
 /* Of every table of curves, in a folder or on standard output. */

@@ -92,6 +92,10 @@ static void a_study_from_submission_to_curves(void **state) {
     check_answer("GET", path, NULL, 422, "?case");
     path_of(path, sizeof path, id, "/report");
     check_answer("GET", path, NULL, 200, "\"statistical_error\"");
+    assert_int_equal(http_exchange(port, "GET", path, "Accept: image/svg+xml\r\n", NULL, &answer),
+                     404);
+    assert_non_null(strstr(answer, "has no model whose cost and error are known"));
+    free(answer);
     path_of(path, sizeof path, id, "/events");
     check_answer("GET", path, NULL, 200, "event: progress");
     path_of(path, sizeof path, id, "/curves");

@@ -1,0 +1,68 @@
+#include "server/show/plot_pen.h"
+#include <stdio.h>
+
+enum { HEIGHT = 570 };
+
+/* The first seven are those of Okabe & Ito (2008), which every reader can tell apart. */
+const char *const PEN_COLOURS[PLOT_LINES] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                             "#e69f00", "#56b4e9", "#000000", "#8a8a00",
+                                             "#7f3b08", "#6a51a3", "#999999", "#a50026"};
+
+void pen_title(const struct plot_pen *pen, const char *name, const char *subject) {
+    char title[PLOT_LABEL_SIZE];
+    snprintf(title, sizeof title, "%.120s: %.60s", name, subject);
+    fputs("<title>", pen->file);
+    svg_text(pen->file, title);
+    fprintf(pen->file, "</title>\n<text x=\"%d\" y=\"%d\" class=\"title\">", FRAME_LEFT,
+            FRAME_TOP - 14);
+    svg_text(pen->file, title);
+    fputs("</text>\n", pen->file);
+}
+
+void pen_head(const struct plot_pen *pen, int width) {
+    fprintf(pen->file,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" "
+            "height=\"%d\">\n<style>text{font:13px system-ui,sans-serif;fill:#222}"
+            ".title{font-weight:600}.middle{text-anchor:middle}.end{text-anchor:end}"
+            ".note{fill:#666;font-size:12px}.grid{stroke:#e4e4e4}.frame{fill:none;stroke:#444}"
+            ".curve{fill:none;stroke-linejoin:round}.theory{fill:none;stroke-width:1.4}"
+            ".bar{stroke-width:1.4;stroke-opacity:.45}.partial{fill:#fff}</style>\n"
+            "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
+            width, HEIGHT, width, HEIGHT, width, HEIGHT);
+}
+
+bool pen_reaches(const struct plot_pen *pen, double x, double y) {
+    const struct frame *frame = &pen->frame;
+    return frame_has_place(frame, x, y) && x >= frame->x.low && x <= frame->x.high &&
+           y <= frame->y.high && y >= frame->y.low;
+}
+
+void pen_line(const struct plot_pen *pen, size_t n, const double *x, const double *y,
+              const char *style) {
+    const struct frame *frame = &pen->frame;
+    bool pen_down = false;
+    fprintf(pen->file, "<path %s d=\"", style);
+    for (size_t a = 0; a < n; a++) {
+        bool inside = pen_reaches(pen, x[a], y[a]);
+        if (inside)
+            fprintf(pen->file, "%c%.2f %.2f", pen_down ? 'L' : 'M', frame_x(frame, x[a]),
+                    frame_y(frame, y[a]));
+        pen_down = inside;
+    }
+    fputs("\"/>\n", pen->file);
+}
+
+void pen_legend(struct plot_pen *pen, const char *label, const char *style) {
+    int y = FRAME_TOP + 12 + 20 * pen->rows++;
+    fprintf(pen->file, "<path d=\"M%d %dh26\" %s/><text x=\"%d\" y=\"%d\">", FRAME_RIGHT + 16,
+            y - 4, style, PEN_LEGEND, y);
+    svg_text(pen->file, label);
+    fputs("</text>\n", pen->file);
+}
+
+void pen_note(struct plot_pen *pen, const char *text) {
+    fprintf(pen->file, "<text x=\"%d\" y=\"%d\" class=\"note\">", FRAME_RIGHT + 16,
+            FRAME_TOP + 16 + 20 * pen->rows++);
+    svg_text(pen->file, text);
+    fputs("</text>\n", pen->file);
+}

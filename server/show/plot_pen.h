@@ -1,0 +1,31 @@
+/* What all pictures share: head, title, lines within the frame, and the legend at its right. */
+#ifndef RUGO_SERVER_SHOW_PLOT_PEN_H
+#define RUGO_SERVER_SHOW_PLOT_PEN_H
+
+#include "server/show/plot_choice.h"
+#include "server/show/plot_frame.h"
+
+/* The picture has this size in SVG user units, unless its legend is wider. LETTER is about a
+ * letter's width. */
+enum { PEN_WIDTH = 960, PEN_LEGEND = FRAME_RIGHT + 48, PEN_LETTER = 7 };
+extern const char *const PEN_COLOURS[PLOT_LINES];
+
+struct plot_pen {
+    FILE *file;
+    struct frame frame;
+    int rows; /* of the legend, so far */
+};
+/* Begins the SVG; its end, "</svg>", is the caller's. */
+void pen_head(const struct plot_pen *pen, int width);
+/* Draws "name: subject" for readers of the file and for those of the picture. */
+void pen_title(const struct plot_pen *pen, const char *name, const char *subject);
+/* Returns whether a point lies within the frame. */
+bool pen_reaches(const struct plot_pen *pen, double x, double y);
+/* Draws a line through n points, where they lie within; style has the attributes of the path. */
+void pen_line(const struct plot_pen *pen, size_t n, const double *x, const double *y,
+              const char *style);
+/* Adds a row to the legend: a stroke of the style and its label; or a note. */
+void pen_legend(struct plot_pen *pen, const char *label, const char *style);
+void pen_note(struct plot_pen *pen, const char *text);
+
+#endif
