@@ -82,7 +82,8 @@ struct job_kind {
     /* Adds a realisation, and fills scalars (as many as there are; NaN: none). */
     int (*realise)(void *workspace, const struct realisation *realisation, void *tally,
                    double *scalars, struct error *err);
-    void (*merge)(void *into, const void *from);
+    /* Fails with ERROR_MEMORY alone, and then merges nothing. */
+    int (*merge)(void *into, const void *from, struct error *err);
     uint64_t format, format_version; /* marks of its bytes, between the kinds of the program */
     void (*put)(struct bytes *bytes, const void *tally);
     /* Reads into a new tally. Fails the reader for what put cannot have made. */

@@ -110,7 +110,7 @@ int merger_add(struct job_merger *merger, const struct block_result *result, str
     if (status == 0)
         status = realisations_add(&merger->realisations, result, err);
     if (status == 0)
-        merger->kind->merge(merger->tally, tally);
+        status = merger->kind->merge(merger->tally, tally, err);
     tally_destroy(merger->kind, &tally);
     return status;
 }

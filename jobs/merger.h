@@ -14,7 +14,8 @@ void merger_destroy(struct job_merger **merger);
  * may ask one merger. */
 int merger_fits(const struct job_merger *merger, const struct block_result *result,
                 struct error *err);
-/* Decodes and adds one block; ERROR_INPUT for data that is not this case's (nothing added). */
+/* Decodes and adds one block; ERROR_INPUT for data that is not this case's (nothing added). After
+ * ERROR_MEMORY the merger is good for nothing but merger_destroy. */
 int merger_add(struct job_merger *merger, const struct block_result *result, struct error *err);
 /* Fills an empty result with all that was added: count of realisations, scalars, curves, notes. On
  * failure it is cleared. */

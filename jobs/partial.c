@@ -33,6 +33,8 @@ int partial_decode(const struct job_kind *kind, uint64_t fingerprint, const unsi
     if (bytes_get_unsigned(&reader) != fingerprint)
         return refuse(err, "is of a case with other parameters");
     kind->get(&reader, tally);
+    if (reader.out_of_memory)
+        return error_memory(err, size, "a partial result");
     if (reader.failed || reader.at != reader.end)
         return refuse(err, "is malformed");
     return kind->adds_up == NULL || kind->adds_up(tally) ? 0 : refuse(err, "does not add up");

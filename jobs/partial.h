@@ -8,7 +8,7 @@
 /* Encodes a tally with the fingerprint of its case (kind_fingerprint). The caller frees *data. */
 int partial_encode(const struct job_kind *kind, uint64_t fingerprint, const void *tally,
                    unsigned char **data, size_t *size, struct error *err);
-/* Decodes into a new tally of the case; ERROR_INPUT leaves its contents undefined. */
+/* Decodes into a new tally of the case; A failure leaves its contents undefined. */
 int partial_decode(const struct job_kind *kind, uint64_t fingerprint, const unsigned char *data,
                    size_t size, void *tally, struct error *err);
 

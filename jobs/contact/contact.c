@@ -62,8 +62,7 @@ static int realise(void *workspace, const struct realisation *realisation, void 
     status =
         contact_scalars_measure(contact, &realisation->roughness, realisation->moments.nayak_alpha,
                                 &realisation->report, scalars, err);
-    contact_tally_add(contact);
-    return status;
+    return status != 0 ? status : contact_tally_add(contact, err);
 }
 
 /* --- the tally --- */
@@ -78,8 +77,8 @@ static void sums_clear(void *tally) {
     contact_tally_clear(tally);
 }
 
-static void merge(void *into, const void *from) {
-    contact_tally_merge(into, from);
+static int merge(void *into, const void *from, struct error *err) {
+    return contact_tally_merge(into, from, err);
 }
 
 static void put(struct bytes *bytes, const void *tally) {
@@ -108,6 +107,8 @@ static bool belongs(const void *tally, const struct block_result *result) {
     bool within = true;
     for (size_t n = 0; n < notes_kept(&contact->notes); n++)
         within = within && contact->notes.kept[n].realisation - result->first < result->count;
+    for (size_t r = 0; r < contact->rows.count; r++)
+        within = within && contact->rows.realisation[r] - result->first == r;
     return contact->realisations == result->count && scalars == tallied && within;
 }
 
@@ -162,7 +163,7 @@ const struct job_kind CONTACT_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x434f, /* "CO" */
-    .format_version = 6,
+    .format_version = 7,
     .put = put,
     .get = get,
     .adds_up = adds_up,

@@ -37,6 +37,7 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
         for (size_t m = 0; m < one_case->model_count; m++)
             out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);
     out->seconds += contact_probe_seconds(one_case);
+    out->result_bytes = contact_rows_bytes(one_case);
     out->case_seconds = case_seconds(one_case);
     bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
     out->relative_error = cost_area_scatter(surface->dimension, surface->length_ratio,

@@ -7,14 +7,8 @@ enum { SCALE_BITS_MOST = 16 };
 /* Areas that strains have changed are rounded to 2^-20 of a node's, so that sums stay exact. */
 static const uint64_t STRETCHED_UNITS = 1 << 20;
 
-static size_t bins_of(const struct contact_case *one_case) {
-    return one_case->pressure.count + 2;
-}
-
-/* Exact sums resolve 2^-60. What falls with the load is summed over a power of two near it, which
- * costs no digits, so that light loads keep theirs. */
-static double scale_of(const struct contact_case *one_case, enum contact_measure measure,
-                       size_t load) {
+double contact_tally_scale(const struct contact_case *one_case, enum contact_measure measure,
+                           size_t load) {
     bool falls =
         measure != MEASURE_GAP && (measure <= MEASURE_STIFFNESS || measure == MEASURE_PATCH_MEAN ||
                                    measure == MEASURE_PATCH_LARGEST);
@@ -30,7 +24,7 @@ static size_t counted_levels(const struct contact_case *one_case) {
 
 static size_t pressure_cells(const struct contact_case *one_case) {
     return one_case->model_count * counted_levels(one_case) * one_case->pdf_count *
-           bins_of(one_case);
+           contact_tally_bins(one_case);
 }
 
 bool contact_tally_counts(const struct contact_case *one_case, size_t level) {
@@ -83,7 +77,7 @@ static void values_begin(struct contact_tally *tally) {
 
 int contact_tally_create(struct contact_tally *out, const struct contact_case *one_case,
                          struct error *err) {
-    size_t cells = contact_case_all_cells(one_case), bins = bins_of(one_case);
+    size_t cells = contact_case_all_cells(one_case), bins = contact_tally_bins(one_case);
     *out = (struct contact_tally){.one_case = one_case,
                                   .values = array_create(cells, MEASURE_COUNT * sizeof(double)),
                                   .bin = array_create(bins, sizeof *out->bin)};
@@ -103,6 +97,7 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
     }
     if (status == 0)
         status = tally_create(&out->pressures, pressure_cells(one_case), err);
+    out->rows.width = contact_rows_width(one_case);
     if (status == 0)
         values_begin(out);
     else
@@ -114,6 +109,7 @@ void contact_tally_clear(struct contact_tally *tally) {
     for (size_t a = 0; a < CONTACT_SUMS; a++)
         sums_clear(&tally->sums[a]);
     tally_clear(&tally->pressures);
+    contact_rows_clear(&tally->rows);
     free(tally->values);
     free(tally->bin);
     *tally = (struct contact_tally){0};
@@ -142,7 +138,7 @@ void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t l
     for (size_t j = 0; j < n; j++)
         if (p[j] > 0)
             tally->bin[bins_find(&one_case->pressure, scale * p[j])]++;
-    for (size_t b = 0; b < bins_of(one_case); b++) {
+    for (size_t b = 0; b < contact_tally_bins(one_case); b++) {
         if (tally->bin[b] > 0)
             tally_add(&tally->pressures, first + b, each * tally->bin[b], units * n);
         tally->bin[b] = 0;
@@ -158,7 +154,7 @@ static void add_level_pairs(struct contact_tally *tally, enum contact_measure me
                 sums_add(&tally->sums[SUMS_LEVELS + measure], level_pair(one_case, m, l, k),
                          (values[contact_case_cell(one_case, m, l, k)] -
                           values[contact_case_cell(one_case, m, l - 1, k)]) *
-                             scale_of(one_case, measure, k));
+                             contact_tally_scale(one_case, measure, k));
 }
 
 /* Place of a model and load among the differences from the most complete model, which has none. */
@@ -175,7 +171,7 @@ static void add_model_pairs(struct contact_tally *tally, enum contact_measure me
             sums_add(&tally->sums[SUMS_MODELS + measure], model_pair(one_case, m, k),
                      (values[contact_case_cell(one_case, m, finest, k)] -
                       values[contact_case_cell(one_case, complete, finest, k)]) *
-                         scale_of(one_case, measure, k));
+                         contact_tally_scale(one_case, measure, k));
 }
 
 static void add_block_pairs(struct contact_tally *tally, enum contact_measure measure) {
@@ -186,7 +182,7 @@ static void add_block_pairs(struct contact_tally *tally, enum contact_measure me
         sums_add(&tally->sums[SUMS_BLOCKS + measure], pair,
                  (values[contact_case_probe_cell(one_case, m + 1, k)] -
                   values[contact_case_probe_cell(one_case, 0, k)]) *
-                     scale_of(one_case, measure, k));
+                     contact_tally_scale(one_case, measure, k));
     }
 }
 
@@ -201,16 +197,20 @@ static void fill_fits(struct contact_tally *tally) {
                              contact_tally_values(tally, MEASURE_POWER_LAW_B) + cell);
 }
 
-void contact_tally_add(struct contact_tally *tally) {
+int contact_tally_add(struct contact_tally *tally, struct error *err) {
     const struct contact_case *one_case = tally->one_case;
     size_t cells = contact_case_all_cells(one_case);
+    int status = contact_rows_reserve(&tally->rows, 1, err);
+    if (status != 0)
+        return status;
+    contact_rows_append(&tally->rows, one_case, tally->realisation++, tally->values);
     fill_fits(tally);
     for (size_t a = 0; a < MEASURE_COUNT; a++) {
         const double *values = contact_tally_values(tally, (enum contact_measure)a);
         for (size_t cell = 0; cell < cells; cell++)
             sums_add(&tally->sums[a], cell,
-                     values[cell] *
-                         scale_of(one_case, (enum contact_measure)a, cell % one_case->load_count));
+                     values[cell] * contact_tally_scale(one_case, (enum contact_measure)a,
+                                                        cell % one_case->load_count));
     }
     for (size_t a = 0; a < MEASURE_PAIRED; a++) {
         add_level_pairs(tally, (enum contact_measure)a);
@@ -221,17 +221,20 @@ void contact_tally_add(struct contact_tally *tally) {
     tally_total_add(&tally->points, grid_points(&contact_case_finest(one_case)->grid));
     tally->realisations++;
     values_begin(tally);
+    return 0;
 }
 
 struct estimate contact_tally_mean(const struct contact_tally *tally, enum contact_measure measure,
                                    size_t cell) {
-    double scale = scale_of(tally->one_case, measure, cell % tally->one_case->load_count);
+    double scale =
+        contact_tally_scale(tally->one_case, measure, cell % tally->one_case->load_count);
     return sums_mean(&tally->sums[measure], cell, tally->realisations, scale);
 }
 
 double contact_tally_total(const struct contact_tally *tally, enum contact_measure measure,
                            size_t cell) {
-    double scale = scale_of(tally->one_case, measure, cell % tally->one_case->load_count);
+    double scale =
+        contact_tally_scale(tally->one_case, measure, cell % tally->one_case->load_count);
     return exact_sum_value(&tally->sums[measure].sums.sum[cell]) / scale;
 }
 
@@ -244,7 +247,7 @@ struct estimate contact_tally_level(const struct contact_tally *tally, enum cont
                                     size_t model, size_t level, size_t load) {
     return sums_mean(&tally->sums[SUMS_LEVELS + measure],
                      level_pair(tally->one_case, model, level, load), tally->realisations,
-                     scale_of(tally->one_case, measure, load));
+                     contact_tally_scale(tally->one_case, measure, load));
 }
 
 struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
@@ -252,7 +255,7 @@ struct estimate contact_tally_model(const struct contact_tally *tally, enum cont
     if (model == contact_case_complete(tally->one_case))
         return (struct estimate){NAN, NAN};
     return sums_mean(&tally->sums[SUMS_MODELS + measure], model_pair(tally->one_case, model, load),
-                     tally->realisations, scale_of(tally->one_case, measure, load));
+                     tally->realisations, contact_tally_scale(tally->one_case, measure, load));
 }
 
 struct estimate contact_tally_block(const struct contact_tally *tally, enum contact_measure measure,
@@ -261,7 +264,7 @@ struct estimate contact_tally_block(const struct contact_tally *tally, enum cont
         return (struct estimate){NAN, NAN};
     return sums_mean(&tally->sums[SUMS_BLOCKS + measure],
                      model * tally->one_case->load_count + load, tally->realisations,
-                     scale_of(tally->one_case, measure, load));
+                     contact_tally_scale(tally->one_case, measure, load));
 }
 
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t level,
@@ -269,7 +272,7 @@ size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t mod
     const struct contact_case *one_case = tally->one_case;
     size_t step = one_case->level_count - 1 - level;
     return ((model * counted_levels(one_case) + step) * one_case->pdf_count + at) *
-           bins_of(one_case);
+           contact_tally_bins(one_case);
 }
 
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model,
@@ -293,6 +296,7 @@ void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally) {
     tally_total_put(bytes, &tally->points);
     tally_put(bytes, &tally->pressures);
     notes_put(bytes, &tally->notes);
+    contact_rows_put(bytes, &tally->rows);
 }
 
 void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally) {
@@ -304,76 +308,15 @@ void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally) 
     tally_total_get(reader, &tally->points);
     tally_get_weighed(reader, &tally->pressures);
     notes_get(reader, &tally->notes);
+    contact_rows_get(reader, &tally->rows);
 }
 
-/* Returns whether a cell has as many values as it can: none more than there are realisations, one
- * of each where all have one, and of a model that may fail no more than at the load before. */
-static bool count_fits(const struct contact_tally *tally, enum contact_measure measure,
-                       size_t cell) {
-    const struct contact_case *one_case = tally->one_case;
-    const uint64_t *count = tally->sums[measure].counts.count;
-    size_t model = cell / (one_case->level_count * one_case->load_count);
-    bool always = measure == MEASURE_NODES || measure == MEASURE_EDGES || measure == MEASURE_GAP ||
-                  measure == MEASURE_ITERATIONS;
-    if (!always)
-        return count[cell] <= tally->realisations;
-    if (one_case->models[model]->may_fail)
-        return count[cell] <=
-               (cell % one_case->load_count > 0 ? count[cell - 1] : tally->realisations);
-    return count[cell] == tally->realisations;
-}
-
-/* Realisations and levels that a model which may fail did not bring to the last load: a note each.
- */
-static uint64_t unsolved(const struct contact_tally *tally) {
-    const struct contact_case *one_case = tally->one_case;
-    size_t last = one_case->load_count - 1;
-    uint64_t count = 0;
-    for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t l = 0; l < one_case->level_count && one_case->models[m]->may_fail; l++)
-            count += contact_tally_valueless(tally, MEASURE_NODES,
-                                             contact_case_cell(one_case, m, l, last));
-    return count;
-}
-
-/* Returns whether the pressures of a load lie on as much area as is in contact, but for rounding.
- */
-static bool pressures_fit(const struct contact_tally *tally, size_t model, size_t level,
-                          size_t at) {
-    const struct contact_case *one_case = tally->one_case;
-    size_t cell = contact_case_cell(one_case, model, level, one_case->pdf_loads[at]);
-    const uint64_t *count =
-        tally->pressures.count + contact_tally_pressure_cell(tally, model, level, at);
-    double units = (double)grid_points(&one_case->levels[level].grid) *
-                   (double)contact_tally_units(one_case, model);
-    double area = units * contact_tally_total(tally, MEASURE_NODES, cell), sum = 0;
-    for (size_t b = 0; b < bins_of(one_case); b++)
-        sum += (double)count[b];
-    return fabs(sum - area) <= 1e-6 * area + 0.5;
-}
-
-bool contact_tally_adds_up(const struct contact_tally *tally) {
-    const struct contact_case *one_case = tally->one_case;
-    for (size_t a = 0; a < MEASURE_COUNT; a++)
-        for (size_t cell = 0; cell < contact_case_cells(one_case); cell++)
-            if (!count_fits(tally, (enum contact_measure)a, cell))
-                return false;
-    for (size_t a = MEASURE_COUNT; a < CONTACT_SUMS; a++) {
-        const struct tally *counts = &tally->sums[a].counts;
-        for (size_t cell = 0; cell < counts->size; cell++)
-            if (counts->count[cell] > tally->realisations)
-                return false;
-    }
-    for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t l = 0; l < one_case->level_count; l++)
-            for (size_t a = 0; a < one_case->pdf_count && contact_tally_counts(one_case, l); a++)
-                if (!pressures_fit(tally, m, l, a))
-                    return false;
-    return tally->points.realisations == tally->realisations &&
-           tally->notes.count == unsolved(tally);
-}
-
-void contact_tally_merge(struct contact_tally *into, const struct contact_tally *from) {
+int contact_tally_merge(struct contact_tally *into, const struct contact_tally *from,
+                        struct error *err) {
+    int status = contact_rows_reserve(&into->rows, from->rows.count, err);
+    if (status != 0)
+        return status;
+    contact_rows_merge(&into->rows, &from->rows);
     into->realisations += from->realisations;
     for (size_t a = 0; a < CONTACT_SUMS; a++) {
         tally_sums_merge(&into->sums[a].sums, &from->sums[a].sums);
@@ -382,4 +325,5 @@ void contact_tally_merge(struct contact_tally *into, const struct contact_tally 
     tally_total_merge(&into->points, &from->points);
     tally_merge(&into->pressures, &from->pressures);
     notes_merge(&into->notes, &from->notes);
+    return 0;
 }

@@ -1,4 +1,5 @@
-/* What a block of realisations adds up to: exact sums and counts, encoded into a partial result.
+/* What a block of realisations adds up to: exact sums and counts, and a row of values a
+ * realisation, encoded into a partial result.
  *
  * Each realisation is solved for every model, level and load (a cell of contact_case_cell; some
  * for those of the probe, too) and
@@ -8,7 +9,7 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_TALLY_H
 #define RUGO_JOBS_CONTACT_CONTACT_TALLY_H
 
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/contact_rows.h"
 #include "jobs/notes.h"
 #include "jobs/tally.h"
 
@@ -36,6 +37,7 @@ struct contact_tally {
                                   pdf_loads, bin with under- and overflow; in contact_tally_units
                                   of a node's undeformed area; nodes that are open are in none */
     struct notes notes;        /* why a model has no values, a realisation and level */
+    struct contact_rows rows;  /* values of each realisation */
     uint64_t realisation;      /* the one under way, for these */
     double *values;            /* owned: the realisation under way, by measure and cell */
     double facts[CONTACT_MODELS_MOST][MODEL_FACTS_MOST]; /* the same, on the finest level */
@@ -45,6 +47,11 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
                          struct error *err);
 void contact_tally_clear(struct contact_tally *tally);
 double contact_tally_bytes(const struct contact_case *one_case);
+
+/* Exact sums resolve 2^-60. What falls with the load is summed over a power of two near it, which
+ * costs no digits, so that light loads keep theirs: values are summed times this. */
+double contact_tally_scale(const struct contact_case *one_case, enum contact_measure measure,
+                           size_t load);
 
 /* The realisation under way: values of a measure, by cell; NaN until they are set. */
 static inline double *contact_tally_values(struct contact_tally *tally,
@@ -58,8 +65,8 @@ void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t l
                              const double *p, double scale, double area);
 /* Returns whether pressures are counted on a level: the two finest. */
 bool contact_tally_counts(const struct contact_case *one_case, size_t level);
-/* Ends the realisation: adds its values, and the next one begins. */
-void contact_tally_add(struct contact_tally *tally);
+/* Ends the realisation: adds its values, and the next one begins. On failure it is none. */
+int contact_tally_add(struct contact_tally *tally, struct error *err);
 
 struct estimate contact_tally_mean(const struct contact_tally *tally, enum contact_measure measure,
                                    size_t cell);
@@ -81,6 +88,10 @@ struct estimate contact_tally_block(const struct contact_tally *tally, enum cont
 /* Area of a bin over that of the cell, over the realisations with values there. */
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model,
                                        size_t level, size_t at, size_t bin);
+/* Returns how many bins pressures have, with under- and overflow. */
+static inline size_t contact_tally_bins(const struct contact_case *one_case) {
+    return one_case->pressure.count + 2;
+}
 /* Returns in how many parts a node's area is counted: 1 where all are equal. */
 uint64_t contact_tally_units(const struct contact_case *one_case, size_t model);
 /* Returns the first cell of the pressures of a model, level and load, which are underflow, the
@@ -92,6 +103,7 @@ size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t mod
 void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally);
 void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally);
 bool contact_tally_adds_up(const struct contact_tally *tally);
-void contact_tally_merge(struct contact_tally *into, const struct contact_tally *from);
+int contact_tally_merge(struct contact_tally *into, const struct contact_tally *from,
+                        struct error *err);
 
 #endif

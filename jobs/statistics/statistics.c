@@ -88,8 +88,10 @@ static void sums_clear(void *tally) {
     statistics_tally_clear(tally);
 }
 
-static void merge(void *into, const void *from) {
+static int merge(void *into, const void *from, struct error *err) {
+    (void)err;
     statistics_tally_merge(into, from);
+    return 0;
 }
 
 static void put(struct bytes *bytes, const void *tally) {

@@ -132,9 +132,9 @@ struct byte_reader bytes_open(const unsigned char *data, size_t size) {
     if (data == NULL || size < 8)
         return (struct byte_reader){.failed = true};
     const unsigned char *end = data + size - 8;
-    struct byte_reader seal = {end, end + 8, 0};
+    struct byte_reader seal = {end, end + 8, false, false};
     int damaged = get_word(&seal) != hash_bytes(HASH_START, size - 8, data);
-    return (struct byte_reader){data, end, damaged};
+    return (struct byte_reader){data, end, damaged, false};
 }
 
 void bytes_get_counts(struct byte_reader *reader, size_t n, uint64_t *counts) {

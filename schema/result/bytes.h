@@ -23,7 +23,8 @@ void bytes_seal(struct bytes *bytes);
 
 struct byte_reader {
     const unsigned char *at, *end; /* borrowed */
-    bool failed; /* set by a read past the end or a malformed number; reads give 0 */
+    bool failed;        /* set by a read past the end or a malformed number; reads give 0 */
+    bool out_of_memory; /* failed for want of room for what was read, not for the data */
 };
 /* Makes a reader of what comes before the seal; it has failed where that does not match. */
 struct byte_reader bytes_open(const unsigned char *data, size_t size);

@@ -19,9 +19,10 @@ uint64_t study_sequence(enum study_random random, uint64_t case_number);
 /* A case costs roughly this; estimated before anything ran. */
 struct study_cost {
     size_t nx, ny;         /* grid of one realisation (the finest) */
-    double memory_bytes;   /* peak of one worker thread */
+    double memory_bytes;   /* peak of one worker thread; of a kind: without result_bytes */
     double seconds;        /* CPU seconds a realisation on a 3 GHz core */
     double case_seconds;   /* the same of a case besides: merging and publishing it */
+    double result_bytes;   /* of a realisation in a job's result, where they grow with these */
     double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
 };
 

@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double JOB_SECONDS = 60;        /* a job takes about a minute */
-static const double JOB_REALISATIONS = 5000; /* and its result stays below a few MB */
+static const double JOB_SECONDS = 60; /* a job takes about a minute */
+/* and its result stays below a few MB */
+static const double JOB_REALISATIONS = 5000, JOB_BYTES = 4e6;
 
 /* --- names --- */
 
@@ -150,8 +151,11 @@ static void merge_faults(struct fault_list *all, const struct fault_list *found)
 }
 
 /* Returns the size of equal blocks that take about JOB_SECONDS each. */
-static uint64_t block_size(uint64_t realisations, double seconds) {
-    double most = seconds > 0 ? floor(JOB_SECONDS / seconds + 0.5) : (double)realisations;
+static uint64_t block_size(uint64_t realisations, const struct study_cost *cost) {
+    double most =
+        cost->seconds > 0 ? floor(JOB_SECONDS / cost->seconds + 0.5) : (double)realisations;
+    if (cost->result_bytes > 0)
+        most = fmin(most, floor(JOB_BYTES / cost->result_bytes));
     most = fmin(fmax(most, 1), fmin(JOB_REALISATIONS, (double)realisations));
     uint64_t blocks = (realisations + (uint64_t)most - 1) / (uint64_t)most;
     return (realisations + blocks - 1) / blocks;
@@ -163,6 +167,8 @@ static int check_cases(struct study *study, double memory_limit, struct fault_li
         struct study_case *one = &study->cases[c];
         struct fault_list found = {0};
         int status = study->kind->check(study->kind, one->parameters, &found, &one->cost, err);
+        one->block = block_size(study->realisations, &one->cost);
+        one->cost.memory_bytes += (double)one->block * one->cost.result_bytes;
         if (status == 0 && found.count == 0 && memory_limit > 0 &&
             one->cost.memory_bytes > memory_limit)
             fault_add(&found, "",
@@ -174,7 +180,6 @@ static int check_cases(struct study *study, double memory_limit, struct fault_li
         fault_list_clear(&found);
         if (status != 0)
             return status;
-        one->block = block_size(study->realisations, one->cost.seconds);
     }
     return 0;
 }

@@ -63,8 +63,10 @@ static int needle_realise(void *workspace, const struct realisation *realisation
     scalars[0] = 2 * (double)throws / (double)crossed[LENGTHS - 1];
     return 0;
 }
-static void needle_merge(void *into, const void *from) {
+static int needle_merge(void *into, const void *from, struct error *err) {
+    (void)err;
     tally_merge(into, from);
+    return 0;
 }
 static void needle_put(struct bytes *bytes, const void *tally) {
     tally_put(bytes, tally);

@@ -1,8 +1,10 @@
 /* Sums of contact realisations: values at very light loads keep their digits, realisations without
- * a value are left out and counted, and pressures lie on the area in contact. */
+ * a value are left out and counted, pressures lie on the area in contact, and the rows of single
+ * realisations are the same however they were merged. */
 #include "jobs/contact/contact_tally.h"
 #include "jobs/partial.h"
 #include "tests/support/check.h"
+#include "tests/support/seed.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,6 +33,11 @@ static void fixture_open(struct tally_fixture *fixture, const char *text) {
     cJSON_Delete(parameters);
 }
 
+static void add_realisation(struct contact_tally *tally) {
+    struct error err = {0};
+    assert_int_equal(contact_tally_add(tally, &err), 0);
+}
+
 static void fixture_close(struct tally_fixture *fixture) {
     contact_tally_clear(&fixture->tally);
     contact_case_clear(&fixture->one_case);
@@ -49,7 +56,7 @@ static void light_loads_keep_their_digits(void **state) {
         for (size_t k = 0; k < 5; k++)
             for (size_t a = 0; a < 4; a++)
                 contact_tally_values(&f.tally, measures[a])[k] = loads[k] * (r == 0 ? 1.9 : 2.1);
-        contact_tally_add(&f.tally);
+        add_realisation(&f.tally);
     }
     for (size_t k = 0; k < 5; k++)
         for (size_t a = 0; a < 4; a++) {
@@ -69,7 +76,7 @@ static void valueless_realisations_are_counted(void **state) {
     static const double stiffness[] = {1, NAN, 3, NAN};
     for (size_t r = 0; r < 4; r++) {
         contact_tally_values(&f.tally, MEASURE_STIFFNESS)[0] = stiffness[r];
-        contact_tally_add(&f.tally);
+        add_realisation(&f.tally);
     }
     check_close(contact_tally_mean(&f.tally, MEASURE_STIFFNESS, 0).value, 2, 1e-14);
     assert_int_equal(contact_tally_valueless(&f.tally, MEASURE_STIFFNESS, 0), 2);
@@ -104,7 +111,7 @@ static void pressures_lie_on_the_area(void **state) {
                 contact_tally_values(&f.tally, always[a])[m] = (m == 1 ? 1.25 : 1) * share;
             contact_tally_pressures(&f.tally, m, 0, 0, pressures, 1, m == 1 ? CASES[c].told : 1);
         }
-        contact_tally_add(&f.tally);
+        add_realisation(&f.tally);
         check_relative(contact_tally_pressure(&f.tally, 1, 0, 0, 2).value, CASES[c].told * share,
                        1e-14);
         assert_int_equal(partial_encode(kind_find("contact"), 1, &f.tally, &data, &size, &err), 0);
@@ -117,11 +124,133 @@ static void pressures_lie_on_the_area(void **state) {
     }
 }
 
+/* --- rows --- */
+
+/* Tallies a realisation whose values tell its number. */
+static void add_row(struct contact_tally *tally, uint64_t realisation) {
+    static const enum contact_measure always[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_GAP,
+                                                  MEASURE_ITERATIONS};
+    double some[16] = {0};
+    for (size_t i = 0; i < 4; i++)
+        some[i] = 2;
+    for (size_t m = 0; m < 2; m++) {
+        for (size_t a = 0; a < 4; a++)
+            contact_tally_values(tally, always[a])[m] = a == 0 ? 0.25 : (double)realisation / 7;
+        contact_tally_pressures(tally, m, 0, 0, some, 1, 1);
+    }
+    tally->realisation = realisation;
+    add_realisation(tally);
+}
+
+static void check_same_bytes(const struct contact_tally *a, const struct contact_tally *b) {
+    struct bytes one = {0}, other = {0};
+    contact_tally_put(&one, a);
+    contact_tally_put(&other, b);
+    assert_int_equal(one.size, other.size);
+    assert_memory_equal(one.data, other.data, one.size);
+    bytes_clear(&one);
+    bytes_clear(&other);
+}
+
+/* Realisations in one tally, or split at random among several that are merged in random order, make
+ * the same bytes, and these are read to the same rows. */
+static void rows_merge_in_any_order(void **state) {
+    (void)state;
+    enum { ROWS = 40, PARTS = 5 };
+    uint64_t seed = seed_of_now();
+    struct error err = {0};
+    for (int trial = 0; trial < 20; trial++) {
+        struct tally_fixture all, part[PARTS], into, read;
+        fixture_open(&all, FULL_STUDY);
+        fixture_open(&into, FULL_STUDY);
+        fixture_open(&read, FULL_STUDY);
+        for (size_t p = 0; p < PARTS; p++)
+            fixture_open(&part[p], FULL_STUDY);
+        for (uint64_t r = 0; r < ROWS; r++) {
+            add_row(&all.tally, 3 * r);
+            add_row(&part[next_word(&seed) % PARTS].tally, 3 * r);
+        }
+        size_t first = (size_t)(next_word(&seed) % PARTS);
+        for (size_t p = 0; p < PARTS; p++)
+            assert_int_equal(
+                contact_tally_merge(&into.tally, &part[(first + 3 * p) % PARTS].tally, &err), 0);
+        assert_int_equal(into.tally.rows.count, ROWS);
+        check_same_bytes(&all.tally, &into.tally);
+        struct bytes bytes = {0};
+        contact_tally_put(&bytes, &all.tally);
+        struct byte_reader reader = {bytes.data, bytes.data + bytes.size, false, false};
+        contact_tally_get(&reader, &read.tally);
+        assert_true(!reader.failed && reader.at == reader.end);
+        check_same_bytes(&all.tally, &read.tally);
+        assert_true(contact_tally_adds_up(&read.tally));
+        bytes_clear(&bytes);
+        for (size_t p = 0; p < PARTS; p++)
+            fixture_close(&part[p]);
+        fixture_close(&all);
+        fixture_close(&into);
+        fixture_close(&read);
+    }
+}
+
+/* Each value is found where the measure, model and load say. */
+static void rows_hold_the_values(void **state) {
+    (void)state;
+    struct tally_fixture f;
+    size_t column;
+    fixture_open(&f, STUDY("\"levels\": [8, 16], \"model\": [\"halfspace\", \"layered\"], "
+                           "\"pressures\": {\"values\": [0.1, 0.2]}"));
+    double *gaps = contact_tally_values(&f.tally, MEASURE_GAP);
+    for (size_t cell = 0; cell < contact_case_cells(&f.one_case); cell++)
+        gaps[cell] = 1 + (double)cell;
+    f.tally.realisation = 11;
+    add_realisation(&f.tally);
+    assert_int_equal(f.tally.rows.realisation[0], 11);
+    for (size_t m = 0; m < 2; m++)
+        for (size_t k = 0; k < 2; k++) {
+            assert_true(contact_rows_column(&f.one_case, m, MEASURE_GAP, &column));
+            check_close(f.tally.rows.values[column + k],
+                        1 + (double)contact_case_cell(&f.one_case, m, 1, k), 0);
+            assert_true(contact_rows_column(&f.one_case, m, MEASURE_EDGES, &column));
+            assert_true(isnan(f.tally.rows.values[column + k]));
+        }
+    assert_false(contact_rows_column(&f.one_case, 0, MEASURE_PATCHES, &column));
+    fixture_close(&f);
+}
+
+/* Rows that do not rise, are not as many as the realisations, or tell of other values than the sums
+ * beside them. */
+static void rows_that_cannot_be_are_refused(void **state) {
+    (void)state;
+    for (int fault = 0; fault < 4; fault++) {
+        struct tally_fixture f, copy;
+        struct error err = {0};
+        unsigned char *data = NULL;
+        size_t size = 0;
+        fixture_open(&f, FULL_STUDY);
+        fixture_open(&copy, FULL_STUDY);
+        add_row(&f.tally, 4);
+        add_row(&f.tally, fault == 1 ? 4 : 6);
+        if (fault == 2)
+            f.tally.rows.count--;
+        if (fault == 3)
+            f.tally.rows.values[0] += 1e-9;
+        assert_int_equal(partial_encode(kind_find("contact"), 1, &f.tally, &data, &size, &err), 0);
+        assert_int_equal(partial_decode(kind_find("contact"), 1, data, size, &copy.tally, &err),
+                         fault == 0 ? 0 : ERROR_INPUT);
+        free(data);
+        fixture_close(&f);
+        fixture_close(&copy);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_loads_keep_their_digits),
         cmocka_unit_test(valueless_realisations_are_counted),
         cmocka_unit_test(pressures_lie_on_the_area),
+        cmocka_unit_test(rows_merge_in_any_order),
+        cmocka_unit_test(rows_hold_the_values),
+        cmocka_unit_test(rows_that_cannot_be_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

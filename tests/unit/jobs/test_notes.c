@@ -58,7 +58,7 @@ static void a_long_text_is_cut_and_made_printable(void **state) {
 }
 
 static struct byte_reader reader_of(const struct bytes *bytes) {
-    return (struct byte_reader){bytes->data, bytes->data + bytes->size, 0};
+    return (struct byte_reader){bytes->data, bytes->data + bytes->size, false, false};
 }
 
 static void notes_come_back(void **state) {

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 static struct byte_reader reader_of(const struct bytes *bytes) {
-    return (struct byte_reader){bytes->data, bytes->data + bytes->size, 0};
+    return (struct byte_reader){bytes->data, bytes->data + bytes->size, false, false};
 }
 
 static void unsigned_round_trip(void **state) {
@@ -95,7 +95,7 @@ static void counts_round_trip(void **state) {
 
 static int get_unsigned_fails(const char *data, size_t size) {
     struct byte_reader reader = {(const unsigned char *)data, (const unsigned char *)data + size,
-                                 0};
+                                 false, false};
     return bytes_get_unsigned(&reader) == 0 && reader.failed;
 }
 
@@ -109,13 +109,13 @@ static void malformed(void **state) {
     assert_true(get_unsigned_fails("\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\x01", 11));
     const unsigned char past[] = {2, 9, 1}, stuck[] = {0, 0, 0, 0}, zero[] = {1, 1, 0};
     uint64_t counts[4] = {0};
-    struct byte_reader reader = {past, past + 3, 0};
+    struct byte_reader reader = {past, past + 3, false, false};
     bytes_get_counts(&reader, 4, counts);
     assert_true(reader.failed);
-    reader = (struct byte_reader){stuck, stuck + 4, 0};
+    reader = (struct byte_reader){stuck, stuck + 4, false, false};
     bytes_get_counts(&reader, 4, counts);
     assert_true(reader.failed);
-    reader = (struct byte_reader){zero, zero + 3, 0};
+    reader = (struct byte_reader){zero, zero + 3, false, false};
     bytes_get_counts(&reader, 2, counts);
     assert_true(reader.failed);
 }
