@@ -112,7 +112,7 @@ int rugo_contact_press(struct rugo_contact *contact, double pressure,
         return error_give(status, &why, err);
     struct contact_area area;
     struct patches patches;
-    contact_area(contact->areas, state.p, state.opening, &area);
+    contact_area(contact->areas, &state, &area);
     patches_find(contact->patches, state.p, &patches, NULL);
     *out = (struct rugo_contact_state){.pressure = state.pressure,
                                        .p = state.p,
@@ -121,7 +121,7 @@ int rugo_contact_press(struct rugo_contact *contact, double pressure,
                                        .area_nodes = area.nodes,
                                        .area_lower = area.lower,
                                        .area_upper = area.upper,
-                                       .mean_gap = state.mean_gap,
+                                       .mean_gap = area.mean_gap,
                                        .stiffness = state.stiffness,
                                        .patches = patches.count,
                                        .iterations =

@@ -1,27 +1,32 @@
-/* The real contact area of a discrete solution, by several estimators. Fractions of the cell. */
+/* The real contact area of a discrete solution, by several estimators, and its mean gap: of the
+ * block, as far as the solution on a mesh tells them. */
 #ifndef RUGO_CORE_CONTACT_AREA_H
 #define RUGO_CORE_CONTACT_AREA_H
 
-#include "core/contact/compliance.h"
+#include "core/contact/contact.h"
 
+/* Fractions of the cell. */
 struct contact_area {
-    double nodes; /* share of nodes in contact, each with the cell around it: an upper value */
+    double nodes; /* share of nodes in contact, each with the cell around it */
     double lower; /* segments (profiles) or cells with all corners in contact ... */
     double upper; /* ... and with any */
-    double edges; /* every edge found below the grid; in surfaces the mean over all grid lines */
-    /* Surfaces: nodes less 0.1181 x perimeter x dx (Yastrebov, Anciaux & Molinari 2017); profiles:
-     * NaN. */
+    double edges; /* within edges found below the grid, without the mesh's error to second order */
+    /* Surfaces: nodes less what they count beyond edges, in proportion to the length of the
+     * boundary of their cells (after Yastrebov, Anciaux & Molinari 2017); profiles: NaN. */
     double perimeter;
+    double mean_gap; /* without the mesh's error to first order (mesh_error.h); the grid's length */
 };
 
 struct area_workspace;
-/* Learns where edges lie in this model on this grid (edge.h): some milliseconds. */
+/* Learns where edges lie in this model on this grid (area_law.h): some ten milliseconds. Borrows
+ * the compliance, which must outlive it. */
 int area_workspace_create(struct area_workspace **out, const struct compliance *compliance,
                           struct error *err);
 void area_workspace_destroy(struct area_workspace **workspace);
+double area_workspace_bytes(const struct grid *grid, const struct block *block);
 
-/* Takes p in E* and opening, both grid_points values, as contact_press gives them. */
-void contact_area(struct area_workspace *workspace, const double *p, const double *opening,
+/* Of a state on the workspace's grid. */
+void contact_area(struct area_workspace *workspace, const struct contact_state *state,
                   struct contact_area *out);
 
 #endif

@@ -20,7 +20,7 @@ static size_t row_mode(const struct grid *grid, size_t row) {
 
 /* S of an elastic layer whose far side stays flat and free of shear (F10.2). q = exp(-2kH) is
  * factored out of the hyperbolic functions, so that no term overflows or cancels. */
-static double halfspace_length(double k, double height) {
+double block_compliance(double k, double height) {
     double x = 2 * k * height;
     if (isinf(x))
         return 2 / k;
@@ -39,7 +39,7 @@ static void halfspace_lengths(struct compliance *compliance) {
             compliance->length[mx * grid->ny + row] =
                 mx == 0 && row == 0
                     ? 0
-                    : halfspace_length(2 * PI * hypot(qx, qy), compliance->block.height);
+                    : block_compliance(2 * PI * hypot(qx, qy), compliance->block.height);
         }
 }
 

@@ -28,6 +28,9 @@ struct compliance {
     size_t layers;  /* of the mesh; 0 for a half-space */
 };
 
+/* S E* of the block itself, without a mesh (F10.1, F10.2), under a wave number k > 0. */
+double block_compliance(double k, double height);
+
 /* ERROR_INPUT for a block out of its ranges (block_check); ERROR_MEMORY. Time: about waves x
  * layers. */
 int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,

@@ -175,6 +175,7 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
     /* All nodes can be in contact when the load is a rounding error below that of full contact. */
     out->stiffness =
         out->nodes == d->n ? INFINITY : 1 / (conjugate_gradient_tangent(d) * d->largest);
+    out->tangent = out->nodes == d->n ? NULL : d->q;
 }
 
 /* Predicts the pressures at a mean from those of the last load and their tangent; uniform before

@@ -29,6 +29,8 @@ struct contact_state {
     const double *gap; /* grid_points, at the nodes whatever the weighting; mean_gap is its mean,
                           in core/full over the face as pressed */
     const double *opening; /* grid_points: the weighted gap, which is 0 in contact */
+    const double *tangent; /* grid_points, d p/d pressure with the contact held: mean 1, 0 where
+                              open; NULL where nothing or all touches */
     double mean_gap;       /* the grid's length */
     double stiffness;   /* -d pressure/d mean_gap, E* per length; INFINITY in full contact, 0 when
                            nothing touches */

@@ -1,38 +1,55 @@
-/* Where the edge of a contact lies between a node in contact and its neighbour out of contact.
+/* Where the edge of a contact lies between the nodes of a grid.
  *
  * At a distance d from a smooth frictionless edge the pressure inside is p = c sqrt(d) E* and the
- * gap outside (4 c/3) d^(3/2), with one c (Johnson 1985, chapter 4). So p^2 = c^2 d and
- * (3 gap/4)^(2/3) = c^(2/3) d rise linearly on the two sides, and the two nodes of the pair give
- * the edge and c: the first guess. Values at nodes of a discrete solution are not those of the
- * exact one so near a singular edge, but near every straight edge they are off alike: an edge law
- * holds where the edge truly is for each first guess, as found on one wave, whose edges are known
- * (Westergaard 1939), pressed at many places of the same grid with the same model. */
+ * gap outside (4 c/3) d^(3/2), with one c (Johnson 1985, chapter 4). So p^2/c^2 and (3
+ * gap/4c)^(2/3) are distances to the edge. At nodes of a discrete solution they are not quite the
+ * true ones, but they are off alike near every straight edge of the same direction: an edge law
+ * holds, for a few directions, which true distance belongs to which of them. It is learnt from a
+ * wave, whose edges and fields are known in closed form (Westergaard 1939), with its crests along
+ * the direction: on the grid's nodes such a wave depends on one whole number, so that a profile's
+ * problem with the grid's own compliances tells it exactly.
+ *
+ * Lengths are in units of the spacing of the grid along the edge's normal n, hypot(nx dx, ny dy),
+ * which is dx wherever dx = dy. */
 #ifndef RUGO_CORE_CONTACT_EDGE_H
 #define RUGO_CORE_CONTACT_EDGE_H
 
 #include "core/contact/compliance.h"
 
-enum { EDGE_PHASES = 64 };
+enum { EDGE_DIRECTIONS = 11, EDGE_SAMPLES = 129, EDGE_SAMPLES_A_UNIT = 40 };
 
-struct edge_law {               /* a sample a phase, in rising order */
-    double root[EDGE_PHASES];   /* square root of the first guess */
-    double before[EDGE_PHASES]; /* squared pressure at the next node further inside, over that
-                                   inside */
-    double share[EDGE_PHASES];  /* edge beyond the node inside, in steps; from about -0.2 to 1 */
+/* True distance less that of the fields, at fields' distances of 0, 0.1, 0.2 ...; from the last on
+ * it is constant. A node in contact can lie beyond the edge, and an open one inside of it. */
+struct edge_table {
+    double inside[EDGE_SAMPLES], outside[EDGE_SAMPLES];
+};
+struct edge_law {
+    size_t count;                  /* 1 of a profile, 11 of a surface */
+    double angle[EDGE_DIRECTIONS]; /* of the normal to the x axis, rising from 0 to pi/2 */
+    struct edge_table table[EDGE_DIRECTIONS];
 };
 
-/* Makes the law of grid lines along x (columns false) or y, which takes some milliseconds. Fails as
- * compliance_create and contact_press do. */
-int edge_law_make(const struct grid *grid, const struct block *block, bool columns,
-                  struct edge_law *out, struct error *err);
+/* Some milliseconds. Errors of compliance_create and contact_press. */
+int edge_law_make(const struct grid *grid, const struct block *block, struct edge_law *out,
+                  struct error *err);
+/* How far contact by nodes reaches beyond the edge, in the mean over all directions. */
+double edge_overlap(const struct edge_law *law);
 
-/* First guess, in [0, 1] steps: squared pressure at the node inside, (3 gap/4)^(2/3) at that
- * outside, lengths in steps. */
-double edge_guess(double pressure_squared, double gap_rise);
-/* The edge beyond the node inside, in steps. before: squared pressure at the next node further
- * inside, which tells how p^2 bends (0: not known). */
-double edge_share(const struct edge_law *law, double pressure_squared, double before,
-                  double gap_rise);
+/* The law of one direction: a mean of two tables. */
+struct edge_direction {
+    const struct edge_table *low, *high;
+    double part; /* of high */
+};
+struct edge_direction edge_direction(const struct edge_law *law, double angle);
+/* True distance to the edge of a node inside, of a node outside, at a distance of the fields. */
+double edge_inside(const struct edge_direction *direction, double distance);
+double edge_outside(const struct edge_direction *direction, double distance);
+double edge_inside_slope(const struct edge_direction *direction, double distance); /* derivative */
+/* 1/c^(2/3) of an edge between two nodes whose true distances to it add up to `apart`: squared
+ * pressure at the node inside (above 0), and (3 gap/4)^(2/3) at that outside. start: near it, or
+ * 0. */
+double edge_scale(const struct edge_direction *direction, double pressure_squared, double gap_rise,
+                  double apart, double start);
 
 /* Half the width of a patch of one node, in steps: that of Hertz's line contact with the same force
  * and the same gaps at the two nodes beside it (gaps and force over E*, lengths in steps). */

@@ -22,12 +22,13 @@ struct full {
     struct mesh *mesh;
     struct newton newton;
     struct compliance *compliance;
-    struct contact *linear;           /* guesses which nodes touch */
-    double *z;                        /* heights of mean 0 */
-    double *pressure, *gap, *opening; /* by node of the face: results in the user's units */
-    double *kept;                     /* displacements of the last load that converged */
-    double *displacement;             /* displacements in the user's unit */
-    bool *kept_active;                /* by node of the face: the active set of that load */
+    struct contact *linear;                     /* guesses which nodes touch */
+    double *z;                                  /* heights of mean 0 */
+    double *pressure, *gap, *opening, *tangent; /* by node of the face: results in the user's
+                                                   units */
+    double *kept;                               /* displacements of the last load that converged */
+    double *displacement;                       /* displacements in the user's unit */
+    bool *kept_active;     /* by node of the face: the active set of that load */
     bool *guess, *touches; /* by node of the face: contact by the linear model at that load, and at
                               the load being tried */
     double load;           /* that load; 0: no contact */
@@ -50,14 +51,15 @@ static int arrays_create(struct full *f, struct error *err) {
     f->pressure = array_create(face, sizeof *f->pressure);
     f->gap = array_create(face, sizeof *f->gap);
     f->opening = array_create(face, sizeof *f->opening);
+    f->tangent = array_create(face, sizeof *f->tangent);
     f->kept_active = array_create(face, sizeof *f->kept_active);
     f->guess = array_create(face, sizeof *f->guess);
     f->touches = array_create(face, sizeof *f->touches);
     f->kept = array_create(newton_unknowns(&f->newton), sizeof *f->kept);
     f->displacement = array_create(degrees_of_freedom, sizeof *f->displacement);
     if (f->z == NULL || f->pressure == NULL || f->gap == NULL || f->opening == NULL ||
-        f->kept_active == NULL || f->guess == NULL || f->touches == NULL || f->kept == NULL ||
-        f->displacement == NULL)
+        f->tangent == NULL || f->kept_active == NULL || f->guess == NULL || f->touches == NULL ||
+        f->kept == NULL || f->displacement == NULL)
         return error_memory(err, 2 * degrees_of_freedom * sizeof(double), "finite elements");
     return 0;
 }
@@ -110,6 +112,7 @@ void full_destroy(struct full **full) {
     free(f->pressure);
     free(f->gap);
     free(f->opening);
+    free(f->tangent);
     free(f->kept_active);
     free(f->guess);
     free(f->touches);
@@ -137,7 +140,7 @@ double full_bytes(const struct grid *grid, const struct block *block,
         return NAN;
     enum {
         VECTORS = 6,
-        FACES = 7
+        FACES = 8
     }; /* arrays of newton.h and this file by unknown and by node of the face */
     struct material material = material_of(block->poisson, options->kinematics);
     bool pressures = gmres_needs_pressures(&material);
@@ -353,7 +356,8 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
     out->stiffness = out->nodes == face ? INFINITY : 0;
     if (out->nodes == 0 || out->nodes == face)
         return 0;
-    int status = newton_compliance(&f->newton, &compliance, err);
+    int status = newton_compliance(&f->newton, &compliance, f->tangent, err);
+    out->tangent = status == 0 ? f->tangent : NULL;
     out->stiffness = 1 / (compliance * f->mesh->unit);
     return status;
 }

@@ -426,7 +426,20 @@ double newton_mean_gap(const struct newton *n) {
     return face_mean_gap(n->mesh, face_displacement(n), n->gap);
 }
 
-int newton_compliance(struct newton *n, double *out, struct error *err) {
+/* The forces at the nodes in contact under the displacements in change, to a mean of 1. */
+static void tangent_pressures(struct newton *n, double *tangent) {
+    struct sum sum = {0};
+    tangent_apply(n->tangent, n->change, n->before);
+    for (size_t node = 0; node < n->mesh->face; node++) {
+        tangent[node] = n->active[node] ? n->before[mesh_vertical(n->mesh, node)] : 0;
+        sum_add(&sum, tangent[node]);
+    }
+    double mean = sum_value(&sum) / (double)n->mesh->face;
+    for (size_t node = 0; node < n->mesh->face; node++)
+        tangent[node] /= mean;
+}
+
+int newton_compliance(struct newton *n, double *out, double *tangent, struct error *err) {
     const struct mesh *mesh = n->mesh;
     struct newton_end ignored = {0};
     int status = ERROR_NUMERIC;
@@ -438,7 +451,9 @@ int newton_compliance(struct newton *n, double *out, struct error *err) {
         status =
             (factored != 0 ? solve_factored : solve_iterated)(n, LINEAR_STIFFNESS, &ignored, err);
     }
-    if (status == 0)
-        *out = -face_mean_gap_change(n->mesh, face_displacement(n), n->gap, n->change);
-    return status;
+    if (status != 0)
+        return status;
+    *out = -face_mean_gap_change(n->mesh, face_displacement(n), n->gap, n->change);
+    tangent_pressures(n, tangent);
+    return 0;
 }

@@ -78,7 +78,8 @@ double newton_node_area(const struct newton *newton);
 /* Returns the mean gap over the face as it is under load (face.h); over the undeformed one where
  * strains are small. Of the gaps last measured. */
 double newton_mean_gap(const struct newton *newton);
-/* Computes -d(mean gap)/d(pressure) >= 0 from the tangent at u, of the gaps last measured. */
-int newton_compliance(struct newton *newton, double *out, struct error *err);
+/* Computes -d(mean gap)/d(pressure) >= 0 from the tangent at u, of the gaps last measured, and, by
+ * node of the face, the derivative of its pressure by the mean pressure: mean 1, 0 where open. */
+int newton_compliance(struct newton *newton, double *out, double *tangent, struct error *err);
 
 #endif

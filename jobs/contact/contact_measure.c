@@ -16,7 +16,7 @@ void contact_measure(const struct contact_meter *meter, const struct contact_pre
     double now = pressed->stretch;
     struct contact_area area;
     struct patches patches;
-    contact_area(meter->area, state->p, state->opening, &area);
+    contact_area(meter->area, state, &area);
     patches_find(meter->finder, state->p, &patches, NULL);
     for (size_t a = 0; a < MEASURE_OWN; a++)
         values[a] = NAN;
@@ -27,7 +27,7 @@ void contact_measure(const struct contact_meter *meter, const struct contact_pre
     if (meter->scaled)
         values[MEASURE_EDGES_STRETCHED] = stretch_fraction(area.edges, pressed->open_stretch);
     values[MEASURE_PERIMETER] = stretch_fraction(area.perimeter, open_now);
-    values[MEASURE_GAP] = state->mean_gap / meter->rms_height;
+    values[MEASURE_GAP] = area.mean_gap / meter->rms_height;
     values[MEASURE_NODES_LOWER] = now * area.lower;
     values[MEASURE_NODES_UPPER] = now * area.upper;
     values[MEASURE_STIFFNESS] = limited(state->stiffness * meter->rms_height / meter->rms_slope);

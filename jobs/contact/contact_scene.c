@@ -101,7 +101,7 @@ double contact_scene_bytes(const struct contact_case *one_case) {
         const struct grid *grid = &one_case->levels[l].grid;
         bytes += 32.0 * (double)grid_points(grid); /* patches */
         for (size_t m = 0; m < one_case->model_count; m++) {
-            bytes += 8.0 * (double)grid_points(grid) +
+            bytes += area_workspace_bytes(grid, &one_case->blocks[m]) +
                      one_case->models[m]->bytes(one_case, m, grid) +
                      compliance_bytes(grid, &one_case->blocks[m]);
         }

@@ -125,7 +125,7 @@ static int press_load(struct press *press, double load, double *row, struct erro
     int status = contact_press(press->contact, load * press->slope, &state, err);
     if (status != 0)
         return status;
-    contact_area(press->areas, state.p, state.opening, &area);
+    contact_area(press->areas, &state, &area);
     patches_find(press->patches, state.p, &patches, NULL);
     const double values[COLUMNS] = {
         [LOAD] = load,
@@ -134,7 +134,7 @@ static int press_load(struct press *press, double load, double *row, struct erro
         [LOWER] = area.lower,
         [UPPER] = area.upper,
         [PERIMETER] = area.perimeter,
-        [MEAN_GAP] = state.mean_gap / press->height,
+        [MEAN_GAP] = area.mean_gap / press->height,
         [STIFFNESS] = isfinite(state.stiffness) ? state.stiffness * press->height / press->slope
                                                 : (double)NAN,
         [PATCHES] = (double)patches.count,

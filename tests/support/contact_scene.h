@@ -70,7 +70,7 @@ static inline void scene_press(struct scene *scene, double pressure) {
 
 static inline struct contact_area scene_area(const struct scene *scene) {
     struct contact_area area;
-    contact_area(scene->areas, scene->state.p, scene->state.opening, &area);
+    contact_area(scene->areas, &scene->state, &area);
     return area;
 }
 

@@ -89,7 +89,7 @@ static int bench_run(struct contact_bench *bench, uint64_t realisation, size_t l
         status = contact_press(bench->contact, load[l] * bench->slope, &state, err);
         if (status)
             break;
-        contact_area(bench->areas, state.p, state.opening, &area);
+        contact_area(bench->areas, &state, &area);
         result->iterations += (double)state.iterations / (double)loads;
         result->violation = fmax(result->violation, state.violation);
         result->area[l] += area.edges;

@@ -52,7 +52,7 @@ static int press_once(struct pressed_fault *p, const struct block *block, struct
         status = contact_press(p->contact, 0.05, &state, err);
     if (status != 0)
         return status;
-    contact_area(p->areas, state.p, state.opening, &area);
+    contact_area(p->areas, &state, &area);
     patches_find(p->finder, state.p, &patches, NULL);
     assert_int_equal(patches.count, 1);
     assert_true(area.edges > 0);

@@ -86,7 +86,7 @@ static void check_areas(struct scene_fixture *f, size_t cell, const struct compl
     double points = (double)grid_points(&compliance->grid);
     must(area_workspace_create(&workspace, compliance, &err), &err);
     must(patch_finder_create(&finder, &compliance->grid, &err), &err);
-    contact_area(workspace, state->p, state->opening, &area);
+    contact_area(workspace, state, &area);
     patches_find(finder, state->p, &patches, NULL);
     double open = (1 - now * area.nodes) / (1 - area.nodes);
     const struct {

@@ -153,7 +153,7 @@ static void a_linear_model_knows_the_stretch(void **state) {
         for (double load = 0.02 * slope; load < 0.4 * slope; load *= 3) {
             struct contact_area area;
             press(&p, load);
-            contact_area(p.scene.areas, p.state.p, p.state.opening, &area);
+            contact_area(p.scene.areas, &p.state, &area);
             double now = stretch_fraction(area.edges, p.report.open_stretch);
             scene_press(&p.scene, load);
             area = scene_area(&p.scene);

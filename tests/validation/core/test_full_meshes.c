@@ -63,7 +63,7 @@ static struct mesh_curve press(double growth, double transition, size_t points, 
         status = full_press(full, PRESSURES[k], &state, NULL, &err);
         if (status != 0)
             break;
-        contact_area(areas, state.p, state.opening, &area);
+        contact_area(areas, &state, &area);
         curve.area[k] = area.edges;
         curve.gap[k] = state.mean_gap;
     }

@@ -1,0 +1,133 @@
+#include "core/contact/area_law.h"
+#include "core/contact/edge_area.h"
+#include "core/contact/mesh_error.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* The double sine on about WAVE_STEPS points a wave, in several places: patches of a rough surface
+ * at 8 points a shortest wave are of the size of those at the lower loads. */
+enum { WAVE_STEPS = 20, PLACES = 16, LOADS = 5 };
+/* Pressures over that of full contact, and the contact fractions there: limits of a half-space's at
+ * 256 and 512 points a wave (`build/bench/core/bench_edges` prints them). */
+static const double LOAD[LOADS] = {0.05, 0.1, 0.2, 0.5, 0.7};
+static const double FRACTION[LOADS] = {0.112973, 0.190576, 0.345187, 0.704195, 0.839942};
+
+/* The least squares of a + weighting b + patch c = 0 over loads and places, and then of
+ * d + weighting b + patch_of_nodes c = 0. */
+struct squares {
+    double ab, ac, bb, bc, cc, dc;
+};
+
+static void squares_add(struct squares *s, double a, double b, double c, double d) {
+    s->dc += d * c;
+    s->ab += a * b;
+    s->ac += a * c;
+    s->bb += b * b;
+    s->bc += b * c;
+    s->cc += c * c;
+}
+
+static void squares_solve(const struct squares *s, bool weighted, struct area_law *out) {
+    double determinant = s->bb * s->cc - s->bc * s->bc;
+    out->weighting = 1;
+    if (weighted && determinant > 0)
+        out->weighting = (s->bc * s->ac - s->cc * s->ab) / determinant;
+    out->patch = -(s->ac + out->weighting * s->bc) / s->cc;
+    out->patch_of_nodes = -(s->dc + out->weighting * s->bc) / s->cc;
+}
+
+struct double_sine {
+    struct grid grid;
+    struct compliance *compliance;
+    struct contact *contact;
+    struct mesh_error_workspace *mesh_error;
+    double *z, *rise;
+};
+
+static void double_sine_close(struct double_sine *wave) {
+    mesh_error_destroy(&wave->mesh_error);
+    contact_destroy(&wave->contact);
+    compliance_destroy(&wave->compliance);
+    free(wave->z);
+    free(wave->rise);
+}
+
+static int double_sine_open(struct double_sine *wave, const struct grid *grid,
+                            const struct block *block, struct error *err) {
+    double dx = grid_dx(grid), dy = grid_dy(grid), length = WAVE_STEPS * fmax(dx, dy);
+    struct block deep = *block;
+    size_t nx = (size_t)(length / dx + 0.5), ny = (size_t)(length / dy + 0.5);
+    *wave = (struct double_sine){.grid = {nx, ny, (double)nx * dx, (double)ny * dy}};
+    deep.height = block->model == MODEL_HALFSPACE ? INFINITY : 1.5 * length;
+    wave->z = array_create(nx * ny, sizeof *wave->z);
+    wave->rise = array_create(nx * ny, sizeof *wave->rise);
+    int status = wave->z == NULL || wave->rise == NULL
+                     ? error_memory(err, 2 * nx * ny * sizeof(double), "a double sine")
+                     : compliance_create(&wave->compliance, &wave->grid, &deep, err);
+    if (status == 0)
+        status = contact_create(&wave->contact, wave->compliance, &CONTACT_DEFAULTS, err);
+    if (status == 0)
+        status = mesh_error_create(&wave->mesh_error, wave->compliance, err);
+    return status;
+}
+
+/* Fills z with the wave in one of its places, amplitude dx; they fill a cell of the grid evenly. */
+static void place(struct double_sine *wave, size_t which) {
+    const struct grid *grid = &wave->grid;
+    double x = 0.37 + 0.6180339887498949 * (double)which,
+           y = 0.21 + 0.7548776662466927 * (double)which;
+    for (size_t j = 0; j < grid->ny; j++)
+        for (size_t i = 0; i < grid->nx; i++)
+            wave->z[j * grid->nx + i] = grid_dx(grid) *
+                                        cos(2 * PI * ((double)i + x) / (double)grid->nx) *
+                                        cos(2 * PI * ((double)j + y) / (double)grid->ny);
+}
+
+static int add_loads(struct double_sine *wave, const struct area_law *law, struct squares *sums,
+                     struct error *err) {
+    double full = PI * grid_dx(&wave->grid) * hypot(1 / wave->grid.lx, 1 / wave->grid.ly);
+    int status = contact_begin(wave->contact, wave->z, err);
+    for (size_t k = 0; status == 0 && k < LOADS; k++) {
+        struct contact_state state;
+        struct edge_area area;
+        struct mesh_error error;
+        status = contact_press(wave->contact, LOAD[k] * full, &state, err);
+        if (status != 0)
+            break;
+        edge_area_measure(&law->edge, &wave->grid, &state, wave->rise, &area);
+        mesh_error_measure(wave->mesh_error, &state, &error);
+        double rate = state.tangent != NULL ? area.rate * state.stiffness : 0;
+        double moved = rate * error.compliance, counted = area.nodes - law->overlap * area.sides;
+        squares_add(sums, (area.straight + moved) / FRACTION[k] - 1,
+                    rate * error.weighting / FRACTION[k], area.patches / FRACTION[k],
+                    (counted + moved) / FRACTION[k] - 1);
+    }
+    return status;
+}
+
+int area_law_make(const struct grid *grid, const struct block *block, struct area_law *out,
+                  struct error *err) {
+    struct double_sine wave = {0};
+    struct squares squares = {0};
+    bool weighted = block->model == MODEL_LAYERED && block->weighting == GAP_STANDARD;
+    int status = edge_law_make(grid, block, &out->edge, err);
+    if (status != 0)
+        return status;
+    /* A straight edge at an angle has a boundary of cells 4/pi times as long in the mean. */
+    out->overlap = PI / 4 * edge_overlap(&out->edge);
+    out->patch = out->patch_of_nodes = 0;
+    out->weighting = 1;
+    if (grid_is_profile(grid))
+        return 0;
+    status = double_sine_open(&wave, grid, block, err);
+    for (size_t a = 0; status == 0 && a < PLACES; a++) {
+        place(&wave, a);
+        status = add_loads(&wave, out, &squares, err);
+    }
+    if (status == 0)
+        squares_solve(&squares, weighted, out);
+    double_sine_close(&wave);
+    return status != 0 ? error_context(err, "law of contact areas") : 0;
+}

@@ -1,0 +1,26 @@
+/* The contact area that edges between nodes enclose, and what it hangs on. Private to core/contact.
+ *
+ * An edge is found on every grid line that crosses one. The strip between it and the boundary of
+ * the cells around the nodes in contact is measured along the lines of either family; each crossing
+ * counts by the square of the cosine between its line and the edge's normal, so that both families
+ * together count each piece once, and lines along an edge, which tell little of it, hardly. */
+#ifndef RUGO_CORE_CONTACT_EDGE_AREA_H
+#define RUGO_CORE_CONTACT_EDGE_AREA_H
+
+#include "core/contact/contact.h"
+#include "core/contact/edge.h"
+
+/* Shares of the cell. */
+struct edge_area {
+    double straight; /* the area, if edges were straight */
+    double rate;     /* its derivative by the mean pressure; 0 without a tangent */
+    double patches; /* patches less holes, over the number of nodes; diagonal contact counts half */
+    double nodes;   /* in contact */
+    double sides;   /* of nodes in contact that face open ones, over the number of nodes */
+};
+
+/* rise: scratch of grid_points. */
+void edge_area_measure(const struct edge_law *law, const struct grid *grid,
+                       const struct contact_state *state, double *rise, struct edge_area *out);
+
+#endif

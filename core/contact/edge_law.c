@@ -1,0 +1,230 @@
+#include "core/contact/contact.h"
+#include "core/contact/edge.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* The wave has about WAVE_STEPS spacings of the grid and is pressed to WAVE_LOAD of the pressure of
+ * full contact. Neither matters as long as the edges are far from each other: what the wave's own
+ * curvature does is taken off by its closed form, and what the mesh does to its long waves by the
+ * compliance of the first of them. At this load the squared pressure bends least. */
+enum {
+    WAVE_STEPS = 64,
+    PHASES = 64,
+    PHASES_LEAST = 6,
+    REACH = 8,
+    PAIRS_MOST = 2048,
+    HALVINGS = 50
+};
+static const double WAVE_LOAD = 0.4;
+static const double SLOPE_LEAST = 0.05; /* of true distances by those of the fields */
+
+/* Directions of normals, in whole numbers over dx and dy. Those from 45 degrees on are needed where
+ * dx and dy differ. */
+static const size_t DIRECTIONS[EDGE_DIRECTIONS][2] = {
+    {1, 0}, {4, 1}, {3, 1}, {2, 1}, {3, 2}, {1, 1}, {2, 3}, {1, 2}, {1, 3}, {1, 4}, {0, 1}};
+enum { DIAGONAL = 5 };
+
+/* --- the exact wave, of amplitude 1 --- */
+
+struct wave {
+    double length; /* in spacings along the normal */
+    double edge;   /* half-width of the contact, as a phase */
+};
+
+/* Distance to the edge at which the pressure is p (F11.2). */
+static double wave_inside(const struct wave *wave, double p) {
+    double root = p * wave->length / (2 * PI), square = root * root;
+    double sum = 1 + WAVE_LOAD, product = WAVE_LOAD - square;
+    if (!(product > 0))
+        return wave->edge * wave->length / PI;
+    double sine_squared = 2 * product / (sum + sqrt(sum * sum - 4 * product));
+    return (wave->edge - asin(sqrt(sine_squared))) * wave->length / PI;
+}
+
+/* Gap at a distance outside of the edge: the continuation of the pressure there. */
+static double wave_gap(const struct wave *wave, double distance) {
+    double sine = sin(wave->edge + PI * distance / wave->length);
+    double root = sqrt(fmax(0, sine * sine - WAVE_LOAD));
+    return 2 * (sine * root - WAVE_LOAD * log((sine + root) / sqrt(WAVE_LOAD)));
+}
+
+static double wave_outside(const struct wave *wave, double gap) {
+    double least = 0, most = wave->length / 2 * (1 - 2 / PI * wave->edge);
+    for (int a = 0; a < HALVINGS; a++) {
+        double middle = 0.5 * (least + most);
+        if (wave_gap(wave, middle) < gap)
+            least = middle;
+        else
+            most = middle;
+    }
+    return 0.5 * (least + most);
+}
+
+/* --- its problem as that of a profile --- */
+
+/* Compliances along the wave vectors (q m/count) of a direction m, as those of a profile whose node
+ * t stands for all nodes with i mx + j my = t. */
+static int line_compliance(struct compliance **out, const struct grid *grid,
+                           const struct block *block, const size_t m[2], size_t count,
+                           struct error *err) {
+    double dx = grid_dx(grid), dy = grid_is_profile(grid) ? dx : grid_dy(grid);
+    size_t nx = m[0] > 0 ? count / m[0] : 2, ny = m[1] > 0 ? count / m[1] : 2;
+    if (grid_is_profile(grid))
+        ny = 1;
+    struct grid plane = {.nx = nx,
+                         .ny = ny,
+                         .lx = (double)nx * dx,
+                         .ly = grid_is_profile(grid) ? (double)nx * dx : (double)ny * dy};
+    double length = (double)count / hypot((double)m[0] / dx, (double)m[1] / dy);
+    struct block deep = *block;
+    deep.height = block->model == MODEL_HALFSPACE ? INFINITY : 1.5 * length;
+    struct compliance *whole = NULL, *line = array_create(1, sizeof *line);
+    int status = line != NULL ? compliance_create(&whole, &plane, &deep, err)
+                              : error_memory(err, sizeof *line, "a wave");
+    if (status == 0) {
+        *line = (struct compliance){.grid = {count, 1, length, length},
+                                    .block = deep,
+                                    .waves = count / 2 + 1,
+                                    .layers = whole->layers};
+        line->length = array_create(line->waves, sizeof *line->length);
+        if (whole->weight != NULL)
+            line->weight = array_create(line->waves, sizeof *line->weight);
+        if (line->length == NULL || (whole->weight != NULL && line->weight == NULL))
+            status = error_memory(err, 2 * line->waves * sizeof(double), "a wave");
+    }
+    for (size_t q = 0; status == 0 && q < line->waves; q++) {
+        size_t mx = q % nx, row = q % ny;
+        if (m[0] == 0)
+            mx = 0;
+        if (m[1] == 0)
+            row = 0;
+        if (2 * mx > nx) {
+            mx = nx - mx;
+            row = (ny - row) % ny;
+        }
+        line->length[q] = whole->length[mx * ny + row];
+        if (line->weight != NULL)
+            line->weight[q] = whole->weight[mx * ny + row];
+    }
+    compliance_destroy(&whole);
+    if (status != 0)
+        compliance_destroy(&line);
+    *out = line;
+    return status;
+}
+
+/* --- tables --- */
+
+struct pair {
+    double field, truth; /* distances to the edge */
+};
+struct pairs {
+    struct pair inside[PAIRS_MOST], outside[PAIRS_MOST];
+    size_t inside_count, outside_count;
+};
+
+static int by_field(const void *a, const void *b) {
+    double first = ((const struct pair *)a)->field, second = ((const struct pair *)b)->field;
+    return (first > second) - (first < second);
+}
+
+static void fill_table(struct pair *pairs, size_t count, double *table) {
+    size_t a = 0;
+    qsort(pairs, count, sizeof *pairs, by_field);
+    for (size_t k = 0; k < EDGE_SAMPLES; k++) {
+        double field = (double)k / EDGE_SAMPLES_A_UNIT;
+        while (a + 2 < count && pairs[a + 1].field <= field)
+            a++;
+        double low = pairs[a].field, width = pairs[a + 1].field - low;
+        double part = width > 0 ? fmin(fmax((field - low) / width, 0), 1) : 0;
+        double first = pairs[a].truth - low, second = pairs[a + 1].truth - pairs[a + 1].field;
+        table[k] = first + part * (second - first);
+        if (k > 0)
+            table[k] = fmax(table[k], table[k - 1] - (1 - SLOPE_LEAST) / EDGE_SAMPLES_A_UNIT);
+    }
+}
+
+/* Presses the wave with its crest `phase` nodes of the line beyond node 0. */
+static int press_wave(struct contact *contact, const struct compliance *line, double steps,
+                      double phase, double *z, struct pairs *out, struct error *err) {
+    size_t count = line->grid.nx;
+    double spacing = line->grid.lx / (double)count * steps; /* along the normal */
+    struct wave wave = {(double)count / steps, asin(sqrt(WAVE_LOAD))};
+    /* A mesh that is softer by a factor under this wave takes that much less pressure. */
+    double softer = line->length[1] * PI / line->grid.lx;
+    struct contact_state state;
+    for (size_t i = 0; i < count; i++)
+        z[i] = spacing * cos(2 * PI * ((double)i - phase) / (double)count);
+    int status = contact_begin(contact, z, err);
+    if (status == 0)
+        status = contact_press(contact, WAVE_LOAD * PI / (wave.length * softer), &state, err);
+    if (status != 0)
+        return status;
+    for (size_t i = 1; i < count / 2; i++) {
+        double distance = wave.edge * wave.length / PI - ((double)i - phase) / steps;
+        if (fabs(distance) > REACH)
+            continue;
+        if (state.p[i] > 0 && out->inside_count < PAIRS_MOST)
+            out->inside[out->inside_count++] =
+                (struct pair){wave_inside(&wave, state.p[i] * softer), distance};
+        else if (state.p[i] == 0 && out->outside_count < PAIRS_MOST)
+            out->outside[out->outside_count++] =
+                (struct pair){wave_outside(&wave, state.opening[i] / spacing), -distance};
+    }
+    return 0;
+}
+
+static int learn(const struct grid *grid, const struct block *block, const size_t m[2],
+                 struct edge_table *out, struct error *err) {
+    struct contact *contact = NULL;
+    struct compliance *line = NULL;
+    struct contact_options options = CONTACT_DEFAULTS;
+    double steps = hypot((double)m[0], (double)m[1]);
+    size_t product = 2 * (m[0] > 0 ? m[0] : 1) * (m[1] > 0 ? m[1] : 1);
+    size_t count = (size_t)(WAVE_STEPS * steps / (double)product + 0.5) * product;
+    size_t phases = (size_t)fmax(PHASES_LEAST, ceil(PHASES / steps));
+    struct pairs *pairs = array_create(1, sizeof *pairs);
+    double *z = array_create(count, sizeof *z);
+    options.tolerance = 1e-10;
+    int status = pairs != NULL && z != NULL
+                     ? line_compliance(&line, grid, block, m, count, err)
+                     : error_memory(err, sizeof *pairs + count * sizeof *z, "a wave");
+    if (status == 0)
+        status = contact_create(&contact, line, &options, err);
+    for (size_t a = 0; status == 0 && a < phases; a++) {
+        status = press_wave(contact, line, steps, (double)a / (double)phases, z, pairs, err);
+    }
+    if (status == 0 && (pairs->inside_count < 2 || pairs->outside_count < 2))
+        status = error_set(err, ERROR_NUMERIC, "the edge of a single wave was not found");
+    if (status == 0) {
+        fill_table(pairs->inside, pairs->inside_count, out->inside);
+        fill_table(pairs->outside, pairs->outside_count, out->outside);
+    }
+    contact_destroy(&contact);
+    compliance_destroy(&line);
+    free(pairs);
+    free(z);
+    return status;
+}
+
+int edge_law_make(const struct grid *grid, const struct block *block, struct edge_law *out,
+                  struct error *err) {
+    bool profile = grid_is_profile(grid), square = !profile && grid_dx(grid) == grid_dy(grid);
+    out->count = profile ? 1 : EDGE_DIRECTIONS;
+    for (size_t a = 0; a < out->count; a++) {
+        size_t mirror = EDGE_DIRECTIONS - 1 - a;
+        double across = profile ? grid_dx(grid) : grid_dy(grid);
+        out->angle[a] =
+            atan2((double)DIRECTIONS[a][1] / across, (double)DIRECTIONS[a][0] / grid_dx(grid));
+        int status = 0;
+        if (square && a > DIAGONAL)
+            out->table[a] = out->table[mirror];
+        else
+            status = learn(grid, block, DIRECTIONS[a], &out->table[a], err);
+        if (status != 0)
+            return error_context(err, "law of contact edges");
+    }
+    return 0;
+}

@@ -1,0 +1,28 @@
+/* By how much the mesh and its weighting put the face of a block too near the flat, or too far.
+ *
+ * The solution p of the mesh makes the energy p.Sp/2 - p.z of the block itself, with its exact
+ * compliance S (F10.2) and the gap at each point, differ from its least value by the square of its
+ * error alone. The derivative of that energy by the mean pressure is minus the approach: with
+ * q = dp/d pressure, the mean of q (S p - z) in place of the mesh's own (F12.6). */
+#ifndef RUGO_CORE_CONTACT_MESH_ERROR_H
+#define RUGO_CORE_CONTACT_MESH_ERROR_H
+
+#include "core/contact/contact.h"
+
+/* Mean gap of the state less that of the block, to first order, the grid's length. */
+struct mesh_error {
+    double weighting; /* as contact holds in the mean about a node, not at it */
+    double compliance;
+};
+
+struct mesh_error_workspace;
+/* Borrows the compliance, which must outlive it. */
+int mesh_error_create(struct mesh_error_workspace **out, const struct compliance *compliance,
+                      struct error *err);
+void mesh_error_destroy(struct mesh_error_workspace **workspace);
+double mesh_error_bytes(const struct grid *grid, const struct block *block);
+/* Zeros for a half-space, and for a state without a tangent. */
+void mesh_error_measure(struct mesh_error_workspace *workspace, const struct contact_state *state,
+                        struct mesh_error *out);
+
+#endif
