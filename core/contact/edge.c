@@ -18,37 +18,45 @@ struct edge_direction edge_direction(const struct edge_law *law, double angle) {
     return (struct edge_direction){&law->table[a], &law->table[a + 1], fmin(fmax(part, 0), 1)};
 }
 
-/* True distance less distance, between two samples, and its derivative. */
-static double shift_at(const double *low, const double *high, double part, double distance,
+/* Returns true distance less distance, between two samples, and its derivative, both by the root
+ * of the distance. */
+static double shift_at(const double *low, const double *high, double part, double root,
                        double *slope) {
-    double place = distance * EDGE_SAMPLES_A_UNIT;
+    double place = root * EDGE_SAMPLES_A_UNIT;
     if (!(place < EDGE_SAMPLES - 1)) {
         *slope = 0;
         return low[EDGE_SAMPLES - 1] + part * (high[EDGE_SAMPLES - 1] - low[EDGE_SAMPLES - 1]);
     }
-    size_t a = place > 0 ? (size_t)place : 0;
+    size_t a = (size_t)place;
     double first = low[a] + part * (high[a] - low[a]);
     double second = low[a + 1] + part * (high[a + 1] - low[a + 1]);
     *slope = (second - first) * EDGE_SAMPLES_A_UNIT;
-    return first + fmax(0, place - (double)a) * (second - first);
+    return first + (place - (double)a) * (second - first);
+}
+
+static double shift_inside(const struct edge_direction *direction, double root, double *slope) {
+    return shift_at(direction->low->inside, direction->high->inside, direction->part, root, slope);
+}
+
+static double shift_outside(const struct edge_direction *direction, double root, double *slope) {
+    return shift_at(direction->low->outside, direction->high->outside, direction->part, root,
+                    slope);
 }
 
 double edge_inside(const struct edge_direction *direction, double distance) {
     double slope;
-    return distance + shift_at(direction->low->inside, direction->high->inside, direction->part,
-                               distance, &slope);
+    return distance + shift_inside(direction, sqrt(distance), &slope);
 }
 
 double edge_inside_slope(const struct edge_direction *direction, double distance) {
-    double slope;
-    shift_at(direction->low->inside, direction->high->inside, direction->part, distance, &slope);
-    return 1 + slope;
+    double slope, root = sqrt(distance);
+    shift_inside(direction, root, &slope);
+    return fmax(0, (2 * root + slope) * root);
 }
 
 double edge_outside(const struct edge_direction *direction, double distance) {
     double slope;
-    return distance + shift_at(direction->low->outside, direction->high->outside, direction->part,
-                               distance, &slope);
+    return distance + shift_outside(direction, sqrt(distance), &slope);
 }
 
 double edge_scale(const struct edge_direction *direction, double pressure_squared, double gap_rise,
@@ -61,17 +69,15 @@ double edge_scale(const struct edge_direction *direction, double pressure_square
         w = gap_rise > 0 ? fmin(w, 1 / gap_rise) : w;
     }
     for (int a = 0; a < SCALE_STEPS; a++) {
-        double in = pressure_squared * w * w * w, out = gap_rise * w, in_slope, out_slope;
-        double excess = in + out - apart +
-                        shift_at(direction->low->inside, direction->high->inside, direction->part,
-                                 in, &in_slope) +
-                        shift_at(direction->low->outside, direction->high->outside, direction->part,
-                                 out, &out_slope);
+        double in = sqrt(pressure_squared * w * w * w), out = sqrt(gap_rise * w);
+        double in_slope, out_slope;
+        double excess = in * in + out * out - apart + shift_inside(direction, in, &in_slope) +
+                        shift_outside(direction, out, &out_slope);
         if (excess > 0)
             most = w;
         else
             least = w;
-        double slope = (1 + in_slope) * 3 * in / w + (1 + out_slope) * gap_rise;
+        double slope = (1.5 * (2 * in + in_slope) * in + 0.5 * (2 * out + out_slope) * out) / w;
         double next = w - excess / slope;
         bool within = next > least && next < most;
         if (within && fabs(next - w) <= SCALE_TOLERANCE * w)

@@ -16,10 +16,11 @@
 
 #include "core/contact/compliance.h"
 
-enum { EDGE_DIRECTIONS = 11, EDGE_SAMPLES = 129, EDGE_SAMPLES_A_UNIT = 40 };
+enum { EDGE_DIRECTIONS = 11, EDGE_SAMPLES = 129, EDGE_SAMPLES_A_UNIT = 64 };
 
-/* True distance less that of the fields, at fields' distances of 0, 0.1, 0.2 ...; from the last on
- * it is constant. A node in contact can lie beyond the edge, and an open one inside of it. */
+/* True distance less that of the fields, at even steps of the root of the latter; from the last on
+ * it is constant. The root is p/c inside, with which distances rise evenly where nodes come into
+ * contact. A node in contact can lie beyond the edge, and an open one inside of it. */
 struct edge_table {
     double inside[EDGE_SAMPLES], outside[EDGE_SAMPLES];
 };
@@ -44,7 +45,8 @@ struct edge_direction edge_direction(const struct edge_law *law, double angle);
 /* True distance to the edge of a node inside, of a node outside, at a distance of the fields. */
 double edge_inside(const struct edge_direction *direction, double distance);
 double edge_outside(const struct edge_direction *direction, double distance);
-double edge_inside_slope(const struct edge_direction *direction, double distance); /* derivative */
+/* Derivative of the first by the logarithm of the pressure. */
+double edge_inside_slope(const struct edge_direction *direction, double distance);
 /* 1/c^(2/3) of an edge between two nodes whose true distances to it add up to `apart`: squared
  * pressure at the node inside (above 0), and (3 gap/4)^(2/3) at that outside. start: near it, or
  * 0. */

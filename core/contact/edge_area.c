@@ -3,10 +3,9 @@
 
 static const double PI = 3.14159265358979323846;
 static const double COSINE_LEAST = 0.1;
-/* The squared pressure bends: p^2 = c^2 d (1 - bend d). The gap is its continuation to the other
- * side, gap = (4 c/3) d^(3/2) (1 + 0.3 bend d), where edges are straight; about a round patch the
- * edge's own curvature undoes this (of Hertz's sphere -1/30 a is left of 1/10 a). */
-static const double BEND_MOST = 0.5, GAP_BEND = 0.2;
+/* The squared pressure bends: p^2 = c^2 d (1 - bend d). The gap's rise does so by a fifth of it
+ * beside a straight edge and not at all around a round patch, which is left out. */
+static const double BEND_MOST = 0.5;
 enum { ROUNDS = 4, INVERSE_STEPS = 2 };
 
 /* The nodes around one edge on a grid line, from a node in contact to its neighbour out of contact.
@@ -21,7 +20,7 @@ struct crossing {
 
 /* Pressures and gaps over the largest pressure: an edge does not depend on the unit, and squares
  * stay in range. p^2 in contact, -(3 gap/4)^(2/3) elsewhere; gaps are in the grid's lengths. */
-static double fill_rise(const struct grid *grid, const struct contact_state *state, double *rise) {
+static void fill_rise(const struct grid *grid, const struct contact_state *state, double *rise) {
     size_t n = grid_points(grid);
     double most = 0;
     for (size_t i = 0; i < n; i++)
@@ -30,7 +29,6 @@ static double fill_rise(const struct grid *grid, const struct contact_state *sta
         double open = most > 0 ? cbrt(0.75 * fmax(0, state->opening[i]) / most) : 1;
         rise[i] = state->p[i] > 0 ? (state->p[i] / most) * (state->p[i] / most) : -open * open;
     }
-    return most;
 }
 
 /* One crossing as it is found. Distances are true ones, in spacings along the normal. */
@@ -41,9 +39,8 @@ struct found {
     double scale;   /* 1/c^(2/3) */
     double apart;   /* of the two nodes */
     double field;   /* distance of the inside node by its pressure, without the bend */
-    double inside, outside;
-    double bent;     /* 1 - bend d at the inside node */
-    double gap_bent; /* that which the gap's rise is off at the outside node */
+    double inside;  /* of the inside node */
+    double bent;    /* 1 - bend d there */
 };
 
 /* Where the edge lies for the direction and the bends so far. */
@@ -55,11 +52,10 @@ static void find_edge(const struct crossing *x, const struct edge_law *law, cons
     f->spacing = hypot(f->cosine * x->step, sine * x->across);
     f->apart = f->cosine * x->step / f->spacing;
     double squared = rise[x->inside] / f->spacing / f->bent;
-    double open = fmax(0, -rise[x->outside]) / f->spacing / f->gap_bent;
+    double open = fmax(0, -rise[x->outside]) / f->spacing;
     f->scale = edge_scale(&f->direction, squared, open, f->apart, f->scale);
     f->field = squared * f->scale * f->scale * f->scale;
     f->inside = edge_inside(&f->direction, f->field);
-    f->outside = f->apart - f->inside;
 }
 
 /* Signed distance of a node to the edge. */
@@ -79,14 +75,13 @@ static void find_cosine(const struct crossing *x, const double *rise, struct fou
 }
 
 /* Bend by the next node further inside; in two nodes or one, that of a chord between two edges. */
-static void find_bend(const struct crossing *x, const double *rise, bool profile, struct found *f) {
-    double bend = 0, inside = fmax(0, f->inside);
+static void find_bend(const struct crossing *x, const double *rise, struct found *f) {
+    double inside = fmax(0, f->inside);
     bool chord = !(rise[x->before] > 0 && rise[x->far_before] > 0);
     if (chord) {
         double share = inside / f->apart;
         double length = (rise[x->before] > 0 ? 1 : 0) + 2 * share;
         f->bent = length > 0 ? fmax(BEND_MOST, 1 - share / length) : BEND_MOST;
-        bend = fmin(1, (1 - f->bent) / fmax(0.05, inside));
     } else {
         double next = f->inside + f->apart, field = fmax(0, next);
         for (int a = 0; a < INVERSE_STEPS; a++)
@@ -94,12 +89,9 @@ static void find_bend(const struct crossing *x, const double *rise, bool profile
         /* (1 - bend next)/(1 - bend inside): what the two pressures have beyond the law's. */
         double ratio = rise[x->before] / rise[x->inside] * f->field / fmax(field, 1e-9);
         double most = BEND_MOST / fmax(next, 0.05);
-        bend = (1 - ratio) / fmax(0.2, next - ratio * inside);
-        bend = fmin(fmax(bend, -most), most);
-        f->bent = 1 - bend * inside;
+        double bend = (1 - ratio) / fmax(0.2, next - ratio * inside);
+        f->bent = 1 - fmin(fmax(bend, -most), most) * inside;
     }
-    if (profile)
-        f->gap_bent = fmax(BEND_MOST, 1 + GAP_BEND * bend * fmax(0, f->outside));
 }
 
 /* Gap over the largest pressure, from the rise of a node out of contact. */
@@ -130,31 +122,40 @@ static double lone_in_surface(const struct crossing *x, const double *rise) {
     return fmin(1, 0.5 * PI * along * beside);
 }
 
+/* Returns the derivative of the edge's distance by the mean pressure: that of a pressure which
+ * grows at one c. */
+static double find_rate(const struct crossing *x, const struct contact_state *state,
+                        const struct found *f) {
+    if (state->tangent == NULL)
+        return 0;
+    return edge_inside_slope(&f->direction, f->field) * state->tangent[x->inside] /
+           state->p[x->inside];
+}
+
 /* Adds to the sums, in cells, what the edge of a crossing encloses beyond the cells of the nodes in
- * contact. tangent: of the pressure at the inside node, over the largest pressure. */
-static void add_crossing(const struct crossing *x, const struct edge_law *law, const double *rise,
-                         double tangent, bool profile, struct edge_area *sums) {
+ * contact. */
+static void add_crossing(const struct crossing *x, const struct edge_law *law,
+                         const struct contact_state *state, const double *rise, bool profile,
+                         struct edge_area *sums) {
     double lone = profile ? lone_in_profile(x, rise) : lone_in_surface(x, rise);
     if (!isnan(lone)) { /* met once on a side: twice in a profile, four times in a surface */
         sums->straight += profile ? lone - 0.5 : (lone - 0.5) / 2;
         return;
     }
-    struct found f = {.cosine = 1, .bent = 1, .gap_bent = 1};
+    struct found f = {.cosine = 1, .bent = 1};
     double part = 1;
     for (int a = 0; a < ROUNDS; a++) {
         find_edge(x, law, rise, &f);
         part = f.cosine * f.cosine;
         if (a + 1 == ROUNDS)
             break;
-        find_bend(x, rise, profile, &f);
+        find_bend(x, rise, &f);
         if (!profile)
             find_cosine(x, rise, &f);
     }
     double share = fmin(fmax(f.inside / f.apart, -1), 2);
     sums->straight += part * (share - 0.5);
-    /* d(p^2)/d pressure at one c moves the edge. */
-    double faster = 2 * tangent / sqrt(rise[x->inside]) * f.field;
-    sums->rate += part * edge_inside_slope(&f.direction, f.field) * faster / f.apart;
+    sums->rate += part * find_rate(x, state, &f) / f.apart;
 }
 
 /* One of the two families of grid lines: nodes of a line are `along` apart, lines `beside`. */
@@ -186,7 +187,7 @@ static struct crossing crossing_at(const struct family *f, size_t line, size_t a
 }
 
 static void add_family(const struct family *f, const struct edge_law *law,
-                       const struct contact_state *state, double most, const double *rise,
+                       const struct contact_state *state, const double *rise,
                        struct edge_area *sums) {
     for (size_t line = 0; line < f->lines; line++)
         for (size_t node = 0; node < f->nodes; node++) {
@@ -196,8 +197,7 @@ static void add_family(const struct family *f, const struct edge_law *law,
                 continue;
             size_t a = f->nodes + node + (first ? 0 : 1), b = f->nodes + node + (first ? 1 : 0);
             struct crossing crossing = crossing_at(f, line, a, b);
-            double tangent = state->tangent != NULL ? state->tangent[crossing.inside] / most : 0;
-            add_crossing(&crossing, law, rise, tangent, f->lines == 1, sums);
+            add_crossing(&crossing, law, state, rise, f->lines == 1, sums);
         }
 }
 
@@ -220,14 +220,14 @@ void edge_area_measure(const struct edge_law *law, const struct grid *grid,
     double dx = grid_dx(grid), dy = grid_dy(grid), n = (double)grid_points(grid);
     struct family rows = {grid->ny, grid->nx, 1, grid->nx, dx, dy, true};
     struct family columns = {grid->nx, grid->ny, grid->nx, 1, dy, dx, false};
-    double most = fill_rise(grid, state, rise);
+    fill_rise(grid, state, rise);
     *out = (struct edge_area){0};
     for (size_t i = 0; i < grid_points(grid); i++)
         out->nodes += rise[i] > 0;
     out->straight = out->nodes;
-    add_family(&rows, law, state, most, rise, out);
+    add_family(&rows, law, state, rise, out);
     if (!grid_is_profile(grid)) {
-        add_family(&columns, law, state, most, rise, out);
+        add_family(&columns, law, state, rise, out);
         count_boundary(grid, state->p, out);
     }
     *out = (struct edge_area){.straight = out->straight / n,

@@ -18,6 +18,7 @@ enum {
     HALVINGS = 50
 };
 static const double WAVE_LOAD = 0.4;
+static const double FIRST_MOST = 2;     /* widths between the first two pairs */
 static const double SLOPE_LEAST = 0.05; /* of true distances by those of the fields */
 
 /* Directions of normals, in whole numbers over dx and dy. Those from 45 degrees on are needed where
@@ -134,15 +135,20 @@ static void fill_table(struct pair *pairs, size_t count, double *table) {
     size_t a = 0;
     qsort(pairs, count, sizeof *pairs, by_field);
     for (size_t k = 0; k < EDGE_SAMPLES; k++) {
-        double field = (double)k / EDGE_SAMPLES_A_UNIT;
+        double root = (double)k / EDGE_SAMPLES_A_UNIT, field = root * root;
         while (a + 2 < count && pairs[a + 1].field <= field)
             a++;
-        double low = pairs[a].field, width = pairs[a + 1].field - low;
-        double part = width > 0 ? fmin(fmax((field - low) / width, 0), 1) : 0;
-        double first = pairs[a].truth - low, second = pairs[a + 1].truth - pairs[a + 1].field;
+        double low = sqrt(pairs[a].field), width = sqrt(pairs[a + 1].field) - low;
+        /* Before the first pair, whose node has just come into contact, it goes on as between the
+         * first two. */
+        double part = width > 0 ? fmin(fmax((root - low) / width, -FIRST_MOST), 1) : 0;
+        double first = pairs[a].truth - pairs[a].field;
+        double second = pairs[a + 1].truth - pairs[a + 1].field;
         table[k] = first + part * (second - first);
+        /* True distances rise, by SLOPE_LEAST of those of the fields at the least. */
+        double last = (double)(k > 0 ? k - 1 : 0) / EDGE_SAMPLES_A_UNIT;
         if (k > 0)
-            table[k] = fmax(table[k], table[k - 1] - (1 - SLOPE_LEAST) / EDGE_SAMPLES_A_UNIT);
+            table[k] = fmax(table[k], table[k - 1] - (1 - SLOPE_LEAST) * (field - last * last));
     }
 }
 

@@ -78,7 +78,7 @@ static void check_direction(const struct edge_direction *direction) {
         assert_true(next_in > inside && next_out > outside);
         /* Measured 0.27 at most, at the edge. */
         assert_true(fabs(next_in - field) < 0.35 && fabs(next_out - field) < 0.35);
-        assert_true(edge_inside_slope(direction, field) > 0);
+        assert_true(edge_inside_slope(direction, field) >= 0);
         inside = next_in;
         outside = next_out;
     }
