@@ -423,8 +423,11 @@ static void rough_surfaces_of_elements(void **state) {
     static const struct {
         double poisson, growth;
         enum gap_weighting weighting;
-    } cases[] = {{0.3, 1.1, GAP_STANDARD}, {0, 1.3, GAP_STANDARD},    {0.4999, 1, GAP_STANDARD},
-                 {0.3, 1, GAP_DUAL},       {0.4999, 1.3, GAP_DUAL}};
+    } cases[] = {{0.3, 1.1, GAP_STANDARD},
+                 {0, 1.3, GAP_STANDARD},
+                 {0.4999, 1, GAP_STANDARD},
+                 {0.3, 1, GAP_DUAL},
+                 {0.4999, 1.3, GAP_DUAL}};
     struct rough_surface rough = {.hurst = 0.8, .ratio = 4, .long_waves = 2};
     struct block layer = {.model = MODEL_HALFSPACE, .height = 1.5};
     struct grid coarse = square(64), fine = square(256);
