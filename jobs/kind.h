@@ -45,6 +45,14 @@ struct realisation {
     void *stop_context;
 };
 
+/* A component of a case that asks for an error, merged as far as it has come. */
+struct target_component {
+    const char *role;
+    uint64_t done;  /* realisations; 0: no tally */
+    double seconds; /* of one, as estimated */
+    const void *study, *tally;
+};
+
 struct job_kind {
     struct study_kind study;          /* what readers of studies must know; check: kind_check */
     const char *(*scalar)(size_t at); /* of one realisation: a name; NULL behind the last */
@@ -97,6 +105,11 @@ struct job_kind {
     int (*result)(const void *study, const struct surface_basis *basis, const void *tally,
                   const struct realisations *realisations, struct case_result *out,
                   struct error *err);
+    /* Of a case that asks for an error (study.expand): how many realisations each component is to
+     * have in all, none below what is done; and what the answer is by now, with the scalar
+     * "error_reached". A function of its arguments alone. NULL where expand is. */
+    int (*answer)(const cJSON *parameters, size_t count, const struct target_component *components,
+                  uint64_t *wanted, struct case_result *out, struct error *err);
     /* Makes the theories that curves of such a case name without holding them. NULL: there are
      * none. */
     int (*complete)(const void *study, const struct surface_basis *basis,

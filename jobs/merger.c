@@ -124,6 +124,15 @@ int merger_result(const struct job_merger *merger, struct case_result *out, stru
     return status;
 }
 
+const void *merger_case(const struct job_merger *merger) {
+    return merger->study;
+}
+
+const void *merger_tally(const struct job_merger *merger, uint64_t *realisations) {
+    *realisations = merger->realisations.count;
+    return merger->tally;
+}
+
 static bool is_complete(const struct case_result *result) {
     for (size_t a = 0; a < result->curve_count; a++)
         for (size_t t = 0; t < result->curves[a].theory_count; t++)

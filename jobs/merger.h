@@ -20,6 +20,9 @@ int merger_add(struct job_merger *merger, const struct block_result *result, str
 /* Fills an empty result with all that was added: count of realisations, scalars, curves, notes. On
  * failure it is cleared. */
 int merger_result(const struct job_merger *merger, struct case_result *out, struct error *err);
+/* The kind's case and tally, and the realisations in it; borrowed. */
+const void *merger_case(const struct job_merger *merger);
+const void *merger_tally(const struct job_merger *merger, uint64_t *realisations);
 /* Makes the theories that the curves of such a case name without holding them. */
 int merger_complete(const struct job_kind *kind, const cJSON *parameters,
                     struct case_result *result, struct error *err);

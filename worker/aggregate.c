@@ -1,6 +1,7 @@
 #include "worker/aggregate.h"
 #include "jobs/merger.h"
 #include "schema/result/result_json.h"
+#include "worker/target.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +31,34 @@ static int merge_case(struct store *store, const struct aggregate *aggregate, ui
         status = merger_result(merge.merger, out, err);
     merger_destroy(&merge.merger);
     return status != 0 ? error_context(err, "case %llu", (unsigned long long)case_number) : 0;
+}
+
+/* Of a case that asks for an error: what its components have come to. *found is false where it has
+ * none. grown as in target_round; NULL: the answer alone. */
+static int answer_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                       const struct case_info *info, struct case_result *out, bool *found,
+                       bool *grown, struct error *err) {
+    struct target_case of = {.kind = aggregate->kind,
+                             .study = aggregate->about.id,
+                             .case_number = case_number,
+                             .info = info};
+    *found = false;
+    if (aggregate->kind->answer == NULL || aggregate->about.realisations > 0)
+        return 0;
+    int status = store_components(store, of.study, case_number, &of.components, &of.count, err);
+    if (status != 0 || of.count == 0)
+        return status;
+    *found = true;
+    uint64_t *wanted = array_create(of.count, sizeof *wanted);
+    if (wanted == NULL)
+        status = error_memory(err, of.count * sizeof *wanted, "components");
+    else if (grown != NULL)
+        status = target_round(store, &of, out, grown, err);
+    else
+        status = target_answer(store, &of, wanted, out, err);
+    free(wanted);
+    components_free(of.components, of.count);
+    return status;
 }
 
 /* --- a study --- */
@@ -78,6 +107,8 @@ static int fresh_result(struct store *store, const struct aggregate *aggregate,
         return 0; /* without a merger, since a study may have ten thousand such cases */
     int status = store_published(store, aggregate->about.id, case_number, info->revision, part, out,
                                  &found, err);
+    if (status == 0 && !found)
+        status = answer_case(store, aggregate, case_number, info, out, &found, NULL, err);
     if (status != 0 || found)
         return status;
     return merge_case(store, aggregate, case_number, info->parameters, out, err);
@@ -185,9 +216,12 @@ int aggregate_publish(struct store *store, const char *study, uint64_t case_numb
     if (status != 0) /* an unknown kind is no fault of the case: another program knows it */
         return status == ERROR_INPUT ? (err->code = ERROR_STATE) : status;
     status = store_case(store, study, case_number, &info, err);
+    bool found = false, grown = false;
     if (status == 0)
+        status = answer_case(store, &aggregate, case_number, &info, &result, &found, &grown, err);
+    if (status == 0 && !found)
         status = merge_case(store, &aggregate, case_number, info.parameters, &result, err);
-    if (status == 0)
+    if (status == 0 && !grown)
         status = store_publish(store, study, case_number, info.revision, &result, err);
     result_clear(&result);
     case_info_clear(&info);

@@ -33,8 +33,9 @@ int aggregate_case(struct store *store, const struct aggregate *aggregate, uint6
                    const struct result_filter *filter, struct case_result *out, struct error *err);
 int aggregate_case_report(struct store *store, const struct aggregate *aggregate,
                           uint64_t case_number, struct case_report *out, struct error *err);
-/* Merges what a case has and publishes it. ERROR_INPUT, ERROR_NUMERIC: its results cannot be
- * merged; ERROR_STATE: its kind is unknown to this program. */
+/* Merges what a case has and publishes it; or, of one that asks for an error and has not reached
+ * it, queues its next round. ERROR_INPUT, ERROR_NUMERIC: its results cannot be merged; ERROR_STATE:
+ * its kind is unknown to this program. */
 int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
                       struct error *err);
 

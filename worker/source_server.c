@@ -108,11 +108,12 @@ static int remote_release(void *self, const struct claimed_job *job, struct erro
 }
 
 /* By its jobs, for its state is "running" until the server has published it, which no worker waits
- * for. */
+ * for, unless that may queue more jobs. */
 static bool study_goes_on(const cJSON *study) {
     const cJSON *jobs = field_at(study, "jobs");
     return cJSON_GetNumberValue(field_at(jobs, "waiting")) > 0 ||
-           cJSON_GetNumberValue(field_at(jobs, "running")) > 0;
+           cJSON_GetNumberValue(field_at(jobs, "running")) > 0 ||
+           cJSON_IsTrue(field_at(study, "planning"));
 }
 
 /* Pages through the server's list of studies until one goes on. */

@@ -3,6 +3,7 @@
 #include "jobs/contact/contact_curves.h"
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
+#include "jobs/contact/contact_target.h"
 #include "jobs/contact/contact_view.h"
 
 static int read_case(void *one_case, const cJSON *parameters, struct fault_list *faults,
@@ -143,7 +144,8 @@ const struct job_kind CONTACT_KIND = {
     .study = {.name = "contact",
               .tables = CONTACT_TABLES,
               .default_realisations = 20,
-              .check = kind_check},
+              .check = kind_check,
+              .expand = contact_target_expand},
     .scalar = contact_scalar_name,
     .view = &CONTACT_VIEW,
     .case_size = sizeof(struct contact_case),
@@ -169,5 +171,6 @@ const struct job_kind CONTACT_KIND = {
     .adds_up = adds_up,
     .belongs = belongs,
     .result = result,
+    .answer = contact_target_answer,
     .write_mesh = write_mesh,
 };

@@ -1,12 +1,13 @@
 #include "jobs/contact/contact_case.h"
 #include "jobs/surface_parameters.h"
+#include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
 
 static const double ROUNDING = 1e-9; /* relative: numbers that are meant to be equal */
 enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000, PROBE_POINTS = 4 };
 const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
-                                                        NULL};
+                                                        &TARGET_PARAMETERS, NULL};
 
 bool contact_case_has_scale(const struct contact_case *one_case) {
     enum spectrum_scale scale = one_case->surface.spectrum.scale;

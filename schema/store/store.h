@@ -47,7 +47,8 @@ struct study_status {
     char *name, *kind; /* owned */
     const char *state; /* static: queued running done failed cancelled */
     enum study_random random;
-    uint64_t seed, cases, realisations; /* realisations of each case */
+    uint64_t seed, cases, realisations; /* realisations of each case; 0: an error is asked for */
+    double error_reached;               /* the largest of the cases, relative; NaN: none is told */
     uint64_t jobs, jobs_done, jobs_failed, jobs_running, jobs_waiting, jobs_cancelled;
     uint64_t cases_failed; /* whose results cannot be published */
     uint64_t realisations_total, realisations_done,
@@ -203,6 +204,29 @@ struct case_cost {
 };
 int store_cost(struct store *store, const char *study, uint64_t case_number, struct case_cost *out,
                struct error *err);
+
+/* --- cases that ask for an error --- */
+/* A component: a case of its own, which takes part in the answer of another. */
+struct component {
+    uint64_t number;
+    char *role;             /* owned */
+    uint64_t realisations;  /* asked for so far */
+    struct study_cost cost; /* of one, as estimated: seconds and result_bytes alone */
+};
+/* In the order of their numbers; *count is 0 for a case without. */
+int store_components(struct store *store, const char *study, uint64_t case_number,
+                     struct component **out, size_t *count, struct error *err);
+void components_free(struct component *components, size_t count);
+/* What a round ends with. */
+struct next_round {
+    uint64_t revision;      /* of the case when it was planned */
+    double error_reached;   /* NaN: none is told */
+    const uint64_t *wanted; /* realisations of each component in all; none falls */
+};
+/* Queues what is missing to these, once: *grown tells whether anything is left to run. Where the
+ * case has gone on since it was planned, or its study was cancelled, nothing changes. */
+int store_grow(struct store *store, const char *study, uint64_t case_number,
+               const struct next_round *next, bool *grown, struct error *err);
 
 /* --- upkeep --- */
 int store_snapshot(struct store *store, const char *path,

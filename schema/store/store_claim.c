@@ -46,12 +46,13 @@ struct found_study {
 static int find_study(struct store *store, const struct claim *claim, int64_t only,
                       struct found_study *found, struct claimed_job *job, struct error *err) {
     sqlite3_stmt *row = NULL;
-    int status =
-        store_query(store, &row, err,
-                    "SELECT id, public, kind, seed, state = 'queued', random FROM study WHERE "
-                    "state IN ('queued', 'running') AND jobs_waiting > 0 AND (?1 = 0 OR id = ?1) "
-                    "AND (NOT ?2 OR random = 'independent' OR cases = 1) ORDER BY id",
-                    "ii", only, (int64_t)claim->independent_only);
+    int status = store_query(
+        store, &row, err,
+        "SELECT id, public, kind, seed, state = 'queued', random FROM study WHERE "
+        "state IN ('queued', 'running') AND jobs_waiting > 0 AND (?1 = 0 OR id = ?1) "
+        "AND (NOT ?2 OR random = 'independent' OR (cases = 1 AND realisations > 0)) ORDER "
+        "BY id",
+        "ii", only, (int64_t)claim->independent_only);
     while (status == 0 && (status = store_step(store, row, err)) == 1) {
         const char *kind = (const char *)sqlite3_column_text(row, 2);
         status = 0;
@@ -109,7 +110,8 @@ static int copy_parameters(struct store *store, int64_t study, struct claimed_jo
                            struct error *err) {
     sqlite3_stmt *row = NULL;
     int status = store_query(store, &row, err,
-                             "SELECT parameters FROM study_case WHERE study_id = ? AND number = ?",
+                             "SELECT parameters, sequence FROM study_case WHERE study_id = ? AND "
+                             "number = ?",
                              "ii", study, (int64_t)job->case_number);
     if (status == 0)
         status = store_step(store, row, err);
@@ -117,6 +119,8 @@ static int copy_parameters(struct store *store, int64_t study, struct claimed_jo
         return status != 0
                    ? status
                    : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
+    if (sqlite3_column_type(row, 1) != SQLITE_NULL)
+        job->sequence = (uint64_t)sqlite3_column_int64(row, 1);
     status = column_json(row, 0, &job->parameters, err);
     sqlite3_reset(row);
     return status;

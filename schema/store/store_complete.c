@@ -114,9 +114,11 @@ static int count_completion(struct store *store, const struct job_row *job,
     int status = store_run(
         store, err,
         "UPDATE study_case SET jobs_left = jobs_left - 1, realisations_done = realisations_done "
-        "+ ?, seconds = seconds + ?, cpu_seconds = cpu_seconds + ?, jobs_without_cpu = "
-        "jobs_without_cpu + ?, revision = revision + 1 WHERE study_id = ? AND number = ?",
-        "iddiii", job->count, seconds, cpu_seconds, (int64_t)without, job->study, job->case_number);
+        "+ ?3, seconds = seconds + ?4, cpu_seconds = cpu_seconds + ?5, jobs_without_cpu = "
+        "jobs_without_cpu + ?6, revision = revision + 1, settled = CASE WHEN parent IS NULL "
+        "THEN settled ELSE revision + 1 END WHERE study_id = ?1 AND number IN (?2, " CASE_PARENT
+        ")",
+        "iiiddi", job->study, job->case_number, job->count, seconds, cpu_seconds, (int64_t)without);
     if (status == 0)
         status = store_run(
             store, err,

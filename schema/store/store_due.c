@@ -20,7 +20,8 @@ static int find_due(struct store *store, const struct publication *publication,
                     "SELECT study_id, number, revision, (SELECT public FROM study WHERE id = "
                     "study_id) AS public FROM study_case INDEXED BY case_due WHERE " DUE
                     " AND (study_id, number) > (?1, ?2) AND (?3 IS NULL OR (public = ?3 AND number "
-                    "= ?4)) ORDER BY study_id, number LIMIT 1",
+                    "IN (?4, (SELECT k.parent FROM study_case k WHERE k.study_id = "
+                    "study_case.study_id AND k.number = ?4)))) ORDER BY study_id, number LIMIT 1",
                     "iiti", cursor->study, (int64_t)cursor->due.case_number, publication->study,
                     (int64_t)publication->case_number);
     if (status == 0)

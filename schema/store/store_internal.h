@@ -69,12 +69,18 @@ int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t
 /* Takes the marks off all cases of a study that cannot be published: they are due again. */
 int marks_clear(struct store *store, int64_t study, struct error *err);
 
+/* The case that component ?2 of study ?1 belongs to; NULL for a case that is none. */
+#define CASE_PARENT "(SELECT parent FROM study_case WHERE study_id = ?1 AND number = ?2)"
+
 /* A change of a job needs to know this of it. */
 struct job_row {
     int64_t id, study, case_number, first, count, attempts;
     bool running, done, cancelled;
     bool owned; /* the token given is that of its last lease */
 };
+/* Queues realisations of a case as jobs of `block` each; of all: study, case_number, first, count.
+ * Counts nothing. */
+int jobs_insert(struct store *store, const struct job_row *all, int64_t block, struct error *err);
 int job_read(struct store *store, int64_t id, const char *token, struct job_row *job,
              struct error *err);
 /* Fails with ERROR_STATE unless the job runs under this token. */

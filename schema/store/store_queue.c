@@ -86,8 +86,8 @@ static int job_fail(struct store *store, const struct job_row *job, const char *
                       "ii", job->count, job->study);
     if (status == 0)
         status = store_run(store, err,
-                           "UPDATE study_case SET jobs_left = jobs_left - 1 WHERE study_id = ? AND "
-                           "number = ?",
+                           "UPDATE study_case SET jobs_left = jobs_left - 1 WHERE study_id = ?1 "
+                           "AND number IN (?2, " CASE_PARENT ")",
                            "ii", job->study, job->case_number);
     return status != 0 ? status : study_settle(store, job->study, err);
 }
@@ -142,11 +142,11 @@ int store_release(struct store *store, int64_t job, const char *token, struct er
 static int copy_study(struct store *store, int64_t study, struct claimed_job *job,
                       struct error *err) {
     sqlite3_stmt *row = NULL;
-    int status =
-        store_query(store, &row, err,
-                    "SELECT s.public, s.kind, s.seed, c.parameters, s.random FROM study s JOIN "
-                    "study_case c ON c.study_id = s.id WHERE s.id = ? AND c.number = ?",
-                    "ii", study, (int64_t)job->case_number);
+    int status = store_query(
+        store, &row, err,
+        "SELECT s.public, s.kind, s.seed, c.parameters, s.random, c.sequence FROM study s JOIN "
+        "study_case c ON c.study_id = s.id WHERE s.id = ? AND c.number = ?",
+        "ii", study, (int64_t)job->case_number);
     if (status == 0)
         status = store_step(store, row, err);
     if (status <= 0)
@@ -157,6 +157,8 @@ static int copy_study(struct store *store, int64_t study, struct claimed_job *jo
     job->kind = column_copy(row, 1);
     job->seed = strtoull((const char *)sqlite3_column_text(row, 2), NULL, 10);
     job->sequence = study_sequence(column_random(row, 4), job->case_number);
+    if (sqlite3_column_type(row, 5) != SQLITE_NULL)
+        job->sequence = (uint64_t)sqlite3_column_int64(row, 5);
     status = column_json(row, 3, &job->parameters, err);
     sqlite3_reset(row);
     return job->kind != NULL || status != 0 ? status : error_memory(err, 0, "a job's kind");

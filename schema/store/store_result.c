@@ -18,7 +18,8 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
     int status = study_row(store, study, &row, err);
     if (status == 0)
         status = store_query(store, &found, err,
-                             "SELECT c.parameters, s.seed, s.realisations, c.realisations_done, "
+                             "SELECT c.parameters, s.seed, coalesce(c.realisations, "
+                             "s.realisations), c.realisations_done, "
                              "c.revision FROM study_case c JOIN study s ON s.id = c.study_id WHERE "
                              "s.id = ? AND c.number = ?",
                              "ii", row, (int64_t)case_number);
@@ -140,10 +141,14 @@ int store_cost(struct store *store, const char *study, uint64_t case_number, str
     if (status == 0)
         status = store_query(
             store, &row, err,
-            "SELECT realisations_done, (SELECT realisations FROM study WHERE id = "
-            "study_id), jobs, (SELECT sum(attempts) FROM job WHERE job.study_id "
-            "= study_case.study_id AND job.case_number = number), seconds, "
-            "cpu_seconds, jobs_without_cpu FROM study_case WHERE study_id = ? AND number = ?",
+            "SELECT realisations_done, coalesce(realisations, (SELECT nullif(realisations, 0) FROM "
+            "study WHERE id = study_id), realisations_done), jobs, (SELECT total(attempts) FROM "
+            "job "
+            "WHERE job.study_id = study_case.study_id AND job.case_number = number) + (SELECT "
+            "total(j.attempts) FROM study_case k JOIN job j ON j.study_id = k.study_id AND "
+            "j.case_number = k.number WHERE k.study_id = study_case.study_id AND k.parent = "
+            "study_case.number), seconds, cpu_seconds, "
+            "jobs_without_cpu FROM study_case WHERE study_id = ? AND number = ?",
             "ii", id, (int64_t)case_number);
     if (status == 0)
         status = store_step(store, row, err);

@@ -1,4 +1,4 @@
-/* Studies: submission, progress, cancellation, retry. */
+/* Studies: progress, cancellation, retry. */
 #include "schema/store/store_internal.h"
 #include <math.h>
 #include <stdio.h>
@@ -29,98 +29,6 @@ int study_settle(struct store *store, int64_t study, struct error *err) {
                      "ti", store_time(store), study);
 }
 
-/* --- submission --- */
-
-static uint64_t blocks_of(const struct study *study, const struct study_case *one) {
-    return (study->realisations + one->block - 1) / one->block;
-}
-
-static int insert_case(struct store *store, const struct study *study, int64_t row, size_t number,
-                       struct error *err) {
-    const struct study_case *one = &study->cases[number];
-    int64_t blocks = (int64_t)blocks_of(study, one);
-    char *parameters = json_print(one->parameters);
-    if (parameters == NULL)
-        return error_memory(err, 0, "the parameters of a case");
-    int status =
-        store_run(store, err,
-                  "INSERT INTO study_case (study_id, number, parameters, estimate, jobs, "
-                  "jobs_left) VALUES (?, ?, ?, ?, ?, ?)",
-                  "iitdii", row, (int64_t)number, parameters, one->cost.seconds, blocks, blocks);
-    free(parameters);
-    for (uint64_t first = 0; status == 0 && first < study->realisations; first += one->block) {
-        uint64_t left = study->realisations - first;
-        uint64_t count = left < one->block ? left : one->block;
-        status = store_run(
-            store, err, "INSERT INTO job (study_id, case_number, first, count) VALUES (?, ?, ?, ?)",
-            "iiii", row, (int64_t)number, (int64_t)first, (int64_t)count);
-    }
-    return status;
-}
-
-static int insert_study(struct store *store, const struct study *study, const char *key,
-                        const char *id, struct error *err) {
-    uint64_t jobs = 0;
-    for (size_t c = 0; c < study->case_count; c++)
-        jobs += blocks_of(study, &study->cases[c]);
-    char seed[24];
-    snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
-    int status =
-        store_run(store, err,
-                  "INSERT INTO study (public, name, kind, seed, random, realisations, "
-                  "submit_key, state, cases, jobs, jobs_waiting, created) VALUES "
-                  "(?, ?, ?, ?, ?, ?, ?, 'queued', ?, ?, ?, ?)",
-                  "tttttitiiit", id, study->name, study->kind->name, seed,
-                  choice_name(STUDY_RANDOM, (int)study->random), (int64_t)study->realisations, key,
-                  (int64_t)study->case_count, (int64_t)jobs, (int64_t)jobs, store_time(store));
-    int64_t row = sqlite3_last_insert_rowid(store->db);
-    if (status == 0)
-        status = store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",
-                           "it", row, study->source);
-    for (size_t c = 0; status == 0 && c < study->case_count; c++)
-        status = insert_case(store, study, row, c, err);
-    return status;
-}
-
-/* 1 and the id when the key was used for this very study, 0 when it was not used. */
-static int find_key(struct store *store, const struct study *study, const char *key,
-                    char id[STUDY_ID_SIZE], struct error *err) {
-    if (key == NULL)
-        return 0;
-    sqlite3_stmt *statement = NULL;
-    int status = store_query(store, &statement, err,
-                             "SELECT public, source = ? FROM study JOIN study_source ON "
-                             "study_id = study.id WHERE submit_key = ?",
-                             "tt", study->source, key);
-    if (status == 0)
-        status = store_step(store, statement, err);
-    if (status <= 0)
-        return status;
-    bool same = sqlite3_column_int(statement, 1);
-    snprintf(id, STUDY_ID_SIZE, "%s", (const char *)sqlite3_column_text(statement, 0));
-    sqlite3_reset(statement);
-    if (!same)
-        return error_set(err, ERROR_STATE, "the key \"%.60s\" was used for another study", key);
-    return 1;
-}
-
-int store_submit(struct store *store, const struct study *study, const char *key,
-                 char id[STUDY_ID_SIZE], bool *existing, struct error *err) {
-    int status = change_begin(store, err);
-    if (status != 0)
-        return status;
-    status = find_key(store, study, key, id, err);
-    bool found = status == 1;
-    if (status == 0)
-        status = random_text(id, STUDY_ID_SIZE - 1, err);
-    if (status == 0)
-        status = insert_study(store, study, key, id, err);
-    status = change_end(store, found ? 0 : status, err);
-    if (status == 0 && existing != NULL)
-        *existing = found;
-    return status;
-}
-
 /* --- progress --- */
 
 static const char *state_name(const unsigned char *text) {
@@ -139,7 +47,11 @@ static const char *state_name(const unsigned char *text) {
     "(SELECT coalesce(sum(reported), 0) FROM job WHERE state = 'running' AND study_id = "          \
     "study.id), "                                                                                  \
     "(SELECT count(DISTINCT worker) FROM job WHERE state = 'running' AND study_id = study.id), "   \
-    "cases_failed, random, cpu_seconds, jobs_without_cpu"
+    "cases_failed, random, cpu_seconds, jobs_without_cpu, "                                        \
+    "CASE WHEN realisations > 0 THEN cases * realisations ELSE (SELECT sum(c.realisations) FROM "  \
+    "study_case c WHERE c.study_id = study.id) END, "                                              \
+    "CASE WHEN realisations = 0 THEN (SELECT max(c.error_reached) FROM study_case c WHERE "        \
+    "c.study_id = study.id) END"
 
 static uint64_t column_count(sqlite3_stmt *row, int column) {
     return (uint64_t)sqlite3_column_int64(row, column);
@@ -164,7 +76,7 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     out->jobs_running = column_count(row, 10);
     out->jobs_waiting = column_count(row, 11);
     out->jobs_cancelled = column_count(row, 12);
-    out->realisations_total = out->cases * out->realisations;
+    out->realisations_total = column_count(row, 26);
     out->realisations_done = column_count(row, 13) + column_count(row, 20);
     out->realisations_failed = column_count(row, 14);
     out->time.seconds = sqlite3_column_double(row, 15);
@@ -176,6 +88,8 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     out->random = column_random(row, 23);
     out->time.cpu_seconds = sqlite3_column_double(row, 24);
     out->time.jobs_without_cpu = column_count(row, 25);
+    out->error_reached =
+        sqlite3_column_type(row, 27) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(row, 27);
     if (out->name == NULL || out->kind == NULL)
         return error_memory(err, 0, "a study's name");
     return 0;
@@ -190,11 +104,11 @@ static int time_left(struct store *store, int64_t row, struct study_status *out,
         return 0;
     }
     sqlite3_stmt *statement = NULL;
-    int status =
-        store_query(store, &statement, err,
-                    "SELECT sum(estimate * realisations_done), sum(estimate * (?2 - "
-                    "realisations_done)), sum(seconds) FROM study_case WHERE study_id = ?1",
-                    "ii", row, (int64_t)out->realisations);
+    int status = store_query(store, &statement, err,
+                             "SELECT sum(estimate * realisations_done), sum(estimate * "
+                             "(coalesce(realisations, ?2) - realisations_done)), sum(seconds) FROM "
+                             "study_case WHERE study_id = ?1 AND (parent IS NOT NULL OR ?2 > 0)",
+                             "ii", row, (int64_t)out->realisations);
     if (status == 0)
         status = store_step(store, statement, err);
     if (status <= 0)
@@ -354,6 +268,9 @@ static int retry_jobs(struct store *store, int64_t row, struct error *err) {
             store_run(store, err,
                       "UPDATE study_case SET jobs_left = jobs_left + (SELECT count(*) FROM job j "
                       "WHERE j.study_id = study_case.study_id AND j.case_number = number AND "
+                      "j.state IN ('failed', 'cancelled')) + (SELECT count(*) FROM study_case k "
+                      "JOIN job j ON j.study_id = k.study_id AND j.case_number = k.number WHERE "
+                      "k.study_id = study_case.study_id AND k.parent = study_case.number AND "
                       "j.state IN ('failed', 'cancelled')) WHERE study_id = ?",
                       "i", row);
     if (status == 0)

@@ -57,12 +57,12 @@ struct choice *kind_choices(const struct study_kind *const *kinds) {
     return choices;
 }
 
-/* Some ask for an error in place of a number. */
+/* Some ask for an error in place of a number, and at another place. */
 static bool asks_for_error(const cJSON *realisations, struct fault_list *faults) {
     if (!cJSON_HasObjectItem(realisations, "target_error"))
         return false;
     fault_add(faults, "/realisations",
-              "a target error is for a later version; give a number of realisations");
+              "give a number; an error is asked for by /target/error, in its place");
     return true;
 }
 
@@ -117,7 +117,13 @@ int common_read(struct study *study, const cJSON *document, const struct study_k
             row.choices = choices;
         status = read_row(study, &row, document, kinds, faults, err);
     }
-    if (study->realisations == 0)
+    bool target = study->kind != NULL && study->kind->expand != NULL &&
+                  cJSON_HasObjectItem(document, "target");
+    if (target && study->realisations != 0)
+        fault_add(faults, "/realisations", "a study with a target chooses their number itself");
+    if (target)
+        study->realisations = 0;
+    else if (study->realisations == 0)
         study->realisations = study->kind != NULL ? study->kind->default_realisations : 1;
     free(choices);
     return status;

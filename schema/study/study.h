@@ -26,6 +26,7 @@ struct study_cost {
     double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
 };
 
+struct study_case;
 /* The reader must know this of a kind of study. */
 struct study_kind {
     const char *name;
@@ -34,19 +35,30 @@ struct study_kind {
     /* Adds faults that no single range shows (0 then too), and estimates the cost. */
     int (*check)(const struct study_kind *kind, const cJSON *parameters, struct fault_list *faults,
                  struct study_cost *cost, struct error *err);
+    /* Makes the components of a case that asks for an error, with their parameters, roles and
+     * realisations, and takes what it chooses out of the parameters of the case. The document says
+     * what the study names. Adds faults (0 then too). NULL: a kind that takes no target. */
+    int (*expand)(const cJSON *document, struct study_case *one, struct fault_list *faults,
+                  struct error *err);
 };
 
 struct study_case {
     cJSON *parameters; /* owned: effective values, lists replaced, defaults filled in */
     struct study_cost cost;
-    uint64_t block; /* realisations a job */
+    uint64_t block;        /* realisations a job */
+    uint64_t realisations; /* to begin with */
+    /* Of a case that asks for an error: cases of which its answer is made. */
+    size_t component_count;
+    struct study_case *components; /* owned; without components of their own */
+    const char *role;              /* of a component in the answer; static; NULL: it is none */
+    double share; /* of its scatter that a component brings into the answer, about */
 };
 struct study {
     char *name;
     const struct study_kind *kind; /* borrowed from the caller's table */
     uint64_t seed;
     enum study_random random;
-    uint64_t realisations; /* of each case */
+    uint64_t realisations; /* of each case; 0: as many as the error asked for takes */
     size_t case_count;
     struct study_case *cases;
     char *source; /* the document as compact JSON, as it was given */

@@ -12,6 +12,9 @@ static const double JOB_SECONDS = 60; /* a job takes about a minute */
 /* and its result stays below a few MB */
 static const double JOB_REALISATIONS = 5000, JOB_BYTES = 4e6;
 
+enum { SHARES = 8 };                      /* jobs of a component in a round, */
+static const double SHARE_SECONDS = 0.25; /* unless these were shorter than that */
+
 /* --- names --- */
 
 /* Edits between two names: how far a misspelt one is from a known one (Levenshtein 1966). */
@@ -150,8 +153,9 @@ static void merge_faults(struct fault_list *all, const struct fault_list *found)
     }
 }
 
-/* Returns the size of equal blocks that take about JOB_SECONDS each. */
-static uint64_t block_size(uint64_t realisations, const struct study_cost *cost) {
+uint64_t study_block(uint64_t realisations, const struct study_cost *cost) {
+    if (realisations == 0)
+        return 1;
     double most =
         cost->seconds > 0 ? floor(JOB_SECONDS / cost->seconds + 0.5) : (double)realisations;
     if (cost->result_bytes > 0)
@@ -161,27 +165,50 @@ static uint64_t block_size(uint64_t realisations, const struct study_cost *cost)
     return (realisations + blocks - 1) / blocks;
 }
 
-static int check_cases(struct study *study, double memory_limit, struct fault_list *faults,
-                       struct error *err) {
-    for (size_t c = 0; c < study->case_count; c++) {
+uint64_t study_block_shared(uint64_t realisations, const struct study_cost *cost) {
+    double least = cost->seconds > 0 ? floor(SHARE_SECONDS / cost->seconds) : (double)realisations;
+    uint64_t share = (realisations + SHARES - 1) / SHARES;
+    double most = fmax((double)share, least);
+    uint64_t block = study_block(realisations, cost);
+    return most < (double)block ? (uint64_t)most : block;
+}
+
+/* Checks one case, and cuts it into jobs. */
+static int check_case(const struct study_kind *kind, struct study_case *one, double memory_limit,
+                      struct fault_list *faults, struct error *err) {
+    struct fault_list found = {0};
+    int status = kind->check(kind, one->parameters, &found, &one->cost, err);
+    one->block = one->role != NULL ? study_block_shared(one->realisations, &one->cost)
+                                   : study_block(one->realisations, &one->cost);
+    one->cost.memory_bytes += (double)one->block * one->cost.result_bytes;
+    if (status == 0 && found.count == 0 && memory_limit > 0 &&
+        one->cost.memory_bytes > memory_limit)
+        fault_add(&found, "",
+                  "a worker needs %.3g GiB for a grid of %zu by %zu; allowed: "
+                  "%.3g GiB on this machine",
+                  one->cost.memory_bytes / 0x1p30, one->cost.nx, one->cost.ny,
+                  memory_limit / 0x1p30);
+    merge_faults(faults, &found);
+    fault_list_clear(&found);
+    return status;
+}
+
+/* Of a case that asks for an error its components are what runs. */
+static int check_cases(struct study *study, const cJSON *document, double memory_limit,
+                       struct fault_list *faults, struct error *err) {
+    int status = 0;
+    for (size_t c = 0; c < study->case_count && status == 0; c++) {
         struct study_case *one = &study->cases[c];
-        struct fault_list found = {0};
-        int status = study->kind->check(study->kind, one->parameters, &found, &one->cost, err);
-        one->block = block_size(study->realisations, &one->cost);
-        one->cost.memory_bytes += (double)one->block * one->cost.result_bytes;
-        if (status == 0 && found.count == 0 && memory_limit > 0 &&
-            one->cost.memory_bytes > memory_limit)
-            fault_add(&found, "",
-                      "a worker needs %.3g GiB for a grid of %zu by %zu; allowed: "
-                      "%.3g GiB on this machine",
-                      one->cost.memory_bytes / 0x1p30, one->cost.nx, one->cost.ny,
-                      memory_limit / 0x1p30);
-        merge_faults(faults, &found);
-        fault_list_clear(&found);
-        if (status != 0)
-            return status;
+        one->realisations = study->realisations;
+        if (study->realisations == 0)
+            status = study->kind->expand(document, one, faults, err);
+        if (status == 0)
+            status = check_case(study->kind, one, one->component_count > 0 ? 0 : memory_limit,
+                                faults, err);
+        for (size_t a = 0; a < one->component_count && status == 0; a++)
+            status = check_case(study->kind, &one->components[a], memory_limit, faults, err);
     }
-    return 0;
+    return status;
 }
 
 /* --- together --- */
@@ -210,7 +237,7 @@ static int fill(struct study *study, const cJSON *document, const struct study_k
         return error_memory(err, strlen(study->kind->name), "a study");
     status = sweep_open(study, document, faults, err);
     if (status == 0 && faults->count == 0)
-        status = check_cases(study, memory_limit, faults, err);
+        status = check_cases(study, document, memory_limit, faults, err);
     if (status == 0 && faults->count != 0)
         status = faulty(faults, err);
     return status;

@@ -12,4 +12,9 @@ int study_read(struct study **out, const char *text, size_t size, const char *co
                const struct study_kind *const *kinds, double memory_limit,
                struct fault_list *faults, struct error *err);
 
+/* Realisations a job: blocks of equal size that take about a minute each. */
+uint64_t study_block(uint64_t realisations, const struct study_cost *cost);
+/* The same of a component, of which all workers are to have a share at once. */
+uint64_t study_block_shared(uint64_t realisations, const struct study_cost *cost);
+
 #endif

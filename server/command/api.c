@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static int finish(cJSON *document, bool complete, cJSON **out, struct error *err) {
     if (document == NULL || !complete) {
@@ -70,6 +71,12 @@ static double time_left(const struct study_status *status) {
     return status->seconds_left / (double)(status->workers != 0 ? status->workers : 1);
 }
 
+/* Whether a round of a study that asks for an error has ended, and the next may follow. */
+static bool is_planning(const struct study_status *status) {
+    return status->realisations == 0 && strcmp(status->state, "running") == 0 &&
+           status->jobs_waiting + status->jobs_running == 0;
+}
+
 static cJSON *progress(const struct study_status *status, bool *complete) {
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)status->seed);
@@ -83,6 +90,9 @@ static cJSON *progress(const struct study_status *status, bool *complete) {
                           cJSON_CreateString(choice_name(STUDY_RANDOM, (int)status->random))) &&
                 field_put_count(document, "cases", status->cases) &&
                 field_put_count(document, "cases_failed", status->cases_failed) &&
+                field_put(document, "planning", cJSON_CreateBool(is_planning(status))) &&
+                (isnan(status->error_reached) ||
+                 field_put(document, "error_reached", json_number(status->error_reached))) &&
                 put_jobs(document, status) && put_realisations(document, status) &&
                 field_put_count(document, "workers", status->workers) &&
                 field_put(document, "seconds", json_number(status->time.seconds)) &&

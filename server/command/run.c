@@ -147,13 +147,15 @@ static int perform(struct run *run, struct error *err) {
     int status = submit(run, err);
     if (status == 0)
         status = store_status(run->store, run->id, &now, err);
-    if (status == 0 && now.jobs_waiting + now.jobs_running > 0)
-        status = work(run, err);
-    if (status == 0)
-        status = publish_due(run->store, NULL, NULL, &counts, err);
-    study_status_clear(&now);
-    if (status == 0)
-        status = store_status(run->store, run->id, &now, err);
+    do { /* publishing may queue a round of a case that asks for an error */
+        if (status == 0 && now.jobs_waiting + now.jobs_running > 0)
+            status = work(run, err);
+        if (status == 0)
+            status = publish_due(run->store, NULL, NULL, &counts, err);
+        study_status_clear(&now);
+        if (status == 0)
+            status = store_status(run->store, run->id, &now, err);
+    } while (status == 0 && now.jobs_waiting > 0);
     if (status != 0)
         return status;
     status = present(run, now.kind, err);

@@ -1,6 +1,7 @@
 /* One quantity over its x, with its errors by source, beside the theories. */
 #include "server/show/summary.h"
 #include "server/show/summary_cells.h"
+#include "server/show/summary_target.h"
 #include <math.h>
 #include <string.h>
 
@@ -194,14 +195,18 @@ static void print_table(const struct quantity_table *words, const struct case_re
         put_place(one, finest, shown > 1 ? n * (places - 1) / (shown - 1) : 0, &table);
     table_print(&table, file);
     table_clear(&table);
-    for (size_t s = 0; words->scalars != NULL && words->scalars[s] != NULL; s++) {
+    bool asked = result_scalar(one, "error_asked") != NULL;
+    for (size_t s = 0; !asked && words->scalars != NULL && words->scalars[s] != NULL; s++) {
         if (s == 0)
             fprintf(file, "%s: ", model_text(first->model, first->kinematics, model, sizeof model));
         else
             fputs(", ", file);
         print_scalar(one, words->scalars[s], file);
     }
-    fputc('\n', file);
+    if (asked)
+        summary_of_target(one, file);
+    else
+        fputc('\n', file);
     bool unknown[ERROR_SOURCES] = {false};
     find_unknown(finest, unknown);
     print_unknown(unknown, words->error_words, file);
@@ -225,8 +230,10 @@ static void print_case(const struct quantity_table *words, const struct shown_ca
         fprintf(file, ", %s of CPU time", time);
     }
     if (finest.model_count > 0) {
-        fprintf(file, "; %s by %s at %.4g points a shortest wave\n", words->title,
-                text_or(finest.curves[0]->series, "-"), finest.curves[0]->level);
+        fprintf(file, "; %s by %s", words->title, text_or(finest.curves[0]->series, "-"));
+        if (!isnan(finest.curves[0]->level))
+            fprintf(file, " at %.4g points a shortest wave", finest.curves[0]->level);
+        fputc('\n', file);
         print_table(words, one, &finest, file);
         if (finest.more_models)
             fprintf(file, "Only the first %d models are shown.\n", MODELS_MOST);

@@ -43,6 +43,8 @@ void summary_of_status(const cJSON *status, FILE *file) {
     fprintf(file, "  workers %.0f, spent %s, left %s\n", number_of(status, "workers"), spent, left);
     if (time.seconds > 0)
         print_without_cpu(&time, file);
+    if (!isnan(number_of(status, "error_reached")))
+        fprintf(file, "  error reached %.3g %%\n", 100 * number_of(status, "error_reached"));
     const cJSON *failure;
     cJSON_ArrayForEach(failure, field_at(status, "failures")) {
         print_failure(failure, file);

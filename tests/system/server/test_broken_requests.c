@@ -167,7 +167,7 @@ static void broken_studies_are_told_what_is_wrong(void **state) {
         {BESIDE("\"realisations\":0"), 422, "/realisations", "0 is not in [1, 10000000]"},
         {BESIDE("\"realisations\":2.5"), 422, "/realisations", "2.5 is not an integer"},
         {BESIDE("\"realisations\":{\"target_error\":0.01}"), 422, "/realisations",
-         "a target error is for a later version; give a number of realisations"},
+         "give a number; an error is asked for by /target/error, in its place"},
         {BESIDE("\"statistics\":{\"summits\":\"seven_point\"}"), 422, "/statistics/summits",
          "\"seven_point\" is not one of \"nine_point\", \"five_point\", \"refined\""},
         {BESIDE("\"statistics\":{\"bins\":{\"height\":[1]}}"), 422, "/statistics/bins/height",

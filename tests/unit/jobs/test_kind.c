@@ -93,7 +93,7 @@ static void mark_read(const char *path, const char *file) {
 static void readers_and_rows_agree(void **state) {
     (void)state;
     static const char *const READERS[] = {"jobs/surface_case.c", "jobs/contact/contact_case.c",
-                                          "jobs/statistics/statistics_case.c"};
+                                          "jobs/statistics/statistics_case.c", "jobs/target.c"};
     const char *source = getenv("RUGO_SOURCE");
     if (source == NULL) { /* it is set by tests/run-tests */
         print_message("SKIP: RUGO_SOURCE does not say where the tree is\n");

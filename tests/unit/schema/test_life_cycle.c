@@ -36,7 +36,8 @@ static int submit(struct world *world, struct store *store) {
                           .cases = cases,
                           .source = source};
     for (int c = 0; c < count; c++) {
-        cases[c] = (struct study_case){.parameters = cJSON_CreateObject(), .block = 2};
+        cases[c] = (struct study_case){
+            .parameters = cJSON_CreateObject(), .block = 2, .realisations = study.realisations};
         assert_non_null(cases[c].parameters);
     }
     char id[STUDY_ID_SIZE];

@@ -99,7 +99,7 @@ static void faults_are_told_with_pointer_and_range(void **state) {
         {STUDY("\"realisations\":\"many\",\"box\":{\"width\":1}"), "/realisations",
          "\"many\" is not an integer"},
         {STUDY("\"realisations\":{\"target_error\":0.01},\"box\":{\"width\":1}"), "/realisations",
-         "a target error is for a later version; give a number of realisations"},
+         "give a number; an error is asked for by /target/error, in its place"},
         {STUDY("\"box\":{\"width\":[0.5,1],\"count\":7}"), "/box/count",
          "seven boxes are too many for half a metre"},
         {BOX(",\"count\":2000"), "",

@@ -230,6 +230,7 @@ static void verdicts_agree(void **state) {
         assert_true(f.kind_count < KINDS_MOST);
         f.kinds[f.kind_count] = *JOB_KINDS[f.kind_count];
         f.kinds[f.kind_count].check = check_nothing;
+        f.kinds[f.kind_count].expand = NULL;
         f.table[f.kind_count] = &f.kinds[f.kind_count];
     }
     f.file = fopen("documents", "w");

@@ -1,0 +1,178 @@
+#include "jobs/contact/contact_sum.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* --- the components --- */
+
+/* The change between the cells is taken without what chance adds to its square; chance itself
+ * widens the interval of the sum. */
+static void add_base(const struct contact_answer *answer, enum contact_measure measure,
+                     struct contact_sum *sum) {
+    const struct target_component *base = answer->of[ROLE_BASE], *cell = answer->of[ROLE_CELL];
+    for (size_t k = 0; k < answer->loads; k++) {
+        struct estimate mean = contact_tally_mean(component_tally(base), measure, k);
+        sum->value[k] = mean.value;
+        sum->variance[ROLE_BASE][k] = component_variance(base, mean.standard_error);
+        if (cell == NULL)
+            continue;
+        struct estimate other = contact_tally_mean(component_tally(cell), measure, k);
+        double change = mean.value - other.value;
+        double chance = hypot(mean.standard_error, other.standard_error);
+        sum->cell[k] = CELL_SHARE * sqrt(fmax(0, change * change - chance * chance));
+        sum->variance[ROLE_CELL][k] =
+            CELL_SHARE * CELL_SHARE * component_variance(cell, other.standard_error);
+    }
+}
+
+/* The finest level of the cheap model less the coarsest, on the same surfaces. The changes between
+ * levels go together, so that their standard errors add up at most. */
+static void add_levels(const struct contact_answer *answer, enum contact_measure measure,
+                       const struct contact_error *limit, struct contact_sum *sum) {
+    const struct target_component *mesh = answer->of[ROLE_MESH];
+    const struct contact_tally *tally = component_tally(mesh);
+    size_t levels = component_case(mesh)->level_count;
+    for (size_t k = 0; k < answer->loads; k++) {
+        double standard_error = 0;
+        for (size_t l = 1; l < levels; l++) {
+            struct estimate change = contact_tally_level(tally, measure, 0, l, k);
+            sum->value[k] += change.value;
+            standard_error += change.standard_error;
+        }
+        if (!answer->named_mesh) {
+            sum->value[k] -= limit[k].value;
+            sum->mesh[k] = limit[k].bound;
+            standard_error += limit[k].standard_error;
+        } else {
+            sum->mesh[k] = fabs(limit[k].value) + limit[k].bound;
+        }
+        sum->variance[ROLE_MESH][k] = component_variance(mesh, standard_error);
+    }
+}
+
+/* The model that is asked for less the cheap one, which is the first of the two. On its shorter
+ * cell the difference is taken as a share of the value of the cheap model there, since values on
+ * short cells are higher. */
+static void add_models(const struct contact_answer *answer, enum contact_measure measure,
+                       const struct contact_error *limit, struct contact_sum *sum) {
+    const struct target_component *model = answer->of[ROLE_MODEL];
+    const struct contact_case *one_case = component_case(model);
+    double length = component_case(answer->of[ROLE_BASE])->surface.length_ratio;
+    for (size_t k = 0; k < answer->loads; k++) {
+        struct estimate cheap = contact_tally_model(component_tally(model), measure, 0, k);
+        double bound = 0;
+        if (!answer->named_mesh) {
+            bound = limit[k].bound;
+            cheap = (struct estimate){limit[k].value, limit[k].standard_error};
+        }
+        size_t cell = contact_case_cell(one_case, 0, one_case->level_count - 1, k);
+        double scale =
+            sum->value[k] / contact_tally_mean(component_tally(model), measure, cell).value;
+        sum->value[k] -= scale * cheap.value;
+        sum->model[k] = scale * bound;
+        if (one_case->surface.length_ratio < length)
+            sum->cell[k] += MODEL_CELL_SHARE * fabs(scale * cheap.value);
+        sum->variance[ROLE_MODEL][k] = component_variance(model, scale * cheap.standard_error);
+    }
+}
+
+/* What the named mesh errs by in the model that is asked for, told beside the answer. */
+static void tell_mesh(const struct contact_answer *answer, enum contact_measure measure,
+                      struct contact_error *error, struct contact_sum *sum) {
+    const struct target_component *model = answer->of[ROLE_MODEL];
+    if (model != NULL &&
+        contact_errors(component_tally(model), measure, 1, ERROR_DISCRETISATION, error))
+        for (size_t k = 0; k < answer->loads; k++)
+            sum->mesh[k] = fabs(error[k].value) + error[k].bound;
+}
+
+static int add_all(const struct contact_answer *answer, enum contact_measure measure,
+                   struct contact_sum *sum, struct error *err) {
+    const struct target_component *mesh = answer->of[ROLE_MESH], *model = answer->of[ROLE_MODEL];
+    struct contact_error *error = array_create(answer->loads, sizeof *error);
+    if (error == NULL)
+        return error_memory(err, answer->loads * sizeof *error, "errors of a sum");
+    add_base(answer, measure, sum);
+    if (contact_errors(component_tally(answer->of[ROLE_BASE]), measure, 0, ERROR_SOLVER, error))
+        for (size_t k = 0; k < answer->loads; k++)
+            sum->solver[k] = error[k].bound;
+    if (mesh != NULL &&
+        contact_errors(component_tally(mesh), measure, 0, ERROR_DISCRETISATION, error))
+        add_levels(answer, measure, error, sum);
+    if (model != NULL && contact_errors(component_tally(model), measure, 0, ERROR_MODEL, error))
+        add_models(answer, measure, error, sum);
+    if (answer->named_mesh)
+        tell_mesh(answer, measure, error, sum);
+    free(error);
+    return 0;
+}
+
+/* --- the sum --- */
+
+static int sum_create(const struct contact_answer *answer, struct contact_sum *out,
+                      struct error *err) {
+    size_t n = answer->loads;
+    double *room = result_numbers(answer->result, (7 + ROLES) * n);
+    if (room == NULL)
+        return error_memory(err, (7 + ROLES) * n * sizeof *room, "a sum");
+    *out = (struct contact_sum){room,         room + n,     room + 2 * n, room + 3 * n,
+                                room + 4 * n, room + 5 * n, room + 6 * n, {0}};
+    for (size_t a = 0; a < ROLES; a++)
+        out->variance[a] = room + (7 + a) * n;
+    return 0;
+}
+
+double contact_sum_work(const struct target_component *component) {
+    const struct contact_case *one_case = component_case(component);
+    double sum = 0;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        for (size_t l = 0; l < one_case->level_count; l++)
+            for (size_t k = 0; k < one_case->load_count; k++)
+                sum += contact_tally_total(component_tally(component), MEASURE_WORK,
+                                           contact_case_cell(one_case, m, l, k)) *
+                       (double)grid_points(&one_case->levels[l].grid);
+    return sum / (double)component->done;
+}
+
+size_t contact_sum_parts(const struct contact_answer *answer, const struct contact_sum *sum,
+                         struct target_part parts[ROLES]) {
+    size_t count = 0;
+    for (size_t a = 0; a < ROLES; a++)
+        if (answer->of[a] != NULL)
+            parts[count++] = (struct target_part){.done = answer->of[a]->done,
+                                                  .work = contact_sum_work(answer->of[a]),
+                                                  .seconds = answer->of[a]->seconds,
+                                                  .variance = sum->variance[a]};
+    return count;
+}
+
+double contact_sum_bounds(const struct contact_answer *answer, const struct contact_sum *sum,
+                          size_t load) {
+    return (answer->named_mesh ? 0 : sum->mesh[load]) + sum->cell[load] + sum->model[load] +
+           sum->solver[load];
+}
+
+/* The interval counts what chance does to the bound of the cell; the standard error is that of the
+ * value alone. */
+static void finish_sum(const struct contact_answer *answer, struct contact_sum *sum) {
+    struct target_part parts[ROLES];
+    size_t count = contact_sum_parts(answer, sum, parts);
+    for (size_t k = 0; k < answer->loads; k++) {
+        double all, variance;
+        double quantile = target_quantile(&answer->target, count, parts, k, &all);
+        sum->width[k] = quantile * all;
+        variance = all * all;
+        if (answer->of[ROLE_CELL] != NULL)
+            variance -= sum->variance[ROLE_CELL][k] / (double)answer->of[ROLE_CELL]->done;
+        sum->standard_error[k] = sqrt(fmax(0, variance));
+    }
+}
+
+int contact_sum_create(const struct contact_answer *answer, enum contact_measure measure,
+                       struct contact_sum *out, struct error *err) {
+    int status = sum_create(answer, out, err);
+    if (status == 0)
+        status = add_all(answer, measure, out, err);
+    if (status == 0)
+        finish_sum(answer, out);
+    return status;
+}

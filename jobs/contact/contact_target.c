@@ -1,0 +1,253 @@
+#include "jobs/contact/contact_target.h"
+#include "jobs/contact/contact_case.h"
+#include "jobs/target.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Realisations that the first round begins with: enough for variances. */
+enum { BASE_FIRST = 32, CELL_FIRST = 64, MESH_FIRST = 8, MODEL_FIRST = 16, COMPONENTS_MOST = 4 };
+enum { LADDER_MOST = 5, LADDER_LEAST = 3, MODEL_LEVELS_MOST = 4 };
+static const double COARSEST = 4; /* points a shortest wave, of meshes that are chosen */
+
+/* What the study leaves to be chosen. */
+struct choices {
+    struct target target;
+    const char *model; /* borrowed from the parameters */
+    bool mesh, length, height, tolerance;
+    bool profile;
+    bool own_grid; /* the surface depends on the grid that it is made on, which stays */
+    double ladder[LADDER_MOST];
+    size_t levels;
+    double length_ratio, model_length_ratio;
+};
+
+/* What tells a component from the case. */
+struct variant {
+    const char *role;
+    uint64_t realisations;
+    double share;        /* as in struct study_case */
+    bool both;           /* models, else the cheap one */
+    size_t first, count; /* of the ladder */
+    double length_ratio;
+};
+
+/* --- parameters --- */
+
+/* Takes value (NULL: out of memory) in place of what is there. */
+static int put(cJSON *parameters, const char *table, const char *name, cJSON *value) {
+    cJSON *object = cJSON_GetObjectItemCaseSensitive(parameters, table);
+    if (object == NULL)
+        object = cJSON_AddObjectToObject(parameters, table);
+    cJSON_DeleteItemFromObjectCaseSensitive(object, name);
+    if (object != NULL && value != NULL && cJSON_AddItemToObject(object, name, value))
+        return 0;
+    cJSON_Delete(value);
+    return ERROR_MEMORY;
+}
+
+static void take_out(cJSON *parameters, const char *table, const char *name) {
+    cJSON_DeleteItemFromObjectCaseSensitive(cJSON_GetObjectItemCaseSensitive(parameters, table),
+                                            name);
+}
+
+/* A height in lengths of the cell stays the same height. */
+static int put_height(cJSON *parameters, const struct choices *choices,
+                      const struct variant *variant) {
+    const cJSON *lengths = json_at(parameters, "/contact/block_height/lengths");
+    if (lengths == NULL && (!choices->height || !variant->both))
+        return 0;
+    double height = lengths != NULL
+                        ? lengths->valuedouble * choices->length_ratio / variant->length_ratio
+                        : 1.5;
+    cJSON *value = cJSON_CreateObject();
+    if (value == NULL || cJSON_AddNumberToObject(value, "lengths", height) == NULL) {
+        cJSON_Delete(value);
+        return ERROR_MEMORY;
+    }
+    return put(parameters, "contact", "block_height", value);
+}
+
+/* An answer is within about a hundred times this of the exact one (contact_errors.c): a hundredth
+ * of the error asked for. */
+static double tolerance_of(const struct choices *choices) {
+    return fmax(1e-8, fmin(1e-4, 1e-4 * choices->target.error));
+}
+
+static cJSON *variant_parameters(const struct study_case *one, const struct choices *choices,
+                                 const struct variant *variant) {
+    const char *const models[] = {"halfspace", choices->model};
+    cJSON *all = cJSON_Duplicate(one->parameters, true);
+    const double *ladder = choices->ladder + variant->first;
+    if (all == NULL)
+        return NULL;
+    cJSON_DeleteItemFromObjectCaseSensitive(all, "target");
+    take_out(all, "contact", "estimators"); /* all of them, among them that of the answer */
+    int status =
+        put(all, "contact", "model", cJSON_CreateStringArray(models, variant->both ? 2 : 1));
+    if (!variant->both) /* of elements alone */
+        take_out(all, "contact", "gap_weighting");
+    if (status == 0)
+        status =
+            put(all, "contact", "levels", cJSON_CreateDoubleArray(ladder, (int)variant->count));
+    if (status == 0)
+        status = put(all, "surface", "length_ratio", cJSON_CreateNumber(variant->length_ratio));
+    if (status == 0 && !choices->own_grid)
+        status = put(all, "surface", "points_per_wavelength",
+                     cJSON_CreateNumber(ladder[variant->count - 1]));
+    if (status == 0 && choices->tolerance)
+        status = put(all, "contact", "tolerance", cJSON_CreateNumber(tolerance_of(choices)));
+    if (status == 0)
+        status = put_height(all, choices, variant);
+    if (status == 0)
+        return all;
+    cJSON_Delete(all);
+    return NULL;
+}
+
+/* --- choices --- */
+
+static double number_or(const cJSON *value, double otherwise) {
+    return cJSON_IsNumber(value) ? value->valuedouble : otherwise;
+}
+
+/* The one model that is asked for; NULL, and a fault, where there are several. */
+static const char *read_model(const cJSON *parameters, struct fault_list *faults) {
+    const cJSON *model = json_at(parameters, "/contact/model");
+    if (cJSON_IsArray(model) && cJSON_GetArraySize(model) == 1)
+        model = model->child;
+    if (cJSON_IsString(model))
+        return model->valuestring;
+    fault_add(faults, "/contact/model", "a target is of one model; the others come by themselves");
+    return NULL;
+}
+
+/* How many times a fifth of it fits below 5 %: the smaller the error, the finer the meshes and the
+ * longer the cells that are chosen. */
+static size_t steps_of(double error) {
+    size_t steps = 0;
+    while (steps < 4 && error * pow(5, (double)steps) < 0.05)
+        steps++;
+    return steps;
+}
+
+/* Levels from the coarsest that is solved up to the one that the study names, or to one that is
+ * fine enough, as far as that is known beforehand. */
+static void read_ladder(struct choices *out, const cJSON *document, const cJSON *parameters) {
+    const cJSON *levels = json_at(document, "/contact/levels");
+    double points = number_or(json_at(parameters, "/surface/points_per_wavelength"), 8);
+    size_t named = levels != NULL ? (size_t)cJSON_GetArraySize(levels) : 0;
+    out->mesh = levels == NULL && json_at(document, "/surface/points_per_wavelength") == NULL;
+    if (named > 0)
+        points = cJSON_GetArrayItem(levels, (int)named - 1)->valuedouble;
+    if (out->mesh) {
+        size_t count = LADDER_LEAST + (out->profile ? steps_of(out->target.error) : 0);
+        out->levels = count < LADDER_MOST ? count : LADDER_MOST;
+        for (size_t l = 0; l < out->levels; l++)
+            out->ladder[l] = ldexp(COARSEST, (int)l);
+        return;
+    }
+    for (int halvings = 2; halvings >= 0; halvings--)
+        if (halvings == 0 || ldexp(points, -halvings) >= COARSEST)
+            out->ladder[out->levels++] = ldexp(points, -halvings);
+}
+
+/* Cells are long enough for the error asked for, as far as that is known beforehand: the component
+ * "cell" tells afterwards. The difference of models needs no long cells, and costs most. */
+static void read_length(struct choices *out, const cJSON *document, const cJSON *parameters) {
+    double usual = out->profile ? 32 : 4, needed = out->profile ? 4 : 1;
+    if (out->own_grid)
+        usual *= 2;
+    usual = ldexp(usual, (int)steps_of(out->target.error));
+    out->length = json_at(document, "/surface/length_ratio") == NULL;
+    out->length_ratio =
+        out->length ? usual : number_or(json_at(parameters, "/surface/length_ratio"), 8);
+    out->model_length_ratio = fmin(out->length_ratio, needed);
+}
+
+static int read_choices(struct choices *out, const cJSON *document, const cJSON *parameters,
+                        struct fault_list *faults, struct error *err) {
+    struct values *values = NULL;
+    *out = (struct choices){0};
+    int status = values_create(&values, parameters, CONTACT_TABLES, faults, err);
+    if (status != 0)
+        return status;
+    if (!target_read(&out->target, values))
+        fault_add(faults, "/target/error", "missing: a number in [1e-05, 0.5]");
+    values_destroy(&values);
+    const cJSON *heights = json_at(parameters, "/surface/heights/distribution");
+    out->own_grid = cJSON_IsString(heights) && strcmp(heights->valuestring, "gaussian") != 0;
+    out->height = json_at(document, "/contact/block_height") == NULL;
+    out->tolerance = json_at(document, "/contact/tolerance") == NULL;
+    out->model = read_model(parameters, faults);
+    out->profile = number_or(json_at(parameters, "/surface/dimension"), 2) == 1;
+    read_ladder(out, document, parameters);
+    read_length(out, document, parameters);
+    return 0;
+}
+
+/* --- components --- */
+
+static int add(struct study_case *one, const struct choices *choices,
+               const struct variant *variant) {
+    struct study_case *component = &one->components[one->component_count];
+    *component = (struct study_case){.parameters = variant_parameters(one, choices, variant),
+                                     .realisations = variant->realisations,
+                                     .role = variant->role,
+                                     .share = variant->share};
+    one->component_count += component->parameters != NULL;
+    return component->parameters != NULL ? 0 : ERROR_MEMORY;
+}
+
+/* The dearest first, so that none of its jobs is left to the end of a round. */
+static int add_all(struct study_case *one, const struct choices *choices) {
+    const size_t levels = choices->levels, pair = levels > 1 ? 2 : 1;
+    struct variant model = {
+        "model", MODEL_FIRST, 0.05, true, 0, levels, choices->model_length_ratio};
+    if (!choices->mesh) { /* the named level, and the next to tell its error */
+        model.first = levels - pair;
+        model.count = pair;
+    } else if (!choices->profile) { /* elements of a third level would take the time of all else */
+        model.count = pair;
+    } else if (levels > MODEL_LEVELS_MOST) {
+        model.count = MODEL_LEVELS_MOST;
+    }
+    const struct variant mesh = {"mesh", MESH_FIRST, 0.1, false, 0, levels, choices->length_ratio};
+    const struct variant cell = {"cell", CELL_FIRST, 0.3, false, 0, 1, choices->length_ratio / 4};
+    const struct variant base = {"base", BASE_FIRST, 1, false, 0, 1, choices->length_ratio};
+    int status = 0;
+    if (strcmp(choices->model, "halfspace") != 0)
+        status = add(one, choices, &model);
+    if (status == 0 && levels > 1)
+        status = add(one, choices, &mesh);
+    if (status == 0 && choices->length)
+        status = add(one, choices, &cell);
+    return status != 0 ? status : add(one, choices, &base);
+}
+
+/* What is chosen is no parameter of the case; a mesh that is named is one, by its level. */
+static int keep_named(cJSON *parameters, const struct choices *choices) {
+    if (choices->length)
+        take_out(parameters, "surface", "length_ratio");
+    if (choices->tolerance)
+        take_out(parameters, "contact", "tolerance");
+    if (choices->mesh && !choices->own_grid)
+        take_out(parameters, "surface", "points_per_wavelength");
+    const double *finest = &choices->ladder[choices->levels - 1];
+    return choices->mesh ? 0
+                         : put(parameters, "contact", "levels", cJSON_CreateDoubleArray(finest, 1));
+}
+
+int contact_target_expand(const cJSON *document, struct study_case *one, struct fault_list *faults,
+                          struct error *err) {
+    struct choices choices;
+    size_t before = faults->count;
+    int status = read_choices(&choices, document, one->parameters, faults, err);
+    if (status != 0 || faults->count > before)
+        return status == ERROR_INPUT && faults->count > before ? 0 : status;
+    one->components = array_create(COMPONENTS_MOST, sizeof *one->components);
+    if (one->components == NULL || add_all(one, &choices) != 0 ||
+        keep_named(one->parameters, &choices) != 0)
+        return error_memory(err, COMPONENTS_MOST * sizeof *one->components, "components");
+    return 0;
+}

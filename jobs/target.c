@@ -1,0 +1,178 @@
+#include "jobs/target.h"
+#include "schema/json/json.h"
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+
+static const double GROWTH_MOST = 4;     /* of a component in one round: variances are estimates */
+static const double GROWTH_LEAST = 1.25; /* so that rounds are few */
+static const double MARGIN = 1.05;       /* above what is needed, for the same reason */
+static const double REALISATIONS_MOST = 1e7;
+
+static const double CONFIDENCE = 0.95;  /* unless given */
+static const double CHANCE_USUAL = 0.7; /* of the error asked for */
+enum { ROUNDS_MOST = 40 };
+
+static const struct choice QUANTITIES[] = {
+    {"contact_area", TARGET_CONTACT_AREA}, {"mean_gap", TARGET_MEAN_GAP}, {0}};
+
+static const struct parameter ROWS[] = {
+    {.path = "/target/error",
+     .type = PARAMETER_NUMBER,
+     .minimum = 1e-5,
+     .maximum = 0.5,
+     .later = true,
+     .example_json = "0.01",
+     .help =
+         "in place of realisations: the relative error of every point of the curve, all sources "
+         "together; what the study does not name (levels, length_ratio, block_height, "
+         "realisations) is chosen for it"},
+    {.path = "/target/confidence",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0.5,
+     .maximum = 0.9999,
+     .later = true,
+     .example_json = "0.99",
+     .help = "probability with which a point is within the error; 0.95 unless given"},
+    {.path = "/target/quantity",
+     .type = PARAMETER_CHOICE,
+     .choices = QUANTITIES,
+     .later = true,
+     .example_json = "\"mean_gap\"",
+     .help = "curve whose error is asked for; contact_area unless given"},
+    {.path = "/target/max_seconds",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 1e12,
+     .above_minimum = true,
+     .later = true,
+     .unit = "s",
+     .example_json = "3600",
+     .help = "CPU seconds of a case, as estimated, beyond which no round goes; without limit "
+             "unless given"},
+};
+const struct parameter_table TARGET_PARAMETERS = {"target", ROWS, sizeof ROWS / sizeof *ROWS};
+
+bool target_read(struct target *out, struct values *values) {
+    double confidence = values_number(values, "/target/confidence");
+    double most = values_number(values, "/target/max_seconds");
+    *out =
+        (struct target){.error = values_number(values, "/target/error"),
+                        .confidence = isnan(confidence) ? CONFIDENCE : confidence,
+                        .quantity = (enum target_quantity)values_choice(values, "/target/quantity"),
+                        .max_seconds = isnan(most) ? INFINITY : most};
+    return !isnan(out->error);
+}
+
+double target_quantile(const struct target *target, size_t count, const struct target_part *parts,
+                       size_t point, double *standard_error) {
+    double variance = 0, square = 0;
+    for (size_t a = 0; a < count; a++) {
+        double n = (double)parts[a].done, share = parts[a].variance[point] / n;
+        variance += share;
+        square += share * share / (n - 1);
+    }
+    *standard_error = sqrt(variance);
+    if (!isfinite(variance) || variance <= 0)
+        return isnan(variance) ? (double)NAN : 0;
+    return gsl_cdf_tdist_Pinv((1 + target->confidence) / 2, variance * variance / square);
+}
+
+/* The largest variance of a part over what is allowed at a point, at one normal quantile. */
+static double relative_variance(const struct target_plan *plan, const struct target_part *part) {
+    double quantile = gsl_cdf_ugaussian_Pinv((1 + plan->target->confidence) / 2), most = 0;
+    for (size_t k = 0; k < plan->points; k++) {
+        double ratio = quantile / plan->allowed[k];
+        double variance = part->variance[k] * ratio * ratio;
+        if (isfinite(variance) && variance > most)
+            most = variance;
+    }
+    return most;
+}
+
+/* Whether the parts are as many as the plan needs at every point. */
+static bool is_enough(const struct target_plan *plan, size_t count,
+                      const struct target_part *parts) {
+    for (size_t k = 0; k < plan->points; k++) {
+        double standard_error;
+        double quantile = target_quantile(plan->target, count, parts, k, &standard_error);
+        if (quantile * standard_error > plan->allowed[k])
+            return false;
+    }
+    return true;
+}
+
+static uint64_t grown(uint64_t done, double needed) {
+    double n = (double)done;
+    if (needed <= n)
+        return done;
+    n = fmin(fmax(ceil(needed), ceil(GROWTH_LEAST * n)), GROWTH_MOST * fmax(n, 1));
+    return (uint64_t)fmin(n, REALISATIONS_MOST);
+}
+
+void target_hold(const struct target *target, size_t count, const struct target_part *parts,
+                 uint64_t *wanted) {
+    double most = target->max_seconds;
+    double spent = 0, more = 0;
+    for (size_t a = 0; a < count; a++) {
+        spent += parts[a].seconds * (double)parts[a].done;
+        more += parts[a].seconds * (double)(wanted[a] - parts[a].done);
+    }
+    if (!(spent + more > most))
+        return;
+    double share = fmax(0, (most - spent) / more);
+    for (size_t a = 0; a < count; a++)
+        wanted[a] = parts[a].done + (uint64_t)floor(share * (double)(wanted[a] - parts[a].done));
+}
+
+void target_allot(const struct target_plan *plan, size_t count, const struct target_part *parts,
+                  uint64_t *wanted) {
+    double sum = 0;
+    bool enough = is_enough(plan, count, parts), grows = false;
+    for (size_t a = 0; a < count; a++)
+        sum += sqrt(relative_variance(plan, &parts[a]) * parts[a].work);
+    for (size_t a = 0; a < count; a++) {
+        double needed = MARGIN * sum * sqrt(relative_variance(plan, &parts[a]) / parts[a].work);
+        wanted[a] = enough ? parts[a].done : grown(parts[a].done, needed);
+        grows = grows || wanted[a] > parts[a].done;
+    }
+    for (size_t a = 0; a < count && !enough && !grows; a++) /* Student's quantile asks for more */
+        wanted[a] = grown(parts[a].done, GROWTH_LEAST * (double)parts[a].done);
+    target_hold(plan->target, count, parts, wanted);
+}
+
+static double number_or(const cJSON *parameters, const char *path, double otherwise) {
+    const cJSON *value = json_at(parameters, path);
+    return cJSON_IsNumber(value) ? value->valuedouble : otherwise;
+}
+
+double target_expect(const struct study_case *one, uint64_t *out) {
+    const struct target target = {
+        .error = number_or(one->parameters, "/target/error", 1),
+        .confidence = number_or(one->parameters, "/target/confidence", CONFIDENCE),
+        .max_seconds = number_or(one->parameters, "/target/max_seconds", INFINITY)};
+    const double allowed = CHANCE_USUAL * target.error;
+    const struct target_plan plan = {&target, 1, &allowed};
+    struct target_part parts[TARGET_PARTS_MOST];
+    double variance[TARGET_PARTS_MOST];
+    size_t count = one->component_count < TARGET_PARTS_MOST ? one->component_count : 0;
+    for (size_t a = 0; a < count; a++)
+        out[a] = one->components[a].realisations;
+    bool grows = count > 0;
+    for (size_t n = 0; n < ROUNDS_MOST && grows; n++) {
+        for (size_t a = 0; a < count; a++) {
+            const struct study_case *component = &one->components[a];
+            double scatter = component->share * component->cost.relative_error;
+            variance[a] = scatter * scatter;
+            parts[a] = (struct target_part){out[a], component->cost.seconds,
+                                            component->cost.seconds, &variance[a]};
+        }
+        target_allot(&plan, count, parts, out);
+        grows = false;
+        for (size_t a = 0; a < count; a++)
+            grows = grows || out[a] > parts[a].done;
+    }
+    double seconds = 0;
+    for (size_t a = 0; a < count; a++)
+        seconds += (double)out[a] * one->components[a].cost.seconds;
+    return seconds;
+}

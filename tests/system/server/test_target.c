@@ -1,0 +1,192 @@
+/* Protects: a study that asks for an error gives the same curves, to the bit, with any number of
+ * workers, near or over HTTP, also where the program is killed between rounds and started again;
+ * it reaches what it asks for, and says so where it cannot. */
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include "tests/support/seed.h"
+#include <signal.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static uint64_t seed;
+
+/* Takes a few rounds, and about a second. */
+static const char STUDY[] =
+    "{\"name\":\"target\",\"kind\":\"contact\",\"seed\":5,\"target\":{\"error\":0.02},\"surface\":{"
+    "\"dimension\":1,\"hurst\":[0.5,0.8],\"wavelength_ratio\":2,\"rms_slope\":0.1},\"contact\":{"
+    "\"model\":\"layered\",\"pressures\":{\"to\":0.2,\"steps\":2}}}";
+
+/* The first column of the first row. Whoever opens a database after a crash keeps others out for a
+ * moment: the reader waits. */
+static void read_text(const char *database, const char *sql, char *out, size_t size) {
+    sqlite3 *db = NULL;
+    sqlite3_stmt *row = NULL;
+    assert_int_equal(sqlite3_open_v2(database, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_busy_timeout(db, 20000), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &row, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
+    snprintf(out, size, "%s", (const char *)sqlite3_column_text(row, 0));
+    sqlite3_finalize(row);
+    sqlite3_close(db);
+}
+
+static double read_number(const char *database, const char *sql) {
+    char text[64];
+    read_text(database, sql, text, sizeof text);
+    return strtod(text, NULL);
+}
+
+/* Curves without what names the run. */
+static char *curves_of(const char *database) {
+    char id[32];
+    read_text(database, "SELECT study FROM study_progress", id, sizeof id);
+    assert_int_equal(run_rugo("curves", (const char *[]){"curves", "--db", database, id, NULL}), 0);
+    char *text = slurp("curves.out"), *cases = strstr(text, "\"cases\":");
+    assert_non_null(cases);
+    memmove(text, cases, strlen(cases) + 1);
+    return text;
+}
+
+static char *expected; /* by one worker, undisturbed */
+
+static int undisturbed(void **state) {
+    (void)state;
+    seed = seed_of_now();
+    spit("study.json", STUDY);
+    assert_int_equal(run_rugo("one", (const char *[]){"run", "--db", "one.db", "--workers", "1",
+                                                      "study.json", NULL}),
+                     0);
+    expected = curves_of("one.db");
+    return 0;
+}
+
+static int cleanup(void **state) {
+    (void)state;
+    free(expected);
+    return 0;
+}
+
+static void check_same(const char *database) {
+    char *curves = curves_of(database);
+    assert_string_equal(curves, expected);
+    free(curves);
+}
+
+/* More than one round was needed: else nothing here is tested. */
+static void reaches_the_error(void **state) {
+    (void)state;
+    assert_true(read_number("one.db", "SELECT max(realisations) FROM case_components") > 64);
+    assert_true(read_number("one.db", "SELECT error_reached FROM study_progress") <= 0.02);
+    assert_true(read_number("one.db", "SELECT error_reached FROM study_progress") > 0.002);
+    assert_true(contains("one.out", "error asked 2 %, reached"));
+    check_close(read_number("one.db", "SELECT count(*) FROM case_progress"), 2, 0);
+    check_close(read_number("one.db", "SELECT percent FROM study_progress"), 100, 0);
+}
+
+static void with_four_threads(void **state) {
+    (void)state;
+    assert_int_equal(run_rugo("four", (const char *[]){"run", "--db", "four.db", "--workers", "4",
+                                                       "study.json", NULL}),
+                     0);
+    check_same("four.db");
+}
+
+static void with_two_processes(void **state) {
+    (void)state;
+    struct process workers[2];
+    assert_int_equal(
+        run_rugo("submit", (const char *[]){"submit", "--db", "two.db", "study.json", NULL}), 0);
+    for (int w = 0; w < 2; w++)
+        process_start(
+            &workers[w], w ? "b" : "a",
+            (const char *[]){"work", "--db", "two.db", "--drain", "--workers", "1", NULL});
+    for (int w = 0; w < 2; w++)
+        assert_int_equal(process_wait(&workers[w], 60), 0);
+    check_same("two.db");
+}
+
+/* Killed at random moments, some of them between a round's end and the next one's plan; its jobs
+ * come back when their leases have run out. */
+static void killed_and_started_again(void **state) {
+    (void)state;
+    static const char *const RUN[] = {"work", "--db",    "killed.db", "--drain", "--workers",
+                                      "1",    "--lease", "1",         NULL};
+    assert_int_equal(
+        run_rugo("submit", (const char *[]){"submit", "--db", "killed.db", "study.json", NULL}), 0);
+    for (int n = 0; n < 6; n++) {
+        struct process run;
+        process_start(&run, "killed", RUN);
+        sleep_ms((long)(next_word(&seed) % 300));
+        process_kill(&run, SIGKILL);
+        process_wait(&run, 20);
+    }
+    assert_int_equal(run_rugo("last", RUN), 0);
+    check_same("killed.db");
+    char text[32];
+    read_text("killed.db", "SELECT state FROM study_progress", text, sizeof text);
+    assert_string_equal(text, "done");
+}
+
+/* Rounds are planned by the server; its workers wait for them. */
+static void over_http(void **state) {
+    (void)state;
+    struct process server, workers[2];
+    char url[64];
+    unsigned port = serve_start(&server, (const char *[]){"--db", "http.db", NULL});
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    assert_int_equal(
+        run_rugo("submit", (const char *[]){"submit", "--server", url, "study.json", NULL}), 0);
+    for (int w = 0; w < 2; w++)
+        process_start(&workers[w], w ? "hb" : "ha",
+                      (const char *[]){"work", "--server", url, "--drain", "--workers", "1", NULL});
+    for (int w = 0; w < 2; w++)
+        assert_int_equal(process_wait(&workers[w], 60), 0);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 20), 0);
+    check_same("http.db");
+}
+
+/* What is named is kept, though it takes the error out of reach; and time runs out. */
+static void says_what_is_left(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_rugo("short",
+                 (const char *[]){"run", "--db", "short.db", "--set", "/target/error=0.0005",
+                                  "--set", "/target/max_seconds=0.2", "study.json", NULL}),
+        0);
+    assert_true(read_number("short.db", "SELECT error_reached FROM study_progress") > 0.0005);
+    assert_true(contains("short.out", "Not reached"));
+}
+
+/* Cancelled between rounds, a study has what it came to; retried, it goes on to the same curves. */
+static void cancelled_and_retried(void **state) {
+    (void)state;
+    char id[32];
+    assert_int_equal(
+        run_rugo("submit", (const char *[]){"submit", "--db", "back.db", "study.json", NULL}), 0);
+    read_text("back.db", "SELECT study FROM study_progress", id, sizeof id);
+    assert_int_equal(run_rugo("cancel", (const char *[]){"cancel", "--db", "back.db", id, NULL}),
+                     0);
+    assert_int_equal(run_rugo("idle", (const char *[]){"work", "--db", "back.db", "--drain", NULL}),
+                     0);
+    check_close(read_number("back.db", "SELECT realisations_done FROM study_progress"), 0, 0);
+    assert_int_equal(run_rugo("retry", (const char *[]){"retry", "--db", "back.db", id, NULL}), 0);
+    assert_int_equal(run_rugo("rest", (const char *[]){"work", "--db", "back.db", "--drain", NULL}),
+                     0);
+    check_same("back.db");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reaches_the_error),
+        cmocka_unit_test(with_four_threads),
+        cmocka_unit_test(with_two_processes),
+        cmocka_unit_test(killed_and_started_again),
+        cmocka_unit_test(over_http),
+        cmocka_unit_test(says_what_is_left),
+        cmocka_unit_test(cancelled_and_retried),
+    };
+    return cmocka_run_group_tests(tests, undisturbed, cleanup);
+}

@@ -1,0 +1,204 @@
+/* Protects: realisations of components go as the square root of variance over cost, and are enough
+ * for the error asked for; a plan depends on its arguments alone; what is done is never undone; the
+ * time there is is kept. */
+#include "jobs/kind.h"
+#include "jobs/target.h"
+#include "tests/support/check.h"
+#include <stdio.h>
+#include <string.h>
+
+static const struct target TARGET = {.error = 0.01, .confidence = 0.95, .max_seconds = INFINITY};
+
+/* Rounds until nothing is wanted; returns how many. */
+static size_t rounds(const struct target_plan *plan, size_t count, struct target_part *parts) {
+    uint64_t wanted[TARGET_PARTS_MOST];
+    for (size_t n = 0;; n++) {
+        bool grows = false;
+        target_allot(plan, count, parts, wanted);
+        for (size_t a = 0; a < count; a++) {
+            assert_true(wanted[a] >= parts[a].done);
+            grows = grows || wanted[a] > parts[a].done;
+            parts[a].done = wanted[a];
+        }
+        if (!grows)
+            return n;
+        assert_true(n < 100);
+    }
+}
+
+static double reached(size_t count, const struct target_part *parts, size_t point) {
+    double standard_error;
+    double quantile = target_quantile(&TARGET, count, parts, point, &standard_error);
+    return quantile * standard_error;
+}
+
+/* Three components far enough from their first numbers that these do not matter. */
+static void allots_by_variance_and_cost(void **state) {
+    (void)state;
+    const double base = 1, mesh = 1e-2, model = 1e-3, allowed = 0.01;
+    struct target_part parts[] = {
+        {16, 1, 1e-3, &base}, {8, 10, 1e-2, &mesh}, {8, 400, 0.4, &model}};
+    const struct target_plan plan = {&TARGET, 1, &allowed};
+    assert_true(rounds(&plan, 3, parts) > 1);
+    const double z = 1.959964;
+    double sum = sqrt(1.0 * 1) + sqrt(1e-2 * 10) + sqrt(1e-3 * 400);
+    for (size_t a = 0; a < 3; a++) {
+        double best = z * z / (allowed * allowed) * sqrt(*parts[a].variance / parts[a].work) * sum;
+        check_relative((double)parts[a].done, best, 0.12);
+    }
+    double width = reached(3, parts, 0);
+    assert_true(width <= allowed && width > 0.9 * allowed);
+}
+
+/* Each point has its own allowance: the hardest decides. A point without one is left out. */
+static void meets_every_point(void **state) {
+    (void)state;
+    const double base[] = {1, 4, 1}, mesh[] = {0.3, 0.01, 7}, allowed[] = {0.05, 0.2, NAN};
+    struct target_part parts[] = {{32, 1, 1, base}, {8, 5, 5, mesh}};
+    const struct target_plan plan = {&TARGET, 3, allowed};
+    rounds(&plan, 2, parts);
+    for (size_t k = 0; k < 2; k++)
+        assert_true(reached(2, parts, k) <= allowed[k]);
+    uint64_t wanted[2];
+    target_allot(&plan, 2, parts, wanted);
+    assert_int_equal(wanted[0], parts[0].done);
+    assert_int_equal(wanted[1], parts[1].done);
+}
+
+static void is_the_same_each_time(void **state) {
+    (void)state;
+    const double base = 1, mesh = 1e-2, allowed = 0.01;
+    const struct target_part parts[] = {{100, 3, 1, &base}, {9, 17, 1, &mesh}};
+    const struct target_plan plan = {&TARGET, 1, &allowed};
+    uint64_t first[2], again[2];
+    target_allot(&plan, 2, parts, first);
+    target_allot(&plan, 2, parts, again);
+    assert_memory_equal(first, again, sizeof first);
+    assert_true(first[0] > 100);
+}
+
+/* Few realisations of a difference widen the interval, as Student's quantile has it. */
+static void distrusts_few_realisations(void **state) {
+    (void)state;
+    const double one = 1;
+    double standard_error;
+    const struct target_part few = {4, 1, 1, &one}, many = {100000, 1, 1, &one};
+    check_close(target_quantile(&TARGET, 1, &few, 0, &standard_error), 3.182446, 1e-5);
+    check_close(standard_error, 0.5, 1e-15);
+    check_close(target_quantile(&TARGET, 1, &many, 0, &standard_error), 1.95998, 1e-4);
+}
+
+/* A round that would take longer than there is is cut, and the next adds nothing. */
+static void keeps_within_the_time(void **state) {
+    (void)state;
+    const double base = 1, allowed = 1e-3;
+    struct target target = TARGET;
+    target.max_seconds = 500;
+    struct target_part part = {100, 1, 2, &base};
+    const struct target_plan plan = {&target, 1, &allowed};
+    rounds(&plan, 1, &part);
+    assert_true(2 * (double)part.done <= 500 && part.done >= 240);
+}
+
+/* --- a study --- */
+
+static const char STUDY[] =
+    "{\"name\":\"t\",\"kind\":\"contact\",\"target\":{\"error\":0.01%s},\"surface\":{"
+    "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"rms_slope\":0.1%s},\"contact\":{"
+    "\"model\":%s%s}}";
+
+static struct study *read_study(const char *target, const char *surface, const char *model,
+                                const char *contact, struct fault_list *faults) {
+    char text[1024];
+    struct study *study = NULL;
+    struct error err = {0};
+    snprintf(text, sizeof text, STUDY, target, surface, model, contact);
+    if (kind_read_study(&study, text, strlen(text), NULL, faults, &err) != 0)
+        return NULL;
+    return study;
+}
+
+static const struct study_case *component(const struct study *study, const char *role) {
+    for (size_t a = 0; a < study->cases[0].component_count; a++)
+        if (strcmp(study->cases[0].components[a].role, role) == 0)
+            return &study->cases[0].components[a];
+    return NULL;
+}
+
+static double number_at(const struct study_case *one, const char *path) {
+    const cJSON *value = json_at(one->parameters, path);
+    return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
+}
+
+/* What the study leaves out is chosen, and no parameter of the case. */
+static void chooses_what_is_left_out(void **state) {
+    (void)state;
+    struct fault_list faults = {0};
+    struct study *study = read_study("", "", "\"full\"", "", &faults);
+    assert_non_null(study);
+    assert_int_equal(study->realisations, 0);
+    assert_int_equal(study->cases[0].component_count, 4);
+    const struct study_case *base = component(study, "base"), *cell = component(study, "cell");
+    double length = number_at(base, "/surface/length_ratio");
+    assert_true(length >= 8);
+    check_close(number_at(cell, "/surface/length_ratio"), length / 4, 0);
+    assert_true(isnan(number_at(&study->cases[0], "/surface/length_ratio")));
+    assert_int_equal(
+        cJSON_GetArraySize(json_at(component(study, "model")->parameters, "/contact/model")), 2);
+    for (size_t a = 0; a < 4; a++) {
+        const struct study_case *one = &study->cases[0].components[a];
+        assert_null(json_at(one->parameters, "/target"));
+        assert_true(one->realisations > 0 && one->cost.seconds > 0);
+    }
+    uint64_t expected[TARGET_PARTS_MOST];
+    assert_true(target_expect(&study->cases[0], expected) > 0);
+    assert_true(expected[3] > base->realisations);
+    study_destroy(&study);
+}
+
+/* What it names is kept: no cell beside the named one, no mesh beyond the named level. */
+static void keeps_what_is_named(void **state) {
+    (void)state;
+    struct fault_list faults = {0};
+    struct study *study =
+        read_study("", ",\"length_ratio\":6", "\"layered\"",
+                   ",\"levels\":[8],\"tolerance\":1e-6,\"block_height\":{\"lengths\":2}", &faults);
+    assert_non_null(study);
+    assert_null(component(study, "cell"));
+    const struct study_case *base = component(study, "base"), *model = component(study, "model");
+    check_close(number_at(base, "/surface/length_ratio"), 6, 0);
+    check_close(number_at(base, "/contact/tolerance"), 1e-6, 0);
+    check_close(number_at(base, "/contact/block_height/lengths"), 2, 0);
+    check_close(number_at(model, "/contact/block_height/lengths"),
+                2 * 6 / number_at(model, "/surface/length_ratio"), 1e-12);
+    const cJSON *levels = json_at(component(study, "mesh")->parameters, "/contact/levels");
+    check_close(cJSON_GetArrayItem(levels, cJSON_GetArraySize(levels) - 1)->valuedouble, 8, 0);
+    study_destroy(&study);
+}
+
+static void tells_faults(void **state) {
+    (void)state;
+    static const struct {
+        const char *target, *model, *text;
+    } WRONG[] = {{",\"confidence\":2", "\"halfspace\"", "confidence"},
+                 {",\"eror\":1", "\"halfspace\"", "eror"},
+                 {"", "[\"halfspace\",\"full\"]", "one model"}};
+    for (size_t a = 0; a < sizeof WRONG / sizeof *WRONG; a++) {
+        struct fault_list faults = {0};
+        assert_null(read_study(WRONG[a].target, "", WRONG[a].model, "", &faults));
+        assert_true(faults.count > 0);
+        assert_true(strstr(faults.faults[0].detail, WRONG[a].text) != NULL ||
+                    strstr(faults.faults[0].pointer, WRONG[a].text) != NULL);
+        fault_list_clear(&faults);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(allots_by_variance_and_cost), cmocka_unit_test(meets_every_point),
+        cmocka_unit_test(is_the_same_each_time),       cmocka_unit_test(distrusts_few_realisations),
+        cmocka_unit_test(keeps_within_the_time),       cmocka_unit_test(chooses_what_is_left_out),
+        cmocka_unit_test(keeps_what_is_named),         cmocka_unit_test(tells_faults),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
