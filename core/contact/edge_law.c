@@ -126,14 +126,24 @@ struct pairs {
     size_t inside_count, outside_count;
 };
 
-static int by_field(const void *a, const void *b) {
-    double first = ((const struct pair *)a)->field, second = ((const struct pair *)b)->field;
-    return (first > second) - (first < second);
+/* By Shell's method, which needs no memory. */
+static void sort_pairs(struct pair *pairs, size_t count) {
+    size_t gap = 1;
+    while (gap < count / 3)
+        gap = 3 * gap + 1;
+    for (; gap > 0; gap /= 3)
+        for (size_t a = gap; a < count; a++) {
+            struct pair moved = pairs[a];
+            size_t b = a;
+            for (; b >= gap && pairs[b - gap].field > moved.field; b -= gap)
+                pairs[b] = pairs[b - gap];
+            pairs[b] = moved;
+        }
 }
 
 static void fill_table(struct pair *pairs, size_t count, double *table) {
     size_t a = 0;
-    qsort(pairs, count, sizeof *pairs, by_field);
+    sort_pairs(pairs, count);
     for (size_t k = 0; k < EDGE_SAMPLES; k++) {
         double root = (double)k / EDGE_SAMPLES_A_UNIT, field = root * root;
         while (a + 2 < count && pairs[a + 1].field <= field)
