@@ -1,6 +1,7 @@
 #include "jobs/estimate.h"
 #include "core/sum.h"
 #include <math.h>
+#include <stdbool.h>
 
 static double weight_of(const double *x, const double *weight, size_t r) {
     if (!isfinite(x[r]))
@@ -37,4 +38,58 @@ struct estimate estimate_mean(size_t n, const double *x) {
 
 struct estimate estimate_weighted(size_t n, const double *x, const double *weight) {
     return estimate_ratio(n, x, weight);
+}
+
+/* What a realisation adds to a mean of a pair: its weighed deviation over the mean weight. */
+struct column_mean {
+    double mean, weight;
+};
+
+static bool is_pair(const struct estimate_column *a, const struct estimate_column *b, size_t r) {
+    return weight_of(a->x, a->weight, r) > 0 && weight_of(b->x, b->weight, r) > 0;
+}
+
+static struct column_mean mean_of(size_t n, const struct estimate_column *column,
+                                  const struct estimate_column *other, size_t *pairs) {
+    struct sum weights = {0, 0}, products = {0, 0};
+    *pairs = 0;
+    for (size_t r = 0; r < n; r++) {
+        if (!is_pair(column, other, r))
+            continue;
+        double w = weight_of(column->x, column->weight, r);
+        sum_add(&weights, w);
+        sum_add(&products, w * column->x[r]);
+        (*pairs)++;
+    }
+    double total = sum_value(&weights);
+    return (struct column_mean){sum_value(&products) / total, total / (double)*pairs};
+}
+
+static double deviation_of(const struct estimate_column *column, const struct column_mean *mean,
+                           size_t r) {
+    return weight_of(column->x, column->weight, r) * (column->x[r] - mean->mean) / mean->weight;
+}
+
+/* The error of a difference of two ratios over the same realisations: that of the mean of their
+ * linear parts (Cochran 1977, section 2.11). Without weights it is that of the mean difference. */
+struct pair_estimate estimate_pairs(size_t n, const struct estimate_column *minuend,
+                                    const struct estimate_column *subtrahend) {
+    struct pair_estimate out = {NAN, NAN, NAN, 0};
+    struct column_mean a = mean_of(n, minuend, subtrahend, &out.pairs);
+    struct column_mean b = mean_of(n, subtrahend, minuend, &out.pairs);
+    struct sum squares = {0, 0};
+    double m = (double)out.pairs;
+    if (out.pairs > 0)
+        out.value = a.mean - b.mean;
+    if (out.pairs < 2)
+        return out;
+    for (size_t r = 0; r < n; r++) {
+        if (!is_pair(minuend, subtrahend, r))
+            continue;
+        double d = deviation_of(minuend, &a, r) - deviation_of(subtrahend, &b, r);
+        sum_add(&squares, d * d);
+    }
+    out.deviation = sqrt(sum_value(&squares) / (m - 1));
+    out.standard_error = out.deviation / sqrt(m);
+    return out;
 }

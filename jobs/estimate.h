@@ -15,4 +15,18 @@ struct estimate estimate_mean(size_t n, const double *x);
  * realisation. Ratio estimator (Cochran 1977, section 2.11). Entries with weight 0 are left out. */
 struct estimate estimate_weighted(size_t n, const double *x, const double *weight);
 
+/* A number of a realisation in each of two cases, of n realisations that both have; weights as of
+ * estimate_weighted, NULL: all 1. */
+struct estimate_column {
+    const double *x, *weight;
+};
+/* The mean of one case less that of the other, over the pairs in which both have a value: */
+struct pair_estimate {
+    double value, standard_error; /* NaN as of struct estimate */
+    double deviation;             /* of the difference of one pair */
+    size_t pairs;
+};
+struct pair_estimate estimate_pairs(size_t n, const struct estimate_column *minuend,
+                                    const struct estimate_column *subtrahend);
+
 #endif

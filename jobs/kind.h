@@ -21,6 +21,12 @@
 #include <cjson/cJSON.h>
 #include <stdint.h>
 
+/* Of each realisation of a tally, in their order: values[r * stride]. NaN: none. */
+struct point_values {
+    const double *values; /* borrowed */
+    size_t stride;
+};
+
 struct realisations; /* realisations.h */
 struct result_view;  /* schema/result/view.h */
 struct surface_case; /* surface_case.h */
@@ -110,6 +116,16 @@ struct job_kind {
      * "error_reached". A function of its arguments alone. NULL where expand is. */
     int (*answer)(const cJSON *parameters, size_t count, const struct target_component *components,
                   uint64_t *wanted, struct case_result *out, struct error *err);
+    /* --- what differences of cases by pairs of realisations are made of --- */
+    /* Finds what point `at` of a curve of the case is the mean of; false where it is not kept.
+     * NULL: of no curve. */
+    bool (*point_values)(const void *tally, const struct curve *curve, size_t at,
+                         struct point_values *out);
+    /* Fills, of each realisation in their order, the value and weight (1 before the call) whose
+     * weighed mean a scalar is. NULL: plain means of the scalars of realisations. */
+    int (*scalar_values)(const void *tally, const struct realisations *realisations, size_t scalar,
+                         double *values, double *weights, struct error *err);
+
     /* Makes the theories that curves of such a case name without holding them. NULL: there are
      * none. */
     int (*complete)(const void *study, const struct surface_basis *basis,

@@ -3,6 +3,7 @@
 #include "jobs/realisations.h"
 #include "jobs/surface_case.h"
 #include <stdlib.h>
+#include <string.h>
 
 struct job_merger {
     const struct job_kind *kind;
@@ -131,6 +132,37 @@ const void *merger_case(const struct job_merger *merger) {
 const void *merger_tally(const struct job_merger *merger, uint64_t *realisations) {
     *realisations = merger->realisations.count;
     return merger->tally;
+}
+
+const struct realisations *merger_realisations(const struct job_merger *merger) {
+    return &merger->realisations;
+}
+
+bool merger_point(const struct job_merger *merger, const struct curve *curve, size_t at,
+                  struct point_values *out) {
+    return merger->kind->point_values != NULL &&
+           merger->kind->point_values(merger->tally, curve, at, out);
+}
+
+int merger_scalar(const struct job_merger *merger, size_t scalar, double *values, double *weights,
+                  struct error *err) {
+    const struct realisations *set = &merger->realisations;
+    for (uint64_t r = 0; r < set->count; r++)
+        weights[r] = 1;
+    if (merger->kind->scalar_values != NULL)
+        return merger->kind->scalar_values(merger->tally, set, scalar, values, weights, err);
+    realisations_column(set, scalar, values);
+    return 0;
+}
+
+bool merger_find_scalar(const struct job_merger *merger, const char *name, size_t *scalar) {
+    const char *other;
+    for (size_t a = 0; (other = merger->kind->scalar(a)) != NULL; a++)
+        if (strcmp(name, other) == 0) {
+            *scalar = a;
+            return true;
+        }
+    return false;
 }
 
 static bool is_complete(const struct case_result *result) {

@@ -23,6 +23,15 @@ int merger_result(const struct job_merger *merger, struct case_result *out, stru
 /* The kind's case and tally, and the realisations in it; borrowed. */
 const void *merger_case(const struct job_merger *merger);
 const void *merger_tally(const struct job_merger *merger, uint64_t *realisations);
+/* What pairs.h needs: the realisations that were added, in their order, and, as job_kind tells
+ * them, the values of a point of a curve and of a scalar (of each realisation, with its weight). */
+const struct realisations *merger_realisations(const struct job_merger *merger);
+bool merger_point(const struct job_merger *merger, const struct curve *curve, size_t at,
+                  struct point_values *out);
+int merger_scalar(const struct job_merger *merger, size_t scalar, double *values, double *weights,
+                  struct error *err);
+/* Returns the number of a scalar of a realisation; false for another name. */
+bool merger_find_scalar(const struct job_merger *merger, const char *name, size_t *scalar);
 /* Makes the theories that the curves of such a case name without holding them. */
 int merger_complete(const struct job_kind *kind, const cJSON *parameters,
                     struct case_result *result, struct error *err);

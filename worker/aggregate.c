@@ -19,18 +19,30 @@ static int merge_block(void *context, const struct block_result *block, struct e
     return status != 0 ? status : merger_add(merge->merger, block, err);
 }
 
-/* Merges all stored blocks of a case in the order of their realisations. */
-static int merge_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
-                      const cJSON *parameters, struct case_result *out, struct error *err) {
+int aggregate_merge(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                    const cJSON *parameters, struct job_merger **out, struct case_result *result,
+                    struct error *err) {
     struct merge merge = {.kind = aggregate->kind};
     int status = merger_create(&merge.merger, merge.kind, parameters, err);
     if (status != 0)
         return status;
     status = store_results(store, aggregate->about.id, case_number, merge_block, &merge, err);
     if (status == 0)
-        status = merger_result(merge.merger, out, err);
-    merger_destroy(&merge.merger);
-    return status != 0 ? error_context(err, "case %llu", (unsigned long long)case_number) : 0;
+        status = merger_result(merge.merger, result, err);
+    if (status != 0) {
+        merger_destroy(&merge.merger);
+        return error_context(err, "case %llu", (unsigned long long)case_number);
+    }
+    *out = merge.merger;
+    return 0;
+}
+
+static int merge_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                      const cJSON *parameters, struct case_result *out, struct error *err) {
+    struct job_merger *merger = NULL;
+    int status = aggregate_merge(store, aggregate, case_number, parameters, &merger, out, err);
+    merger_destroy(&merger);
+    return status;
 }
 
 /* Of a case that asks for an error: what its components have come to. *found is false where it has
@@ -282,9 +294,8 @@ int aggregate_case_report(struct store *store, const struct aggregate *aggregate
 
 /* --- whole studies --- */
 
-/* Copies what an aggregate tells of its study; the caller clears it. */
-static int copy_head(const struct aggregate *aggregate, struct study_result *out,
-                     struct error *err) {
+int aggregate_copy_head(const struct aggregate *aggregate, struct study_result *out,
+                        struct error *err) {
     const struct study_result head = aggregate_head(aggregate);
     out->id = strdup(head.id);
     out->name = strdup(head.name);
@@ -308,7 +319,7 @@ static int read_cases(struct store *store, const struct aggregate *aggregate,
     uint64_t end = one ? first + 1 : aggregate->about.cases;
     bool answered = false;
     study->cases = array_create((size_t)(end - first), sizeof *study->cases);
-    int status = copy_head(aggregate, study, err);
+    int status = aggregate_copy_head(aggregate, study, err);
     if (status == 0 && study->cases == NULL)
         status = error_memory(err, (size_t)(end - first) * sizeof *study->cases, "results");
     for (uint64_t c = first; c < end && status == 0; c++) {
@@ -349,7 +360,7 @@ int aggregate_report(struct store *store, const char *study, struct study_report
         return status;
     report.time = aggregate.about.time;
     report.cases = array_create((size_t)aggregate.about.cases, sizeof *report.cases);
-    status = copy_head(&aggregate, &head, err);
+    status = aggregate_copy_head(&aggregate, &head, err);
     report.id = head.id;
     report.name = head.name;
     report.kind = head.kind;

@@ -6,6 +6,7 @@
 #include "schema/store/store.h"
 
 struct job_kind;
+struct job_merger;
 
 /* A study that is read case by case: by whoever sends it as it reads, or may be stopped in between.
  * The store may be another handle each time. */
@@ -19,6 +20,10 @@ void aggregate_end(struct aggregate *aggregate);
 /* What a document of the study begins with (study_print_head); borrows from the aggregate. */
 struct study_result aggregate_head(const struct aggregate *aggregate);
 
+/* Copies it into an empty document, which the caller clears, also after a failure. */
+int aggregate_copy_head(const struct aggregate *aggregate, struct study_result *out,
+                        struct error *err);
+
 /* A filter says which cases are asked for, and what of them. */
 struct result_filter {
     int64_t case_number; /* -1: all */
@@ -31,6 +36,11 @@ struct result_filter {
  * which has begun does not have. */
 int aggregate_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
                    const struct result_filter *filter, struct case_result *out, struct error *err);
+/* Merges all stored blocks of a case in the order of their realisations; fills an empty result from
+ * the merger, which is the caller's to destroy. */
+int aggregate_merge(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
+                    const cJSON *parameters, struct job_merger **out, struct case_result *result,
+                    struct error *err);
 int aggregate_case_report(struct store *store, const struct aggregate *aggregate,
                           uint64_t case_number, struct case_report *out, struct error *err);
 /* Merges what a case has and publishes it; or, of one that asks for an error and has not reached

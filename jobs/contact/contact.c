@@ -1,6 +1,7 @@
 /* The kind "contact": rough elastic blocks pressed on a rigid flat, a scene over models (model.h).
  */
 #include "jobs/contact/contact_curves.h"
+#include "jobs/contact/contact_pairs.h"
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/contact_target.h"
@@ -125,6 +126,17 @@ static int result(const void *one_case, const struct surface_basis *basis, const
     return status != 0 ? status : notes_result(&contact->notes, out, err);
 }
 
+static bool point_values(const void *tally, const struct curve *curve, size_t at,
+                         struct point_values *out) {
+    return contact_point_values(tally, curve, at, out);
+}
+
+static int scalar_values(const void *tally, const struct realisations *realisations, size_t scalar,
+                         double *values, double *weights, struct error *err) {
+    (void)weights;
+    return contact_scalar_values(tally, realisations, scalar, values, err);
+}
+
 /* The first model that has a mesh writes it. */
 static int write_mesh(const char *path, const void *one_case, const double *z, double pressure,
                       struct error *err) {
@@ -172,5 +184,7 @@ const struct job_kind CONTACT_KIND = {
     .belongs = belongs,
     .result = result,
     .answer = contact_target_answer,
+    .point_values = point_values,
+    .scalar_values = scalar_values,
     .write_mesh = write_mesh,
 };

@@ -208,19 +208,31 @@ static int put_measure(const struct contact_tally *tally, enum contact_measure m
     return 0;
 }
 
+bool contact_scalar_fit(const struct contact_tally *tally, size_t scalar, enum contact_measure *fit,
+                        size_t *loads) {
+    switch (scalar) {
+    case CONTACT_SCALAR_KAPPA:
+        *fit = MEASURE_KAPPA;
+        *loads = loads_within(tally, LIGHT_LOAD_MOST);
+        return true;
+    case CONTACT_SCALAR_POWER_LAW_A:
+    case CONTACT_SCALAR_POWER_LAW_B:
+        *fit = scalar == CONTACT_SCALAR_POWER_LAW_A ? MEASURE_POWER_LAW_A : MEASURE_POWER_LAW_B;
+        *loads = loads_within(tally, POWER_LAW_MOST);
+        return true;
+    default:
+        return false;
+    }
+}
+
 /* Replaces the mean over realisations of what the tally holds at a load. */
 static int put_tallied(const struct contact_tally *tally, size_t scalar, struct scalar *out,
                        struct error *err) {
-    size_t all = tally->one_case->load_count;
+    size_t all = tally->one_case->load_count, loads;
+    enum contact_measure fit;
+    if (contact_scalar_fit(tally, scalar, &fit, &loads))
+        return put_measure(tally, fit, loads, out, err);
     switch (scalar) {
-    case CONTACT_SCALAR_KAPPA:
-        return put_measure(tally, MEASURE_KAPPA, loads_within(tally, LIGHT_LOAD_MOST), out, err);
-    case CONTACT_SCALAR_POWER_LAW_A:
-        return put_measure(tally, MEASURE_POWER_LAW_A, loads_within(tally, POWER_LAW_MOST), out,
-                           err);
-    case CONTACT_SCALAR_POWER_LAW_B:
-        return put_measure(tally, MEASURE_POWER_LAW_B, loads_within(tally, POWER_LAW_MOST), out,
-                           err);
     case CONTACT_SCALAR_AREA_LAST:
         return put_measure(tally, MEASURE_EDGES, all, out, err);
     case CONTACT_SCALAR_GAP_LAST:

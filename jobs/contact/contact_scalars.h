@@ -46,4 +46,9 @@ int contact_scalars(const struct contact_case *one_case, const struct moments *m
                     const struct contact_tally *tally, const struct realisations *realisations,
                     struct case_result *out, struct error *err);
 
+/* Returns whether a scalar is a fit over loads, which one, and over how many loads from the
+ * lightest on. */
+bool contact_scalar_fit(const struct contact_tally *tally, size_t scalar, enum contact_measure *fit,
+                        size_t *loads);
+
 #endif

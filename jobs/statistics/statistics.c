@@ -127,6 +127,12 @@ static int result(const void *one_case, const struct surface_basis *basis, const
     return status;
 }
 
+static int scalar_values(const void *tally, const struct realisations *realisations, size_t scalar,
+                         double *values, double *weights, struct error *err) {
+    (void)tally;
+    return statistics_scalar_values(realisations, scalar, values, weights, err);
+}
+
 static int complete(const void *one_case, const struct surface_basis *basis,
                     struct case_result *out, struct error *err) {
     return statistics_curves_complete(one_case, basis->moments.nayak_alpha, out, err);
@@ -159,5 +165,6 @@ const struct job_kind STATISTICS_KIND = {
     .adds_up = adds_up,
     .belongs = belongs,
     .result = result,
+    .scalar_values = scalar_values,
     .complete = complete,
 };

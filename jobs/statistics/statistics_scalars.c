@@ -106,18 +106,44 @@ static const double *column(const struct scalar_columns *columns, enum statistic
     return columns->values + (size_t)scalar * columns->n;
 }
 
+static bool is_of_summits(size_t scalar) {
+    return scalar >= SCALAR_SUMMIT_HEIGHT_MEAN && scalar <= SCALAR_SUMMIT_CURVATURE_MEAN;
+}
+
+/* Variances about the means of n realisations become those about the mean over all their summits.
+ */
+static void centre(size_t n, const double *mean, const double *number, double *variance) {
+    double common = estimate_weighted(n, mean, number).value;
+    for (size_t r = 0; r < n; r++)
+        variance[r] += (mean[r] - common) * (mean[r] - common);
+}
+
 /* Over all summits of the case; the variance about the common mean, which it replaces. */
 static struct estimate summit_estimate(const struct scalar_columns *columns,
                                        enum statistics_scalar scalar) {
     const double *number = column(columns, SCALAR_SUMMITS);
+    if (scalar == SCALAR_SUMMIT_HEIGHT_VARIANCE)
+        centre(columns->n, column(columns, SCALAR_SUMMIT_HEIGHT_MEAN), number,
+               columns->values + (size_t)scalar * columns->n);
+    return estimate_weighted(columns->n, column(columns, scalar), number);
+}
+
+int statistics_scalar_values(const struct realisations *realisations, size_t scalar, double *values,
+                             double *weights, struct error *err) {
+    size_t n = (size_t)realisations->count;
+    realisations_column(realisations, scalar, values);
+    if (!is_of_summits(scalar))
+        return 0;
+    realisations_column(realisations, SCALAR_SUMMITS, weights);
     if (scalar != SCALAR_SUMMIT_HEIGHT_VARIANCE)
-        return estimate_weighted(columns->n, column(columns, scalar), number);
-    const double *mean = column(columns, SCALAR_SUMMIT_HEIGHT_MEAN);
-    double *variance = columns->values + (size_t)scalar * columns->n;
-    double common = estimate_weighted(columns->n, mean, number).value;
-    for (size_t r = 0; r < columns->n; r++)
-        variance[r] += (mean[r] - common) * (mean[r] - common);
-    return estimate_weighted(columns->n, variance, number);
+        return 0;
+    double *mean = array_create(n, sizeof *mean);
+    if (mean == NULL)
+        return error_memory(err, n * sizeof *mean, "scalars");
+    realisations_column(realisations, SCALAR_SUMMIT_HEIGHT_MEAN, mean);
+    centre(n, mean, weights, values);
+    free(mean);
+    return 0;
 }
 
 /* Fills in what theory expects of the summits. */
@@ -185,7 +211,7 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
         struct estimate estimate;
         if (exact && a >= SCALAR_M0 && a <= SCALAR_NAYAK_ALPHA)
             estimate = (struct estimate){prescribed[a - SCALAR_M0], 0};
-        else if (a >= SCALAR_SUMMIT_HEIGHT_MEAN && a <= SCALAR_SUMMIT_CURVATURE_MEAN)
+        else if (is_of_summits(a))
             estimate = summit_estimate(columns, a);
         else
             estimate = estimate_mean(columns->n, column(columns, a));

@@ -58,4 +58,8 @@ int statistics_scalars(const struct statistics_case *one_case, const struct mome
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err);
 
+/* Fills the values of a scalar and their weights, as job_kind asks for them. */
+int statistics_scalar_values(const struct realisations *realisations, size_t scalar, double *values,
+                             double *weights, struct error *err);
+
 #endif

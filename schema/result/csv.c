@@ -4,13 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Theories of any of the curves printed get a column each. Names are borrowed. */
-struct theory_columns {
-    size_t count;
+/* Theories of any of the curves printed get a column each, and so does what differences have. Names
+ * are borrowed. */
+struct columns {
+    size_t count;       /* of theories */
     const char **names; /* owned: room for every theory of every curve */
+    bool difference;
 };
 
-static void collect_theories(struct theory_columns *columns, const struct curve *curve) {
+static void collect_theories(struct columns *columns, const struct curve *curve) {
+    columns->difference = columns->difference || curve->minuend != NULL;
     for (size_t t = 0; t < curve->theory_count; t++) {
         size_t n = 0;
         while (n < columns->count && strcmp(columns->names[n], curve->theories[t].name) != 0)
@@ -60,12 +63,22 @@ static double theory_at(const struct curve *curve, const char *name, size_t at) 
     return NAN;
 }
 
+/* What a difference has beside it; empty where a curve is none. */
+static void print_difference(FILE *file, const struct case_result *one, const struct curve *curve,
+                             size_t n) {
+    bool difference = curve->minuend != NULL;
+    print_field(file, difference ? (double)one->less : (double)NAN);
+    print_field(file, difference ? curve->minuend[n] : (double)NAN);
+    print_field(file, difference ? curve->subtrahend[n] : (double)NAN);
+    fputs(!difference ? "," : curve->paired ? ",true" : ",false", file);
+}
+
 /* Prints value number `n` of the curve: a point, or an occupied cell of a matrix. */
-static void print_line(FILE *file, uint64_t case_number, const struct curve *curve, size_t n,
-                       const struct theory_columns *theories) {
+static void print_line(FILE *file, const struct case_result *one, const struct curve *curve,
+                       size_t n, const struct columns *columns) {
     bool matrix = curve->columns > 0;
     size_t at = matrix ? curve->cells[n] : n;
-    print_labels(file, case_number, curve);
+    print_labels(file, one->case_number, curve);
     print_field(file, curve->x[matrix ? at / curve->columns : n]);
     print_field(file, matrix ? curve->x2[at % curve->columns] : (double)NAN);
     print_field(file, curve->y[n]);
@@ -77,12 +90,14 @@ static void print_line(FILE *file, uint64_t case_number, const struct curve *cur
         print_field(file, bound != NULL ? bound[n] : (double)NAN);
     }
     print_field(file, curve->valueless != NULL && !matrix ? curve->valueless[n] : (double)NAN);
-    for (size_t t = 0; t < theories->count; t++)
-        print_field(file, theory_at(curve, theories->names[t], at));
+    if (columns->difference)
+        print_difference(file, one, curve, n);
+    for (size_t t = 0; t < columns->count; t++)
+        print_field(file, theory_at(curve, columns->names[t], at));
     fputc('\n', file);
 }
 
-static void print_heading(FILE *file, const struct theory_columns *theories) {
+static void print_heading(FILE *file, const struct columns *columns) {
     fputs("case,quantity", file);
     const struct curve_attribute *row;
     for (size_t n = 0; (row = curve_column(n)) != NULL; n++)
@@ -91,8 +106,10 @@ static void print_heading(FILE *file, const struct theory_columns *theories) {
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         fprintf(file, ",%s,%s", ERROR_SOURCE_ROWS[s].key, ERROR_SOURCE_ROWS[s].bound_key);
     fputs(",valueless", file);
-    for (size_t t = 0; t < theories->count; t++)
-        fprintf(file, ",theory_%s", theories->names[t]);
+    if (columns->difference)
+        fputs(",less,minuend,subtrahend,paired", file);
+    for (size_t t = 0; t < columns->count; t++)
+        fprintf(file, ",theory_%s", columns->names[t]);
     fputc('\n', file);
 }
 
@@ -106,22 +123,22 @@ static size_t theories_most(size_t case_count, const struct case_result *cases) 
 
 bool csv_print(FILE *file, size_t case_count, const struct case_result *cases,
                const struct curve *only) {
-    struct theory_columns theories = {
-        .names = array_create(theories_most(case_count, cases), sizeof *theories.names)};
-    if (theories.names == NULL)
+    struct columns columns = {
+        .names = array_create(theories_most(case_count, cases), sizeof *columns.names)};
+    if (columns.names == NULL)
         return false;
     for (size_t c = 0; c < case_count; c++)
         for (size_t a = 0; a < cases[c].curve_count; a++)
             if (only == NULL || only == &cases[c].curves[a])
-                collect_theories(&theories, &cases[c].curves[a]);
-    print_heading(file, &theories);
+                collect_theories(&columns, &cases[c].curves[a]);
+    print_heading(file, &columns);
     for (size_t c = 0; c < case_count; c++)
         for (size_t a = 0; a < cases[c].curve_count; a++) {
             const struct curve *curve = &cases[c].curves[a];
             size_t count = curve->columns > 0 ? curve->cell_count : curve->n;
             for (size_t n = 0; n < count && (only == NULL || only == curve); n++)
-                print_line(file, cases[c].case_number, curve, n, &theories);
+                print_line(file, &cases[c], curve, n, &columns);
         }
-    free(theories.names);
+    free(columns.names);
     return true;
 }

@@ -1,8 +1,9 @@
 /* Curves as one table for spreadsheets and plotting programs (RFC 4180, but lines end with LF): a
  * line a point, of a matrix a line an occupied cell. Columns: case, quantity, the attributes of
  * CURVE_ATTRIBUTES that stand in tables, x, x2, y, standard_error, a column a source of
- * ERROR_SOURCE_ROWS, valueless, and theory_NAME for each theory of the curves printed. Numbers read
- * back to the same doubles; what cannot be had is empty. */
+ * ERROR_SOURCE_ROWS, valueless, of differences less (the case
+ * taken off), minuend, subtrahend and paired, and theory_NAME for each theory of the curves
+ * printed. Numbers read back to the same doubles; what cannot be had is empty. */
 #ifndef RUGO_SCHEMA_RESULT_CSV_H
 #define RUGO_SCHEMA_RESULT_CSV_H
 

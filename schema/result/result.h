@@ -86,7 +86,10 @@ struct curve {
     size_t theory_count;
     struct theory theories[THEORIES_MOST]; /* of a matrix: dense, n x columns */
     struct curve_error errors[ERROR_SOURCES];
-    const double *valueless;    /* realisations that have no value at a point; NULL: not told */
+    const double *valueless; /* realisations that have no value at a point; NULL: not told */
+    /* Of a difference of two cases: their values, n each; NULL: none. */
+    const double *minuend, *subtrahend;
+    bool paired;                /* of a difference: its standard error is that of pairs */
     bool counted;               /* from a histogram: with what fell outside of the bins */
     double underflow, overflow; /* counts */
 };
@@ -123,6 +126,8 @@ struct scalar {
     const char *name;
     double value, standard_error; /* NaN: none */
     double theory;                /* NaN: none */
+    bool difference, paired;      /* as of curves */
+    double minuend, subtrahend;   /* of a difference */
     struct scalar_error errors[ERROR_SOURCES];
 };
 /* A scalar on which no source of error bears. */
@@ -149,6 +154,9 @@ struct case_result {
     struct curve *curves; /* those of one quantity together, in the order of the kind */
     struct result_note *notes;
     uint64_t notes_all; /* kept or not */
+    bool difference;    /* of case_number less the case `less` (difference.h) */
+    uint64_t less;
+    const char *remark; /* of a difference: what is not in it; NULL: nothing */
     const char *error;  /* why there are no results though there are realisations; NULL: none */
     struct arena *arena;
 };

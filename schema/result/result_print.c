@@ -21,6 +21,12 @@ static bool put_number(FILE *file, bool *first, const char *key, double number) 
     return done;
 }
 
+static bool put_flag(FILE *file, bool *first, const char *key, bool flag) {
+    bool done = put_key(file, first, key);
+    fputs(flag ? "true" : "false", file);
+    return done;
+}
+
 static void print_numbers(FILE *file, size_t n, const double *numbers) {
     fputc('[', file);
     for (size_t a = 0; a < n; a++) {
@@ -152,6 +158,10 @@ static bool print_curve(FILE *file, const struct curve *curve) {
     if (done && curve->valueless != NULL)
         done = put_numbers(file, &first, "valueless", curve->n, curve->valueless);
     done = done && put_text(file, &first, "y_label", curve->y_label);
+    if (done && curve->minuend != NULL)
+        done = put_numbers(file, &first, "minuend", curve->n, curve->minuend) &&
+               put_numbers(file, &first, "subtrahend", curve->n, curve->subtrahend) &&
+               put_flag(file, &first, "paired", curve->paired);
     fputc('}', file);
     return done;
 }
@@ -201,6 +211,10 @@ static bool print_scalar(FILE *file, const struct scalar *scalar) {
                 (isnan(scalar->theory) || put_number(file, &first, "theory", scalar->theory));
     for (size_t s = 0; s < ERROR_SOURCES && done; s++)
         done = put_scalar_error(file, &first, &scalar->errors[s], &ERROR_SOURCE_ROWS[s]);
+    if (done && scalar->difference)
+        done = put_number(file, &first, "minuend", scalar->minuend) &&
+               put_number(file, &first, "subtrahend", scalar->subtrahend) &&
+               put_flag(file, &first, "paired", scalar->paired);
     fputc('}', file);
     return done;
 }
@@ -221,8 +235,14 @@ bool result_print_error(FILE *file, const struct case_result *result) {
 }
 
 bool result_print(FILE *file, const struct case_result *result) {
-    fprintf(file, "{\"case\":%llu,\"parameters\":", (unsigned long long)result->case_number);
-    bool done = result_print_parameters(file, result->parameter_count, result->parameters);
+    bool first = false, done = true;
+    fprintf(file, "{\"case\":%llu", (unsigned long long)result->case_number);
+    if (result->difference)
+        fprintf(file, ",\"less\":%llu", (unsigned long long)result->less);
+    if (result->remark != NULL)
+        done = put_text(file, &first, "remark", result->remark);
+    fputs(",\"parameters\":", file);
+    done = done && result_print_parameters(file, result->parameter_count, result->parameters);
     fprintf(file, ",\"realisations\":%llu,\"scalars\":", (unsigned long long)result->realisations);
     done = done && print_scalars(file, result);
     fputs(",\"curves\":[", file);

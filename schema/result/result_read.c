@@ -181,6 +181,14 @@ static int read_points(const struct reading *reading, const cJSON *object, struc
     return status != 0 ? status : read_matrix(reading, object, curve);
 }
 
+static int read_difference(const struct reading *reading, const cJSON *object,
+                           struct curve *curve) {
+    int status = read_numbers(reading, object, "minuend", curve->n, &curve->minuend);
+    curve->paired = cJSON_IsTrue(field_at(object, "paired"));
+    return status != 0 ? status
+                       : read_numbers(reading, object, "subtrahend", curve->n, &curve->subtrahend);
+}
+
 static int read_curve(const struct reading *reading, const cJSON *object) {
     struct curve curve = {0};
     int status = read_text(reading, object, "quantity", &curve.quantity);
@@ -198,6 +206,8 @@ static int read_curve(const struct reading *reading, const cJSON *object) {
         status = read_theories(reading, object, &curve);
     if (status == 0 && field_at(object, "valueless") != NULL)
         status = read_numbers(reading, object, "valueless", curve.n, &curve.valueless);
+    if (status == 0 && field_at(object, "minuend") != NULL)
+        status = read_difference(reading, object, &curve);
     curve.counted = field_at(object, "underflow") != NULL;
     curve.underflow = field_number(object, "underflow");
     curve.overflow = field_number(object, "overflow");
@@ -226,7 +236,11 @@ static int read_scalars(const struct reading *reading, const cJSON *scalars) {
         struct scalar scalar = {.name = result_text(reading->result, item->string),
                                 .value = field_number(item, "value"),
                                 .standard_error = field_number(item, "standard_error"),
-                                .theory = field_number(item, "theory")};
+                                .theory = field_number(item, "theory"),
+                                .difference = field_at(item, "minuend") != NULL,
+                                .paired = cJSON_IsTrue(field_at(item, "paired")),
+                                .minuend = field_number(item, "minuend"),
+                                .subtrahend = field_number(item, "subtrahend")};
         read_scalar_errors(item, &scalar);
         status = scalar.name != NULL ? result_add_scalar(reading->result, &scalar, reading->err)
                                      : no_memory(reading);
@@ -305,6 +319,11 @@ int result_read(const cJSON *document, struct case_result *out, struct error *er
     int status = read_count(&reading, document, "case", &result.case_number);
     if (status == 0)
         status = read_count(&reading, document, "realisations", &result.realisations);
+    result.difference = field_at(document, "less") != NULL;
+    if (status == 0 && result.difference)
+        status = read_count(&reading, document, "less", &result.less);
+    if (status == 0 && field_at(document, "remark") != NULL)
+        status = read_text(&reading, document, "remark", &result.remark);
     if (status == 0)
         status = result_read_parameters(&result, field_at(document, "parameters"), err);
     if (status == 0)

@@ -171,36 +171,53 @@ int access_list(struct access *access, cJSON **out, struct error *err) {
     return status;
 }
 
-static int results_path(char *rest, size_t size, const struct result_filter *filter,
+enum { REST_SIZE = 200 };
+
+/* cases: "" or "?case=0"; quantity: NULL for all. */
+static int results_path(char rest[REST_SIZE], const char *cases, const char *quantity,
                         struct error *err) {
-    const char *quantity = filter->part.quantity;
-    size_t used = (size_t)snprintf(rest, size, "/curves");
-    if (filter->case_number >= 0)
-        used += (size_t)snprintf(rest + used, size - used, "?case=%lld",
-                                 (long long)filter->case_number);
+    size_t used = (size_t)snprintf(rest, REST_SIZE, "/curves%s", cases);
     if (quantity == NULL)
         return 0;
     size_t length = strlen(quantity);
     if (length > 64 || strspn(quantity, "abcdefghijklmnopqrstuvwxyz0123456789_") != length)
         return error_set(err, ERROR_INPUT, "the study has no quantity \"%.64s\"", quantity);
-    snprintf(rest + used, size - used, "%cquantity=%s", filter->case_number >= 0 ? '&' : '?',
-             quantity);
+    snprintf(rest + used, REST_SIZE - used, "%cquantity=%s", *cases != '\0' ? '&' : '?', quantity);
     return 0;
 }
 
-int access_results(struct access *access, const char *id, const struct result_filter *filter,
-                   struct study_result *out, struct error *err) {
-    char rest[200];
+/* Asks a server for curves. */
+static int ask_results(struct access *access, const char *id, const char *cases,
+                       const char *quantity, struct study_result *out, struct error *err) {
+    char rest[REST_SIZE];
     cJSON *document = NULL;
-    if (access->client == NULL)
-        return aggregate_study(access->store, id, filter, out, err);
-    int status = results_path(rest, sizeof rest, filter, err);
+    int status = results_path(rest, cases, quantity, err);
     if (status == 0)
         status = ask_study(access, "GET", id, rest, &document, err);
     if (status == 0)
         status = study_result_read(document, out, err);
     cJSON_Delete(document);
     return status;
+}
+
+int access_results(struct access *access, const char *id, const struct result_filter *filter,
+                   struct study_result *out, struct error *err) {
+    char cases[48] = "";
+    if (access->client == NULL)
+        return aggregate_study(access->store, id, filter, out, err);
+    if (filter->case_number >= 0)
+        snprintf(cases, sizeof cases, "?case=%lld", (long long)filter->case_number);
+    return ask_results(access, id, cases, filter->part.quantity, out, err);
+}
+
+int access_difference(struct access *access, const char *id, const struct comparison *comparison,
+                      struct study_result *out, struct error *err) {
+    char cases[80];
+    if (access->client == NULL)
+        return comparison_make(access->store, id, comparison, out, err);
+    snprintf(cases, sizeof cases, "?difference=%llu,%llu", (unsigned long long)comparison->minuend,
+             (unsigned long long)comparison->subtrahend);
+    return ask_results(access, id, cases, comparison->quantity, out, err);
 }
 
 int access_report(struct access *access, const char *id, struct study_report *out,

@@ -6,6 +6,7 @@
 #include "schema/study/fault.h"
 #include "server/command/command.h"
 #include "worker/aggregate.h"
+#include "worker/comparison.h"
 
 struct access_options {
     const char *database, *server, *token_file; /* as given; database NULL: DATABASE */
@@ -39,9 +40,11 @@ int access_status(struct access *access, const char *id, cJSON **out, struct err
 int access_list(struct access *access, cJSON **out, struct error *err); /* of all studies */
 int access_cancel(struct access *access, const char *id, cJSON **out, struct error *err);
 int access_retry(struct access *access, const char *id, cJSON **out, struct error *err);
-/* These give results and reports, whose theories a server completes in any case. */
+/* These give results, differences and reports, whose theories a server completes in any case. */
 int access_results(struct access *access, const char *id, const struct result_filter *filter,
                    struct study_result *out, struct error *err);
+int access_difference(struct access *access, const char *id, const struct comparison *comparison,
+                      struct study_result *out, struct error *err);
 int access_report(struct access *access, const char *id, struct study_report *out,
                   struct error *err);
 /* Copies the store to a file; path must not exist. */

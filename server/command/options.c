@@ -87,7 +87,7 @@ static void list_append(const char **list, const char *text) {
 
 static int refuse_number(const char *command, const struct option_row *row, const char *text) {
     const char *what = row->type == OPTION_NUMBER ? "number" : "whole number";
-    if (row->type == OPTION_INDEX)
+    if (row->type == OPTION_INDEX || row->type == OPTION_PAIR)
         return usage_error(command, "--%s %.40s is not a whole number of 0 or more", row->name,
                            text);
     if (row->high == 0)
@@ -105,6 +105,22 @@ static int refuse_choice(const char *command, const struct option_row *row, cons
         used += (size_t)snprintf(words + used, sizeof words - used, "%s", part);
     }
     return usage_error(command, "--%s %.40s is not %s", row->name, text, words);
+}
+
+/* Takes "1,0". */
+static int take_pair(const char *command, const struct option_row *row, void *values,
+                     const char *text) {
+    int64_t *pair = (int64_t *)((char *)values + row->at);
+    const char *parts[2] = {text, strchr(text, ',')};
+    char first[24];
+    if (parts[1] == NULL)
+        return usage_error(command, "--%s needs two values", row->name);
+    snprintf(first, sizeof first, "%.*s", (int)(parts[1]++ - text), text);
+    parts[0] = first;
+    for (int p = 0; p < 2; p++)
+        if (!read_integer(parts[p], 0, 0x1p62, &pair[p]))
+            return refuse_number(command, row, parts[p]);
+    return 0;
 }
 
 static int take_value(const char *command, const struct option_row *row, void *values,
@@ -131,6 +147,8 @@ static int take_value(const char *command, const struct option_row *row, void *v
         if (!read_integer(text, 0, 0x1p62, (int64_t *)value))
             return refuse_number(command, row, text);
         return 0;
+    case OPTION_PAIR:
+        return take_pair(command, row, values, text);
     case OPTION_NUMBER:
         return read_number(row, text, value) ? 0 : refuse_number(command, row, text);
     case OPTION_CHOICE:
@@ -154,8 +172,10 @@ static int take_defaults(int argc, const char *command, const struct option_row 
             fprintf(stderr, "rugo %s: out of memory\n", command);
             return EXIT_FAILED;
         }
-        if (rows->type == OPTION_INDEX)
+        if (rows->type == OPTION_INDEX || rows->type == OPTION_PAIR)
             *(int64_t *)value = -1;
+        if (rows->type == OPTION_PAIR)
+            ((int64_t *)value)[1] = -1;
         if (rows->standard != NULL)
             status = take_value(command, rows, values, rows->standard);
         if (status != 0)
@@ -264,6 +284,15 @@ static int take_arguments(int argc, char **argv, int least, int most, const char
     return 0;
 }
 
+/* Takes the value of an option, of a pair with the word behind it where it is written as two. */
+static int take_option(int argc, char **argv, const struct option_row *row, void *values) {
+    char pair[80];
+    if (row->type != OPTION_PAIR || strchr(optarg, ',') != NULL || optind >= argc)
+        return take_value(argv[0], row, values, optarg);
+    snprintf(pair, sizeof pair, "%.38s,%.38s", optarg, argv[optind++]);
+    return take_value(argv[0], row, values, pair);
+}
+
 int options_parse(int argc, char **argv, const struct option_row *rows, void *values, int least,
                   int most, const char **arguments) {
     struct option names[ROWS_MOST + 1];
@@ -278,6 +307,6 @@ int options_parse(int argc, char **argv, const struct option_row *rows, void *va
         else if (code == ':')
             status = usage_error(argv[0], "%.60s needs a value", argv[optind - 1]);
         else
-            status = take_value(argv[0], find_row(rows, code), values, optarg);
+            status = take_option(argc, argv, find_row(rows, code), values);
     return status != 0 ? status : take_arguments(argc, argv, least, most, arguments);
 }

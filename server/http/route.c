@@ -16,7 +16,7 @@ static const struct route {
     {"GET", "/v1/studies/*", ROLE_READ, handle_study, {NULL}},
     {"DELETE", "/v1/studies/*", ROLE_SUBMIT, handle_study_cancel, {NULL}},
     {"POST", "/v1/studies/*/retry", ROLE_SUBMIT, handle_study_retry, {NULL}},
-    {"GET", "/v1/studies/*/curves", ROLE_READ, handle_curves, {"case", "quantity"}},
+    {"GET", "/v1/studies/*/curves", ROLE_READ, handle_curves, {"case", "quantity", "difference"}},
     {"GET", "/v1/studies/*/report", ROLE_READ, handle_report, {NULL}},
     {"GET", "/v1/studies/*/events", ROLE_READ, handle_events, {NULL}},
     {"POST", "/v1/jobs/claim", ROLE_WORK, handle_claim, {NULL}},

@@ -5,7 +5,7 @@
 
 #include "server/http/http.h"
 
-enum { SEGMENT_SIZE = 64, QUERY_NAMES_MOST = 2 };
+enum { SEGMENT_SIZE = 64, QUERY_NAMES_MOST = 3 };
 typedef void route_handler(struct exchange *exchange, const char *id);
 
 route_handler handle_study_create, handle_study_list, handle_study, handle_study_cancel,
@@ -25,5 +25,13 @@ bool query_check(struct exchange *exchange, const char *const names[QUERY_NAMES_
 /* A whole number of the query: left alone where it is not there. False after a 422. */
 bool query_number(struct exchange *exchange, const char *name, int64_t least, int64_t most,
                   int64_t *value);
+
+/* Reads ?difference=A,B; the quantity is left alone. Not asked without it; ERROR_INPUT after a 422.
+ */
+struct comparison;
+int query_difference(struct exchange *exchange, struct comparison *out, bool *asked);
+/* Answers with a difference, or fails without an answer. */
+int send_difference(struct exchange *exchange, const char *id, const struct comparison *comparison,
+                    bool csv, struct error *err);
 
 #endif

@@ -7,6 +7,7 @@
 #include "server/http/route.h"
 #include "server/show/plot_cost.h"
 #include "worker/aggregate.h"
+#include "worker/comparison.h"
 #include "worker/log.h"
 #include <math.h>
 #include <stdio.h>
@@ -258,7 +259,11 @@ void handle_curves(struct exchange *exchange, const char *id) {
     struct result_filter filter = {.case_number = -1,
                                    .part = {.quantity = exchange_query(exchange, "quantity")},
                                    .complete = true};
+    struct comparison comparison = {.quantity = filter.part.quantity};
     char etag[80] = "";
+    bool difference;
+    if (query_difference(exchange, &comparison, &difference) != 0)
+        return;
     if (!query_number(exchange, "case", 0, INT64_MAX - 1, &filter.case_number))
         return;
     bool csv = wants_csv(exchange);
@@ -269,6 +274,8 @@ void handle_curves(struct exchange *exchange, const char *id) {
              csv ? "csv" : "json");
     if (status == 0 && matches(exchange, etag))
         answer_empty(exchange, 304);
+    else if (status == 0 && difference)
+        status = send_difference(exchange, id, &comparison, csv, &err);
     else if (status == 0)
         status = csv ? send_csv(exchange, id, &filter, study.cases, &err)
                      : send_json(exchange, id, &filter, false, &err);

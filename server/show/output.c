@@ -45,8 +45,11 @@ static int write_json(const struct study_result *study, const char *folder, stru
 static void curve_name(const struct case_result *one, const struct curve *curve, char *name,
                        size_t size) {
     const char *const parts[] = {curve->series, curve->model, curve->kinematics};
-    size_t used = (size_t)snprintf(name, size, "case-%llu-%.60s",
-                                   (unsigned long long)one->case_number, curve->quantity);
+    size_t used = (size_t)snprintf(name, size, "case-%llu", (unsigned long long)one->case_number);
+    if (one->difference)
+        used +=
+            (size_t)snprintf(name + used, size - used, "-less-%llu", (unsigned long long)one->less);
+    used += (size_t)snprintf(name + used, size - used, "-%.60s", curve->quantity);
     for (size_t p = 0; p < sizeof parts / sizeof *parts; p++)
         if (parts[p] != NULL && *parts[p] != '\0')
             used += (size_t)snprintf(name + used, size - used, "-%.40s", parts[p]);

@@ -44,6 +44,27 @@ static void draw_bars(FILE *file, const struct frame *frame, const struct curve 
     fputc('\n', file);
 }
 
+/* Draws a difference's band of one standard error to either side, and the line of no difference. */
+static void draw_band(FILE *file, const struct frame *frame, const struct curve *curve,
+                      const char *colour) {
+    if (curve->minuend == NULL)
+        return;
+    if (frame->y.low < 0 && frame->y.high > 0)
+        fprintf(file, "<path d=\"M%d %.2fH%d\" class=\"frame\"/>\n", FRAME_LEFT, frame_y(frame, 0),
+                FRAME_RIGHT);
+    for (size_t n = 0; n + 1 < curve->n; n++) {
+        const double *x = curve->x + n, *y = curve->y + n, *error = curve->standard_error + n;
+        if (!frame_has_place(frame, x[0], y[0]) || !frame_has_place(frame, x[1], y[1]) ||
+            !isfinite(error[0]) || !isfinite(error[1]))
+            continue;
+        fprintf(file,
+                "<path d=\"M%.2f %.2fV%.2fL%.2f %.2fV%.2fZ\" fill-opacity=\".2\" fill=\"%s\"/>\n",
+                frame_x(frame, x[0]), frame_y(frame, y[0] - error[0]),
+                frame_y(frame, y[0] + error[0]), frame_x(frame, x[1]),
+                frame_y(frame, y[1] + error[1]), frame_y(frame, y[1] - error[1]), colour);
+    }
+}
+
 /* Draws an open circle where some realisations have no value. */
 static void draw_partial(struct plot *plot, const struct curve *curve, const char *colour) {
     for (size_t n = 0; n < curve->n && curve->valueless != NULL; n++) {
@@ -78,6 +99,7 @@ static void draw_curves(struct plot *plot) {
     for (size_t n = choice->count; n > 0; n--) {
         const struct plot_line *line = &choice->lines[n - 1];
         curve_style(line, style);
+        draw_band(plot->pen.file, &plot->pen.frame, line->curve, PEN_COLOURS[line->colour]);
         if (line->coarseness == 0)
             draw_bars(plot->pen.file, &plot->pen.frame, line->curve, PEN_COLOURS[line->colour]);
         pen_line(&plot->pen, line->curve->n, line->curve->x, line->curve->y, style);
@@ -189,6 +211,12 @@ static bool is_geometric(size_t n, const double *x) {
  */
 static void include(struct frame *frame, const struct curve *curve, bool theories) {
     frame_include(frame, curve->n, curve->x, curve->y);
+    for (size_t n = 0; n < curve->n && curve->minuend != NULL; n++) {
+        double error = isfinite(curve->standard_error[n]) ? curve->standard_error[n] : 0;
+        const double ends[] = {curve->y[n] - error, curve->y[n] + error};
+        frame_include(frame, 1, &curve->x[n], &ends[0]);
+        frame_include(frame, 1, &curve->x[n], &ends[1]);
+    }
     for (size_t t = 0; theories && t < curve->theory_count; t++)
         if (curve->theories[t].y != NULL)
             frame_include(frame, curve->n, curve->x, curve->theories[t].y);
@@ -199,7 +227,8 @@ static bool fit(struct plot *plot, const struct plot_request *request, bool loga
     const struct plot_choice *choice = &plot->choice;
     const struct curve *first = choice->lines[0].curve;
     bool both = request->logarithmic || logarithmic;
-    frame_start(&plot->pen.frame, both || is_geometric(first->n, first->x), both);
+    frame_start(&plot->pen.frame, both || is_geometric(first->n, first->x),
+                both && first->minuend == NULL); /* differences have either sign */
     for (size_t n = 0; n < choice->count; n++)
         include(&plot->pen.frame, choice->lines[n].curve, request->logarithmic);
     return frame_finish(&plot->pen.frame);

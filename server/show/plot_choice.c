@@ -179,6 +179,9 @@ void plot_label(const struct plot_choice *choice, size_t line, char label[PLOT_L
     const struct case_result *one = choice->lines[line].one;
     const struct curve *curve = choice->lines[line].curve;
     label[0] = '\0';
+    if (one->difference)
+        append(label, "case %llu less case %llu", (unsigned long long)one->case_number,
+               (unsigned long long)one->less);
     append_swept(label, choice->study, one);
     if (lines_differ(choice, same_pressure))
         append(label, "at %.4g", curve->pressure);

@@ -18,6 +18,9 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
  * and the theories; for many cases, a row each with the values at three places. */
 void summary_of_quantity(const struct quantity_table *words, const struct shown_cases *shown,
                          const struct study_report *report, FILE *file);
+/* One case less another: for each curve a table of both, the difference and its errors, and one of
+ * the scalars. Differences that are not those of pairs are marked. */
+void summary_of_difference(const struct study_result *study, FILE *file);
 /* Speed against error: a row a case, and, where there are models and levels, what each of them and
  * each estimator cost and err: by case for a few cases, over all of them for many. */
 void summary_of_report(const struct study_report *report, FILE *file);

@@ -1,0 +1,364 @@
+#include "schema/result/difference.h"
+#include "schema/result/difference_parameters.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Realisations without a pair differ from the others by so many deviations, as those without a
+ * value do (jobs/contact/contact_errors.c). */
+static const double MISSING_DEVIATIONS = 2;
+/* Places x are the same within this part of themselves. */
+static const double SAME_X = 1e-9;
+enum { REMARK_SIZE = 1024 };
+
+/* Differences are made from this. */
+struct maker {
+    const struct case_result *minuend, *subtrahend;
+    const struct difference_pairs *pairs; /* or NULL */
+    struct case_result *out;
+    char remark[REMARK_SIZE];
+};
+/* Of one curve. */
+struct curve_pair {
+    const struct curve *minuend, *subtrahend;
+    size_t n;      /* places that both have */
+    size_t *a, *b; /* these, in either */
+};
+
+static int no_room(struct error *err) {
+    return error_set(err, ERROR_MEMORY, "no memory left for a difference");
+}
+
+/* Adds a sentence that is not there yet, where there is room for it. */
+__attribute__((format(printf, 2, 3))) static void remark(struct maker *maker, const char *format,
+                                                         ...) {
+    char text[256];
+    size_t used = strlen(maker->remark);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (strstr(maker->remark, text) == NULL && used + strlen(text) + 3 < REMARK_SIZE)
+        snprintf(maker->remark + used, REMARK_SIZE - used, "%s%s", used > 0 ? "; " : "", text);
+}
+
+/* --- what is compared with what --- */
+
+static bool same_model(const struct curve *a, const struct curve *b) {
+    return same_text(a->model, b->model) && same_text(a->kinematics, b->kinematics);
+}
+
+static bool is_finest(const struct case_result *result, const struct curve *curve) {
+    for (size_t n = 0; n < result->curve_count; n++) {
+        const struct curve *other = &result->curves[n];
+        if (curve_same_series(other, curve) && same_model(other, curve) &&
+            other->level > curve->level)
+            return false;
+    }
+    return true;
+}
+
+static bool has_one_model(const struct case_result *result, const struct curve *like) {
+    const struct curve *first = NULL;
+    for (size_t n = 0; n < result->curve_count; n++) {
+        const struct curve *curve = &result->curves[n];
+        if (!curve_same_series(curve, like))
+            continue;
+        if (first != NULL && !same_model(first, curve))
+            return false;
+        first = curve;
+    }
+    return first != NULL;
+}
+
+/* Returns the curve of the subtrahend that goes with one of the minuend, or NULL. */
+static const struct curve *partner_of(const struct maker *maker, const struct curve *curve) {
+    bool any = has_one_model(maker->minuend, curve) && has_one_model(maker->subtrahend, curve);
+    for (size_t n = 0; n < maker->subtrahend->curve_count; n++) {
+        const struct curve *other = &maker->subtrahend->curves[n];
+        if (curve_same_series(other, curve) && (any || same_model(other, curve)) &&
+            is_finest(maker->subtrahend, other))
+            return other;
+    }
+    return NULL;
+}
+
+static bool same_x(double a, double b) {
+    return fabs(a - b) <= SAME_X * fmax(fabs(a), fabs(b));
+}
+
+/* Finds the places that both curves have; x rises in both. */
+static int find_places(struct maker *maker, struct curve_pair *pair, struct error *err) {
+    const struct curve *one = pair->minuend, *other = pair->subtrahend;
+    size_t most = one->n < other->n ? one->n : other->n;
+    pair->a = result_room(maker->out, 2 * most + 1, sizeof *pair->a);
+    if (pair->a == NULL)
+        return no_room(err);
+    pair->b = pair->a + most;
+    for (size_t a = 0, b = 0; a < one->n && b < other->n;) {
+        if (same_x(one->x[a], other->x[b])) {
+            pair->a[pair->n] = a++;
+            pair->b[pair->n++] = b++;
+        } else if (one->x[a] < other->x[b]) {
+            a++;
+        } else {
+            b++;
+        }
+    }
+    return 0;
+}
+
+/* --- errors by source --- */
+
+static double at_or_zero(const double *numbers, size_t at) {
+    return numbers != NULL ? numbers[at] : 0;
+}
+
+/* A source that does not bear on a case adds nothing to the difference. */
+static int combine_error(struct maker *maker, const struct curve_pair *pair,
+                         enum error_source source, struct curve *out, struct error *err) {
+    const struct curve_error *a = &pair->minuend->errors[source];
+    const struct curve_error *b = &pair->subtrahend->errors[source];
+    struct curve_error *to = &out->errors[source];
+    size_t n = pair->n;
+    to->applies = a->applies || b->applies;
+    if (!to->applies || (a->applies && a->value == NULL) || (b->applies && b->value == NULL))
+        return 0;
+    double *value = result_numbers(maker->out, 3 * n);
+    if (value == NULL)
+        return no_room(err);
+    double *bound = value + n, *standard_error = bound + n;
+    for (size_t k = 0; k < n; k++) {
+        size_t i = pair->a[k], j = pair->b[k];
+        value[k] = at_or_zero(a->value, i) - at_or_zero(b->value, j);
+        bound[k] = at_or_zero(a->bound, i) + at_or_zero(b->bound, j);
+        standard_error[k] =
+            hypot(at_or_zero(a->standard_error, i), at_or_zero(b->standard_error, j));
+    }
+    to->value = value;
+    to->bound = bound;
+    to->standard_error = standard_error;
+    return 0;
+}
+
+/* --- curves --- */
+
+/* The mean over pairs less that over all realisations, where some lack one of their values. */
+struct missing {
+    double *bound, *lacking;
+    bool any;
+};
+
+static void put_pair(const struct paired_value *value, size_t k, double *y, double *standard_error,
+                     struct missing *missing) {
+    double all = (double)(value->pairs + value->lacking);
+    y[k] = value->value;
+    standard_error[k] = value->standard_error;
+    missing->lacking[k] = (double)value->lacking;
+    missing->bound[k] = value->lacking > 0
+                            ? (double)value->lacking / all * MISSING_DEVIATIONS * value->deviation
+                            : 0;
+    missing->any = missing->any || value->lacking > 0;
+}
+
+/* Of pairs where all places are known by them, else of the two curves. */
+static bool fill_values(const struct maker *maker, const struct curve_pair *pair, double *y,
+                        double *standard_error, struct missing *missing) {
+    const struct curve *a = pair->minuend, *b = pair->subtrahend;
+    struct paired_value value;
+    bool paired = maker->pairs != NULL;
+    for (size_t k = 0; k < pair->n && paired; k++) {
+        paired = maker->pairs->point(maker->pairs->context, a, pair->a[k], b, pair->b[k], &value);
+        if (paired)
+            put_pair(&value, k, y, standard_error, missing);
+    }
+    for (size_t k = 0; k < pair->n && !paired; k++) {
+        y[k] = a->y[pair->a[k]] - b->y[pair->b[k]];
+        standard_error[k] = hypot(a->standard_error[pair->a[k]], b->standard_error[pair->b[k]]);
+    }
+    return paired;
+}
+
+static int set_values(struct maker *maker, const struct curve_pair *pair, struct curve *out,
+                      struct error *err) {
+    size_t n = pair->n;
+    double *x = result_numbers(maker->out, 8 * n);
+    if (x == NULL)
+        return no_room(err);
+    double *y = x + n, *standard_error = y + n, *minuend = standard_error + n;
+    double *subtrahend = minuend + n, *zero = subtrahend + n;
+    struct missing missing = {.bound = zero + n, .lacking = zero + 2 * n};
+    for (size_t k = 0; k < n; k++) {
+        x[k] = pair->minuend->x[pair->a[k]];
+        minuend[k] = pair->minuend->y[pair->a[k]];
+        subtrahend[k] = pair->subtrahend->y[pair->b[k]];
+    }
+    out->paired = fill_values(maker, pair, y, standard_error, &missing);
+    out->minuend = minuend;
+    out->subtrahend = subtrahend;
+    curve_set_points(out, n, x, y, standard_error);
+    if (!out->paired)
+        return combine_error(maker, pair, ERROR_MISSING, out, err);
+    struct curve_error *error = &out->errors[ERROR_MISSING];
+    error->applies = missing.any;
+    if (missing.any) {
+        error->value = zero;
+        error->bound = missing.bound;
+        error->standard_error = zero;
+        out->valueless = missing.lacking;
+    }
+    return 0;
+}
+
+static int set_theories(struct maker *maker, const struct curve_pair *pair, struct curve *out,
+                        struct error *err) {
+    const struct curve *a = pair->minuend, *b = pair->subtrahend;
+    for (size_t t = 0; t < a->theory_count; t++)
+        for (size_t u = 0; u < b->theory_count; u++) {
+            const double *one = a->theories[t].y, *other = b->theories[u].y;
+            if (one == NULL || other == NULL ||
+                strcmp(a->theories[t].name, b->theories[u].name) != 0)
+                continue;
+            double *y = result_numbers(maker->out, pair->n);
+            const char *name = result_text(maker->out, a->theories[t].name);
+            if (y == NULL || name == NULL)
+                return no_room(err);
+            for (size_t k = 0; k < pair->n; k++)
+                y[k] = one[pair->a[k]] - other[pair->b[k]];
+            out->theories[out->theory_count++] = (struct theory){name, y};
+            break;
+        }
+    return 0;
+}
+
+static int set_names(struct maker *maker, const struct curve_pair *pair, struct curve *out,
+                     struct error *err) {
+    const struct curve *a = pair->minuend, *b = pair->subtrahend;
+    out->quantity = result_text(maker->out, a->quantity);
+    out->x_label = result_text(maker->out, a->x_label);
+    out->y_label = result_text(maker->out, a->y_label);
+    out->series = result_text(maker->out, a->series);
+    out->model = difference_text(maker->out, a->model, b->model);
+    out->kinematics = difference_text(maker->out, a->kinematics, b->kinematics);
+    out->pressure = a->pressure;
+    out->level = same_number(a->level, b->level) ? a->level : (double)NAN;
+    out->points = same_number(a->points, b->points) ? a->points : (double)NAN;
+    bool done = out->quantity != NULL && out->x_label != NULL && out->y_label != NULL &&
+                out->series != NULL && (out->model != NULL || same_model(a, b));
+    return done ? 0 : no_room(err);
+}
+
+static int add_curve(struct maker *maker, const struct curve *minuend, struct error *err) {
+    struct curve_pair pair = {.minuend = minuend, .subtrahend = partner_of(maker, minuend)};
+    struct curve out = curve_named(NULL, NULL, NULL);
+    if (pair.subtrahend == NULL || minuend->columns > 0 || pair.subtrahend->columns > 0) {
+        remark(maker, "%s is %s", minuend->quantity,
+               minuend->columns > 0 ? "a matrix" : "of the first case alone");
+        return 0;
+    }
+    int status = find_places(maker, &pair, err);
+    if (status == 0 && pair.n == 0)
+        remark(maker, "%s has no %s in common", minuend->quantity, minuend->x_label);
+    if (status != 0 || pair.n == 0)
+        return status;
+    if (pair.n < minuend->n || pair.n < pair.subtrahend->n)
+        remark(maker, "%s has %zu places in common of %zu and %zu", minuend->quantity, pair.n,
+               minuend->n, pair.subtrahend->n);
+    status = set_names(maker, &pair, &out, err);
+    if (status == 0)
+        status = set_values(maker, &pair, &out, err);
+    for (enum error_source s = 0; s < ERROR_SOURCES && status == 0; s++)
+        if (s != ERROR_MISSING)
+            status = combine_error(maker, &pair, s, &out, err);
+    if (status == 0)
+        status = set_theories(maker, &pair, &out, err);
+    return status != 0 ? status : result_add_curve(maker->out, &out, err);
+}
+
+/* --- scalars --- */
+
+static struct scalar_error combine_scalar_error(const struct scalar_error *a,
+                                                const struct scalar_error *b) {
+    struct scalar_error out = {.applies = a->applies || b->applies};
+    out.known = out.applies && (a->known || !a->applies) && (b->known || !b->applies);
+    if (!out.known)
+        return out;
+    const struct scalar_error none = {0};
+    a = a->applies ? a : &none;
+    b = b->applies ? b : &none;
+    out.value = a->value - b->value;
+    out.bound = a->bound + b->bound;
+    out.standard_error = hypot(a->standard_error, b->standard_error);
+    return out;
+}
+
+/* A scalar without a standard error in either case is known as it is. */
+static void set_scalar(const struct maker *maker, const struct scalar *a, const struct scalar *b,
+                       struct scalar *out) {
+    struct paired_value value;
+    bool exact = a->standard_error == 0 && b->standard_error == 0;
+    out->paired = exact;
+    out->value = a->value - b->value;
+    out->standard_error = hypot(a->standard_error, b->standard_error);
+    if (exact || maker->pairs == NULL ||
+        !maker->pairs->scalar(maker->pairs->context, a->name, &value))
+        return;
+    out->paired = true;
+    out->value = value.value;
+    out->standard_error = value.standard_error;
+    struct scalar_error *missing = &out->errors[ERROR_MISSING];
+    if (missing->applies) {
+        double share = (double)value.lacking / (double)(value.pairs + value.lacking);
+        *missing = (struct scalar_error){
+            .applies = true,
+            .known = true,
+            .bound = value.lacking > 0 ? share * MISSING_DEVIATIONS * value.deviation : 0};
+    }
+}
+
+static int add_scalar(struct maker *maker, const struct scalar *a, struct error *err) {
+    const struct scalar *b = result_scalar(maker->subtrahend, a->name);
+    struct scalar out = {.name = result_text(maker->out, a->name), .difference = true};
+    if (out.name == NULL)
+        return no_room(err);
+    if (b == NULL)
+        return 0;
+    out.minuend = a->value;
+    out.subtrahend = b->value;
+    out.theory = a->theory - b->theory;
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        out.errors[s] = combine_scalar_error(&a->errors[s], &b->errors[s]);
+    set_scalar(maker, a, b, &out);
+    return result_add_scalar(maker->out, &out, err);
+}
+
+/* --- all --- */
+
+static int make(struct maker *maker, struct error *err) {
+    struct case_result *out = maker->out;
+    out->case_number = maker->minuend->case_number;
+    out->difference = true;
+    out->less = maker->subtrahend->case_number;
+    int status = difference_parameters(maker->minuend, maker->subtrahend, out, err);
+    for (size_t s = 0; s < maker->minuend->scalar_count && status == 0; s++)
+        status = add_scalar(maker, &maker->minuend->scalars[s], err);
+    for (size_t a = 0; a < maker->minuend->curve_count && status == 0; a++)
+        if (is_finest(maker->minuend, &maker->minuend->curves[a]))
+            status = add_curve(maker, &maker->minuend->curves[a], err);
+    if (status == 0 && maker->remark[0] != '\0') {
+        out->remark = result_text(out, maker->remark);
+        status = out->remark != NULL ? 0 : no_room(err);
+    }
+    return status;
+}
+
+int difference_make(const struct case_result *minuend, const struct case_result *subtrahend,
+                    const struct difference_pairs *pairs, struct case_result *out,
+                    struct error *err) {
+    struct maker maker = {.minuend = minuend, .subtrahend = subtrahend, .pairs = pairs, .out = out};
+    int status = make(&maker, err);
+    if (status != 0)
+        result_clear(out);
+    return status;
+}
