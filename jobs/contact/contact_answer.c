@@ -43,7 +43,8 @@ static bool sharpen(const struct contact_answer *answer, const struct contact_su
                     enum role role, uint64_t *wanted) {
     const double *bound = role == ROLE_MESH ? sum->mesh : sum->model;
     const struct target_component *of = answer->of[role];
-    if (of == NULL || of->done >= SHARPENED_MOST || (role == ROLE_MESH && answer->named_mesh))
+    if (of == NULL || of->done >= SHARPENED_MOST || component_case(of)->level_count < 3 ||
+        (role == ROLE_MESH && answer->named_mesh))
         return false;
     for (size_t k = 0; k < answer->loads; k++) {
         double all = answer->target.error * fabs(sum->value[k]);
@@ -166,6 +167,34 @@ static double bias_rate(const struct contact_answer *answer, enum contact_measur
     return least;
 }
 
+/* Kurtosis of the differences between the two models on the finest level, the largest of the loads:
+ * above about 100 the variance that the plan is made by is of too few realisations (Giles 2015,
+ * section 3.4). NaN without a component "model". */
+static double kurtosis(const struct contact_answer *answer, enum contact_measure measure) {
+    const struct target_component *model = answer->of[ROLE_MODEL];
+    size_t cheap = 0, asked = 0;
+    double most = NAN;
+    if (model == NULL || !contact_rows_column(component_case(model), 0, measure, &cheap) ||
+        !contact_rows_column(component_case(model), 1, measure, &asked))
+        return NAN;
+    const struct contact_rows *rows = &component_tally(model)->rows;
+    for (size_t k = 0; k < answer->loads; k++) {
+        double mean = 0, square = 0, fourth = 0, n = (double)rows->count;
+        for (size_t r = 0; r < rows->count; r++)
+            mean += (rows->values[r * rows->width + asked + k] -
+                     rows->values[r * rows->width + cheap + k]) /
+                    n;
+        for (size_t r = 0; r < rows->count; r++) {
+            double off = rows->values[r * rows->width + asked + k] -
+                         rows->values[r * rows->width + cheap + k] - mean;
+            square += off * off / n;
+            fourth += off * off * off * off / n;
+        }
+        most = fmax(most, fourth / (square * square));
+    }
+    return most;
+}
+
 /* What plain sampling of the model that is asked for would take on the finest mesh where it was
  * solved, for the same error by chance alone. */
 static double plain_work(const struct contact_answer *answer, const struct contact_sum *sum,
@@ -211,7 +240,8 @@ static int put_scalars(const struct contact_answer *answer, const struct contact
                    {"work", work_done(answer)},
                    {"plain_work", plain_work(answer, sum, measure)},
                    {"consistency", consistency(answer, measure)},
-                   {"bias_rate", bias_rate(answer, measure)}};
+                   {"bias_rate", bias_rate(answer, measure)},
+                   {"difference_kurtosis", kurtosis(answer, measure)}};
     int status = 0;
     for (size_t a = 0; a < sizeof scalars / sizeof *scalars && status == 0; a++)
         status = put_scalar(answer, scalars[a].name, scalars[a].value, err);

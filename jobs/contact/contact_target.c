@@ -155,10 +155,11 @@ static void read_ladder(struct choices *out, const cJSON *document, const cJSON 
 /* Cells are long enough for the error asked for, as far as that is known beforehand: the component
  * "cell" tells afterwards. The difference of models needs no long cells, and costs most. */
 static void read_length(struct choices *out, const cJSON *document, const cJSON *parameters) {
-    double usual = out->profile ? 32 : 4, needed = out->profile ? 4 : 1;
+    double usual = out->profile ? 32 : 8, needed = out->profile ? 4 : 1;
     if (out->own_grid)
         usual *= 2;
-    usual = ldexp(usual, (int)steps_of(out->target.error));
+    size_t steps = steps_of(out->target.error);
+    usual = ldexp(usual, (int)(out->profile ? steps : steps / 2));
     out->length = json_at(document, "/surface/length_ratio") == NULL;
     out->length_ratio =
         out->length ? usual : number_or(json_at(parameters, "/surface/length_ratio"), 8);
