@@ -26,15 +26,13 @@ static struct estimate finest_mean(const struct contact_tally *tally, enum conta
 /* --- the mesh --- */
 
 /* The order in which a measure converges on rough profiles and surfaces. */
-static double known_order(const struct contact_case *one_case, enum contact_measure measure,
-                          size_t model) {
+static double known_order(enum contact_measure measure) {
     switch (measure) {
     case MEASURE_EDGES:
     case MEASURE_EDGES_STRETCHED:
     case MEASURE_KAPPA:
     case MEASURE_POWER_LAW_A:
     case MEASURE_POWER_LAW_B:
-        return one_case->models[model]->edge_order[one_case->surface.dimension - 1];
     case MEASURE_GAP:
     case MEASURE_STIFFNESS:
         return 2;
@@ -103,7 +101,7 @@ static bool mesh_errors(const struct contact_tally *tally, enum contact_measure 
         return false;
     for (size_t k = 0; k < one_case->load_count; k++) {
         struct level_changes changes = changes_of(tally, measure, model, k, contact_tally_level);
-        struct mesh_error error = mesh_error(&changes.of, known_order(one_case, measure, model));
+        struct mesh_error error = mesh_error(&changes.of, known_order(measure));
         out[k] = (struct contact_error){.value = isnan(error.bound) ? (double)NAN : error.error,
                                         .bound = error.bound,
                                         .standard_error = error.weight * changes.standard_error,
@@ -134,12 +132,10 @@ static bool model_errors(const struct contact_tally *tally, enum contact_measure
     size_t complete = contact_case_complete(one_case);
     if (model == complete || one_case->level_count < 2)
         return false;
-    double order =
-        fmin(known_order(one_case, measure, model), known_order(one_case, measure, complete));
     for (size_t k = 0; k < one_case->load_count; k++) {
         struct estimate difference = contact_tally_model(tally, measure, model, k);
         struct level_changes changes = changes_of(tally, measure, model, k, difference_change);
-        struct mesh_error mesh = mesh_error(&changes.of, order);
+        struct mesh_error mesh = mesh_error(&changes.of, known_order(measure));
         out[k] = (struct contact_error){
             .value = isnan(mesh.bound) ? (double)NAN : difference.value - mesh.error,
             .bound = mesh.bound,

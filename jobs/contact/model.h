@@ -50,7 +50,6 @@ struct contact_model {
     bool may_fail; /* to find an answer: a note tells why, and loads from there on have no values */
     bool stretches;        /* areas are told as they are under load */
     double default_height; /* of the block, in lengths of the cell; INFINITY */
-    double edge_order[2];  /* in which areas by edges converge, of profiles and of surfaces */
     size_t curve_count;    /* of its own */
     const struct model_curve *curves;
     size_t scalar_count; /* of its own */

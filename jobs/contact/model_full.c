@@ -198,7 +198,6 @@ const struct contact_model FULL_MODEL = {
     .may_fail = true,
     .stretches = true,
     .default_height = 1.5,
-    .edge_order = {2, 2.5},
     .curve_count = sizeof CURVES / sizeof *CURVES,
     .curves = CURVES,
     .scalar_count = SCALAR_COUNT,

@@ -6,7 +6,6 @@ const struct contact_model HALFSPACE_MODEL = {
     .rank = 0,
     .block = MODEL_HALFSPACE,
     .default_height = INFINITY,
-    .edge_order = {2, 1.5},
     .bytes = linear_bytes,
     .seconds = linear_seconds,
     .create = linear_create,

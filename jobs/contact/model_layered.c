@@ -6,7 +6,6 @@ const struct contact_model LAYERED_MODEL = {
     .block = MODEL_LAYERED,
     .elements = true,
     .default_height = 1.5,
-    .edge_order = {2, 2.5},
     .bytes = linear_bytes,
     .seconds = linear_seconds,
     .create = linear_create,

@@ -19,8 +19,7 @@
 #include <cmocka.h>
 
 enum { REALISATIONS = 12, SEED = 5, CASE = 2 };
-/* As the models tell of edges of profiles. */
-static const double HALFSPACE_EDGE_ORDER = 2, LAYERED_EDGE_ORDER = 2;
+static const double EDGE_ORDER = 2;
 
 static const char LEVELS[] = /* three levels, two models */
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
@@ -350,7 +349,7 @@ static void against_each_realisation(void **state) {
     assert_null(json_at(curve, "/model_error")); /* it is the most complete model */
     struct mesh_changes changes = {change_of(layered[2], layered[1], &standard_error),
                                    change_of(layered[1], layered[0], &unused), 2, 2};
-    struct mesh_error mesh = mesh_error(&changes, LAYERED_EDGE_ORDER);
+    struct mesh_error mesh = mesh_error(&changes, EDGE_ORDER);
     assert_near(at(curve, "/discretisation_error", point), mesh.error, 1e-10);
     assert_true(at(curve, "/discretisation_bound", point) >= mesh.bound * (1 - 1e-9));
     assert_near(at(curve, "/discretisation_standard_error", point), mesh.weight * standard_error,
@@ -362,7 +361,7 @@ static void against_each_realisation(void **state) {
             difference[l][r] = half[l][r] - layered[l][r];
     changes = (struct mesh_changes){change_of(difference[2], difference[1], &unused),
                                     change_of(difference[1], difference[0], &unused), 2, 2};
-    mesh = mesh_error(&changes, fmin(HALFSPACE_EDGE_ORDER, LAYERED_EDGE_ORDER));
+    mesh = mesh_error(&changes, EDGE_ORDER);
     curve = curve_of(document, "contact_area", "edges", "halfspace", 8);
     assert_near(at(curve, "/model_error", point), mean_of(difference[2], &paired) - mesh.error,
                 1e-10);

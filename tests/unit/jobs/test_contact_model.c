@@ -106,7 +106,6 @@ const struct contact_model WINKLER_MODEL = {
     .rank = -1,
     .block = MODEL_HALFSPACE,
     .default_height = INFINITY,
-    .edge_order = {1, 1},
     .curve_count = sizeof CURVES / sizeof *CURVES,
     .curves = CURVES,
     .scalar_count = sizeof SCALARS / sizeof *SCALARS,

@@ -41,7 +41,10 @@ static void ready_studies(void **state) {
                    {"nayak-hurst-continuous", 18, 2430, 1000},
                    {"rce-weibull-2d-full", 20, 512, 20},
                    {"rce-slope", 6, 256, 20},
-                   {"rce-3d-full", 2, 16, 10}};
+                   {"rce-3d-full", 2, 16, 10},
+                   {"rce-length", 18, 2048, 2000},
+                   {"rce-length-3d", 12, 256, 100},
+                   {"rce-block", 15, 512, 100}};
     for (size_t a = 0; a < sizeof studies / sizeof *studies; a++) {
         struct study *study = study_of(studies[a].name);
         double seconds = 0;
