@@ -9,7 +9,7 @@ static const double MARGIN = 1.05;       /* above what is needed, for the same r
 static const double REALISATIONS_MOST = 1e7;
 
 static const double CONFIDENCE = 0.95;  /* unless given */
-static const double CHANCE_USUAL = 0.7; /* of the error asked for */
+static const double CHANCE_USUAL = 0.5; /* of the error asked for */
 enum { ROUNDS_MOST = 40 };
 
 static const struct choice QUANTITIES[] = {

@@ -20,6 +20,7 @@ struct choices {
     double ladder[LADDER_MOST];
     size_t levels;
     double length_ratio, model_length_ratio;
+    double wavelength_ratio; /* in place of nayak_alpha, which gives another on each cell; or NaN */
 };
 
 /* What tells a component from the case. */
@@ -92,6 +93,11 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
             put(all, "contact", "levels", cJSON_CreateDoubleArray(ladder, (int)variant->count));
     if (status == 0)
         status = put(all, "surface", "length_ratio", cJSON_CreateNumber(variant->length_ratio));
+    if (status == 0 && !isnan(choices->wavelength_ratio)) {
+        take_out(all, "surface", "nayak_alpha");
+        status =
+            put(all, "surface", "wavelength_ratio", cJSON_CreateNumber(choices->wavelength_ratio));
+    }
     if (status == 0 && !choices->own_grid)
         status = put(all, "surface", "points_per_wavelength",
                      cJSON_CreateNumber(ladder[variant->count - 1]));
@@ -166,6 +172,29 @@ static void read_length(struct choices *out, const cJSON *document, const cJSON 
     out->model_length_ratio = fmin(out->length_ratio, needed);
 }
 
+/* Solves nayak_alpha on the cell of the base. */
+static int read_alpha(struct choices *out, const cJSON *parameters, struct fault_list *faults,
+                      struct error *err) {
+    struct surface_case surface;
+    out->wavelength_ratio = NAN;
+    if (json_at(parameters, "/surface/nayak_alpha") == NULL)
+        return 0;
+    cJSON *all = cJSON_Duplicate(parameters, true);
+    int status = all == NULL
+                     ? ERROR_MEMORY
+                     : put(all, "surface", "length_ratio", cJSON_CreateNumber(out->length_ratio));
+    if (status != 0)
+        status = error_memory(err, 0, "the parameters of a surface");
+    else
+        status = surface_case_read(&surface, all, faults, err);
+    if (status == 0) {
+        out->wavelength_ratio = surface.wavelength_ratio;
+        surface_case_clear(&surface);
+    }
+    cJSON_Delete(all);
+    return status;
+}
+
 static int read_choices(struct choices *out, const cJSON *document, const cJSON *parameters,
                         struct fault_list *faults, struct error *err) {
     struct values *values = NULL;
@@ -184,7 +213,7 @@ static int read_choices(struct choices *out, const cJSON *document, const cJSON 
     out->profile = number_or(json_at(parameters, "/surface/dimension"), 2) == 1;
     read_ladder(out, document, parameters);
     read_length(out, document, parameters);
-    return 0;
+    return read_alpha(out, parameters, faults, err);
 }
 
 /* --- components --- */
@@ -213,7 +242,7 @@ static int add_all(struct study_case *one, const struct choices *choices) {
     } else if (levels > MODEL_LEVELS_MOST) {
         model.count = MODEL_LEVELS_MOST;
     }
-    const struct variant mesh = {"mesh", MESH_FIRST, 0.1, false, 0, levels, choices->length_ratio};
+    const struct variant mesh = {"mesh", MESH_FIRST, 0.25, false, 0, levels, choices->length_ratio};
     const struct variant cell = {"cell", CELL_FIRST, 0.3, false, 0, 1, choices->length_ratio / 4};
     const struct variant base = {"base", BASE_FIRST, 1, false, 0, 1, choices->length_ratio};
     int status = 0;

@@ -176,6 +176,23 @@ static void keeps_what_is_named(void **state) {
     study_destroy(&study);
 }
 
+/* All components have the waves that the Nayak parameter gives on the cell of the base. */
+static void solves_the_nayak_parameter_once(void **state) {
+    (void)state;
+    struct fault_list faults = {0};
+    struct study *study = NULL;
+    static const char TEXT[] =
+        "{\"name\":\"t\",\"kind\":\"contact\",\"target\":{\"error\":0.05},\"surface\":{"
+        "\"dimension\":1,\"hurst\":0.8,\"nayak_alpha\":4,\"rms_slope\":0.1}}";
+    assert_int_equal(kind_read_study(&study, TEXT, strlen(TEXT), NULL, &faults, NULL), 0);
+    double ratio = number_at(component(study, "base"), "/surface/wavelength_ratio");
+    assert_true(ratio > 1);
+    for (size_t a = 0; a < study->cases[0].component_count; a++)
+        check_close(number_at(&study->cases[0].components[a], "/surface/wavelength_ratio"), ratio,
+                    0);
+    study_destroy(&study);
+}
+
 static void tells_faults(void **state) {
     (void)state;
     static const struct {
@@ -195,10 +212,15 @@ static void tells_faults(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(allots_by_variance_and_cost), cmocka_unit_test(meets_every_point),
-        cmocka_unit_test(is_the_same_each_time),       cmocka_unit_test(distrusts_few_realisations),
-        cmocka_unit_test(keeps_within_the_time),       cmocka_unit_test(chooses_what_is_left_out),
-        cmocka_unit_test(keeps_what_is_named),         cmocka_unit_test(tells_faults),
+        cmocka_unit_test(allots_by_variance_and_cost),
+        cmocka_unit_test(meets_every_point),
+        cmocka_unit_test(is_the_same_each_time),
+        cmocka_unit_test(distrusts_few_realisations),
+        cmocka_unit_test(keeps_within_the_time),
+        cmocka_unit_test(chooses_what_is_left_out),
+        cmocka_unit_test(keeps_what_is_named),
+        cmocka_unit_test(tells_faults),
+        cmocka_unit_test(solves_the_nayak_parameter_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
