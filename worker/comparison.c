@@ -16,13 +16,29 @@ static void compared_clear(struct compared *compared) {
     result_clear(&compared->result);
 }
 
+/* The answer to a target is put together of several cases, which are no pairs. */
+static int refuse_target(struct store *store, const char *study, uint64_t case_number,
+                         struct error *err) {
+    struct component *components = NULL;
+    size_t count = 0;
+    int status = store_components(store, study, case_number, &components, &count, err);
+    components_free(components, count);
+    return status != 0 || count == 0
+               ? status
+               : error_set(err, ERROR_INPUT,
+                           "case %llu asks for an error, and has no realisations of its own to "
+                           "compare",
+                           (unsigned long long)case_number);
+}
+
 static int read_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
                      const char *quantity, struct compared *out, struct error *err) {
     struct case_info info = {0};
     int status = store_case(store, aggregate->about.id, case_number, &info, err);
     if (status != 0)
         return status;
-    if (info.realisations_done == 0)
+    status = refuse_target(store, aggregate->about.id, case_number, err);
+    if (status == 0 && info.realisations_done == 0)
         status = error_set(err, ERROR_STATE, "case %llu has no realisations yet",
                            (unsigned long long)case_number);
     if (status == 0)

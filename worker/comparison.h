@@ -10,8 +10,9 @@ struct comparison {
 };
 /* Fills a study's result with one case, the difference (schema/result/difference.h). Its values are
  * over the realisations that both have, paired where cases share their random numbers; what is not
- * so is told in its remark. ERROR_INPUT where the two are one, or have nothing of the quantity in
- * common; ERROR_ABSENT for an unknown study or case; ERROR_STATE for one that has not begun. */
+ * so is told in its remark. ERROR_INPUT where the two are one, have nothing of the quantity in
+ * common, or one asks for an error; ERROR_ABSENT for an unknown study or case; ERROR_STATE for one
+ * that has not begun. */
 int comparison_make(struct store *store, const char *study, const struct comparison *comparison,
                     struct study_result *out, struct error *err);
 

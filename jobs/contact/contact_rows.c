@@ -55,12 +55,12 @@ void contact_rows_clear(struct contact_rows *rows) {
 }
 
 int contact_rows_reserve(struct contact_rows *rows, size_t more, struct error *err) {
-    size_t row = rows->width * sizeof *rows->values;
+    size_t row = (rows->width > 0 ? rows->width : 1) * sizeof *rows->values;
     if (more <= rows->capacity - rows->count)
         return 0;
     size_t least = 2 * rows->capacity > 16 ? 2 * rows->capacity : 16;
     size_t capacity = rows->count + more > least ? rows->count + more : least;
-    if (more > SIZE_MAX / 4 || (row > 0 && capacity > SIZE_MAX / 2 / row))
+    if (more > SIZE_MAX / 4 || capacity > SIZE_MAX / 2 / row)
         return error_memory(err, SIZE_MAX, "rows of realisations");
     uint64_t *realisation = realloc(rows->realisation, capacity * sizeof *realisation);
     if (realisation != NULL)

@@ -113,6 +113,71 @@ static void a_study_from_submission_to_curves(void **state) {
     check_answer("POST", path, NULL, 200, "\"retried\":0");
 }
 
+/* Near and far, as JSON, CSV and table. */
+static void a_case_less_another(void **state) {
+    (void)state;
+    static const char STUDY[] =
+        "{\"name\":\"two\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":8,\"surface\":"
+        "{\"dimension\":1,\"hurst\":[0.2,0.8],\"wavelength_ratio\":4,\"length_ratio\":4}}";
+    char id[17], path[120], url[64], *answer;
+    submit(STUDY, id);
+    path_of(path, sizeof path, id, "/curves?difference=1,0");
+    check_answer("GET", path, NULL, 409, "case 1 has no realisations yet");
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    assert_int_equal(run_rugo("work", (const char *[]){"work", "--server", url, "--drain",
+                                                       "--workers", "1", NULL}),
+                     0);
+    path_of(path, sizeof path, id, "");
+    wait_until_done(path);
+    path_of(path, sizeof path, id, "/curves?difference=1,0");
+    check_answer("GET", path, NULL, 200, "{\"case\":1,\"less\":0,");
+    check_answer("GET", path, NULL, 200, "\"paired\":true");
+    assert_int_equal(http_exchange(port, "GET", path, "Accept: text/csv\r\n", NULL, &answer), 200);
+    assert_non_null(strstr(answer, ",less,minuend,subtrahend,paired"));
+    free(answer);
+    static const struct {
+        const char *query;
+        int status;
+        const char *text;
+    } WRONG[] = {{"?difference=1", 422, "?difference"},
+                 {"?difference=1,x", 422, "1,x is not two cases"},
+                 {"?difference=1,0&case=1", 422, "not together with difference"},
+                 {"?difference=1,1", 422, "less itself is nothing"},
+                 {"?difference=0,2", 404, "has no case 2"},
+                 {"?difference=1,0&quantity=colour", 422, "colour"}};
+    for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
+        char rest[64];
+        snprintf(rest, sizeof rest, "/curves%s", WRONG[w].query);
+        path_of(path, sizeof path, id, rest);
+        check_answer("GET", path, NULL, WRONG[w].status, WRONG[w].text);
+    }
+    assert_int_equal(run_rugo("far", (const char *[]){"curves", "--server", url, id, "--difference",
+                                                      "1", "0", NULL}),
+                     0);
+    assert_int_equal(run_rugo("near", (const char *[]){"curves", "--db", "rugo.db", id,
+                                                       "--difference", "1", "0", NULL}),
+                     0);
+    char *far = slurp("far.out"), *near = slurp("near.out");
+    assert_string_equal(far, near);
+    free(far);
+    free(near);
+    assert_int_equal(run_rugo("table", (const char *[]){"curves", "--server", url, id, "--format",
+                                                        "table", "--difference", "1", "0", NULL}),
+                     0);
+    char *table = slurp("table.out");
+    assert_non_null(strstr(table, "case 1 less case 0, 8 realisations"));
+    assert_non_null(strstr(table, "/surface/hurst: 0.8 less 0.2"));
+    free(table);
+    assert_int_equal(
+        run_rugo("out", (const char *[]){"curves", "--server", url, id, "--out", "difference",
+                                         "--difference", "1", "0", NULL}),
+        0);
+    char *picture = slurp("difference/summit_height_pdf.svg");
+    assert_non_null(strstr(picture, "case 1 less case 0"));
+    assert_non_null(strstr(picture, "fill-opacity"));
+    free(picture);
+}
+
 /* Curves are sent case by case, and are the same document as of the file; a table has its limit. */
 static void curves_of_many_cases_are_sent_whole(void **state) {
     (void)state;
@@ -336,6 +401,7 @@ static void beyond_loopback_tokens_are_needed(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_study_from_submission_to_curves),
+        cmocka_unit_test(a_case_less_another),
         cmocka_unit_test(curves_of_many_cases_are_sent_whole),
         cmocka_unit_test(unchanged_curves_are_not_sent_again),
         cmocka_unit_test(a_key_makes_submission_safe_to_repeat),

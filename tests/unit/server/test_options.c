@@ -12,7 +12,7 @@ struct values {
     bool flag;
     const char *text;
     unsigned count;
-    int64_t index;
+    int64_t index, pair[2];
     double number;
     int choice;
     const char **list;
@@ -23,6 +23,7 @@ static const struct option_row ROWS[] = {
     {"text", 't', OPTION_TEXT, 0, 0, AT(text), "TEXT", "standard", "a text"},
     {"count", 0, OPTION_COUNT, 1, 7, AT(count), "N", "3", "a count"},
     {"index", 0, OPTION_INDEX, 0, 0, AT(index), "I", NULL, "an index"},
+    {"pair", 0, OPTION_PAIR, 0, 0, AT(pair), "A B", NULL, "two indices"},
     {"number", 0, OPTION_NUMBER, 0, 0, AT(number), "X", NULL, "a number above 0"},
     {"choice", 0, OPTION_CHOICE, 0, 0, AT(choice), "one|two|three", "two", "a word"},
     {"list", 0, OPTION_LIST, 0, 0, AT(list), "WORD", NULL, "words"},
@@ -61,6 +62,7 @@ static void defaults(void **state) {
     assert_string_equal(v.text, "standard");
     assert_int_equal(v.count, 3);
     assert_int_equal(v.index, -1);
+    assert_true(v.pair[0] == -1 && v.pair[1] == -1);
     assert_true(v.number == 0);
     assert_int_equal(v.choice, 1);
     assert_null(v.list[0]);
@@ -89,6 +91,22 @@ static void values_of_each_type(void **state) {
     options_clear(ROWS, &v);
 }
 
+/* Two words, one with a comma, before and behind other words. */
+static void pairs_are_two_words_or_one(void **state) {
+    (void)state;
+    static const char *const LINES[] = {"file --pair 3 0", "--pair 3 0 file", "--pair 3,0 file",
+                                        "-f --pair=3,0 --index 1 file", "--pair=3 0 file -f"};
+    for (size_t l = 0; l < sizeof LINES / sizeof *LINES; l++) {
+        struct values v;
+        const char *argument = NULL;
+        char told[200];
+        assert_int_equal(parse(LINES[l], &v, &argument, told), 0);
+        assert_string_equal(argument, "file");
+        assert_true(v.pair[0] == 3 && v.pair[1] == 0);
+        options_clear(ROWS, &v);
+    }
+}
+
 static void wrong_values_are_told(void **state) {
     (void)state;
     static const struct {
@@ -99,6 +117,9 @@ static void wrong_values_are_told(void **state) {
         {"--count 99999999999999999999", "is not a whole number in [1, 7]"},
         {"--count 2x", "--count 2x is not a whole number in [1, 7]"},
         {"--index -1", "--index -1 is not a whole number of 0 or more"},
+        {"--pair 1", "--pair needs two values"},
+        {"--pair 1 x", "--pair x is not a whole number of 0 or more"},
+        {"--pair 1,2,3", "--pair 2,3 is not a whole number of 0 or more"},
         {"--number 0", "--number 0 is not a number above 0"},
         {"--number nan", "--number nan is not a number above 0"},
         {"--number inf", "--number inf is not a number above 0"},
@@ -168,6 +189,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
         cmocka_unit_test(values_of_each_type),
+        cmocka_unit_test(pairs_are_two_words_or_one),
         cmocka_unit_test(wrong_values_are_told),
         cmocka_unit_test(rising_lists),
         cmocka_unit_test(tables_of_the_commands_are_sound),
