@@ -27,6 +27,7 @@ struct point_values {
     size_t stride;
 };
 
+struct job_merger;   /* merger.h */
 struct realisations; /* realisations.h */
 struct result_view;  /* schema/result/view.h */
 struct surface_case; /* surface_case.h */
@@ -57,6 +58,7 @@ struct target_component {
     uint64_t done;  /* realisations; 0: no tally */
     double seconds; /* of one, as estimated */
     const void *study, *tally;
+    const struct job_merger *merger; /* which holds both (merger.h) */
 };
 
 struct job_kind {

@@ -12,8 +12,12 @@ static const double CONFIDENCE = 0.95;  /* unless given */
 static const double CHANCE_USUAL = 0.5; /* of the error asked for */
 enum { ROUNDS_MOST = 40 };
 
-static const struct choice QUANTITIES[] = {
-    {"contact_area", TARGET_CONTACT_AREA}, {"mean_gap", TARGET_MEAN_GAP}, {0}};
+static const struct choice QUANTITIES[] = {{"contact_area", TARGET_CONTACT_AREA},
+                                           {"mean_gap", TARGET_MEAN_GAP},
+                                           {"summit_density", TARGET_SUMMIT_DENSITY},
+                                           {"summit_height_pdf", TARGET_SUMMIT_HEIGHT_PDF},
+                                           {"summit_curvature_pdf", TARGET_SUMMIT_CURVATURE_PDF},
+                                           {0}};
 
 static const struct parameter ROWS[] = {
     {.path = "/target/error",
@@ -38,7 +42,10 @@ static const struct parameter ROWS[] = {
      .choices = QUANTITIES,
      .later = true,
      .example_json = "\"mean_gap\"",
-     .help = "curve whose error is asked for; contact_area unless given"},
+     .help = "whose error is asked for: of contact the curve contact_area (unless given) or "
+             "mean_gap; of "
+             "statistics summit_density (unless given), or the curve summit_height_pdf or "
+             "summit_curvature_pdf, by norm"},
     {.path = "/target/max_seconds",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
@@ -52,15 +59,35 @@ static const struct parameter ROWS[] = {
 };
 const struct parameter_table TARGET_PARAMETERS = {"target", ROWS, sizeof ROWS / sizeof *ROWS};
 
-bool target_read(struct target *out, struct values *values) {
+int target_read(struct target *out, const cJSON *parameters,
+                const struct parameter_table *const *tables, enum target_quantity first,
+                enum target_quantity last, struct fault_list *faults, struct error *err) {
+    struct values *values = NULL;
+    int status = values_create(&values, parameters, tables, faults, err);
+    if (status != 0)
+        return status;
     double confidence = values_number(values, "/target/confidence");
     double most = values_number(values, "/target/max_seconds");
-    *out =
-        (struct target){.error = values_number(values, "/target/error"),
-                        .confidence = isnan(confidence) ? CONFIDENCE : confidence,
-                        .quantity = (enum target_quantity)values_choice(values, "/target/quantity"),
-                        .max_seconds = isnan(most) ? INFINITY : most};
-    return !isnan(out->error);
+    int quantity = values_choice(values, "/target/quantity");
+    *out = (struct target){.error = values_number(values, "/target/error"),
+                           .confidence = isnan(confidence) ? CONFIDENCE : confidence,
+                           .quantity =
+                               quantity == TARGET_UNNAMED ? first : (enum target_quantity)quantity,
+                           .max_seconds = isnan(most) ? INFINITY : most};
+    if (isnan(out->error))
+        values_fault(values, "/target/error", "missing: a number in [1e-05, 0.5]");
+    if (out->quantity < first || out->quantity > last)
+        values_fault(values, "/target/quantity",
+                     "\"%s\" is not of this kind; it has \"%s\" to \"%s\"",
+                     target_quantity_name(out->quantity), target_quantity_name(first),
+                     target_quantity_name(last));
+    status = values_status(values, err);
+    values_destroy(&values);
+    return status;
+}
+
+const char *target_quantity_name(enum target_quantity quantity) {
+    return choice_name(QUANTITIES, (int)quantity);
 }
 
 double target_quantile(const struct target *target, size_t count, const struct target_part *parts,

@@ -15,14 +15,28 @@
 extern const struct parameter_table TARGET_PARAMETERS;
 enum { TARGET_PARTS_MOST = 8 };
 
-enum target_quantity { TARGET_CONTACT_AREA, TARGET_MEAN_GAP };
+/* Curves, or scalars, whose error may be asked for, by kind. */
+enum target_quantity {
+    TARGET_UNNAMED,
+    TARGET_CONTACT_AREA, /* of contact, as the next */
+    TARGET_MEAN_GAP,
+    TARGET_SUMMIT_DENSITY, /* of statistics, as the next two */
+    TARGET_SUMMIT_HEIGHT_PDF,
+    TARGET_SUMMIT_CURVATURE_PDF
+};
 struct target {
     double error, confidence;
     enum target_quantity quantity;
     double max_seconds; /* of CPU; INFINITY */
 };
-/* Of a case's values; false where it has no target. */
-bool target_read(struct target *out, struct values *values);
+/* Reads it from the parameters of a case with TARGET_PARAMETERS among its tables. A fault where
+ * there is no error, or a quantity that is none of those from first to last; unnamed, it is the
+ * first. faults may be NULL: the first fault is the error in any case. */
+int target_read(struct target *out, const cJSON *parameters,
+                const struct parameter_table *const *tables, enum target_quantity first,
+                enum target_quantity last, struct fault_list *faults, struct error *err);
+/* The name of a quantity in studies and results. */
+const char *target_quantity_name(enum target_quantity quantity);
 
 /* What a component is to the planner. */
 struct target_part {

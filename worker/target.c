@@ -34,7 +34,8 @@ static int part_read(struct store *store, const struct target_case *of, size_t a
         return error_context(err, "component %s", component->role);
     *out = (struct target_component){.role = component->role,
                                      .seconds = component->cost.seconds,
-                                     .study = merger_case(part->merger)};
+                                     .study = merger_case(part->merger),
+                                     .merger = part->merger};
     out->tally = merger_tally(part->merger, &out->done);
     return 0;
 }
@@ -58,6 +59,7 @@ int target_answer(struct store *store, const struct target_case *of, uint64_t *w
         status = part_read(store, of, a, &parts[a], &components[a], err);
     if (status == 0)
         status = of->kind->answer(of->info->parameters, of->count, components, wanted, out, err);
+    out->realisations = 0;
     for (size_t a = 0; a < of->count && status == 0; a++)
         out->realisations += components[a].done;
     if (status != 0)

@@ -275,13 +275,8 @@ static bool has_begun(size_t count, const struct target_component *components) {
 }
 
 static int read_target(struct contact_answer *out, const cJSON *parameters, struct error *err) {
-    struct values *values = NULL;
-    int status = values_create(&values, parameters, CONTACT_TABLES, NULL, err);
-    if (status != 0)
-        return status;
-    if (!target_read(&out->target, values))
-        status = error_set(err, ERROR_INPUT, "/target/error: missing");
-    values_destroy(&values);
+    int status = target_read(&out->target, parameters, CONTACT_TABLES, TARGET_CONTACT_AREA,
+                             TARGET_MEAN_GAP, NULL, err);
     /* what is chosen was taken out of the parameters, but for the grid of a surface that needs it
      */
     out->named_mesh = json_at(parameters, "/contact/levels") != NULL;
@@ -290,19 +285,19 @@ static int read_target(struct contact_answer *out, const cJSON *parameters, stru
 
 static int answer_sums(const struct contact_answer *answer, uint64_t wanted[ROLES],
                        struct error *err) {
-    static const enum contact_measure MEASURES[] = {
-        [TARGET_CONTACT_AREA] = MEASURE_EDGES, [TARGET_MEAN_GAP] = MEASURE_GAP};
+    static const enum contact_measure MEASURES[] = {MEASURE_EDGES, MEASURE_GAP}; /* as the enum */
     struct contact_sum sums[2];
     int status = 0;
     for (size_t a = 0; a < 2 && status == 0; a++)
         status = contact_sum_create(answer, MEASURES[a], &sums[a], err);
     for (size_t a = 0; a < 2 && status == 0; a++)
         status = put_curve(answer, &sums[a], MEASURES[a], err);
-    const struct contact_sum *asked = &sums[answer->target.quantity];
+    size_t place = (size_t)answer->target.quantity - TARGET_CONTACT_AREA;
+    const struct contact_sum *asked = &sums[place];
     if (status == 0)
         status = plan(answer, asked, wanted, err);
     if (status == 0)
-        status = put_scalars(answer, asked, MEASURES[answer->target.quantity], err);
+        status = put_scalars(answer, asked, MEASURES[place], err);
     return status;
 }
 

@@ -197,14 +197,11 @@ static int read_alpha(struct choices *out, const cJSON *parameters, struct fault
 
 static int read_choices(struct choices *out, const cJSON *document, const cJSON *parameters,
                         struct fault_list *faults, struct error *err) {
-    struct values *values = NULL;
     *out = (struct choices){0};
-    int status = values_create(&values, parameters, CONTACT_TABLES, faults, err);
+    int status = target_read(&out->target, parameters, CONTACT_TABLES, TARGET_CONTACT_AREA,
+                             TARGET_MEAN_GAP, faults, err);
     if (status != 0)
         return status;
-    if (!target_read(&out->target, values))
-        fault_add(faults, "/target/error", "missing: a number in [1e-05, 0.5]");
-    values_destroy(&values);
     const cJSON *heights = json_at(parameters, "/surface/heights/distribution");
     out->own_grid = cJSON_IsString(heights) && strcmp(heights->valuestring, "gaussian") != 0;
     out->height = json_at(document, "/contact/block_height") == NULL;

@@ -2,6 +2,7 @@
 #include "jobs/statistics/statistics_curves.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
+#include "jobs/statistics/statistics_target.h"
 #include "jobs/statistics/statistics_view.h"
 
 static int read_case(void *one_case, const cJSON *parameters, struct fault_list *faults,
@@ -142,7 +143,8 @@ const struct job_kind STATISTICS_KIND = {
     .study = {.name = "statistics",
               .tables = STATISTICS_TABLES,
               .default_realisations = 1000,
-              .check = kind_check},
+              .check = kind_check,
+              .expand = statistics_target_expand},
     .scalar = statistics_scalar_name,
     .view = &STATISTICS_VIEW,
     .case_size = sizeof(struct statistics_case),
@@ -165,6 +167,7 @@ const struct job_kind STATISTICS_KIND = {
     .adds_up = adds_up,
     .belongs = belongs,
     .result = result,
+    .answer = statistics_target_answer,
     .scalar_values = scalar_values,
     .complete = complete,
 };

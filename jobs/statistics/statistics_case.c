@@ -1,10 +1,11 @@
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/surface_parameters.h"
+#include "jobs/target.h"
 
 enum { BINS_MOST = 10000, JOINT_MOST = 1000000 };
 
-const struct parameter_table *const STATISTICS_TABLES[] = {&SURFACE_PARAMETERS,
-                                                           &STATISTICS_PARAMETERS, NULL};
+const struct parameter_table *const STATISTICS_TABLES[] = {
+    &SURFACE_PARAMETERS, &STATISTICS_PARAMETERS, &TARGET_PARAMETERS, NULL};
 
 static void fill(struct statistics_case *out, struct values *values) {
     out->stencil = (enum summit_stencil)values_choice(values, "/statistics/summits");

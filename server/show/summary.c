@@ -1,5 +1,6 @@
 #include "server/show/summary.h"
 #include "server/show/summary_cells.h"
+#include "server/show/summary_target.h"
 #include "server/show/view.h"
 #include <math.h>
 
@@ -116,6 +117,8 @@ static void print_scalars(const struct scalar_table *plan, FILE *file) {
 
 /* --- a study --- */
 
+enum { TARGETS_SHOWN = 20 };
+
 static void print_title(const struct study_result *study, const struct study_report *report,
                         FILE *file) {
     fprintf(file, "%s (%s), study %s", study->name, study->state, study->id);
@@ -152,6 +155,8 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
         for (size_t s = 0; s < plan.scalar_count; s++)
             plan.compared[s] = has_scalar(&shown, plan.scalars[s], true);
         print_scalars(&plan, file);
+        for (size_t c = 0; c < shown.count && c < TARGETS_SHOWN; c++)
+            summary_of_target(shown.list[c], file);
     }
     print_missing(&shown, file);
     shown_clear(&shown);

@@ -3,6 +3,7 @@
 #include "server/show/summary_cells.h"
 #include <math.h>
 
+/* NaN where there is none. */
 static double scalar_of(const struct case_result *one, const char *name) {
     const struct scalar *scalar = result_scalar(one, name);
     return scalar != NULL ? scalar->value : (double)NAN;
@@ -17,7 +18,7 @@ static void print_left(const struct case_result *one, FILE *file) {
     double bounds = 0;
     size_t most = 0;
     for (size_t a = 0; a < 3; a++) {
-        bounds += scalar_of(one, SOURCES[a]);
+        bounds += result_scalar(one, SOURCES[a]) != NULL ? scalar_of(one, SOURCES[a]) : 0;
         if (scalar_of(one, SOURCES[a]) > scalar_of(one, SOURCES[most]))
             most = a;
     }
@@ -35,14 +36,16 @@ void summary_of_target(const struct case_result *one, FILE *file) {
     double asked = scalar_of(one, "error_asked"), reached = scalar_of(one, "error_reached");
     if (isnan(asked))
         return;
-    fprintf(file,
-            "error asked %.3g %%, reached %.3g %%: chance %.2g, mesh %.2g, cell %.2g, model %.2g "
-            "%%\n",
-            100 * asked, 100 * reached, 100 * scalar_of(one, "error_chance"),
-            100 * scalar_of(one, "error_mesh"), 100 * scalar_of(one, "error_cell"),
-            100 * scalar_of(one, "error_model"));
-    fprintf(file, "work: 1/%.3g of plain sampling; levels agree within %.2g standard errors\n",
-            scalar_of(one, "plain_work") / scalar_of(one, "work"), scalar_of(one, "consistency"));
+    fprintf(file, "error asked %.3g %%, reached %.3g %%", 100 * asked, 100 * reached);
+    if (result_scalar(one, "error_mesh") != NULL)
+        fprintf(file, ": chance %.2g, mesh %.2g, cell %.2g, model %.2g %%",
+                100 * scalar_of(one, "error_chance"), 100 * scalar_of(one, "error_mesh"),
+                100 * scalar_of(one, "error_cell"), 100 * scalar_of(one, "error_model"));
+    fputc('\n', file);
+    if (result_scalar(one, "plain_work") != NULL)
+        fprintf(file, "work: 1/%.3g of plain sampling; levels agree within %.2g standard errors\n",
+                scalar_of(one, "plain_work") / scalar_of(one, "work"),
+                scalar_of(one, "consistency"));
     if (reached > asked)
         print_left(one, file);
 }

@@ -148,6 +148,34 @@ static void over_http(void **state) {
     check_same("http.db");
 }
 
+/* One component, the case itself: the curves are those of a plain study of as many surfaces. */
+static void statistics_reach_the_error(void **state) {
+    (void)state;
+    char count[32], *target, *plain;
+    static const char PARTS[] = "\"name\":\"s\",\"kind\":\"statistics\",\"seed\":3,\"surface\":{"
+                                "\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4}}";
+    char text[512];
+    snprintf(text, sizeof text, "{\"target\":{\"error\":0.01},%s", PARTS);
+    spit("statistics.json", text);
+    assert_int_equal(
+        run_rugo("s", (const char *[]){"run", "--db", "s.db", "statistics.json", NULL}), 0);
+    assert_true(contains("s.out", "error asked 1 %, reached"));
+    double reached = read_number("s.db", "SELECT error_reached FROM study_progress");
+    assert_true(reached > 0 && reached <= 0.01);
+    read_text("s.db", "SELECT realisations FROM case_components", count, sizeof count);
+    assert_true(strtol(count, NULL, 10) > 32);
+    snprintf(text, sizeof text, "{\"realisations\":%s,%s", count, PARTS);
+    spit("plain.json", text);
+    assert_int_equal(run_rugo("p", (const char *[]){"run", "--db", "p.db", "plain.json", NULL}), 0);
+    target = curves_of("s.db");
+    plain = curves_of("p.db");
+    const char *ours = strstr(target, "\"curves\":"), *theirs = strstr(plain, "\"curves\":");
+    assert_true(ours != NULL && theirs != NULL);
+    assert_string_equal(ours, theirs);
+    free(target);
+    free(plain);
+}
+
 /* What is named is kept, though it takes the error out of reach; and time runs out. */
 static void says_what_is_left(void **state) {
     (void)state;
@@ -187,6 +215,7 @@ int main(void) {
         cmocka_unit_test(over_http),
         cmocka_unit_test(says_what_is_left),
         cmocka_unit_test(cancelled_and_retried),
+        cmocka_unit_test(statistics_reach_the_error),
     };
     return cmocka_run_group_tests(tests, undisturbed, cleanup);
 }
