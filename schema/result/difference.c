@@ -245,7 +245,9 @@ static int set_names(struct maker *maker, const struct curve_pair *pair, struct 
     out->level = same_number(a->level, b->level) ? a->level : (double)NAN;
     out->points = same_number(a->points, b->points) ? a->points : (double)NAN;
     bool done = out->quantity != NULL && out->x_label != NULL && out->y_label != NULL &&
-                out->series != NULL && (out->model != NULL || same_model(a, b));
+                out->series != NULL &&
+                (out->model != NULL || (a->model == NULL && b->model == NULL)) &&
+                (out->kinematics != NULL || (a->kinematics == NULL && b->kinematics == NULL));
     return done ? 0 : no_room(err);
 }
 

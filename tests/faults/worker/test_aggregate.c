@@ -1,5 +1,6 @@
 /* Protects: whichever allocation fails, in SQLite too, a study's results are published, read,
- * reported and printed as a table, or the call says that memory is short; nothing leaks. */
+ * reported, compared and printed as a table, or the call says that memory is short; nothing leaks.
+ */
 #include "tests/support/check.h"
 
 #include "core/memory_file.h"
@@ -7,6 +8,7 @@
 #include "tests/support/failing/each_allocation.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/aggregate.h"
+#include "worker/comparison.h"
 #include "worker/worker.h"
 
 static struct fixture fixture;
@@ -55,6 +57,21 @@ static int report(void *context, struct error *err) {
     return status;
 }
 
+static int difference(void *context, struct error *err) {
+    const struct comparison comparison = {.minuend = 1};
+    struct study_result study = {0};
+    (void)context;
+    int status = comparison_make(fixture.store, fixture.study, &comparison, &study, err);
+    if (status == 0) {
+        const struct case_result *one = &study.cases[0];
+        assert_true(result_scalar(one, "summit_height_mean")->paired);
+        assert_true(one->curve_count > 0 && one->remark != NULL);
+        status = print_table(&study, err);
+    }
+    study_result_clear(&study);
+    return status;
+}
+
 static int open_study(void **state) {
     struct error err = {0};
     (void)state;
@@ -81,6 +98,7 @@ static void published(void **state) {
     each_allocation(&(struct failing_call){.name = "publish", publish, .may_succeed = 1});
     each_allocation(&(struct failing_call){.name = "curves", curves, &all, .may_succeed = 1});
     each_allocation(&(struct failing_call){.name = "a curve", curves, &one, .may_succeed = 1});
+    each_allocation(&(struct failing_call){.name = "difference", difference, .may_succeed = 1});
     each_allocation(&(struct failing_call){.name = "report", report, .may_succeed = 1});
 }
 
