@@ -1,4 +1,5 @@
 #include "schema/result/difference.h"
+#include "schema/result/difference_mesh.h"
 #include "schema/result/difference_parameters.h"
 #include <math.h>
 #include <stdarg.h>
@@ -135,6 +136,11 @@ static int combine_error(struct maker *maker, const struct curve_pair *pair,
         bound[k] = at_or_zero(a->bound, i) + at_or_zero(b->bound, j);
         standard_error[k] =
             hypot(at_or_zero(a->standard_error, i), at_or_zero(b->standard_error, j));
+    }
+    if (source == ERROR_DISCRETISATION && maker->pairs != NULL) {
+        struct mesh_curves one = mesh_curves_of(maker->minuend, pair->minuend);
+        struct mesh_curves other = mesh_curves_of(maker->subtrahend, pair->subtrahend);
+        difference_mesh_bounds(&one, &other, n, pair->a, pair->b, bound);
     }
     to->value = value;
     to->bound = bound;

@@ -2,7 +2,8 @@
  *
  * Cases of the same random numbers (study.h) go together, realisation by realisation, so that the
  * mean difference over pairs is known far better than the cases. Other errors are combined: the
- * value of a source is the difference of the two values, its bound the sum of the two bounds. */
+ * value of a source is the difference of the two values, its bound the sum of the two bounds; that
+ * of the mesh is less where the changes between levels go together (difference_mesh.h). */
 #ifndef RUGO_SCHEMA_RESULT_DIFFERENCE_H
 #define RUGO_SCHEMA_RESULT_DIFFERENCE_H
 

@@ -128,6 +128,39 @@ static void pairs_are_taken(void **state) {
     result_clear(&b);
 }
 
+/* Bounds are three changes between levels: 3 x 2 and 3 x 1.5 at the first place, where the two
+ * changes differ by 0.5, and by 1 at the next one. */
+static void meshes_go_together(void **state) {
+    (void)state;
+    static const double FINE[] = {10, 20, 30}, COARSE[] = {8, 17, 26};
+    static const double OTHER_FINE[] = {5, 6, 7}, OTHER_COARSE[] = {3.5, 4, 3};
+    static const double ZERO[] = {0, 0, 0}, MESH[] = {6, 9, 12}, OTHER_MESH[] = {4.5, 6, 12};
+    static const double EXPECTED[] = {3 * 1, 3 * 1, 3 * 1};
+    double value = 7;
+    const struct difference_pairs pairs = {&value, point, scalar};
+    struct case_result a = {0}, b = {.case_number = 1};
+    add(&a, curve_of("area", "full", 8, X, FINE, THREE));
+    add(&a, curve_of("area", "full", 4, X, COARSE, THREE));
+    add(&b, curve_of("area", "full", 8, X, OTHER_FINE, FOUR));
+    add(&b, curve_of("area", "full", 4, X, OTHER_COARSE, FOUR));
+    a.curves[0].errors[ERROR_DISCRETISATION] = (struct curve_error){
+        .applies = true, .value = ZERO, .bound = MESH, .standard_error = ZERO, .order = NAN};
+    b.curves[0].errors[ERROR_DISCRETISATION] = (struct curve_error){
+        .applies = true, .value = ZERO, .bound = OTHER_MESH, .standard_error = ZERO, .order = NAN};
+    for (int trial = 0; trial < 3; trial++) { /* by pairs; not by pairs; with a signed error */
+        if (trial == 2)
+            a.curves[0].errors[ERROR_DISCRETISATION].value = VALUE;
+        struct case_result out = subtract(&a, &b, trial == 1 ? NULL : &pairs);
+        assert_int_equal(out.curve_count, 1);
+        for (size_t k = 0; k < 3; k++)
+            check_close(out.curves[0].errors[ERROR_DISCRETISATION].bound[k],
+                        trial == 0 ? EXPECTED[k] : MESH[k] + OTHER_MESH[k], 1e-14);
+        result_clear(&out);
+    }
+    result_clear(&a);
+    result_clear(&b);
+}
+
 /* Cases of one model each are compared whatever these are; with several, each with its own. */
 static void models_find_their_partners(void **state) {
     (void)state;
@@ -216,6 +249,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_are_put_together),
         cmocka_unit_test(pairs_are_taken),
+        cmocka_unit_test(meshes_go_together),
         cmocka_unit_test(models_find_their_partners),
         cmocka_unit_test(parameters_tell_what_differs),
         cmocka_unit_test(formats_hold_it),
