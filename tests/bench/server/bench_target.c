@@ -3,7 +3,7 @@
 #include "tests/support/target_coverage.h"
 #include <stdlib.h>
 
-enum { SEEDS = 10, REFERENCES = 400 };
+enum { SEEDS = 10, REFERENCES = 150 };
 
 static const struct coverage_question QUESTIONS[] = {
     {"\"distribution\":\"gaussian\"", "halfspace", 0.8, 0.05, 1},
