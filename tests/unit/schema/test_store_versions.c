@@ -55,7 +55,11 @@ static void released_migrations_are_frozen(void **state) {
         uint64_t hash;
     } FROZEN[] = {{"schema/store/migrations/001.sql", 0xcf5a6eed7acfb57au},
                   {"schema/store/migrations/002.sql", 0xd8f023bf731441d3u},
-                  {"schema/store/migrations/003.sql", 0xd3606d69b5e99841u}};
+                  {"schema/store/migrations/003.sql", 0xd3606d69b5e99841u},
+                  {"schema/store/migrations/004.sql", 0x65a059156daafa6fu},
+                  {"schema/store/migrations/005.sql", 0xd323a4efa3489637u},
+                  {"schema/store/migrations/006.sql", 0x9a89fdf526d611cau},
+                  {"schema/store/migrations/007.sql", 0xcd64f16d5e3429ceu}};
     for (size_t f = 0; f < sizeof FROZEN / sizeof *FROZEN; f++) {
         size_t size = 0;
         char *text = read_source(FROZEN[f].name, &size);
