@@ -166,6 +166,19 @@ static void void_leases(const char *database) {
     sqlite3_close(db);
 }
 
+/* A run under a sanitizer, on a busy machine, takes its time until the study is in the database. */
+static void wait_for_jobs(const char *database) {
+    bool found = false;
+    for (int tries = 0; tries < 500 && !found; tries++) {
+        sqlite3 *db = NULL;
+        sleep_ms(20);
+        found = sqlite3_open_v2(database, &db, SQLITE_OPEN_READWRITE, NULL) == SQLITE_OK &&
+                sqlite3_exec(db, "SELECT id FROM job", NULL, NULL, NULL) == SQLITE_OK;
+        sqlite3_close(db);
+    }
+    assert_true(found);
+}
+
 static void a_run_goes_on_where_it_was(void **state) {
     (void)state;
     struct process run;
@@ -175,7 +188,8 @@ static void a_run_goes_on_where_it_was(void **state) {
                                    "1",   "blocks.json", NULL};
     assert_int_equal(shell("$RUGO run --db calm.db --workers 1 blocks.json"), 0);
     process_start(&run, "kill", killed);
-    sleep_ms(150);
+    wait_for_jobs("killed.db");
+    sleep_ms(120);
     process_kill(&run, SIGKILL);
     process_wait(&run, 10);
     for (int interrupt = 0; interrupt < 2; interrupt++) {
