@@ -145,7 +145,8 @@ int store_cost(struct store *store, const char *study, uint64_t case_number, str
             "study WHERE id = study_id), realisations_done), jobs, (SELECT total(attempts) FROM "
             "job "
             "WHERE job.study_id = study_case.study_id AND job.case_number = number) + (SELECT "
-            "total(j.attempts) FROM study_case k JOIN job j ON j.study_id = k.study_id AND "
+            "total(j.attempts) FROM study_case k INDEXED BY case_parent CROSS JOIN job j ON "
+            "j.study_id = k.study_id AND "
             "j.case_number = k.number WHERE k.study_id = study_case.study_id AND k.parent = "
             "study_case.number), seconds, cpu_seconds, "
             "jobs_without_cpu FROM study_case WHERE study_id = ? AND number = ?",
