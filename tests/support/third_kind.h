@@ -64,9 +64,7 @@ static int needle_realise(void *workspace, const struct realisation *realisation
     return 0;
 }
 static int needle_merge(void *into, const void *from, struct error *err) {
-    (void)err;
-    tally_merge(into, from);
-    return 0;
+    return tally_merge(into, from), (void)err, 0;
 }
 static void needle_put(struct bytes *bytes, const void *tally) {
     tally_put(bytes, tally);
