@@ -167,16 +167,17 @@ void target_allot(const struct target_plan *plan, size_t count, const struct tar
     target_hold(plan->target, count, parts, wanted);
 }
 
-static double number_or(const cJSON *parameters, const char *path, double otherwise) {
-    const cJSON *value = json_at(parameters, path);
-    return cJSON_IsNumber(value) ? value->valuedouble : otherwise;
+int target_add_scalar(struct case_result *result, const char *name, double value,
+                      struct error *err) {
+    const struct scalar scalar = scalar_named(name, value, NAN, NAN);
+    return result_add_scalar(result, &scalar, err);
 }
 
 double target_expect(const struct study_case *one, uint64_t *out) {
     const struct target target = {
-        .error = number_or(one->parameters, "/target/error", 1),
-        .confidence = number_or(one->parameters, "/target/confidence", CONFIDENCE),
-        .max_seconds = number_or(one->parameters, "/target/max_seconds", INFINITY)};
+        .error = json_number_at(one->parameters, "/target/error", 1),
+        .confidence = json_number_at(one->parameters, "/target/confidence", CONFIDENCE),
+        .max_seconds = json_number_at(one->parameters, "/target/max_seconds", INFINITY)};
     const double allowed = CHANCE_USUAL * target.error;
     const struct target_plan plan = {&target, 1, &allowed};
     struct target_part parts[TARGET_PARTS_MOST];

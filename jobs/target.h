@@ -8,6 +8,7 @@
 #ifndef RUGO_JOBS_TARGET_H
 #define RUGO_JOBS_TARGET_H
 
+#include "schema/result/result.h"
 #include "schema/study/study.h"
 #include "schema/study/values.h"
 #include <stdint.h>
@@ -63,6 +64,10 @@ void target_allot(const struct target_plan *plan, size_t count, const struct tar
 /* Shortens a round that would pass the time of the target. */
 void target_hold(const struct target *target, size_t count, const struct target_part *parts,
                  uint64_t *wanted);
+
+/* Appends a scalar that is known as it is, such as an error that was reached. */
+int target_add_scalar(struct case_result *result, const char *name, double value,
+                      struct error *err);
 
 /* Realisations that the components of a case will take in the end, as far as that is known before
  * anything ran, into out[TARGET_PARTS_MOST]; returns the CPU seconds of all. */

@@ -1,6 +1,6 @@
 #include "worker/aggregate.h"
-#include "jobs/merger.h"
 #include "schema/result/result_json.h"
+#include "worker/case_merge.h"
 #include "worker/target.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,32 +8,17 @@
 
 /* --- merging --- */
 
-struct merge {
-    const struct job_kind *kind;
-    struct job_merger *merger;
-};
-
-static int merge_block(void *context, const struct block_result *block, struct error *err) {
-    const struct merge *merge = context;
-    int status = kind_check_names(merge->kind, block, err); /* of an older program: others */
-    return status != 0 ? status : merger_add(merge->merger, block, err);
-}
-
 int aggregate_merge(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
                     const cJSON *parameters, struct job_merger **out, struct case_result *result,
                     struct error *err) {
-    struct merge merge = {.kind = aggregate->kind};
-    int status = merger_create(&merge.merger, merge.kind, parameters, err);
-    if (status != 0)
-        return status;
-    status = store_results(store, aggregate->about.id, case_number, merge_block, &merge, err);
+    int status =
+        case_merge(store, aggregate->kind, aggregate->about.id, case_number, parameters, out, err);
     if (status == 0)
-        status = merger_result(merge.merger, result, err);
+        status = merger_result(*out, result, err);
     if (status != 0) {
-        merger_destroy(&merge.merger);
+        merger_destroy(out);
         return error_context(err, "case %llu", (unsigned long long)case_number);
     }
-    *out = merge.merger;
     return 0;
 }
 

@@ -1,5 +1,5 @@
 #include "worker/target.h"
-#include "jobs/merger.h"
+#include "worker/case_merge.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,27 +9,13 @@ struct part {
     struct job_merger *merger;
 };
 
-struct merging {
-    const struct job_kind *kind;
-    struct job_merger *merger;
-};
-
-static int merge_block(void *context, const struct block_result *block, struct error *err) {
-    const struct merging *merging = context;
-    int status = kind_check_names(merging->kind, block, err);
-    return status != 0 ? status : merger_add(merging->merger, block, err);
-}
-
 static int part_read(struct store *store, const struct target_case *of, size_t at,
                      struct part *part, struct target_component *out, struct error *err) {
     const struct component *component = &of->components[at];
-    struct merging merging = {.kind = of->kind};
     int status = store_case(store, of->study, component->number, &part->info, err);
     if (status == 0)
-        status = merger_create(&part->merger, of->kind, part->info.parameters, err);
-    merging.merger = part->merger;
-    if (status == 0)
-        status = store_results(store, of->study, component->number, merge_block, &merging, err);
+        status = case_merge(store, of->kind, of->study, component->number, part->info.parameters,
+                            &part->merger, err);
     if (status != 0)
         return error_context(err, "component %s", component->role);
     *out = (struct target_component){.role = component->role,

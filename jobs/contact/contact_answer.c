@@ -135,12 +135,6 @@ static int put_curve(const struct contact_answer *answer, const struct contact_s
 
 /* --- scalars: what was reached, and the checks of the sum --- */
 
-static int put_scalar(const struct contact_answer *answer, const char *name, double value,
-                      struct error *err) {
-    struct scalar scalar = {.name = name, .value = value, .standard_error = NAN, .theory = NAN};
-    return result_add_scalar(answer->result, &scalar, err);
-}
-
 /* The coarsest level has one mean, whether by the component "base" or by "mesh": their difference
  * in standard errors, the largest of the loads, shows whether the sum is one (Giles 2015, section
  * 3.5). */
@@ -244,7 +238,7 @@ static int put_scalars(const struct contact_answer *answer, const struct contact
                    {"difference_kurtosis", kurtosis(answer, measure)}};
     int status = 0;
     for (size_t a = 0; a < sizeof scalars / sizeof *scalars && status == 0; a++)
-        status = put_scalar(answer, scalars[a].name, scalars[a].value, err);
+        status = target_add_scalar(answer->result, scalars[a].name, scalars[a].value, err);
     return status;
 }
 

@@ -59,6 +59,9 @@ static inline size_t contact_case_cell(const struct contact_case *one_case, size
 static inline size_t contact_case_cells(const struct contact_case *one_case) {
     return contact_case_cell(one_case, one_case->model_count, 0, 0);
 }
+static inline bool contact_case_is_probed(const struct contact_case *one_case) {
+    return one_case->probe.grid.nx > 0;
+}
 /* Behind these, of the probe: the half-space (block 0) and the block of each model, by load; and
  * how many cells there are with them. */
 static inline size_t contact_case_probe_cell(const struct contact_case *one_case, size_t block,
@@ -66,7 +69,7 @@ static inline size_t contact_case_probe_cell(const struct contact_case *one_case
     return contact_case_cells(one_case) + block * one_case->load_count + load;
 }
 static inline size_t contact_case_all_cells(const struct contact_case *one_case) {
-    bool probed = one_case->probe.grid.nx > 0;
+    bool probed = contact_case_is_probed(one_case);
     return contact_case_probe_cell(one_case, probed ? one_case->model_count + 1 : 0, 0);
 }
 

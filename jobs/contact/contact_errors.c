@@ -9,8 +9,6 @@ static const double BLOCK_MARGIN = 0.25;
  * with the forces, and what counts points, one of which may fall on either side. Measured by
  * tests/validation/jobs/test_contact_errors.c. */
 static const double SMOOTH_TOLERANCES = 100, COUNTED_TOLERANCES = 1000;
-/* Realisations without a value differ from the others by so many deviations. */
-static const double MISSING_DEVIATIONS = 2;
 
 static const struct contact_error UNKNOWN = {NAN, NAN, NAN, NAN};
 

@@ -21,12 +21,9 @@ struct contact_probe {
     double *z;
 };
 
-static bool is_probed(const struct contact_case *one_case) {
-    return one_case->probe.grid.nx > 0;
-}
-
 bool contact_probe_due(const struct contact_case *one_case, uint64_t realisation) {
-    return is_probed(one_case) && (realisation < ALWAYS || realisation % INTERVAL == 0);
+    return contact_case_is_probed(one_case) &&
+           (realisation < ALWAYS || realisation % INTERVAL == 0);
 }
 
 /* Number 0 is the half-space, the others are those of the models. */
@@ -73,7 +70,7 @@ static int probe_fill(struct contact_probe *probe, struct error *err) {
 int contact_probe_create(struct contact_probe **out, const struct contact_case *one_case,
                          const struct moments *moments, struct error *err) {
     *out = NULL;
-    if (!is_probed(one_case))
+    if (!contact_case_is_probed(one_case))
         return 0;
     struct contact_probe *probe = array_create(1, sizeof *probe);
     if (probe == NULL)
@@ -168,15 +165,16 @@ double contact_probe_bytes(const struct contact_case *one_case) {
     const struct grid *grid = &one_case->probe.grid;
     const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY};
     double points = (double)grid_points(grid);
-    return is_probed(one_case) ? 40 * points + (double)distinct_heights(one_case) *
-                                                   (8 * points + contact_bytes(grid) +
-                                                    compliance_bytes(grid, &block))
-                               : 0;
+    return contact_case_is_probed(one_case) ? 40 * points + (double)distinct_heights(one_case) *
+                                                                (8 * points + contact_bytes(grid) +
+                                                                 compliance_bytes(grid, &block))
+                                            : 0;
 }
 
 double contact_probe_seconds(const struct contact_case *one_case) {
-    return is_probed(one_case) ? (double)distinct_heights(one_case) / INTERVAL *
-                                     cost_linear_contact(&one_case->probe.grid, one_case->tolerance,
-                                                         one_case->load_count)
-                               : 0;
+    return contact_case_is_probed(one_case)
+               ? (double)distinct_heights(one_case) / INTERVAL *
+                     cost_linear_contact(&one_case->probe.grid, one_case->tolerance,
+                                         one_case->load_count)
+               : 0;
 }

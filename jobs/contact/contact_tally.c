@@ -63,7 +63,7 @@ static size_t level_pair(const struct contact_case *one_case, size_t model, size
 
 /* Differences of blocks, if any is probed. */
 static size_t block_pairs(const struct contact_case *one_case) {
-    return one_case->probe.grid.nx > 0 ? one_case->model_count * one_case->load_count : 0;
+    return contact_case_is_probed(one_case) ? one_case->model_count * one_case->load_count : 0;
 }
 
 static void values_begin(struct contact_tally *tally) {

@@ -113,10 +113,6 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
 
 /* --- choices --- */
 
-static double number_or(const cJSON *value, double otherwise) {
-    return cJSON_IsNumber(value) ? value->valuedouble : otherwise;
-}
-
 /* The one model that is asked for; NULL, and a fault, where there are several. */
 static const char *read_model(const cJSON *parameters, struct fault_list *faults) {
     const cJSON *model = json_at(parameters, "/contact/model");
@@ -141,7 +137,7 @@ static size_t steps_of(double error) {
  * fine enough, as far as that is known beforehand. */
 static void read_ladder(struct choices *out, const cJSON *document, const cJSON *parameters) {
     const cJSON *levels = json_at(document, "/contact/levels");
-    double points = number_or(json_at(parameters, "/surface/points_per_wavelength"), 8);
+    double points = json_number_at(parameters, "/surface/points_per_wavelength", 8);
     size_t named = levels != NULL ? (size_t)cJSON_GetArraySize(levels) : 0;
     out->mesh = levels == NULL && json_at(document, "/surface/points_per_wavelength") == NULL;
     if (named > 0)
@@ -168,7 +164,7 @@ static void read_length(struct choices *out, const cJSON *document, const cJSON 
     usual = ldexp(usual, (int)(out->profile ? steps : steps / 2));
     out->length = json_at(document, "/surface/length_ratio") == NULL;
     out->length_ratio =
-        out->length ? usual : number_or(json_at(parameters, "/surface/length_ratio"), 8);
+        out->length ? usual : json_number_at(parameters, "/surface/length_ratio", 8);
     out->model_length_ratio = fmin(out->length_ratio, needed);
 }
 
@@ -207,7 +203,7 @@ static int read_choices(struct choices *out, const cJSON *document, const cJSON 
     out->height = json_at(document, "/contact/block_height") == NULL;
     out->tolerance = json_at(document, "/contact/tolerance") == NULL;
     out->model = read_model(parameters, faults);
-    out->profile = number_or(json_at(parameters, "/surface/dimension"), 2) == 1;
+    out->profile = json_number_at(parameters, "/surface/dimension", 2) == 1;
     read_ladder(out, document, parameters);
     read_length(out, document, parameters);
     return read_alpha(out, parameters, faults, err);

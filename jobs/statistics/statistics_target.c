@@ -57,12 +57,6 @@ static double relative_error(const struct case_result *result, enum target_quant
     return sqrt(error / size);
 }
 
-static int put_scalar(struct case_result *out, const char *name, double value, struct error *err) {
-    const struct scalar scalar = {
-        .name = name, .value = value, .standard_error = NAN, .theory = NAN};
-    return result_add_scalar(out, &scalar, err);
-}
-
 int statistics_target_answer(const cJSON *parameters, size_t count,
                              const struct target_component *components, uint64_t *wanted,
                              struct case_result *out, struct error *err) {
@@ -83,8 +77,8 @@ int statistics_target_answer(const cJSON *parameters, size_t count,
     const struct target_plan plan = {&target, 1, &target.error};
     double reached = target_quantile(&target, 1, &part, 0, &standard_error) * standard_error;
     target_allot(&plan, 1, &part, wanted);
-    status = put_scalar(out, "error_asked", target.error, err);
+    status = target_add_scalar(out, "error_asked", target.error, err);
     if (status == 0)
-        status = put_scalar(out, "error_reached", reached, err);
-    return status != 0 ? status : put_scalar(out, "error_chance", reached, err);
+        status = target_add_scalar(out, "error_reached", reached, err);
+    return status != 0 ? status : target_add_scalar(out, "error_chance", reached, err);
 }

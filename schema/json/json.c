@@ -365,6 +365,11 @@ const cJSON *json_at(const cJSON *root, const char *pointer) {
     return value;
 }
 
+double json_number_at(const cJSON *root, const char *pointer, double otherwise) {
+    const cJSON *value = json_at(root, pointer);
+    return cJSON_IsNumber(value) ? value->valuedouble : otherwise;
+}
+
 cJSON *json_number(double value) {
     return isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull();
 }

@@ -31,6 +31,8 @@ void json_print_number(FILE *file, double number);
 bool json_print_text(FILE *file, const char *text);
 /* Returns the value at an RFC 6901 pointer, or NULL. */
 const cJSON *json_at(const cJSON *root, const char *pointer);
+/* Returns the number at a pointer, or `otherwise` where there is none. */
+double json_number_at(const cJSON *root, const char *pointer, double otherwise);
 /* Makes a number, or null where it is NaN or infinite. Returns NULL when out of memory. */
 cJSON *json_number(double value);
 cJSON *json_numbers(const double *values, size_t n);

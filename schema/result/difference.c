@@ -6,9 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Realisations without a pair differ from the others by so many deviations, as those without a
- * value do (jobs/contact/contact_errors.c). */
-static const double MISSING_DEVIATIONS = 2;
 /* Places x are the same within this part of themselves. */
 static const double SAME_X = 1e-9;
 enum { REMARK_SIZE = 1024 };

@@ -47,6 +47,9 @@ struct curve_error {
     double order;        /* of convergence; NaN: none */
     bool order_observed; /* on three levels; else assumed */
 };
+/* Realisations without a value are taken to differ from the others by so many deviations. */
+#define MISSING_DEVIATIONS 2.0
+
 /* A single number owes this to one source. */
 struct scalar_error {
     bool applies, known;
