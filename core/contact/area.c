@@ -46,6 +46,14 @@ double area_workspace_bytes(const struct grid *grid, const struct block *block) 
     return 8.0 * (double)grid_points(grid) + mesh_error_bytes(grid, block);
 }
 
+const struct grid *area_workspace_grid(const struct area_workspace *workspace) {
+    return &workspace->grid;
+}
+
+const struct area_law *area_workspace_law(const struct area_workspace *workspace) {
+    return &workspace->law;
+}
+
 static void count_nodes(const struct grid *grid, const double *p, struct contact_area *out) {
     size_t nx = grid->nx, ny = grid->ny, nodes = 0, all = 0, any = 0;
     for (size_t j = 0; j < ny; j++)

@@ -17,6 +17,7 @@ struct contact_area {
     double mean_gap; /* without the mesh's error to first order (mesh_error.h); the grid's length */
 };
 
+struct area_law;
 struct area_workspace;
 /* Learns where edges lie in this model on this grid (area_law.h): some ten milliseconds. Borrows
  * the compliance, which must outlive it. */
@@ -24,6 +25,9 @@ int area_workspace_create(struct area_workspace **out, const struct compliance *
                           struct error *err);
 void area_workspace_destroy(struct area_workspace **workspace);
 double area_workspace_bytes(const struct grid *grid, const struct block *block);
+/* Both live as long as the workspace. */
+const struct grid *area_workspace_grid(const struct area_workspace *workspace);
+const struct area_law *area_workspace_law(const struct area_workspace *workspace);
 
 /* Of a state on the workspace's grid. */
 void contact_area(struct area_workspace *workspace, const struct contact_state *state,

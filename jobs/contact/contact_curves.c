@@ -209,15 +209,15 @@ static int append_own(struct contact_curve_maker *maker, size_t m, struct error 
     return status;
 }
 
-/* Density over the nominal area: its integral is the fraction in contact, its first moment the
- * load. Under- and overflow in undeformed areas of nodes. */
+/* Density over the nominal area: its integral is the fraction in contact by edges, its first moment
+ * the load. Under- and overflow in undeformed areas of nodes. */
 static int append_pressures(struct contact_curve_maker *maker, size_t model, size_t at,
                             struct error *err) {
     const struct contact_case *one_case = maker->one_case;
     const struct bins *bins = &one_case->pressure;
     size_t n = bins->count, finest = one_case->level_count - 1;
     double load = one_case->loads[one_case->pdf_loads[at]], width = bins_width(bins);
-    double units = (double)contact_tally_units(one_case, model);
+    double parts = (double)CONTACT_AREA_PARTS;
     size_t cell = contact_case_cell(one_case, model, finest, one_case->pdf_loads[at]);
     const uint64_t *count = maker->tally->pressures.count +
                             contact_tally_pressure_cell(maker->tally, model, finest, at);
@@ -254,8 +254,8 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     if (one_case->models[model]->may_fail)
         curve.valueless = valueless;
     curve.counted = true;
-    curve.underflow = (double)count[0] / units;
-    curve.overflow = (double)count[n + 1] / units;
+    curve.underflow = (double)count[0] / parts;
+    curve.overflow = (double)count[n + 1] / parts;
     return result_add_curve(maker->result, &curve, err);
 }
 

@@ -1,4 +1,5 @@
 #include "jobs/contact/contact_scene.h"
+#include "core/contact/pressures.h"
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_probe.h"
 #include "jobs/contact/contact_sample.h"
@@ -12,6 +13,8 @@ struct contact_scene {
     bool scaled;                  /* these are the surface's, and not of an arbitrary unit */
     struct contact_solver *solvers[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct area_workspace *areas[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
+    struct pressures *pressures[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST]; /* NULL: not counted */
+    double *shares;                                                        /* of pressures */
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
     struct contact_probe *probe; /* NULL: none is needed */
     double *z;                   /* a level's sampling; room for the finest */
@@ -48,13 +51,19 @@ static int scene_fill(struct contact_scene *scene, const struct contact_complian
             if (status == 0)
                 status = one_case->models[m]->create(&scene->solvers[m][l], one_case, m,
                                                      compliances->of[m][l], err);
+            if (status == 0 && contact_tally_counts(one_case, l))
+                status = pressures_create(&scene->pressures[m][l], scene->areas[m][l], err);
         }
     }
     if (status != 0)
         return status;
     size_t points = grid_points(&contact_case_finest(one_case)->grid);
+    size_t bins = contact_tally_bins(one_case);
     scene->z = array_create(points, sizeof *scene->z);
-    return scene->z != NULL ? 0 : error_memory(err, points * sizeof *scene->z, "a surface");
+    scene->shares = array_create(bins, sizeof *scene->shares);
+    return scene->z != NULL && scene->shares != NULL
+               ? 0
+               : error_memory(err, (points + bins) * sizeof(double), "a surface");
 }
 
 int contact_scene_create(struct contact_scene **out, const struct contact_case *one_case,
@@ -83,6 +92,7 @@ void contact_scene_destroy(struct contact_scene **scene) {
     for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++) {
         patch_finder_destroy(&s->finders[l]);
         for (size_t m = 0; m < CONTACT_MODELS_MOST; m++) {
+            pressures_destroy(&s->pressures[m][l]);
             area_workspace_destroy(&s->areas[m][l]);
             if (s->solvers[m][l] != NULL)
                 s->one_case->models[m]->destroy(&s->solvers[m][l]);
@@ -90,6 +100,7 @@ void contact_scene_destroy(struct contact_scene **scene) {
     }
     contact_probe_destroy(&s->probe);
     free(s->z);
+    free(s->shares);
     free(s);
     *scene = NULL;
 }
@@ -101,6 +112,7 @@ double contact_scene_bytes(const struct contact_case *one_case) {
         const struct grid *grid = &one_case->levels[l].grid;
         bytes += 32.0 * (double)grid_points(grid); /* patches */
         for (size_t m = 0; m < one_case->model_count; m++) {
+            bytes += contact_tally_counts(one_case, l) ? pressures_bytes(grid) : 0;
             bytes += area_workspace_bytes(grid, &one_case->blocks[m]) +
                      one_case->models[m]->bytes(one_case, m, grid) +
                      compliance_bytes(grid, &one_case->blocks[m]);
@@ -129,13 +141,23 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
             pressed->own[a];
 }
 
-/* Counts pressures on areas as they are now, whose forces are those on the undeformed ones. */
-static void count_pressures(const struct contact_scene *scene, size_t model, size_t level,
-                            size_t load, const double *p, double now, struct contact_tally *tally) {
+/* Tallies areas by pressure as they are now, by edges; forces are those on the undeformed ones. */
+static int count_pressures(struct contact_scene *scene, size_t model, size_t level, size_t load,
+                           const struct contact_state *state, struct contact_tally *tally,
+                           struct error *err) {
     const struct contact_case *one_case = scene->one_case;
-    for (size_t a = 0; a < one_case->pdf_count; a++)
-        if (one_case->pdf_loads[a] == load)
-            contact_tally_pressures(tally, model, level, a, p, 1 / (now * scene->rms_slope), now);
+    size_t cell = contact_case_cell(one_case, model, level, load);
+    double area = contact_tally_values(tally, MEASURE_EDGES)[cell];
+    for (size_t a = 0; a < one_case->pdf_count; a++) {
+        if (one_case->pdf_loads[a] != load)
+            continue;
+        int status = pressures_share(scene->pressures[model][level], state, area,
+                                     &one_case->pressure, scene->rms_slope, scene->shares, err);
+        if (status != 0)
+            return status;
+        contact_tally_pressures(tally, model, level, a, scene->shares);
+    }
+    return 0;
 }
 
 struct stopper {
@@ -175,7 +197,7 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
         else
             error_context(err, "load %g", one_case->loads[k]);
         if (status == 0 && contact_tally_counts(one_case, level))
-            count_pressures(scene, m, level, k, pressed.state.p, pressed.stretch, tally);
+            status = count_pressures(scene, m, level, k, &pressed.state, tally, err);
     }
     return status;
 }

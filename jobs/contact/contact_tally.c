@@ -4,8 +4,6 @@
 #include <stdlib.h>
 
 enum { SCALE_BITS_MOST = 16 };
-/* Areas that strains have changed are rounded to 2^-20 of a node's, so that sums stay exact. */
-static const uint64_t STRETCHED_UNITS = 1 << 20;
 
 double contact_tally_scale(const struct contact_case *one_case, enum contact_measure measure,
                            size_t load) {
@@ -77,12 +75,11 @@ static void values_begin(struct contact_tally *tally) {
 
 int contact_tally_create(struct contact_tally *out, const struct contact_case *one_case,
                          struct error *err) {
-    size_t cells = contact_case_all_cells(one_case), bins = contact_tally_bins(one_case);
+    size_t cells = contact_case_all_cells(one_case);
     *out = (struct contact_tally){.one_case = one_case,
-                                  .values = array_create(cells, MEASURE_COUNT * sizeof(double)),
-                                  .bin = array_create(bins, sizeof *out->bin)};
+                                  .values = array_create(cells, MEASURE_COUNT * sizeof(double))};
     int status = 0;
-    if (out->values == NULL || out->bin == NULL)
+    if (out->values == NULL)
         status = error_memory(err, cells * MEASURE_COUNT * sizeof(double), "a tally");
     for (size_t a = 0; a < MEASURE_COUNT && status == 0; a++)
         status = sums_create(&out->sums[a], cells, err);
@@ -111,7 +108,6 @@ void contact_tally_clear(struct contact_tally *tally) {
     tally_clear(&tally->pressures);
     contact_rows_clear(&tally->rows);
     free(tally->values);
-    free(tally->bin);
     *tally = (struct contact_tally){0};
 }
 
@@ -124,24 +120,19 @@ double contact_tally_bytes(const struct contact_case *one_case) {
            MEASURE_PAIRED * (double)pairs * a_cell + tally_bytes(pressure_cells(one_case));
 }
 
-uint64_t contact_tally_units(const struct contact_case *one_case, size_t model) {
-    return one_case->models[model]->stretches ? STRETCHED_UNITS : 1;
-}
-
+/* Rounds where each bin ends, so that rounding adds nothing to all of them. */
 void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t level, size_t at,
-                             const double *p, double scale, double area) {
+                             const double *shares) {
     const struct contact_case *one_case = tally->one_case;
     size_t first = contact_tally_pressure_cell(tally, model, level, at);
-    size_t n = grid_points(&one_case->levels[level].grid);
-    uint64_t units = contact_tally_units(one_case, model),
-             each = (uint64_t)lround(area * (double)units);
-    for (size_t j = 0; j < n; j++)
-        if (p[j] > 0)
-            tally->bin[bins_find(&one_case->pressure, scale * p[j])]++;
+    uint64_t parts = CONTACT_AREA_PARTS * grid_points(&one_case->levels[level].grid), before = 0;
+    double sum = 0;
     for (size_t b = 0; b < contact_tally_bins(one_case); b++) {
-        if (tally->bin[b] > 0)
-            tally_add(&tally->pressures, first + b, each * tally->bin[b], units * n);
-        tally->bin[b] = 0;
+        sum += shares[b];
+        uint64_t end = (uint64_t)llround(sum * (double)parts);
+        if (end > before)
+            tally_add(&tally->pressures, first + b, end - before, parts);
+        before = end;
     }
 }
 
@@ -279,10 +270,10 @@ struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t
                                        size_t level, size_t at, size_t bin) {
     const struct contact_case *one_case = tally->one_case;
     size_t cell = contact_case_cell(one_case, model, level, one_case->pdf_loads[at]);
-    fixed_point points = (fixed_point)grid_points(&one_case->levels[level].grid) *
-                         contact_tally_units(one_case, model);
+    fixed_point parts =
+        (fixed_point)grid_points(&one_case->levels[level].grid) * CONTACT_AREA_PARTS;
     uint64_t solved = tally->sums[MEASURE_NODES].counts.count[cell];
-    struct tally_total total = {solved, points * solved, points * points * solved};
+    struct tally_total total = {solved, parts * solved, parts * parts * solved};
     return tally_share(&tally->pressures,
                        contact_tally_pressure_cell(tally, model, level, at) + bin, &total);
 }

@@ -34,14 +34,14 @@ struct contact_tally {
     struct contact_sums sums[CONTACT_SUMS];
     struct tally_total points; /* of the finest level */
     struct tally pressures;    /* by model, level (the finest, then the next coarser one), load of
-                                  pdf_loads, bin with under- and overflow; in contact_tally_units
-                                  of a node's undeformed area; nodes that are open are in none */
+                                  pdf_loads, bin with under- and overflow; in parts of a node's
+                                  undeformed area, CONTACT_AREA_PARTS of them; adding up to the area
+                                  by edges */
     struct notes notes;        /* why a model has no values, a realisation and level */
     struct contact_rows rows;  /* values of each realisation */
     uint64_t realisation;      /* the one under way, for these */
     double *values;            /* owned: the realisation under way, by measure and cell */
     double facts[CONTACT_MODELS_MOST][MODEL_FACTS_MOST]; /* the same, on the finest level */
-    uint64_t *bin;                                       /* owned: scratch, zero in between */
 };
 int contact_tally_create(struct contact_tally *out, const struct contact_case *one_case,
                          struct error *err);
@@ -58,11 +58,12 @@ static inline double *contact_tally_values(struct contact_tally *tally,
                                            enum contact_measure measure) {
     return tally->values + (size_t)measure * contact_case_all_cells(tally->one_case);
 }
-/* Counts the pressures, scale * p at the points of a level, one of those that contact_tally_counts
- * tells, where p > 0, on area times the undeformed area of a node each. at: position in pdf_loads.
- */
+/* Exact sums of areas by pressure hold this part of a node's. */
+#define CONTACT_AREA_PARTS ((uint64_t)1 << 20)
+/* Adds areas by pressure, shares[contact_tally_bins] of the cell, on a level, one of those that
+ * contact_tally_counts tells. at: position in pdf_loads. */
 void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t level, size_t at,
-                             const double *p, double scale, double area);
+                             const double *shares);
 /* Returns whether pressures are counted on a level: the two finest. */
 bool contact_tally_counts(const struct contact_case *one_case, size_t level);
 /* Ends the realisation: adds its values, and the next one begins. On failure it is none. */
@@ -92,8 +93,6 @@ struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t
 static inline size_t contact_tally_bins(const struct contact_case *one_case) {
     return one_case->pressure.count + 2;
 }
-/* Returns in how many parts a node's area is counted: 1 where all are equal. */
-uint64_t contact_tally_units(const struct contact_case *one_case, size_t model);
 /* Returns the first cell of the pressures of a model, level and load, which are underflow, the
  * bins, overflow. */
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t level,

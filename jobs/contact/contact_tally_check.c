@@ -32,20 +32,18 @@ static uint64_t unsolved(const struct contact_tally *tally) {
     return count;
 }
 
-/* Returns whether the pressures of a load lie on as much area as is in contact, but for rounding.
- */
+/* Returns whether the pressures of a load lie on the area by edges, but for rounding. */
 static bool pressures_fit(const struct contact_tally *tally, size_t model, size_t level,
                           size_t at) {
     const struct contact_case *one_case = tally->one_case;
     size_t cell = contact_case_cell(one_case, model, level, one_case->pdf_loads[at]);
     const uint64_t *count =
         tally->pressures.count + contact_tally_pressure_cell(tally, model, level, at);
-    double units = (double)grid_points(&one_case->levels[level].grid) *
-                   (double)contact_tally_units(one_case, model);
-    double area = units * contact_tally_total(tally, MEASURE_NODES, cell), sum = 0;
+    double parts = (double)CONTACT_AREA_PARTS * (double)grid_points(&one_case->levels[level].grid);
+    double area = parts * contact_tally_total(tally, MEASURE_EDGES, cell), sum = 0;
     for (size_t b = 0; b < contact_tally_bins(one_case); b++)
         sum += (double)count[b];
-    return fabs(sum - area) <= 1e-6 * area + 0.5;
+    return fabs(sum - area) <= 1e-6 * area + (double)tally->realisations;
 }
 
 /* Returns whether the values of a column of the rows add up to the sum of a cell. */

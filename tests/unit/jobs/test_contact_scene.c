@@ -177,7 +177,7 @@ static void pressures_carry_the_load(void **state) {
     for (size_t c = 0; c < sizeof STUDIES / sizeof *STUDIES; c++) {
         cJSON *document = solve(STUDIES[c], 3);
         for (size_t m = 0; m < MODELS; m++) {
-            const cJSON *area = curve_of(document, "contact_area", "nodes", MODEL[m]);
+            const cJSON *area = curve_of(document, "contact_area", "edges", MODEL[m]);
             const cJSON *curve = curve_of(document, "contact_pressure_pdf", "", MODEL[m]);
             for (int k = 0; k < 2; k++, curve = curve->next) {
                 double width = at(curve, "/x", 1) - at(curve, "/x", 0), sum = 0, moment = 0;

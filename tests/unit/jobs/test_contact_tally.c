@@ -85,35 +85,37 @@ static void valueless_realisations_are_counted(void **state) {
     fixture_close(&f);
 }
 
-/* Pressures lie on the area in contact, stretched as it is: that of some nodes of 16, or of all,
- * each 1.25 times as large in the model full. A block that tells otherwise is refused. */
+/* Puts an area into the bin of pressures from 2 to 3, and a part of it below all bins. */
+static void add_pressures(struct contact_tally *tally, size_t model, double area, double below) {
+    const double shares[5] = {below * area, 0, (1 - below) * area, 0, 0};
+    contact_tally_pressures(tally, model, 0, 0, shares);
+}
+
+/* Pressures lie on the area by edges, whatever it is. A block that tells otherwise is refused. */
 static void pressures_lie_on_the_area(void **state) {
     (void)state;
     static const struct {
-        size_t nodes;
-        double told; /* of their stretch, in the histogram */
+        double edges, told; /* by edges, and in the histogram */
         int status;
-    } CASES[] = {{3, 1.25, 0}, {16, 1.25, 0}, {3, 1, ERROR_INPUT}};
+    } CASES[] = {{0.2, 0.2, 0}, {1, 1, 0}, {1.0 / 3, 1.0 / 3, 0}, {0.2, 0.1999, ERROR_INPUT}};
     static const enum contact_measure always[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_GAP,
                                                   MEASURE_ITERATIONS};
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
         struct tally_fixture f, copy;
         struct error err = {0};
-        double share = (double)CASES[c].nodes / 16, pressures[16] = {0};
         unsigned char *data = NULL;
         size_t size = 0;
-        for (size_t i = 0; i < CASES[c].nodes; i++)
-            pressures[i] = 2;
         fixture_open(&f, FULL_STUDY);
         fixture_open(&copy, FULL_STUDY);
         for (size_t m = 0; m < 2; m++) {
             for (size_t a = 0; a < 4; a++)
-                contact_tally_values(&f.tally, always[a])[m] = (m == 1 ? 1.25 : 1) * share;
-            contact_tally_pressures(&f.tally, m, 0, 0, pressures, 1, m == 1 ? CASES[c].told : 1);
+                contact_tally_values(&f.tally, always[a])[m] = a == 1 ? CASES[c].edges : 0.25;
+            add_pressures(&f.tally, m, CASES[c].told, 0.4);
         }
         add_realisation(&f.tally);
-        check_relative(contact_tally_pressure(&f.tally, 1, 0, 0, 2).value, CASES[c].told * share,
-                       1e-14);
+        /* 2^-20 of each of 16 nodes */
+        check_close(contact_tally_pressure(&f.tally, 1, 0, 0, 0).value, 0.4 * CASES[c].told, 6e-8);
+        check_close(contact_tally_pressure(&f.tally, 1, 0, 0, 2).value, 0.6 * CASES[c].told, 6e-8);
         assert_int_equal(partial_encode(kind_find("contact"), 1, &f.tally, &data, &size, &err), 0);
         assert_int_equal(partial_decode(kind_find("contact"), 1, data, size, &copy.tally, &err),
                          CASES[c].status);
@@ -130,13 +132,10 @@ static void pressures_lie_on_the_area(void **state) {
 static void add_row(struct contact_tally *tally, uint64_t realisation) {
     static const enum contact_measure always[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_GAP,
                                                   MEASURE_ITERATIONS};
-    double some[16] = {0};
-    for (size_t i = 0; i < 4; i++)
-        some[i] = 2;
     for (size_t m = 0; m < 2; m++) {
         for (size_t a = 0; a < 4; a++)
             contact_tally_values(tally, always[a])[m] = a == 0 ? 0.25 : (double)realisation / 7;
-        contact_tally_pressures(tally, m, 0, 0, some, 1, 1);
+        add_pressures(tally, m, (double)realisation / 7, 0);
     }
     tally->realisation = realisation;
     add_realisation(tally);

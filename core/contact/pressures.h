@@ -1,0 +1,22 @@
+/* How much of the cell bears which pressure: nodes in contact theirs, each on its cell, but where
+ * an edge of contact is near, the law of edges (F12.8). */
+#ifndef RUGO_CORE_CONTACT_PRESSURES_H
+#define RUGO_CORE_CONTACT_PRESSURES_H
+
+#include "core/contact/area.h"
+#include "core/statistics/histogram.h"
+
+struct pressures;
+/* Borrows the workspace, which must outlive it. */
+int pressures_create(struct pressures **out, const struct area_workspace *areas, struct error *err);
+void pressures_destroy(struct pressures **pressures);
+double pressures_bytes(const struct grid *grid);
+
+/* Fills shares[bins->count + 2] of a state on the workspace's grid: fractions of the cell where
+ * p/unit lies in each of the bins, which begin at 0 or above; the first is underflow, the last
+ * overflow. They add up to `area`, and the mean of p over them to the mean pressure. ERROR_MEMORY.
+ */
+int pressures_share(struct pressures *pressures, const struct contact_state *state, double area,
+                    const struct bins *bins, double unit, double *shares, struct error *err);
+
+#endif
