@@ -298,13 +298,17 @@ bool contact_error_applies(const struct contact_tally *tally, enum contact_measu
 
 /* --- pressures --- */
 
+/* As bins hold whole nodes, the change of one between levels may vanish by chance: the bound is
+ * that of any bin so near. */
+enum { BINS_NEAR = 2 };
+
 bool contact_errors_pressures(const struct contact_tally *tally, size_t model, size_t at,
                               double *bound) {
     const struct contact_case *one_case = tally->one_case;
     size_t finest = finest_of(one_case), n = one_case->pressure.count;
     if (finest == 0)
         return false;
-    double width = bins_width(&one_case->pressure), before = 0;
+    double width = bins_width(&one_case->pressure), before[BINS_NEAR] = {0};
     for (size_t b = 0; b < n; b++) {
         struct mesh_changes changes = {.coarse = NAN,
                                        .fine_ratio = refinement(one_case, finest - 1)};
@@ -314,9 +318,13 @@ bool contact_errors_pressures(const struct contact_tally *tally, size_t model, s
         bound[b] = mesh_error(&changes, 1).bound;
     }
     for (size_t b = 0; b < n; b++) {
-        double own = bound[b], next = b + 1 < n ? bound[b + 1] : 0;
-        bound[b] = isnan(own) ? own : fmax(own, fmax(before, next));
-        before = own;
+        double own = bound[b];
+        for (size_t a = 0; a < BINS_NEAR && !isnan(own); a++) {
+            double next = b + a + 1 < n ? bound[b + a + 1] : 0;
+            bound[b] = fmax(bound[b], fmax(before[a], next));
+        }
+        before[1] = before[0];
+        before[0] = own;
     }
     return true;
 }

@@ -17,7 +17,8 @@ static cJSON *solve_levels(const struct scene *scene, const char *levels) {
              " \"length_ratio\": %d, \"points_per_wavelength\": %d, \"heights\":"
              " {\"distribution\": \"%s\", \"shape\": 1}}, \"contact\": {\"model\":"
              " [\"halfspace\", \"layered\"], \"gap_weighting\": \"%s\", \"levels\": %s,"
-             " \"pressures\": {\"values\": [0.003, 0.01, 0.03, 0.1, 0.3]}}}",
+             " \"pressures\": {\"values\": [0.003, 0.01, 0.03, 0.1, 0.3]}, \"pressure_pdf\":"
+             " {\"at\": [0.01, 0.1, 0.3]}}}",
              scene->dimension, profile ? 8 : 4, profile ? 4 : 2, profile ? 64 : 32, scene->heights,
              scene->weighting, levels);
     return solve(study, scene->realisations);
@@ -93,6 +94,89 @@ static void errors_of_meshes_cover(void **state) {
     assert_true(areas.points > 400 && others.points > 400);
     assert_int_equal(areas.covered, areas.points);
     assert_true(others.covered >= 0.95 * others.points);
+}
+
+/* --- densities of pressure --- */
+
+enum { LOWEST = 4, COUNTED_LOADS = 3 };
+
+/* Bins of a density that has a hundredth of its largest value there; lowest: the first ones. */
+static void count_bins(const cJSON *curve, const cJSON *reference, struct coverage *lowest,
+                       struct coverage *others) {
+    double most = 0;
+    for (int b = 0; b < points(curve); b++)
+        most = fmax(most, at(reference, "/y", b));
+    for (int b = 0; b < points(curve); b++) {
+        struct coverage *coverage = b < LOWEST ? lowest : others;
+        double y = at(curve, "/y", b), limit = at(reference, "/y", b);
+        double room = number_of(curve, "/discretisation_bound", b) +
+                      number_of(reference, "/discretisation_bound", b);
+        if (limit < 0.01 * most)
+            continue;
+        coverage->points++;
+        coverage->covered += fabs(y - limit) <= room;
+        if (!(fabs(y - limit) <= room))
+            print_message("pressure %g: %g of %g, told %g\n", at(curve, "/x", b), y, limit, room);
+    }
+}
+
+static void count_densities(const struct scene *scene, const char *levels, const cJSON *reference,
+                            struct coverage *lowest, struct coverage *others) {
+    static const char *const MODELS[] = {"halfspace", "layered"};
+    cJSON *document = solve_levels(scene, levels);
+    for (size_t m = 0; m < 2; m++) {
+        const cJSON *curve = curve_of(document, "contact_pressure_pdf", "", MODELS[m]);
+        const cJSON *limit = curve_of(reference, "contact_pressure_pdf", "", MODELS[m]);
+        for (int k = 0; k < COUNTED_LOADS; k++, curve = curve->next, limit = limit->next)
+            count_bins(curve, limit, lowest, others);
+    }
+    cJSON_Delete(document);
+}
+
+/* The lowest bins, which the law of edges fills, are covered at all loads; others hold few nodes,
+ * which fall into them by chance. */
+static void errors_of_pressures_cover(void **state) {
+    (void)state;
+    static const struct scene SCENES[] = {{1, "gaussian", "standard", 48},
+                                          {1, "gaussian", "dual", 48},
+                                          {1, "weibull_min", "standard", 48},
+                                          {2, "gaussian", "standard", 6},
+                                          {2, "weibull_min", "dual", 6}};
+    struct coverage lowest = {0}, others = {0};
+    for (size_t s = 0; s < sizeof SCENES / sizeof *SCENES; s++) {
+        cJSON *reference =
+            solve_levels(&SCENES[s], SCENES[s].dimension == 1 ? "[32, 64]" : "[16, 32]");
+        count_densities(&SCENES[s], "[4, 8]", reference, &lowest, &others);
+        count_densities(&SCENES[s], "[8, 16]", reference, &lowest, &others);
+        cJSON_Delete(reference);
+    }
+    assert_true(lowest.points >= 200 && others.points >= 1500);
+    assert_int_equal(lowest.covered, lowest.points);
+    assert_true(others.covered >= 0.98 * others.points);
+}
+
+/* At 8 points a shortest wave the lowest bins are near those of 64, at loads of 0.1 and 0.3, where
+ * nodes alone have 2 to 3 times as much in the first. */
+static void lowest_pressures_are_near_their_limit(void **state) {
+    (void)state;
+    static const struct scene SCENES[] = {{1, "gaussian", "dual", 100},
+                                          {1, "weibull_min", "standard", 100}};
+    static const char *const MODELS[] = {"halfspace", "layered"};
+    for (size_t s = 0; s < 2; s++) {
+        cJSON *coarse = solve_levels(&SCENES[s], "[8]"), *fine = solve_levels(&SCENES[s], "[64]");
+        for (size_t m = 0; m < 2; m++) {
+            const cJSON *curve = curve_of(coarse, "contact_pressure_pdf", "", MODELS[m]);
+            const cJSON *limit = curve_of(fine, "contact_pressure_pdf", "", MODELS[m]);
+            for (int k = 1; k < COUNTED_LOADS; k++) {
+                curve = curve->next;
+                limit = limit->next;
+                for (int b = 0; b < LOWEST; b++)
+                    check_relative(at(curve, "/y", b), at(limit, "/y", b), 0.15);
+            }
+        }
+        cJSON_Delete(coarse);
+        cJSON_Delete(fine);
+    }
 }
 
 #define BLOCK(heights, contact)                                                                    \
@@ -172,6 +256,8 @@ static void errors_of_solvers_cover(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_of_meshes_cover),
+        cmocka_unit_test(errors_of_pressures_cover),
+        cmocka_unit_test(lowest_pressures_are_near_their_limit),
         cmocka_unit_test(errors_of_blocks_cover),
         cmocka_unit_test(errors_of_solvers_cover),
     };
