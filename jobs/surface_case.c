@@ -279,3 +279,8 @@ size_t surface_case_band(const struct surface_case *surface) {
     highest = floor(highest * (1 + ROUNDING));
     return highest < (double)nyquist ? (size_t)highest : nyquist;
 }
+
+double surface_case_bytes(const struct surface_case *surface) {
+    size_t mode_x = surface_case_band(surface), mode_y = surface->dimension == 1 ? 0 : mode_x;
+    return generator_bytes(&surface->grid, mode_x, mode_y, &surface->options);
+}

@@ -34,6 +34,9 @@ static inline bool surface_case_exact(const struct surface_case *surface) {
 /* Highest wave number that the spectrum can have on the grid, in x as in y: at most nx/2. */
 size_t surface_case_band(const struct surface_case *surface);
 
+/* Peak bytes of a generator of the surface, with heights on its grid. */
+double surface_case_bytes(const struct surface_case *surface);
+
 /* Points a side of a cell that asks for `points`, at least that: where it is no integer, rounded up
  * to an even number without prime factors above 7. */
 size_t surface_case_side(double points);

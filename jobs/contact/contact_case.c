@@ -1,11 +1,14 @@
 #include "jobs/contact/contact_case.h"
+#include "jobs/contact/contact_cell.h"
+#include "jobs/contact/contact_probe.h"
+#include "jobs/contact/model_linear.h"
 #include "jobs/surface_parameters.h"
 #include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
 
 static const double ROUNDING = 1e-9; /* relative: numbers that are meant to be equal */
-enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000, PROBE_POINTS = 4 };
+enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
 const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
                                                         &TARGET_PARAMETERS, NULL};
 
@@ -210,24 +213,6 @@ double contact_case_block_bound(const struct contact_case *one_case, size_t mode
     return SAFETY * 2 * falling * (1 + 2 * x - falling) / (1 - falling * falling + 4 * x * falling);
 }
 
-/* Where a block is low, what its height changes is told on a mesh as coarse as will do. */
-static void choose_probe(struct contact_case *out) {
-    const struct contact_level *coarsest = &out->levels[0];
-    bool low = false;
-    for (size_t m = 0; m < out->model_count; m++)
-        low = low || contact_case_block_bound(out, m) > CONTACT_BLOCK_LOW;
-    if (!low || out->level_count == 0)
-        return;
-    out->probe = *coarsest;
-    if (coarsest->stride == 0 || coarsest->grid.nx % 2 != 0 || coarsest->points < 2 * PROBE_POINTS)
-        return;
-    out->probe.points /= 2;
-    out->probe.stride *= 2;
-    out->probe.grid.nx /= 2;
-    if (!grid_is_profile(&out->probe.grid))
-        out->probe.grid.ny /= 2;
-}
-
 /* Checks the layers that a block takes on each mesh. */
 static void check_layers(const struct contact_case *one_case, struct values *values) {
     double thickness[LAYERS_MOST];
@@ -294,12 +279,21 @@ static int read_contact(struct contact_case *out, struct values *values, struct 
         status = read_loads(out, values, err);
     if (status == 0)
         status = read_levels(out, values, err);
-    choose_probe(out);
     if (status == 0)
         status = read_pdf(out, values, err);
     if (status == 0)
         check_layers(out, values);
     return status;
+}
+
+/* What low blocks and the length of the cell change is told on a mesh as coarse as will do. */
+static void choose_probes(struct contact_case *out, struct values *values) {
+    for (size_t m = 0; m < out->model_count; m++)
+        out->low_blocks = out->low_blocks || contact_case_block_bound(out, m) > CONTACT_BLOCK_LOW;
+    if (out->low_blocks)
+        contact_probe_choose(out);
+    if (values_choice(values, "/contact/cell_error") == CELL_ERROR_PROBED)
+        contact_cell_choose(out);
 }
 
 int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,
@@ -313,7 +307,9 @@ int contact_case_read(struct contact_case *out, const cJSON *parameters, struct 
         status = read_contact(out, values, err);
     if (status == 0)
         status = values_status(values, err);
-    if (status != 0)
+    if (status == 0)
+        choose_probes(out, values);
+    else
         contact_case_clear(out);
     values_destroy(&values);
     return status;
@@ -324,6 +320,25 @@ void contact_case_clear(struct contact_case *one_case) {
     free(one_case->loads);
     free(one_case->pdf_loads);
     *one_case = (struct contact_case){0};
+}
+
+size_t contact_case_twin(const struct contact_case *one_case) {
+    size_t m = 0;
+    while (m < one_case->model_count &&
+           (one_case->models[m]->press != linear_press ||
+            one_case->blocks[m].model != MODEL_HALFSPACE || isfinite(one_case->blocks[m].height)))
+        m++;
+    return one_case->probe.grid.nx == one_case->levels[0].grid.nx ? m : one_case->model_count;
+}
+
+size_t contact_case_control(const struct contact_case *one_case) {
+    size_t found = one_case->model_count;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        if (!one_case->models[m]->may_fail &&
+            (found == one_case->model_count ||
+             one_case->models[m]->rank < one_case->models[found]->rank))
+            found = m;
+    return found;
 }
 
 size_t contact_case_complete(const struct contact_case *one_case) {

@@ -22,6 +22,16 @@ struct contact_level {
     size_t stride; /* every stride-th point of the own grid each way; 0: resampled from its band */
 };
 
+/* Surfaces of twice the length of the case's, by which the error of its cell is told
+ * (contact_cell.h). */
+struct contact_longer {
+    struct surface_case surface; /* borrows from that of the case; its grid is that on which
+                                    surfaces are generated, without points where there are none */
+    size_t band;                 /* highest wave number of a surface on it */
+    struct contact_level level;  /* twice the probe, of this grid */
+    uint64_t interval;           /* of realisations, one of which is beside such a surface; 2^n */
+};
+
 struct contact_case {
     struct surface_case surface; /* and its own grid, on which realisations are generated */
     size_t band;                 /* highest wave number of a realisation on its own grid */
@@ -33,8 +43,11 @@ struct contact_case {
     double rms_slope; /* of the prescribed spectrum; 0 where no model asks for it */
     size_t level_count;
     struct contact_level levels[CONTACT_LEVELS_MOST]; /* rising: the last is the finest */
-    struct contact_level probe; /* of blocks' heights (contact_probe.h): half as fine as the
+    struct contact_level probe; /* the coarse mesh of probes (contact_probe.h): half as fine as the
                                    coarsest where that leaves 4 points; no points without one */
+    bool low_blocks;            /* the heights of blocks are probed */
+    uint64_t probe_interval;    /* else: of realisations, one of which is probed; 2^n */
+    struct contact_longer longer; /* no points: the error of the cell is not told */
     size_t load_count;
     double *loads;                /* owned: p/(E* h'), rising, > 0 */
     bool nodes, edges, perimeter; /* estimators shown */
@@ -62,15 +75,28 @@ static inline size_t contact_case_cells(const struct contact_case *one_case) {
 static inline bool contact_case_is_probed(const struct contact_case *one_case) {
     return one_case->probe.grid.nx > 0;
 }
-/* Behind these, of the probe: the half-space (block 0) and the block of each model, by load; and
- * how many cells there are with them. */
+static inline bool contact_case_has_longer(const struct contact_case *one_case) {
+    return one_case->longer.surface.grid.nx > 0;
+}
+/* Behind these, of the probe: the half-space (block 0) and, where blocks are low, the block of each
+ * model, by load. */
+static inline size_t contact_case_probe_blocks(const struct contact_case *one_case) {
+    if (!contact_case_is_probed(one_case))
+        return 0;
+    return one_case->low_blocks ? one_case->model_count + 1 : 1;
+}
 static inline size_t contact_case_probe_cell(const struct contact_case *one_case, size_t block,
                                              size_t load) {
     return contact_case_cells(one_case) + block * one_case->load_count + load;
 }
+/* And behind these, of the surfaces of twice the length, by load; and how many cells there are in
+ * all. */
+static inline size_t contact_case_longer_cell(const struct contact_case *one_case, size_t load) {
+    return contact_case_probe_cell(one_case, contact_case_probe_blocks(one_case), load);
+}
 static inline size_t contact_case_all_cells(const struct contact_case *one_case) {
-    bool probed = contact_case_is_probed(one_case);
-    return contact_case_probe_cell(one_case, probed ? one_case->model_count + 1 : 0, 0);
+    size_t longer = contact_case_has_longer(one_case) ? one_case->load_count : 0;
+    return contact_case_longer_cell(one_case, longer);
 }
 
 /* By how much the height of a model's block changes what is measured, relative to it, at most:
@@ -79,6 +105,12 @@ static inline size_t contact_case_all_cells(const struct contact_case *one_case)
 double contact_case_block_bound(const struct contact_case *one_case, size_t model);
 /* Beyond this a block's height is probed (contact_probe.h). */
 #define CONTACT_BLOCK_LOW 1e-4
+
+/* The position of the model that the half-space of the probe is solved by already, on the coarsest
+ * level; model_count without one. And of the cheapest model that has a value of every realisation,
+ * likewise. */
+size_t contact_case_twin(const struct contact_case *one_case);
+size_t contact_case_control(const struct contact_case *one_case);
 
 /* The most complete of the models: that from which the errors of the others are counted. */
 size_t contact_case_complete(const struct contact_case *one_case);
@@ -91,7 +123,10 @@ int contact_case_scale(const struct contact_case *one_case, double *rms_height, 
 /* Returns whether the areas of a model are told as they are under load. */
 bool contact_case_stretches(const struct contact_case *one_case, size_t model);
 
-/* Estimates memory, time and error of one realisation before anything ran. */
+/* Estimates memory, time and error of one realisation before anything ran; the first two also
+ * without the surfaces of twice the length and the probes. */
+double contact_case_plain_seconds(const struct contact_case *one_case);
+double contact_case_plain_bytes(const struct contact_case *one_case);
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out);
 
 #endif

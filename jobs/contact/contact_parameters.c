@@ -11,6 +11,8 @@ static const struct choice HEIGHTS[] = {{"infinite", 0}, {0}};
 static const struct choice HEIGHT_UNITS[] = {
     {"rms_heights", HEIGHT_RMS_HEIGHTS}, {"lengths", HEIGHT_LENGTHS}, {0}};
 static const struct choice WEIGHTINGS[] = {{"standard", GAP_STANDARD}, {"dual", GAP_DUAL}, {0}};
+static const struct choice CELL_ERRORS[] = {
+    {"probed", CELL_ERROR_PROBED}, {"none", CELL_ERROR_NONE}, {0}};
 static const struct choice ESTIMATORS[] = {
     {"nodes", AREA_NODES}, {"edges", AREA_EDGES}, {"perimeter", AREA_PERIMETER}, {0}};
 
@@ -139,6 +141,13 @@ static const struct parameter ROWS[] = {
      .example_json = "1e-6",
      .help = "largest violation of the contact conditions; full: largest out-of-balance force, "
              "over the largest contact force"},
+    {.path = "/contact/cell_error",
+     .type = PARAMETER_CHOICE,
+     .choices = CELL_ERRORS,
+     .later = true,
+     .example_json = "\"none\"",
+     .help = "what the length of the cell changes: probed (unless given) on some surfaces of twice "
+             "the length, for about a tenth of the time; or none, and it is not known"},
     {.path = "/contact/pressure_pdf/at",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,

@@ -9,6 +9,8 @@ enum { CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000 };
 
 enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS };
 enum area_estimator { AREA_NODES, AREA_EDGES, AREA_PERIMETER, AREA_ESTIMATORS };
+/* Whether the error of the cell is probed (contact_cell.h). */
+enum cell_error { CELL_ERROR_PROBED, CELL_ERROR_NONE };
 
 extern const struct choice KINEMATICS_CHOICES[]; /* of enum kinematics */
 extern const struct parameter_table CONTACT_PARAMETERS;

@@ -1,29 +1,45 @@
 #include "jobs/contact/contact_probe.h"
-#include "core/contact/contact.h"
-#include "core/cost.h"
-#include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_sample.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum { ALWAYS = 16, INTERVAL = 4 };
+enum { PROBE_POINTS = 4, ALWAYS = 16, INTERVAL = 4 };
+enum { FIRST = 32, FIRST_INTERVAL = 8 };
 /* The half-space, and a layer a model. */
 enum { BLOCKS_MOST = CONTACT_MODELS_MOST + 1 };
 
 struct contact_probe {
     const struct contact_case *one_case;
-    double rms_slope, rms_height;
-    struct compliance *compliances[BLOCKS_MOST]; /* NULL where same[] is another one */
-    struct contact *solvers[BLOCKS_MOST];
-    struct area_workspace *areas[BLOCKS_MOST];
-    size_t same[BLOCKS_MOST]; /* the first block of that height */
-    struct patch_finder *finder;
+    struct contact_coarse *blocks[BLOCKS_MOST]; /* owned; NULL where same[] is another one, or the
+                                                   twin of the half-space stands for it */
+    size_t same[BLOCKS_MOST];                   /* the first block of that height */
     double *z;
 };
 
+void contact_probe_choose(struct contact_case *one_case) {
+    const struct contact_level *coarsest = &one_case->levels[0];
+    struct contact_level *probe = &one_case->probe;
+    *probe = *coarsest;
+    if (coarsest->stride == 0 || coarsest->grid.nx % 2 != 0 || coarsest->points < 2 * PROBE_POINTS)
+        return;
+    probe->points /= 2;
+    probe->stride *= 2;
+    probe->grid.nx /= 2;
+    if (!grid_is_profile(&probe->grid))
+        probe->grid.ny /= 2;
+}
+
+bool contact_probe_turn(uint64_t interval, uint64_t realisation) {
+    if (realisation < FIRST && interval > FIRST_INTERVAL)
+        interval = FIRST_INTERVAL;
+    return realisation % interval == 0;
+}
+
 bool contact_probe_due(const struct contact_case *one_case, uint64_t realisation) {
+    if (one_case->low_blocks)
+        return realisation < ALWAYS || realisation % INTERVAL == 0;
     return contact_case_is_probed(one_case) &&
-           (realisation < ALWAYS || realisation % INTERVAL == 0);
+           contact_probe_turn(one_case->probe_interval, realisation);
 }
 
 /* Number 0 is the half-space, the others are those of the models. */
@@ -38,28 +54,20 @@ static size_t first_of_height(const struct contact_case *one_case, size_t number
     return first;
 }
 
-static int block_make(struct contact_probe *probe, size_t number, struct error *err) {
-    const struct contact_case *one_case = probe->one_case;
-    struct block block = {
-        .model = MODEL_HALFSPACE, .height = height_of(one_case, number), .layer_growth = 1};
-    struct contact_options options = CONTACT_DEFAULTS;
-    options.tolerance = one_case->tolerance;
-    int status = compliance_create(&probe->compliances[number], &one_case->probe.grid, &block, err);
-    if (status == 0)
-        status = contact_create(&probe->solvers[number], probe->compliances[number], &options, err);
-    if (status == 0)
-        status = area_workspace_create(&probe->areas[number], probe->compliances[number], err);
-    return status;
+static bool has_twin(const struct contact_case *one_case) {
+    return contact_case_twin(one_case) < one_case->model_count;
 }
 
-static int probe_fill(struct contact_probe *probe, struct error *err) {
+static int probe_fill(struct contact_probe *probe, const struct moments *moments,
+                      struct error *err) {
     const struct contact_case *one_case = probe->one_case;
     size_t points = grid_points(&one_case->probe.grid);
-    int status = patch_finder_create(&probe->finder, &one_case->probe.grid, err);
-    for (size_t b = 0; b <= one_case->model_count && status == 0; b++) {
+    int status = 0;
+    for (size_t b = 0; b < contact_case_probe_blocks(one_case) && status == 0; b++) {
         probe->same[b] = first_of_height(one_case, b);
-        if (probe->same[b] == b)
-            status = block_make(probe, b, err);
+        if (probe->same[b] == b && (b > 0 || !has_twin(one_case)))
+            status = contact_coarse_create(&probe->blocks[b], one_case, &one_case->probe.grid,
+                                           height_of(one_case, b), moments, err);
     }
     if (status != 0)
         return status;
@@ -74,11 +82,9 @@ int contact_probe_create(struct contact_probe **out, const struct contact_case *
         return 0;
     struct contact_probe *probe = array_create(1, sizeof *probe);
     if (probe == NULL)
-        return error_memory(err, sizeof *probe, "a probe of block heights");
+        return error_memory(err, sizeof *probe, "a probe");
     probe->one_case = one_case;
-    probe->rms_slope = moments->rms_slope;
-    probe->rms_height = moments->rms_height;
-    int status = probe_fill(probe, err);
+    int status = probe_fill(probe, moments, err);
     if (status != 0)
         contact_probe_destroy(&probe);
     *out = probe;
@@ -89,92 +95,60 @@ void contact_probe_destroy(struct contact_probe **probe) {
     struct contact_probe *gone = *probe;
     if (gone == NULL)
         return;
-    for (size_t b = 0; b < BLOCKS_MOST; b++) {
-        area_workspace_destroy(&gone->areas[b]);
-        contact_destroy(&gone->solvers[b]);
-        compliance_destroy(&gone->compliances[b]);
-    }
-    patch_finder_destroy(&gone->finder);
+    for (size_t b = 0; b < BLOCKS_MOST; b++)
+        contact_coarse_destroy(&gone->blocks[b]);
     free(gone->z);
     free(gone);
     *probe = NULL;
 }
 
-/* All loads of one block, from a surface lifted off. */
-static int solve_block(struct contact_probe *probe, size_t number, struct contact_tally *tally,
-                       int (*stop)(void *context), void *context, struct error *err) {
-    const struct contact_case *one_case = probe->one_case;
-    const struct contact_meter meter = {.area = probe->areas[number],
-                                        .finder = probe->finder,
-                                        .points = (double)grid_points(&one_case->probe.grid),
-                                        .rms_slope = probe->rms_slope,
-                                        .rms_height = probe->rms_height,
-                                        .scaled = true};
-    int status = contact_begin(probe->solvers[number], probe->z, err);
-    for (size_t k = 0; k < one_case->load_count && status == 0; k++) {
-        struct contact_pressed pressed = {.stretch = 1, .open_stretch = 1};
-        double values[MEASURE_OWN];
-        if (stop(context) != 0)
-            return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
-                             one_case->load_count);
-        status = contact_press(probe->solvers[number], one_case->loads[k] * probe->rms_slope,
-                               &pressed.state, err);
-        if (status != 0)
-            return error_context(err, "half-space for the block's height, load %g",
-                                 one_case->loads[k]);
-        contact_measure(&meter, &pressed, values);
-        for (size_t a = 0; a < MEASURE_PAIRED; a++)
-            contact_tally_values(
-                tally, (enum contact_measure)a)[contact_case_probe_cell(one_case, number, k)] =
-                values[a];
-    }
-    return status;
-}
-
-/* What a block has in common with one of the same height. */
-static void copy_block(struct contact_probe *probe, size_t number, struct contact_tally *tally) {
-    const struct contact_case *one_case = probe->one_case;
-    for (size_t a = 0; a < MEASURE_PAIRED; a++) {
-        double *values = contact_tally_values(tally, (enum contact_measure)a);
-        for (size_t k = 0; k < one_case->load_count; k++)
-            values[contact_case_probe_cell(one_case, number, k)] =
-                values[contact_case_probe_cell(one_case, probe->same[number], k)];
-    }
+/* The twin tells areas undeformed and as they are under load, the probe only undeformed. */
+static void copy_twin(const struct contact_case *one_case, struct contact_tally *tally) {
+    size_t to = contact_case_probe_cell(one_case, 0, 0);
+    contact_coarse_copy(one_case, contact_case_cell(one_case, contact_case_twin(one_case), 0, 0),
+                        to, tally);
+    for (size_t k = 0; k < one_case->load_count; k++)
+        contact_tally_values(tally, MEASURE_EDGES_STRETCHED)[to + k] =
+            contact_tally_values(tally, MEASURE_EDGES)[to + k];
 }
 
 int contact_probe_solve(struct contact_probe *probe, const double *z, struct contact_tally *tally,
-                        int (*stop)(void *context), void *context, struct error *err) {
+                        const struct contact_stopper *stopper, struct error *err) {
     const struct contact_case *one_case = probe->one_case;
     int status = contact_level_sample(one_case, &one_case->probe, z, probe->z, err);
-    for (size_t b = 0; b <= one_case->model_count && status == 0; b++)
-        if (probe->same[b] == b)
-            status = solve_block(probe, b, tally, stop, context, err);
+    for (size_t b = 0; b < contact_case_probe_blocks(one_case) && status == 0; b++) {
+        size_t cell = contact_case_probe_cell(one_case, b, 0);
+        if (probe->blocks[b] != NULL)
+            status = contact_coarse_solve(probe->blocks[b], probe->z, cell, tally, stopper, err);
+        else if (b == 0)
+            copy_twin(one_case, tally);
         else
-            copy_block(probe, b, tally);
+            contact_coarse_copy(one_case, contact_case_probe_cell(one_case, probe->same[b], 0),
+                                cell, tally);
+    }
     return status;
 }
 
-static size_t distinct_heights(const struct contact_case *one_case) {
+/* Counts the blocks that are solved. */
+static size_t solved_blocks(const struct contact_case *one_case) {
     size_t count = 0;
-    for (size_t b = 0; b <= one_case->model_count; b++)
-        count += first_of_height(one_case, b) == b;
+    for (size_t b = 0; b < contact_case_probe_blocks(one_case); b++)
+        count += first_of_height(one_case, b) == b && (b > 0 || !has_twin(one_case));
     return count;
 }
 
 double contact_probe_bytes(const struct contact_case *one_case) {
     const struct grid *grid = &one_case->probe.grid;
-    const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY};
-    double points = (double)grid_points(grid);
-    return contact_case_is_probed(one_case) ? 40 * points + (double)distinct_heights(one_case) *
-                                                                (8 * points + contact_bytes(grid) +
-                                                                 compliance_bytes(grid, &block))
-                                            : 0;
+    return contact_case_is_probed(one_case)
+               ? 8 * (double)grid_points(grid) +
+                     (double)solved_blocks(one_case) * contact_coarse_bytes(grid)
+               : 0;
 }
 
 double contact_probe_seconds(const struct contact_case *one_case) {
-    return contact_case_is_probed(one_case)
-               ? (double)distinct_heights(one_case) / INTERVAL *
-                     cost_linear_contact(&one_case->probe.grid, one_case->tolerance,
-                                         one_case->load_count)
-               : 0;
+    if (!contact_case_is_probed(one_case))
+        return 0;
+    double interval = one_case->low_blocks ? INTERVAL : (double)one_case->probe_interval;
+    return (double)solved_blocks(one_case) / interval *
+           contact_coarse_seconds(one_case, &one_case->probe.grid);
 }

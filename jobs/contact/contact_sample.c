@@ -1,9 +1,8 @@
 #include "jobs/contact/contact_sample.h"
 
-int contact_level_sample(const struct contact_case *one_case, const struct contact_level *level,
-                         const double *z, double *out, struct error *err) {
-    const struct grid *own = &one_case->surface.grid, *grid = &level->grid;
-    size_t band = one_case->band;
+int contact_sample(const struct grid *own, size_t band, const struct contact_level *level,
+                   const double *z, double *out, struct error *err) {
+    const struct grid *grid = &level->grid;
     if (level->stride == 0)
         return surface_resample(own, z, grid, out, band, grid_is_profile(own) ? 0 : band, err);
     for (size_t j = 0; j < grid->ny; j++) {
@@ -12,4 +11,9 @@ int contact_level_sample(const struct contact_case *one_case, const struct conta
             out[j * grid->nx + i] = row[i * level->stride];
     }
     return 0;
+}
+
+int contact_level_sample(const struct contact_case *one_case, const struct contact_level *level,
+                         const double *z, double *out, struct error *err) {
+    return contact_sample(&one_case->surface.grid, one_case->band, level, z, out, err);
 }

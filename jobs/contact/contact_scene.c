@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_scene.h"
 #include "core/contact/pressures.h"
+#include "jobs/contact/contact_cell.h"
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_probe.h"
 #include "jobs/contact/contact_sample.h"
@@ -17,6 +18,7 @@ struct contact_scene {
     double *shares;                                                        /* of pressures */
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
     struct contact_probe *probe; /* NULL: none is needed */
+    struct contact_cell *cell;   /* likewise */
     double *z;                   /* a level's sampling; room for the finest */
 };
 
@@ -79,6 +81,8 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
     int status = scene_fill(scene, compliances, err);
     if (status == 0)
         status = contact_probe_create(&scene->probe, one_case, moments, err);
+    if (status == 0)
+        status = contact_cell_create(&scene->cell, one_case, err);
     if (status != 0)
         contact_scene_destroy(&scene);
     *out = scene;
@@ -99,15 +103,15 @@ void contact_scene_destroy(struct contact_scene **scene) {
         }
     }
     contact_probe_destroy(&s->probe);
+    contact_cell_destroy(&s->cell);
     free(s->z);
     free(s->shares);
     free(s);
     *scene = NULL;
 }
 
-double contact_scene_bytes(const struct contact_case *one_case) {
-    double bytes = 8.0 * (double)grid_points(&contact_case_finest(one_case)->grid) +
-                   contact_probe_bytes(one_case);
+double contact_scene_plain_bytes(const struct contact_case *one_case) {
+    double bytes = 8.0 * (double)grid_points(&contact_case_finest(one_case)->grid);
     for (size_t l = 0; l < one_case->level_count; l++) {
         const struct grid *grid = &one_case->levels[l].grid;
         bytes += 32.0 * (double)grid_points(grid); /* patches */
@@ -160,11 +164,6 @@ static int count_pressures(struct contact_scene *scene, size_t model, size_t lev
     return 0;
 }
 
-struct stopper {
-    int (*stop)(void *context);
-    void *context;
-};
-
 static struct contact_pressed not_pressed(void) {
     struct contact_pressed out = {.stretch = 1, .open_stretch = NAN, .reached = NAN};
     for (size_t a = 0; a < MODEL_MEASURES_MOST; a++)
@@ -174,7 +173,7 @@ static struct contact_pressed not_pressed(void) {
 
 /* Solves all loads of one model and level as they rise, each from the last. */
 static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
-                       struct contact_tally *tally, const struct stopper *stopper,
+                       struct contact_tally *tally, const struct contact_stopper *stopper,
                        struct error *err) {
     const struct contact_case *one_case = scene->one_case;
     const struct contact_model *model = one_case->models[m];
@@ -216,7 +215,7 @@ static void name_model(const struct contact_case *one_case, size_t m, size_t lev
 
 /* Where a model that may fail finds no answer, a note tells why. */
 static int solve_model(struct contact_scene *scene, size_t m, size_t level,
-                       struct contact_tally *tally, const struct stopper *stopper,
+                       struct contact_tally *tally, const struct contact_stopper *stopper,
                        struct error *err) {
     const struct contact_case *one_case = scene->one_case;
     struct error why = {0};
@@ -232,17 +231,20 @@ static int solve_model(struct contact_scene *scene, size_t m, size_t level,
     return error_set(err, status, "%s", why.text);
 }
 
-int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
-                        int (*stop)(void *context), void *context, struct error *err) {
+int contact_scene_solve(struct contact_scene *scene, struct random_key key, const double *z,
+                        struct contact_tally *tally, int (*stop)(void *context), void *context,
+                        struct error *err) {
     const struct contact_case *one_case = scene->one_case;
-    const struct stopper stopper = {stop, context};
+    const struct contact_stopper stopper = {stop, context};
     int status = 0;
     for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
         status = contact_level_sample(one_case, &one_case->levels[l], z, scene->z, err);
         for (size_t m = 0; m < one_case->model_count && status == 0; m++)
             status = solve_model(scene, m, l, tally, &stopper, err);
     }
-    if (status == 0 && contact_probe_due(one_case, tally->realisation))
-        status = contact_probe_solve(scene->probe, z, tally, stop, context, err);
+    if (status == 0 && contact_probe_due(one_case, key.realisation))
+        status = contact_probe_solve(scene->probe, z, tally, &stopper, err);
+    if (status == 0 && contact_cell_due(one_case, key.realisation))
+        status = contact_cell_solve(scene->cell, key, tally, &stopper, err);
     return status;
 }

@@ -20,16 +20,17 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
                          const struct moments *moments,
                          const struct contact_compliances *compliances, struct error *err);
 void contact_scene_destroy(struct contact_scene **scene);
-/* Returns the bytes of both, without the surface itself. */
-double contact_scene_bytes(const struct contact_case *one_case);
+/* Returns the bytes of both, without the surface itself, the probe and longer surfaces. */
+double contact_scene_plain_bytes(const struct contact_case *one_case);
 
-/* Solves every level, model and load of one realisation, z on the own grid of the case, into the
- * tally's values. stop is asked before each load, and within loads by models that take long;
- * non-zero ends it with ERROR_STOPPED. ERROR_NUMERIC names model, level and load.
+/* Solves every level, model and load of the realisation of this key, z on the own grid of the case,
+ * into the tally's values. stop is asked before each load, and within loads by models that take
+ * long; non-zero ends it with ERROR_STOPPED. ERROR_NUMERIC names model, level and load.
  *
  * Where a model that may fail finds no answer, the realisation has no values of it on that level
  * from that load on: that is no error, but a note of the tally. */
-int contact_scene_solve(struct contact_scene *scene, const double *z, struct contact_tally *tally,
-                        int (*stop)(void *context), void *context, struct error *err);
+int contact_scene_solve(struct contact_scene *scene, struct random_key key, const double *z,
+                        struct contact_tally *tally, int (*stop)(void *context), void *context,
+                        struct error *err);
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_SUM_H
 #define RUGO_JOBS_CONTACT_CONTACT_SUM_H
 
+#include "jobs/contact/contact_cell.h"
 #include "jobs/contact/contact_errors.h"
 #include "jobs/contact/contact_tally.h"
 #include "jobs/kind.h"
@@ -41,8 +42,8 @@ static inline double component_variance(const struct target_component *component
     return standard_error * standard_error * (double)component->done;
 }
 
-/* Of what an error that falls at least as 1/L loses from L/4 to L: the most that is left of it. */
-#define CELL_SHARE (1.0 / 3)
+/* Of the change from the component "cell" to "base", four times as long: the most that is left. */
+#define CELL_SHARE contact_cell_share_longer(4)
 
 /* Of a difference of models on a cell at least four waves long: the most that a longer one changes.
  * Measured on profiles of slope 0.1: 0.1 % of the area, of 2 %. */

@@ -61,7 +61,14 @@ static size_t level_pair(const struct contact_case *one_case, size_t model, size
 
 /* Differences of blocks, if any is probed. */
 static size_t block_pairs(const struct contact_case *one_case) {
-    return contact_case_is_probed(one_case) ? one_case->model_count * one_case->load_count : 0;
+    return one_case->low_blocks ? one_case->model_count * one_case->load_count : 0;
+}
+
+/* Differences between the control and the probe, if there are both. */
+static size_t probe_pairs(const struct contact_case *one_case) {
+    bool both =
+        contact_case_has_longer(one_case) && contact_case_control(one_case) < one_case->model_count;
+    return both ? one_case->load_count : 0;
 }
 
 static void values_begin(struct contact_tally *tally) {
@@ -91,6 +98,8 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
                                  (one_case->model_count - 1) * one_case->load_count, err);
         if (status == 0)
             status = sums_create(&out->sums[SUMS_BLOCKS + a], block_pairs(one_case), err);
+        if (status == 0)
+            status = sums_create(&out->sums[SUMS_PROBE + a], probe_pairs(one_case), err);
     }
     if (status == 0)
         status = tally_create(&out->pressures, pressure_cells(one_case), err);
@@ -114,7 +123,7 @@ void contact_tally_clear(struct contact_tally *tally) {
 double contact_tally_bytes(const struct contact_case *one_case) {
     size_t cells = contact_case_all_cells(one_case);
     size_t pairs = (one_case->model_count * one_case->level_count - 1) * one_case->load_count +
-                   block_pairs(one_case);
+                   block_pairs(one_case) + probe_pairs(one_case);
     double a_cell = tally_sums_bytes(1) + tally_bytes(1);
     return MEASURE_COUNT * (double)cells * (a_cell + sizeof(double)) +
            MEASURE_PAIRED * (double)pairs * a_cell + tally_bytes(pressure_cells(one_case));
@@ -177,6 +186,17 @@ static void add_block_pairs(struct contact_tally *tally, enum contact_measure me
     }
 }
 
+static void add_probe_pairs(struct contact_tally *tally, enum contact_measure measure) {
+    const struct contact_case *one_case = tally->one_case;
+    const double *values = contact_tally_values(tally, measure);
+    size_t control = contact_case_control(one_case);
+    for (size_t k = 0; k < probe_pairs(one_case); k++)
+        sums_add(&tally->sums[SUMS_PROBE + measure], k,
+                 (values[contact_case_cell(one_case, control, 0, k)] -
+                  values[contact_case_probe_cell(one_case, 0, k)]) *
+                     contact_tally_scale(one_case, measure, k));
+}
+
 /* Of every series of loads, from its areas. */
 static void fill_fits(struct contact_tally *tally) {
     const struct contact_case *one_case = tally->one_case;
@@ -208,6 +228,7 @@ int contact_tally_add(struct contact_tally *tally, struct error *err) {
         if (one_case->model_count > 1)
             add_model_pairs(tally, (enum contact_measure)a);
         add_block_pairs(tally, (enum contact_measure)a);
+        add_probe_pairs(tally, (enum contact_measure)a);
     }
     tally_total_add(&tally->points, grid_points(&contact_case_finest(one_case)->grid));
     tally->realisations++;
@@ -256,6 +277,37 @@ struct estimate contact_tally_block(const struct contact_tally *tally, enum cont
     return sums_mean(&tally->sums[SUMS_BLOCKS + measure],
                      model * tally->one_case->load_count + load, tally->realisations,
                      contact_tally_scale(tally->one_case, measure, load));
+}
+
+/* Of the few realisations that have a value, as if there were no others. */
+static struct estimate mean_of_few(const struct contact_tally *tally,
+                                   const struct contact_sums *sums, enum contact_measure measure,
+                                   size_t cell, size_t load) {
+    uint64_t count = sums->counts.count[cell];
+    if (count < 2)
+        return (struct estimate){NAN, NAN};
+    return sums_mean(sums, cell, count, contact_tally_scale(tally->one_case, measure, load));
+}
+
+/* On all realisations the control is known: its mean less that of the difference, which scatters
+ * little. The two errors may go together. */
+struct estimate contact_tally_shorter(const struct contact_tally *tally,
+                                      enum contact_measure measure, size_t load) {
+    const struct contact_case *one_case = tally->one_case;
+    if (probe_pairs(one_case) == 0)
+        return mean_of_few(tally, &tally->sums[measure], measure,
+                           contact_case_probe_cell(one_case, 0, load), load);
+    size_t control = contact_case_cell(one_case, contact_case_control(one_case), 0, load);
+    struct estimate all = contact_tally_mean(tally, measure, control);
+    struct estimate less =
+        mean_of_few(tally, &tally->sums[SUMS_PROBE + measure], measure, load, load);
+    return (struct estimate){all.value - less.value, all.standard_error + less.standard_error};
+}
+
+struct estimate contact_tally_longer(const struct contact_tally *tally,
+                                     enum contact_measure measure, size_t load) {
+    return mean_of_few(tally, &tally->sums[measure], measure,
+                       contact_case_longer_cell(tally->one_case, load), load);
 }
 
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t level,

@@ -2,10 +2,10 @@
  * realisation, encoded into a partial result.
  *
  * Each realisation is solved for every model, level and load (a cell of contact_case_cell; some
- * for those of the probe, too) and
- * gives a value of each measure there, or none (NaN): a measure that is not defined there, or any
- * where a model found no answer. Differences between levels and between models
- * are summed on their own: both see the same surface, so that their errors are those of pairs. */
+ * for those of the probe and of longer surfaces, too) and gives a value of each measure there, or
+ * none (NaN): a measure that is not defined there, or any where a model found no answer.
+ * Differences between levels and between models are summed on their own: both see the same surface,
+ * so that their errors are those of pairs. */
 #ifndef RUGO_JOBS_CONTACT_CONTACT_TALLY_H
 #define RUGO_JOBS_CONTACT_CONTACT_TALLY_H
 
@@ -26,7 +26,9 @@ enum {
                                                    one; by model and load */
     SUMS_BLOCKS = SUMS_MODELS + MEASURE_PAIRED, /* probe: a model's block less the half-space; by
                                                    model and load */
-    CONTACT_SUMS = SUMS_BLOCKS + MEASURE_PAIRED
+    SUMS_PROBE = SUMS_BLOCKS + MEASURE_PAIRED,  /* coarsest level of the control: that less the
+                                                   half-space of the probe; by load */
+    CONTACT_SUMS = SUMS_PROBE + MEASURE_PAIRED
 };
 struct contact_tally {
     const struct contact_case *one_case; /* borrowed */
@@ -86,6 +88,12 @@ struct estimate contact_tally_model(const struct contact_tally *tally, enum cont
 /* Likewise of the block of a model less the half-space, by the realisations that were probed. */
 struct estimate contact_tally_block(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load);
+/* Means over the realisations that have them, at least two, else NaN: on the half-space of the
+ * probe, of the surfaces of the case, and of those of twice the length. */
+struct estimate contact_tally_shorter(const struct contact_tally *tally,
+                                      enum contact_measure measure, size_t load);
+struct estimate contact_tally_longer(const struct contact_tally *tally,
+                                     enum contact_measure measure, size_t load);
 /* Area of a bin over that of the cell, over the realisations with values there. */
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model,
                                        size_t level, size_t at, size_t bin);

@@ -103,6 +103,8 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
                      cJSON_CreateNumber(ladder[variant->count - 1]));
     if (status == 0 && choices->tolerance)
         status = put(all, "contact", "tolerance", cJSON_CreateNumber(tolerance_of(choices)));
+    if (status == 0) /* components tell it together */
+        status = put(all, "contact", "cell_error", cJSON_CreateString("none"));
     if (status == 0)
         status = put_height(all, choices, variant);
     if (status == 0)

@@ -112,7 +112,7 @@ static void a_low_block_is_told(void **state) {
     (void)state;
     struct errors_fixture f;
     struct contact_error errors[LOADS];
-    fixture_open(&f, STUDY("\"model\": [\"halfspace\", \"layered\"]"));
+    fixture_open(&f, STUDY("\"model\": [\"halfspace\", \"layered\"], \"cell_error\": \"none\""));
     assert_false(
         contact_probe_due(&f.one_case, 0)); /* 1.5 sides of the cell are as good as infinite */
     assert_true(contact_errors(&f.tally, MEASURE_EDGES, 1, ERROR_BLOCK, errors));
