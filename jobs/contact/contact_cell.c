@@ -12,7 +12,7 @@ static const uint64_t OWN_SEQUENCE = UINT64_C(1) << 63;
 static const double LONGER_SHARE = 0.1, PROBE_SHARE = 0.03;
 static const uint64_t INTERVAL_MOST = 1 << 20;
 /* These surfaces may take as much memory as the rest of the case, or this where that is more. */
-static const double BYTES_LEAST = 6.4e7;
+static const double BYTES_LEAST = 1e9;
 
 struct contact_cell {
     const struct contact_case *one_case;

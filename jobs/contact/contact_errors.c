@@ -172,7 +172,8 @@ static double change_around(const struct contact_case *one_case, const struct co
 }
 
 /* The change is that of a half-space on a coarse mesh; of other models and meshes it is the same
- * share. Series of lengths need not fall from one side: the bound is on both. */
+ * share. Series of lengths need not fall from one side: the bound is on both, and holds what chance
+ * does to a change of few surfaces, which totals have no other place for. */
 static bool cell_errors(const struct contact_tally *tally, enum contact_measure measure,
                         size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
@@ -191,9 +192,10 @@ static bool cell_errors(const struct contact_tally *tally, enum contact_measure 
                                         .order = change};
         any = any || !isnan(change);
     }
-    for (size_t k = 0; k < one_case->load_count; k++)
-        out[k].bound = share * change_around(one_case, out, k) *
-                       fabs(finest_mean(tally, measure, model, k).value);
+    for (size_t k = 0; k < one_case->load_count; k++) {
+        double y = fabs(finest_mean(tally, measure, model, k).value);
+        out[k].bound = hypot(share * y * change_around(one_case, out, k), out[k].standard_error);
+    }
     for (size_t k = 0; k < one_case->load_count; k++)
         out[k].order = NAN;
     return any;

@@ -142,6 +142,44 @@ static void a_low_block_is_told(void **state) {
     fixture_close(&f);
 }
 
+/* One half-space on two meshes, of which the coarse one sees two of the four surfaces: its mean
+ * over all is that of the fine one less their difference, which scatters less. At the load in the
+ * middle the length changes little, which is chance: its bound is that of the loads around it. */
+static void a_short_cell_is_told(void **state) {
+    (void)state;
+    static const double OWN[] = {0.4, 0.42, 0.44, 0.46}, OFF[] = {0.01, NAN, 0.03, NAN};
+    static const double LONGER[LOADS][4] = {
+        {0.38, NAN, 0.4, NAN}, {0.4, NAN, 0.42, NAN}, {0.43, NAN, 0.45, NAN}};
+    const double shorter = 0.43 - 0.02, chance = sqrt(5e-4 / 3) + 0.01;
+    struct errors_fixture f;
+    struct contact_error errors[LOADS];
+    fixture_open(&f, STUDY("\"model\": \"halfspace\""));
+    for (size_t r = 0; r < 4; r++) {
+        double *values = contact_tally_values(&f.tally, MEASURE_EDGES);
+        for (size_t k = 0; k < LOADS; k++) {
+            values[contact_case_cell(&f.one_case, 0, 0, k)] = OWN[r];
+            values[contact_case_probe_cell(&f.one_case, 0, k)] = OWN[r] - OFF[r];
+            values[contact_case_longer_cell(&f.one_case, k)] = LONGER[k][r];
+        }
+        add_realisation(&f.tally);
+        /* one longer surface shows no scatter */
+        assert_true(contact_errors(&f.tally, MEASURE_EDGES, 0, ERROR_CELL, errors) == (r >= 2));
+    }
+    static const double CHANGE[LOADS] = {0.02, 0.03, 0.03}; /* within twice the load */
+    for (size_t k = 0; k < LOADS; k++) {
+        assert_true(errors[k].value == 0 && isnan(errors[k].order));
+        double standard_error = 3 * hypot(chance, 0.01) / shorter * 0.43;
+        check_relative(errors[k].standard_error, standard_error, 1e-9);
+        check_relative(errors[k].bound, hypot(3 * CHANGE[k] / shorter * 0.43, standard_error),
+                       1e-9);
+    }
+    fixture_close(&f);
+    fixture_open(&f, STUDY("\"model\": \"halfspace\", \"cell_error\": \"none\""));
+    assert_true(contact_error_applies(&f.tally, MEASURE_EDGES, 0, 0, ERROR_CELL));
+    assert_false(contact_errors(&f.tally, MEASURE_EDGES, 0, ERROR_CELL, errors));
+    fixture_close(&f);
+}
+
 /* Of four realisations the model full lacks one: its mean is that of layered over all, and of the
  * difference over three. */
 static void missing_realisations_bias_no_mean(void **state) {
@@ -185,6 +223,7 @@ int main(void) {
         cmocka_unit_test(a_change_that_vanishes_is_no_proof),
         cmocka_unit_test(models_are_compared_in_their_limits),
         cmocka_unit_test(a_low_block_is_told),
+        cmocka_unit_test(a_short_cell_is_told),
         cmocka_unit_test(missing_realisations_bias_no_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

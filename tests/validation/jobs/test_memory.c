@@ -24,6 +24,10 @@ static const struct {
     {"statistics", "Gaussian, refined, 2048 x 2048",
      "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 32},"
      " \"statistics\": {\"summits\": \"refined\"}}"},
+    {"contact", "Weibull half-space of 512 x 512, longer surfaces beside it",
+     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 16, \"length_ratio\": 4,"
+     " \"heights\": {\"distribution\": \"weibull_min\", \"shape\": 1}},"
+     " \"contact\": {\"pressures\": {\"values\": [0.05]}}}"},
     {"contact", "full, profile of 4096",
      "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 64,"
      " \"rms_slope\": 0.1}, \"contact\": {\"model\": \"full\","

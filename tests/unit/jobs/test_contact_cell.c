@@ -1,0 +1,196 @@
+/* Surfaces of twice the length: what stands in their cells of the tally is what a case of that
+ * length gives for the same random numbers, solved by itself; and which cases have them, on which
+ * realisations, for how much time and memory. */
+#include "jobs/contact/contact_cell.h"
+#include "jobs/contact/contact_probe.h"
+#include "jobs/contact/contact_scene.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+
+enum { LOADS = 3 };
+#define STUDY(surface, contact)                                                                    \
+    "{\"surface\": {\"hurst\": 0.8, " surface "}, \"contact\": {\"pressures\": {\"values\":"       \
+    " [0.01, 0.1, 0.3]}" contact "}}"
+#define PROFILE "\"dimension\": 1, \"wavelength_ratio\": 4, \"rms_slope\": 0.1, "
+#define SURFACE "\"dimension\": 2, \"wavelength_ratio\": 2, \"rms_slope\": 0.1, "
+#define WEIBULL "\"heights\": {\"distribution\": \"weibull_min\", \"shape\": 1}, "
+
+static int go_on(void *context) {
+    (void)context;
+    return 0;
+}
+
+static void must(int status, const struct error *err) {
+    if (status != 0)
+        fail_msg("%s", err->text);
+}
+
+static void read_case(struct contact_case *one_case, const char *text) {
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse(text);
+    assert_non_null(parameters);
+    must(contact_case_read(one_case, parameters, NULL, &err), &err);
+    cJSON_Delete(parameters);
+}
+
+/* Solves the surface of a key into an empty tally. */
+static void solve_case(const struct contact_case *one_case, struct random_key key,
+                       struct contact_tally *tally) {
+    const struct surface_case *surface = &one_case->surface;
+    struct contact_compliances compliances;
+    struct contact_scene *scene;
+    struct generator *generator;
+    struct moments moments;
+    struct error err = {0};
+    double *z = array_create(grid_points(&surface->grid), sizeof *z);
+    assert_non_null(z);
+    must(generator_create(&generator, &surface->spectrum, &surface->grid, &surface->options, &err),
+         &err);
+    modes_moments(generator_modes(generator), &moments);
+    must(generator_run(generator, key, z, NULL, &err), &err);
+    generator_destroy(&generator);
+    must(contact_compliances_create(&compliances, one_case, &err), &err);
+    must(contact_scene_create(&scene, one_case, &moments, &compliances, &err), &err);
+    must(contact_tally_create(tally, one_case, &err), &err);
+    must(contact_scene_solve(scene, key, z, tally, go_on, NULL, &err), &err);
+    contact_scene_destroy(&scene);
+    contact_compliances_clear(&compliances);
+    free(z);
+}
+
+/* `twice` is the study of a cell of twice the length on the mesh of the probe. */
+static void check_longer(const char *text, const char *twice, double cells) {
+    static const struct random_key KEYS[] = {{7, 0, 0}, {7, 3, 8}};
+    static const uint64_t BESIDE = UINT64_C(1) << 63;
+    struct contact_case one_case, other;
+    read_case(&one_case, text);
+    read_case(&other, twice);
+    assert_true(contact_case_has_longer(&one_case));
+    for (size_t r = 0; r < 2; r++) {
+        struct random_key key = KEYS[r];
+        struct contact_tally tally, alone;
+        solve_case(&one_case, key, &tally);
+        key.sequence += BESIDE;
+        solve_case(&other, key, &alone);
+        for (size_t a = 0; a < MEASURE_KAPPA; a++) {
+            const double *values = contact_tally_values(&tally, (enum contact_measure)a);
+            const double *expected = contact_tally_values(&alone, (enum contact_measure)a);
+            double scale = a == MEASURE_PATCHES ? 1 / cells : a == MEASURE_PATCH_MEAN ? cells : 1;
+            for (size_t k = 0; k < LOADS; k++) {
+                double value = values[contact_case_longer_cell(&one_case, k)];
+                double wanted = scale * expected[contact_case_cell(&other, 0, 0, k)];
+                if (a == MEASURE_PATCH_LARGEST)
+                    assert_true(isnan(value));
+                else if (a != MEASURE_EDGES_STRETCHED && !isnan(wanted))
+                    check_relative(value, wanted, 1e-12);
+            }
+        }
+        contact_tally_clear(&tally);
+        contact_tally_clear(&alone);
+    }
+    contact_case_clear(&one_case);
+    contact_case_clear(&other);
+}
+
+static void longer_surfaces_are_those_of_longer_cells(void **state) {
+    (void)state;
+    check_longer(STUDY(PROFILE "\"length_ratio\": 2, \"points_per_wavelength\": 8", ""),
+                 STUDY(PROFILE "\"length_ratio\": 4, \"points_per_wavelength\": 4", ""), 2);
+    check_longer(STUDY(SURFACE "\"length_ratio\": 1, \"points_per_wavelength\": 8",
+                       ", \"model\": [\"layered\", \"halfspace\"]"),
+                 STUDY(SURFACE "\"length_ratio\": 2, \"points_per_wavelength\": 4", ""), 4);
+    /* other heights depend on the grid that they are made on */
+    check_longer(STUDY(WEIBULL PROFILE "\"length_ratio\": 2, \"points_per_wavelength\": 8", ""),
+                 STUDY(WEIBULL PROFILE "\"length_ratio\": 4, \"points_per_wavelength\": 8",
+                       ", \"levels\": [4]"),
+                 2);
+}
+
+/* The half-space of the probe on the mesh of a level is that model of the case already. */
+static void the_twin_stands_for_the_probe(void **state) {
+    (void)state;
+    struct contact_case one_case;
+    struct contact_tally tally;
+    read_case(&one_case, STUDY(PROFILE "\"length_ratio\": 2, \"points_per_wavelength\": 4",
+                               ", \"model\": [\"layered\", \"halfspace\"]"));
+    assert_int_equal(contact_case_twin(&one_case), 1);
+    assert_true(contact_probe_seconds(&one_case) == 0);
+    solve_case(&one_case, (struct random_key){7, 0, 0}, &tally);
+    const double *gap = contact_tally_values(&tally, MEASURE_GAP);
+    for (size_t k = 0; k < LOADS; k++)
+        assert_true(gap[contact_case_probe_cell(&one_case, 0, k)] ==
+                    gap[contact_case_cell(&one_case, 1, 0, k)]);
+    contact_tally_clear(&tally);
+    contact_case_clear(&one_case);
+}
+
+static void alpha_is_not_solved_anew(void **state) {
+    (void)state;
+    struct contact_case one_case;
+    read_case(&one_case, STUDY("\"nayak_alpha\": 3, \"length_ratio\": 2", ""));
+    assert_true(one_case.longer.surface.spectrum.wavelength_long ==
+                one_case.surface.spectrum.wavelength_long);
+    check_relative(one_case.longer.surface.grid.lx, 2 * one_case.surface.grid.lx, 1e-15);
+    contact_case_clear(&one_case);
+}
+
+/* About a tenth of the time of a case, never more surfaces than of equal length in all, and some in
+ * small studies. */
+static void they_cost_a_tenth(void **state) {
+    (void)state;
+    static const char *const STUDIES[] = {
+        STUDY(PROFILE "\"length_ratio\": 8", ""),
+        STUDY(PROFILE "\"length_ratio\": 8", ", \"levels\": [4, 8, 16]"),
+        STUDY(SURFACE "\"length_ratio\": 4", ""),
+        STUDY(SURFACE WEIBULL "\"length_ratio\": 4", ""),
+        STUDY(SURFACE "\"length_ratio\": 2", ", \"model\": \"full\""),
+    };
+    for (size_t s = 0; s < sizeof STUDIES / sizeof *STUDIES; s++) {
+        struct contact_case one_case;
+        struct study_cost cost;
+        read_case(&one_case, STUDIES[s]);
+        assert_true(contact_case_has_longer(&one_case));
+        contact_case_estimate(&one_case, &cost);
+        double plain = contact_case_plain_seconds(&one_case);
+        assert_true(cost.seconds > plain && cost.seconds <= 1.131 * plain);
+        assert_true(one_case.longer.interval >= (one_case.surface.dimension == 1 ? 2 : 4));
+        assert_true(contact_cell_due(&one_case, 0) && contact_cell_due(&one_case, 8) &&
+                    !contact_cell_due(&one_case, 9));
+        contact_case_clear(&one_case);
+    }
+}
+
+/* Where they would not fit, and where a study wants none, the case is as it was without. */
+static void some_cases_have_none(void **state) {
+    (void)state;
+    static const char *const STUDIES[] = {
+        STUDY(PROFILE "\"length_ratio\": 2", ", \"cell_error\": \"none\""),
+        /* more points than a grid may have */
+        STUDY("\"dimension\": 1, \"wavelength_ratio\": 2000, \"heights\": {\"distribution\":"
+              " \"weibull_min\", \"shape\": 1}, \"length_ratio\": 100000",
+              ""),
+        /* four times the points of a surface that takes hundreds of megabytes */
+        STUDY("\"wavelength_ratio\": 64, \"heights\": {\"distribution\": \"weibull_min\","
+              " \"shape\": 1}, \"length_ratio\": 8",
+              ""),
+    };
+    for (size_t s = 0; s < sizeof STUDIES / sizeof *STUDIES; s++) {
+        struct contact_case one_case;
+        read_case(&one_case, STUDIES[s]);
+        assert_false(contact_case_has_longer(&one_case) || contact_case_is_probed(&one_case));
+        assert_false(contact_cell_due(&one_case, 0) || contact_probe_due(&one_case, 0));
+        assert_int_equal(contact_case_all_cells(&one_case), contact_case_cells(&one_case));
+        contact_case_clear(&one_case);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(longer_surfaces_are_those_of_longer_cells),
+        cmocka_unit_test(the_twin_stands_for_the_probe),
+        cmocka_unit_test(alpha_is_not_solved_anew),
+        cmocka_unit_test(they_cost_a_tenth),
+        cmocka_unit_test(some_cases_have_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
