@@ -14,8 +14,8 @@ enum random_stream { STREAM_PHASES = 0, STREAM_HEIGHTS = 1, STREAM_HEIGHT_PHASES
 /* Selects random numbers. Plain data that may be copied. */
 struct random_key {
     uint64_t seed;
-    uint64_t sequence; /* 0; or the case's number, where cases share no random numbers; with the
-                          highest bit beside that, of surfaces that are no realisations */
+    uint64_t sequence; /* 0; or the case's number, where cases share no random numbers; with one of
+                          the two highest bits, of surfaces beside the realisations */
     uint64_t realisation;
 };
 

@@ -22,13 +22,15 @@ struct contact_level {
     size_t stride; /* every stride-th point of the own grid each way; 0: resampled from its band */
 };
 
-/* Surfaces of twice the length of the case's, by which the error of its cell is told
+/* Surfaces longer and shorter than the case's, by which the error of its cell is told
  * (contact_cell.h). */
-struct contact_longer {
+enum contact_length { LENGTH_LONGER, LENGTH_SHORTER, CONTACT_LENGTHS };
+struct contact_surfaces {
+    double length;               /* over that of the case */
     struct surface_case surface; /* borrows from that of the case; its grid is that on which
                                     surfaces are generated, without points where there are none */
     size_t band;                 /* highest wave number of a surface on it */
-    struct contact_level level;  /* twice the probe, of this grid */
+    struct contact_level level;  /* as fine as the probe, of this grid */
     uint64_t interval;           /* of realisations, one of which is beside such a surface; 2^n */
 };
 
@@ -47,7 +49,7 @@ struct contact_case {
                                    coarsest where that leaves 4 points; no points without one */
     bool low_blocks;            /* the heights of blocks are probed */
     uint64_t probe_interval;    /* else: of realisations, one of which is probed; 2^n */
-    struct contact_longer longer; /* no points: the error of the cell is not told */
+    struct contact_surfaces lengths[CONTACT_LENGTHS]; /* no points: there are none */
     size_t load_count;
     double *loads;                /* owned: p/(E* h'), rising, > 0 */
     bool nodes, edges, perimeter; /* estimators shown */
@@ -75,8 +77,9 @@ static inline size_t contact_case_cells(const struct contact_case *one_case) {
 static inline bool contact_case_is_probed(const struct contact_case *one_case) {
     return one_case->probe.grid.nx > 0;
 }
-static inline bool contact_case_has_longer(const struct contact_case *one_case) {
-    return one_case->longer.surface.grid.nx > 0;
+static inline bool contact_case_has_length(const struct contact_case *one_case,
+                                           enum contact_length length) {
+    return one_case->lengths[length].surface.grid.nx > 0;
 }
 /* Behind these, of the probe: the half-space (block 0) and, where blocks are low, the block of each
  * model, by load. */
@@ -89,14 +92,18 @@ static inline size_t contact_case_probe_cell(const struct contact_case *one_case
                                              size_t load) {
     return contact_case_cells(one_case) + block * one_case->load_count + load;
 }
-/* And behind these, of the surfaces of twice the length, by load; and how many cells there are in
- * all. */
-static inline size_t contact_case_longer_cell(const struct contact_case *one_case, size_t load) {
-    return contact_case_probe_cell(one_case, contact_case_probe_blocks(one_case), load);
+/* And behind these, of the surfaces of another length, by load; and how many cells there are in
+ * all.
+ */
+static inline size_t contact_case_length_cell(const struct contact_case *one_case,
+                                              enum contact_length length, size_t load) {
+    size_t series = contact_case_probe_blocks(one_case);
+    for (enum contact_length other = 0; other < length; other++)
+        series += contact_case_has_length(one_case, other);
+    return contact_case_probe_cell(one_case, series, load);
 }
 static inline size_t contact_case_all_cells(const struct contact_case *one_case) {
-    size_t longer = contact_case_has_longer(one_case) ? one_case->load_count : 0;
-    return contact_case_longer_cell(one_case, longer);
+    return contact_case_length_cell(one_case, CONTACT_LENGTHS, 0);
 }
 
 /* By how much the height of a model's block changes what is measured, relative to it, at most:
@@ -124,7 +131,7 @@ int contact_case_scale(const struct contact_case *one_case, double *rms_height, 
 bool contact_case_stretches(const struct contact_case *one_case, size_t model);
 
 /* Estimates memory, time and error of one realisation before anything ran; the first two also
- * without the surfaces of twice the length and the probes. */
+ * without the probes. */
 double contact_case_plain_seconds(const struct contact_case *one_case);
 double contact_case_plain_bytes(const struct contact_case *one_case);
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out);

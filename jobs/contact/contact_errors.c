@@ -1,6 +1,6 @@
 #include "jobs/contact/contact_errors.h"
 #include "core/statistics/richardson.h"
-#include "jobs/contact/contact_cell.h"
+#include "jobs/contact/contact_cell_errors.h"
 #include <math.h>
 
 /* The block's share of a value is that of a half-space on a coarse mesh; for other models and
@@ -10,14 +10,6 @@ static const double BLOCK_MARGIN = 0.25;
  * with the forces, and what counts points, one of which may fall on either side. Measured by
  * tests/validation/jobs/test_contact_errors.c. */
 static const double SMOOTH_TOLERANCES = 100, COUNTED_TOLERANCES = 1000;
-
-/* Series of lengths are not monotone. What doubling changes counts so many times as if errors fell
- * as 1/L; and as it vanishes somewhere between loads where its sign is one and the other, loads
- * within this ratio of each other share the largest of their changes. Measured by
- * tests/validation/jobs/test_contact_cells.c. */
-static const double CELL_SAFETY = 1.5, CELL_LOADS = 2;
-
-static const double ROUNDING = 1e-9; /* of ratios that are meant to be round */
 
 static const struct contact_error UNKNOWN = {NAN, NAN, NAN, NAN};
 
@@ -154,53 +146,6 @@ static bool model_errors(const struct contact_tally *tally, enum contact_measure
     return true;
 }
 
-/* --- the cell --- */
-
-/* The most that the changes of the loads around one are, which stand in place of orders: of those
- * near it, and of its neighbours where the sign changes in between. */
-static double change_around(const struct contact_case *one_case, const struct contact_error *errors,
-                            size_t load) {
-    double most = 0;
-    for (size_t k = 0; k < one_case->load_count; k++) {
-        double ratio = one_case->loads[k] / one_case->loads[load];
-        bool next = k + 1 >= load && k <= load + 1;
-        bool turns = next && errors[k].order * errors[load].order < 0;
-        if (turns || fmax(ratio, 1 / ratio) <= CELL_LOADS * (1 + ROUNDING))
-            most = fmax(most, fabs(errors[k].order));
-    }
-    return most;
-}
-
-/* The change is that of a half-space on a coarse mesh; of other models and meshes it is the same
- * share. Series of lengths need not fall from one side: the bound is on both, and holds what chance
- * does to a change of few surfaces, which totals have no other place for. */
-static bool cell_errors(const struct contact_tally *tally, enum contact_measure measure,
-                        size_t model, struct contact_error *out) {
-    const struct contact_case *one_case = tally->one_case;
-    double share = CELL_SAFETY * contact_cell_share_shorter(CONTACT_LONGER);
-    bool any = false;
-    if (!contact_case_has_longer(one_case))
-        return false;
-    for (size_t k = 0; k < one_case->load_count; k++) {
-        struct estimate shorter = contact_tally_shorter(tally, measure, k);
-        struct estimate longer = contact_tally_longer(tally, measure, k);
-        double y = fabs(finest_mean(tally, measure, model, k).value);
-        double chance = hypot(shorter.standard_error, longer.standard_error);
-        double change = (longer.value - shorter.value) / shorter.value;
-        out[k] = (struct contact_error){.value = 0 * change,
-                                        .standard_error = share * y * fabs(chance / shorter.value),
-                                        .order = change};
-        any = any || !isnan(change);
-    }
-    for (size_t k = 0; k < one_case->load_count; k++) {
-        double y = fabs(finest_mean(tally, measure, model, k).value);
-        out[k].bound = hypot(share * y * change_around(one_case, out, k), out[k].standard_error);
-    }
-    for (size_t k = 0; k < one_case->load_count; k++)
-        out[k].order = NAN;
-    return any;
-}
-
 /* --- block, solver, missing realisations --- */
 
 static bool block_errors(const struct contact_tally *tally, enum contact_measure measure,
@@ -310,7 +255,7 @@ typedef bool errors_of(const struct contact_tally *tally, enum contact_measure m
 bool contact_errors(const struct contact_tally *tally, enum contact_measure measure, size_t model,
                     enum error_source source, struct contact_error *out) {
     static errors_of *const SOURCES[ERROR_SOURCES] = {
-        [ERROR_DISCRETISATION] = mesh_errors, [ERROR_CELL] = cell_errors,
+        [ERROR_DISCRETISATION] = mesh_errors, [ERROR_CELL] = contact_cell_errors,
         [ERROR_BLOCK] = block_errors,         [ERROR_MODEL] = model_errors,
         [ERROR_SOLVER] = solver_errors,       [ERROR_MISSING] = missing_errors,
     };

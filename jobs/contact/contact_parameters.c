@@ -146,8 +146,9 @@ static const struct parameter ROWS[] = {
      .choices = CELL_ERRORS,
      .later = true,
      .example_json = "\"none\"",
-     .help = "what the length of the cell changes: probed (unless given) on some surfaces of twice "
-             "the length, for about a tenth of the time; or none, and it is not known"},
+     .help =
+         "what the length of the cell changes: probed (unless given) on some longer and shorter "
+         "surfaces, for about a tenth of the time; or none, and it is not known"},
     {.path = "/contact/pressure_pdf/at",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,

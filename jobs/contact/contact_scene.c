@@ -244,7 +244,7 @@ int contact_scene_solve(struct contact_scene *scene, struct random_key key, cons
     }
     if (status == 0 && contact_probe_due(one_case, key.realisation))
         status = contact_probe_solve(scene->probe, z, tally, &stopper, err);
-    if (status == 0 && contact_cell_due(one_case, key.realisation))
+    if (status == 0 && scene->cell != NULL)
         status = contact_cell_solve(scene->cell, key, tally, &stopper, err);
     return status;
 }

@@ -20,7 +20,7 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
                          const struct moments *moments,
                          const struct contact_compliances *compliances, struct error *err);
 void contact_scene_destroy(struct contact_scene **scene);
-/* Returns the bytes of both, without the surface itself, the probe and longer surfaces. */
+/* Returns the bytes of both, without the surface itself, the probe and what stands beside it. */
 double contact_scene_plain_bytes(const struct contact_case *one_case);
 
 /* Solves every level, model and load of the realisation of this key, z on the own grid of the case,

@@ -42,8 +42,9 @@ static inline double component_variance(const struct target_component *component
     return standard_error * standard_error * (double)component->done;
 }
 
-/* Of the change from the component "cell" to "base", four times as long: the most that is left. */
-#define CELL_SHARE contact_cell_share_longer(4)
+/* Of the change between "base" and the component "cell", a quarter as long: the most that is left
+ * of an error that falls at least as 1/L. */
+#define CELL_SHARE contact_cell_share(0.25, 0.5)
 
 /* Of a difference of models on a cell at least four waves long: the most that a longer one changes.
  * Measured on profiles of slope 0.1: 0.1 % of the area, of 2 %. */

@@ -67,7 +67,7 @@ static size_t block_pairs(const struct contact_case *one_case) {
 /* Differences between the control and the probe, if there are both. */
 static size_t probe_pairs(const struct contact_case *one_case) {
     bool both =
-        contact_case_has_longer(one_case) && contact_case_control(one_case) < one_case->model_count;
+        contact_case_is_probed(one_case) && contact_case_control(one_case) < one_case->model_count;
     return both ? one_case->load_count : 0;
 }
 
@@ -291,8 +291,8 @@ static struct estimate mean_of_few(const struct contact_tally *tally,
 
 /* On all realisations the control is known: its mean less that of the difference, which scatters
  * little. The two errors may go together. */
-struct estimate contact_tally_shorter(const struct contact_tally *tally,
-                                      enum contact_measure measure, size_t load) {
+struct estimate contact_tally_own_length(const struct contact_tally *tally,
+                                         enum contact_measure measure, size_t load) {
     const struct contact_case *one_case = tally->one_case;
     if (probe_pairs(one_case) == 0)
         return mean_of_few(tally, &tally->sums[measure], measure,
@@ -304,10 +304,11 @@ struct estimate contact_tally_shorter(const struct contact_tally *tally,
     return (struct estimate){all.value - less.value, all.standard_error + less.standard_error};
 }
 
-struct estimate contact_tally_longer(const struct contact_tally *tally,
-                                     enum contact_measure measure, size_t load) {
+struct estimate contact_tally_other_length(const struct contact_tally *tally,
+                                           enum contact_measure measure, enum contact_length length,
+                                           size_t load) {
     return mean_of_few(tally, &tally->sums[measure], measure,
-                       contact_case_longer_cell(tally->one_case, load), load);
+                       contact_case_length_cell(tally->one_case, length, load), load);
 }
 
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t level,

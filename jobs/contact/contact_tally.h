@@ -2,7 +2,7 @@
  * realisation, encoded into a partial result.
  *
  * Each realisation is solved for every model, level and load (a cell of contact_case_cell; some
- * for those of the probe and of longer surfaces, too) and gives a value of each measure there, or
+ * for those of the probe and of other lengths, too) and gives a value of each measure there, or
  * none (NaN): a measure that is not defined there, or any where a model found no answer.
  * Differences between levels and between models are summed on their own: both see the same surface,
  * so that their errors are those of pairs. */
@@ -89,11 +89,12 @@ struct estimate contact_tally_model(const struct contact_tally *tally, enum cont
 struct estimate contact_tally_block(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load);
 /* Means over the realisations that have them, at least two, else NaN: on the half-space of the
- * probe, of the surfaces of the case, and of those of twice the length. */
-struct estimate contact_tally_shorter(const struct contact_tally *tally,
-                                      enum contact_measure measure, size_t load);
-struct estimate contact_tally_longer(const struct contact_tally *tally,
-                                     enum contact_measure measure, size_t load);
+ * probe, of the surfaces of the case, and of those of another length. */
+struct estimate contact_tally_own_length(const struct contact_tally *tally,
+                                         enum contact_measure measure, size_t load);
+struct estimate contact_tally_other_length(const struct contact_tally *tally,
+                                           enum contact_measure measure, enum contact_length length,
+                                           size_t load);
 /* Area of a bin over that of the cell, over the realisations with values there. */
 struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model,
                                        size_t level, size_t at, size_t bin);
