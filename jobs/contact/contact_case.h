@@ -130,10 +130,7 @@ int contact_case_scale(const struct contact_case *one_case, double *rms_height, 
 /* Returns whether the areas of a model are told as they are under load. */
 bool contact_case_stretches(const struct contact_case *one_case, size_t model);
 
-/* Estimates memory, time and error of one realisation before anything ran; the first two also
- * without the probes. */
-double contact_case_plain_seconds(const struct contact_case *one_case);
-double contact_case_plain_bytes(const struct contact_case *one_case);
+/* Estimates memory, time and error of one realisation before anything ran. */
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out);
 
 #endif

@@ -12,7 +12,8 @@ static const uint64_t OWN_SEQUENCE[CONTACT_LENGTHS] = {
 static const double TIME_SHARE[CONTACT_LENGTHS] = {[LENGTH_LONGER] = 0.06, [LENGTH_SHORTER] = 0.06};
 static const double PROBE_SHARE = 0.02;
 static const uint64_t INTERVAL_MOST = 1 << 20;
-/* These surfaces may take as much memory as the rest of the case, or this where that is more. */
+/* These surfaces may take as much memory as the case's own on a half-space on its finest mesh, or
+ * this where that is more. */
 static const double BYTES_LEAST = 1e9;
 static const double ROUNDING = 1e-9; /* relative: numbers that are meant to be integers */
 
@@ -72,6 +73,19 @@ static double surface_seconds(const struct contact_case *one_case, enum contact_
            contact_coarse_seconds(one_case, &surfaces->level.grid);
 }
 
+/* What the case takes without these surfaces at least: a choice that changes values must not depend
+ * on whether there is memory for a better estimate. */
+static double case_seconds(const struct contact_case *one_case) {
+    const struct surface_case *surface = &one_case->surface;
+    double seconds =
+        1e-9 * cost_generation(&surface->options) * (double)grid_points(&surface->grid);
+    for (size_t l = 0; l < one_case->level_count; l++)
+        for (size_t m = 0; m < one_case->model_count; m++)
+            seconds += fmax(1, one_case->models[m]->times_linear) *
+                       contact_coarse_seconds(one_case, &one_case->levels[l].grid);
+    return seconds;
+}
+
 static double surface_bytes(const struct contact_surfaces *surfaces) {
     const struct grid *grid = &surfaces->level.grid;
     return surface_case_bytes(&surfaces->surface) + 8 * (double)grid_points(grid) +
@@ -86,26 +100,29 @@ static uint64_t interval_of(double seconds, double allowed, uint64_t least) {
     return interval;
 }
 
-/* Returns the least length that holds whole longest waves; 0 where none does. */
+static bool holds_waves(const struct contact_case *one_case, double length) {
+    double waves = length * one_case->surface.length_ratio;
+    return waves >= 1 && fabs(waves - round(waves)) <= ROUNDING * waves;
+}
+
+/* Returns a quarter or half, whichever first holds whole longest waves; 0 where neither does. */
 static double shorter_length(const struct contact_case *one_case) {
-    for (double length = 0.25; length < 1; length *= 2) {
-        double waves = length * one_case->surface.length_ratio;
-        if (waves >= 1 && fabs(waves - round(waves)) <= ROUNDING * waves)
-            return length;
-    }
-    return 0;
+    if (holds_waves(one_case, 0.25))
+        return 0.25;
+    return holds_waves(one_case, 0.5) ? 0.5 : 0;
 }
 
 static void choose_length(struct contact_case *one_case, enum contact_length length, double factor,
                           uint64_t least) {
     struct contact_surfaces surfaces = {.length = factor};
-    double most = fmax(BYTES_LEAST, contact_case_plain_bytes(one_case));
-    if (factor == 0 || !choose_grids(one_case, &surfaces) || surface_bytes(&surfaces) > most)
+    double own = surface_case_bytes(&one_case->surface) +
+                 contact_coarse_bytes(&contact_case_finest(one_case)->grid);
+    if (factor == 0 || !choose_grids(one_case, &surfaces) ||
+        surface_bytes(&surfaces) > fmax(BYTES_LEAST, own))
         return;
     one_case->lengths[length] = surfaces;
-    one_case->lengths[length].interval =
-        interval_of(surface_seconds(one_case, length),
-                    TIME_SHARE[length] * contact_case_plain_seconds(one_case), least);
+    one_case->lengths[length].interval = interval_of(
+        surface_seconds(one_case, length), TIME_SHARE[length] * case_seconds(one_case), least);
 }
 
 void contact_cell_choose(struct contact_case *one_case) {
@@ -119,8 +136,8 @@ void contact_cell_choose(struct contact_case *one_case) {
         return;
     }
     one_case->probe_interval = 1;
-    one_case->probe_interval = interval_of(contact_probe_seconds(one_case),
-                                           PROBE_SHARE * contact_case_plain_seconds(one_case), 1);
+    one_case->probe_interval =
+        interval_of(contact_probe_seconds(one_case), PROBE_SHARE * case_seconds(one_case), 1);
 }
 
 bool contact_cell_due(const struct contact_case *one_case, enum contact_length length,

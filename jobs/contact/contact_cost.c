@@ -23,30 +23,20 @@ static double case_seconds(const struct contact_case *one_case) {
                                densities * one_case->pressure.count);
 }
 
-double contact_case_plain_seconds(const struct contact_case *one_case) {
-    const struct surface_case *surface = &one_case->surface;
-    double seconds =
-        1e-4 + 1e-9 * cost_generation(&surface->options) * (double)grid_points(&surface->grid);
-    for (size_t l = 0; l < one_case->level_count; l++)
-        for (size_t m = 0; m < one_case->model_count; m++)
-            seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);
-    return seconds;
-}
-
-double contact_case_plain_bytes(const struct contact_case *one_case) {
-    return surface_case_bytes(&one_case->surface) + contact_scene_plain_bytes(one_case);
-}
-
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
     const struct grid *finest = &contact_case_finest(one_case)->grid;
     out->nx = finest->nx;
     out->ny = finest->ny;
-    out->memory_bytes = contact_case_plain_bytes(one_case) + contact_probe_bytes(one_case) +
-                        contact_cell_bytes(one_case) + contact_tally_bytes(one_case) +
-                        PROCESS_BYTES;
-    out->seconds = contact_case_plain_seconds(one_case) + contact_probe_seconds(one_case) +
-                   contact_cell_seconds(one_case);
+    out->memory_bytes = surface_case_bytes(surface) + contact_scene_plain_bytes(one_case) +
+                        contact_probe_bytes(one_case) + contact_cell_bytes(one_case) +
+                        contact_tally_bytes(one_case) + PROCESS_BYTES;
+    out->seconds =
+        1e-4 + 1e-9 * cost_generation(&surface->options) * (double)grid_points(&surface->grid);
+    for (size_t l = 0; l < one_case->level_count; l++)
+        for (size_t m = 0; m < one_case->model_count; m++)
+            out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);
+    out->seconds += contact_probe_seconds(one_case) + contact_cell_seconds(one_case);
     out->result_bytes = contact_rows_bytes(one_case);
     out->case_seconds = case_seconds(one_case);
     bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;

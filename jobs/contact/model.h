@@ -49,6 +49,7 @@ struct contact_model {
     bool elements;          /* finite elements: layers of them, and mortar functions for the gap */
     bool may_fail; /* to find an answer: a note tells why, and loads from there on have no values */
     bool stretches;        /* areas are told as they are under load */
+    double times_linear;   /* it takes so many times as long as a linear model at least; 0: once */
     double default_height; /* of the block, in lengths of the cell; INFINITY */
     size_t curve_count;    /* of its own */
     const struct model_curve *curves;

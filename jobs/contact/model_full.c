@@ -206,6 +206,7 @@ const struct contact_model FULL_MODEL = {
     .check = check,
     .bytes = bytes,
     .seconds = seconds,
+    .times_linear = 20,
     .create = create,
     .destroy = destroy,
     .begin = begin,
