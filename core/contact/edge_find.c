@@ -3,8 +3,7 @@
 
 static const double PI = 3.14159265358979323846;
 static const double COSINE_LEAST = 0.1;
-/* The squared pressure bends: p^2 = c^2 d (1 - bend d). The gap's rise does so by a fifth of it
- * beside a straight edge and not at all around a round patch, which is left out. */
+/* The squared pressure bends, p^2 = c^2 d (1 - bend d), and so does the rise of the gap. */
 static const double BEND_MOST = 0.5, SLOPE_LEAST = 0.75;
 enum { ROUNDS = 4, INVERSE_STEPS = 2 };
 
@@ -28,6 +27,8 @@ struct edge_crossing edge_crossing_at(const struct edge_family *family, size_t l
                                   .outside = edge_node(f, line, b),
                                   .before = edge_node(f, line, back),
                                   .far_before = edge_node(f, line, back - (b - a)),
+                                  .beyond = edge_node(f, line, 2 * b - a + f->nodes),
+                                  .far_beyond = edge_node(f, line, 3 * b - 2 * a + f->nodes),
                                   .inside_left = edge_node(f, line + 1, a),
                                   .outside_left = edge_node(f, line + 1, b),
                                   .inside_right = edge_node(f, line + f->lines - 1, a),
@@ -48,8 +49,9 @@ struct found {
     double field;   /* distance of the inside node by its pressure, without the bend */
     double inside;  /* of the inside node */
     double bend;
-    double bent; /* 1 - bend d there */
-    double next; /* squared pressure at the next node inside, by the law over as found */
+    double bent;      /* 1 - bend d there */
+    double open_bent; /* the same of the gap's rise at the outside node */
+    double next;      /* squared pressure at the next node inside, by the law over as found */
 };
 
 /* Where the edge lies for the direction and the bends so far. */
@@ -61,7 +63,7 @@ static void find_edge(const struct edge_crossing *x, const struct edge_law *law,
     f->spacing = hypot(f->cosine * x->step, sine * x->across);
     f->apart = f->cosine * x->step / f->spacing;
     double squared = rise[x->inside] / f->spacing / f->bent;
-    double open = fmax(0, -rise[x->outside]) / f->spacing;
+    double open = fmax(0, -rise[x->outside]) / f->spacing / f->open_bent;
     f->scale = edge_scale(&f->direction, squared, open, f->apart, f->scale);
     f->field = squared * f->scale * f->scale * f->scale;
     f->inside = edge_inside(&f->direction, f->field);
@@ -83,26 +85,55 @@ static void find_cosine(const struct edge_crossing *x, const double *rise, struc
     f->cosine = fmax(COSINE_LEAST, along / hypot(along, beside));
 }
 
-/* Bend by the next node further inside; in two nodes or one, that of a chord between two edges. */
+/* What one node or two of a chord between two edges have of the rise without bends: it is a
+ * parabola over the chord. share: of a step, to the nearer edge. */
+static double bent_chord(double share, bool two) {
+    double length = (two ? 1 : 0) + 2 * share;
+    return length > 0 ? fmax(BEND_MOST, 1 - share / length) : BEND_MOST;
+}
+
+/* Bend of a rise that is (1 - bend next)/(1 - bend near) of the law's from one node to the next, at
+ * these distances. */
+static double bend_of(double ratio, double near, double next) {
+    double most = BEND_MOST / fmax(next, 0.05);
+    return fmin(fmax((1 - ratio) / fmax(0.2, next - ratio * near), -most), most);
+}
+
+/* Bend by the next node further inside; in two nodes or one, that of a chord. */
 static void find_bend(const struct edge_crossing *x, const double *rise, struct found *f) {
-    double inside = fmax(0, f->inside);
-    bool chord = !(rise[x->before] > 0 && rise[x->far_before] > 0);
-    if (chord) {
-        double share = inside / f->apart;
-        double length = (rise[x->before] > 0 ? 1 : 0) + 2 * share;
-        f->bent = length > 0 ? fmax(BEND_MOST, 1 - share / length) : BEND_MOST;
-        f->bend = length > 0 ? 1 / (length * f->apart) : 0;
-    } else {
-        double next = f->inside + f->apart, field = fmax(0, next);
-        for (int a = 0; a < INVERSE_STEPS; a++)
-            field = fmax(0, field + next - edge_inside(&f->direction, field));
-        /* (1 - bend next)/(1 - bend inside): what the two pressures have beyond the law's. */
-        double ratio = rise[x->before] / rise[x->inside] * f->field / fmax(field, 1e-9);
-        double most = BEND_MOST / fmax(next, 0.05);
-        double bend = (1 - ratio) / fmax(0.2, next - ratio * inside);
-        f->bend = fmin(fmax(bend, -most), most);
-        f->bent = 1 - f->bend * inside;
-        f->next = next / fmax(field, 1e-9);
+    double inside = fmax(0, f->inside), next = f->inside + f->apart, field = fmax(0, next);
+    bool two = rise[x->before] > 0;
+    if (!two || !(rise[x->far_before] > 0)) {
+        double length = (two ? f->apart : 0) + 2 * inside;
+        f->bent = bent_chord(inside / f->apart, two);
+        f->bend = length > 0 ? 1 / length : 0;
+        return;
+    }
+    for (int a = 0; a < INVERSE_STEPS; a++)
+        field = fmax(0, field + next - edge_inside(&f->direction, field));
+    double ratio = rise[x->before] / rise[x->inside] * f->field / fmax(field, 1e-9);
+    f->bend = bend_of(ratio, inside, next);
+    f->bent = 1 - f->bend * inside;
+    f->next = next / fmax(field, 1e-9);
+}
+
+static double field_outside(const struct found *f, double distance) {
+    double field = distance;
+    for (int a = 0; a < INVERSE_STEPS; a++)
+        field = fmax(0, field + distance - edge_outside(&f->direction, field));
+    return field;
+}
+
+/* The same of the gap, by the next node further outside. */
+static void find_open_bend(const struct edge_crossing *x, const double *rise, struct found *f) {
+    double outside = fmax(0, f->apart - f->inside), next = outside + f->apart;
+    bool two = !(rise[x->beyond] > 0);
+    if (!two || rise[x->far_beyond] > 0) {
+        f->open_bent = bent_chord(outside / f->apart, two);
+    } else if (rise[x->outside] < 0) {
+        double ratio = rise[x->beyond] / rise[x->outside] * field_outside(f, outside) /
+                       fmax(field_outside(f, next), 1e-9);
+        f->open_bent = 1 - bend_of(ratio, outside, next) * outside;
     }
 }
 
@@ -149,7 +180,7 @@ static void steepen(const struct edge_crossing *x, const double *rise, struct ed
 
 struct edge_found edge_find(const struct edge_crossing *crossing, const struct edge_law *law,
                             const double *rise) {
-    struct found f = {.cosine = 1, .bent = 1, .next = 1};
+    struct found f = {.cosine = 1, .bent = 1, .open_bent = 1, .next = 1};
     double lone =
         crossing->profile ? lone_in_profile(crossing, rise) : lone_in_surface(crossing, rise);
     if (!isnan(lone))
@@ -159,6 +190,7 @@ struct edge_found edge_find(const struct edge_crossing *crossing, const struct e
         if (a + 1 == ROUNDS)
             break;
         find_bend(crossing, rise, &f);
+        find_open_bend(crossing, rise, &f);
         if (!crossing->profile)
             find_cosine(crossing, rise, &f);
     }

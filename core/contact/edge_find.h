@@ -30,6 +30,7 @@ static inline size_t edge_node(const struct edge_family *family, size_t line, si
 struct edge_crossing {
     size_t inside, outside;    /* the two nodes; all names below are nodes too */
     size_t before, far_before; /* further inside */
+    size_t beyond, far_beyond; /* further outside */
     size_t inside_left, inside_right, outside_left, outside_right; /* beside the two */
     double step, across;                                           /* spacings, along and beside */
     bool row;                                                      /* along x */

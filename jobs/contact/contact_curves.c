@@ -225,7 +225,7 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     if (x == NULL)
         return no_room(err);
     double *y = x + n, *standard_error = y + n, *valueless = standard_error + n;
-    double *pdf = valueless + n, *none = pdf + n, *bound = none + n, *unknown = bound + n;
+    double *pdf = valueless + n, *none = pdf + n, *bound = none + n, *chance = bound + n;
     for (size_t b = 0; b < n; b++) {
         struct estimate share = contact_tally_pressure(maker->tally, model, finest, at, b + 1);
         x[b] = bins_centre(bins, b);
@@ -239,14 +239,9 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     for (enum error_source s = 0; s < ERROR_SOURCES; s++)
         curve.errors[s].applies =
             contact_error_applies(maker->tally, MEASURE_NODES, model, finest, s);
-    if (contact_errors_pressures(maker->tally, model, at, bound)) {
-        for (size_t b = 0; b < n; b++)
-            unknown[b] = NAN;
-        curve.errors[ERROR_DISCRETISATION] = (struct curve_error){.applies = true,
-                                                                  .value = none,
-                                                                  .bound = bound,
-                                                                  .standard_error = unknown,
-                                                                  .order = NAN};
+    if (contact_errors_pressures(maker->tally, model, at, bound, chance)) {
+        curve.errors[ERROR_DISCRETISATION] = (struct curve_error){
+            .applies = true, .value = none, .bound = bound, .standard_error = chance, .order = NAN};
     }
     curve_set_points(&curve, n, x, y, standard_error);
     if (contact_theory_pressures(one_case, maker->modes, load, pdf))

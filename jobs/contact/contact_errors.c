@@ -299,12 +299,24 @@ bool contact_error_applies(const struct contact_tally *tally, enum contact_measu
 
 /* --- pressures --- */
 
-/* As bins hold whole nodes, the change of one between levels may vanish by chance: the bound is
- * that of any bin so near. */
+/* As nodes fall into bins by chance, the change of one between levels may vanish: the bound is that
+ * of any bin so near. */
 enum { BINS_NEAR = 2 };
 
+/* Standard error of a share of the area that whole nodes make up, each where it is by chance
+ * (Poisson). */
+static double chance_of_nodes(const struct contact_tally *tally, size_t model, size_t at,
+                              double share) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t level = finest_of(one_case);
+    size_t cell = contact_case_cell(one_case, model, level, one_case->pdf_loads[at]);
+    double solved =
+        (double)(tally->realisations - contact_tally_valueless(tally, MEASURE_NODES, cell));
+    return sqrt(share / (solved * (double)grid_points(&one_case->levels[level].grid)));
+}
+
 bool contact_errors_pressures(const struct contact_tally *tally, size_t model, size_t at,
-                              double *bound) {
+                              double *bound, double *standard_error) {
     const struct contact_case *one_case = tally->one_case;
     size_t finest = finest_of(one_case), n = one_case->pressure.count;
     if (finest == 0)
@@ -313,10 +325,11 @@ bool contact_errors_pressures(const struct contact_tally *tally, size_t model, s
     for (size_t b = 0; b < n; b++) {
         struct mesh_changes changes = {.coarse = NAN,
                                        .fine_ratio = refinement(one_case, finest - 1)};
-        changes.fine = (contact_tally_pressure(tally, model, finest, at, b + 1).value -
-                        contact_tally_pressure(tally, model, finest - 1, at, b + 1).value) /
-                       width;
+        double share = contact_tally_pressure(tally, model, finest, at, b + 1).value;
+        changes.fine =
+            (share - contact_tally_pressure(tally, model, finest - 1, at, b + 1).value) / width;
         bound[b] = mesh_error(&changes, 1).bound;
+        standard_error[b] = chance_of_nodes(tally, model, at, share) / width;
     }
     for (size_t b = 0; b < n; b++) {
         double own = bound[b];

@@ -27,9 +27,10 @@ struct estimate contact_errors_mean(const struct contact_tally *tally, enum cont
                                     size_t model, size_t level, size_t load);
 
 /* The error of the mesh of the density of pressures at position `at` of pdf_loads, by bin: bounds
- * on both sides from the two finest levels, at least those of the two bins on either side. bound
- * has room for all bins; false where there is one level. */
+ * on both sides from the two finest levels, at least those of the two bins on either side, and
+ * standard errors, as nodes fall into bins by chance. Both have room for all bins; false where
+ * there is one level. */
 bool contact_errors_pressures(const struct contact_tally *tally, size_t model, size_t at,
-                              double *bound);
+                              double *bound, double *standard_error);
 
 #endif

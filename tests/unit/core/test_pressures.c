@@ -117,8 +117,8 @@ static void spheres_bear_the_known_pressures(void **state) {
         double high = (double)(b + 1) / 10, low = (double)b / 10;
         double known = high * high - low * low;
         below += sums[b + 1];
-        check_relative(sums[b + 1] / area, known, 0.16);
-        check_close(below / area, high * high, 0.02);
+        check_relative(sums[b + 1] / area, known, 0.22);
+        check_close(below / area, high * high, 0.035);
     }
     scene_close(&scene);
 }

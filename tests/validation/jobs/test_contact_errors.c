@@ -110,6 +110,7 @@ static void count_bins(const cJSON *curve, const cJSON *reference, struct covera
         struct coverage *coverage = b < LOWEST ? lowest : others;
         double y = at(curve, "/y", b), limit = at(reference, "/y", b);
         double room = number_of(curve, "/discretisation_bound", b) +
+                      2 * at(curve, "/discretisation_standard_error", b) +
                       number_of(reference, "/discretisation_bound", b);
         if (limit < 0.01 * most)
             continue;
