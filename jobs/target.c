@@ -173,6 +173,23 @@ int target_add_scalar(struct case_result *result, const char *name, double value
     return result_add_scalar(result, &scalar, err);
 }
 
+/* The components that begin, as far as they are known beforehand; which they are, in begun. */
+static size_t expected_parts(const struct study_case *one, struct target_part *parts,
+                             double *variance, size_t *begun) {
+    size_t count = 0;
+    for (size_t a = 0; a < one->component_count && a < TARGET_PARTS_MOST; a++) {
+        const struct study_case *component = &one->components[a];
+        double scatter = component->share * component->cost.relative_error;
+        if (component->realisations == 0)
+            continue;
+        variance[count] = scatter * scatter;
+        parts[count] = (struct target_part){component->realisations, component->cost.seconds,
+                                            component->cost.seconds, &variance[count]};
+        begun[count++] = a;
+    }
+    return count;
+}
+
 double target_expect(const struct study_case *one, uint64_t *out) {
     const struct target target = {
         .error = json_number_at(one->parameters, "/target/error", 1),
@@ -181,26 +198,23 @@ double target_expect(const struct study_case *one, uint64_t *out) {
     const double allowed = CHANCE_USUAL * target.error;
     const struct target_plan plan = {&target, 1, &allowed};
     struct target_part parts[TARGET_PARTS_MOST];
-    double variance[TARGET_PARTS_MOST];
-    size_t count = one->component_count < TARGET_PARTS_MOST ? one->component_count : 0;
-    for (size_t a = 0; a < count; a++)
-        out[a] = one->components[a].realisations;
+    double variance[TARGET_PARTS_MOST], seconds = 0;
+    size_t begun[TARGET_PARTS_MOST], count = expected_parts(one, parts, variance, begun);
     bool grows = count > 0;
     for (size_t n = 0; n < ROUNDS_MOST && grows; n++) {
-        for (size_t a = 0; a < count; a++) {
-            const struct study_case *component = &one->components[a];
-            double scatter = component->share * component->cost.relative_error;
-            variance[a] = scatter * scatter;
-            parts[a] = (struct target_part){out[a], component->cost.seconds,
-                                            component->cost.seconds, &variance[a]};
-        }
-        target_allot(&plan, count, parts, out);
+        uint64_t wanted[TARGET_PARTS_MOST];
+        target_allot(&plan, count, parts, wanted);
         grows = false;
-        for (size_t a = 0; a < count; a++)
-            grows = grows || out[a] > parts[a].done;
+        for (size_t a = 0; a < count; a++) {
+            grows = grows || wanted[a] > parts[a].done;
+            parts[a].done = wanted[a];
+        }
     }
-    double seconds = 0;
-    for (size_t a = 0; a < count; a++)
-        seconds += (double)out[a] * one->components[a].cost.seconds;
+    for (size_t a = 0; a < one->component_count && a < TARGET_PARTS_MOST; a++)
+        out[a] = 0;
+    for (size_t a = 0; a < count; a++) {
+        out[begun[a]] = parts[a].done;
+        seconds += (double)parts[a].done * parts[a].seconds;
+    }
     return seconds;
 }

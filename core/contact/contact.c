@@ -22,10 +22,12 @@ struct contact {
     double unit;     /* RMS height, the grid's length; 0 for a flat surface */
     double full;     /* smallest mean pressure of full contact */
     double mean;     /* mean of the solver's p, the load that it solves; 0 before the first load */
+    bool tangent;    /* the solver's q is the tangent at the last load, else the secant to it */
+    double *last;    /* without tangent: the solver's p at the load before; NULL with it */
 };
 
 double contact_bytes(const struct grid *grid) {
-    return 4.0 * sizeof(double) * (double)grid_points(grid) + conjugate_gradient_bytes(grid);
+    return 5.0 * sizeof(double) * (double)grid_points(grid) + conjugate_gradient_bytes(grid);
 }
 
 int contact_create(struct contact **out, const struct compliance *compliance,
@@ -38,6 +40,7 @@ int contact_create(struct contact **out, const struct compliance *compliance,
         return error_memory(err, sizeof *c, "a contact");
     c->compliance = compliance;
     c->options = *options;
+    c->tangent = !options->without_tangent || compliance->block.model == MODEL_LAYERED;
     int status = conjugate_gradient_create(&c->solver, compliance, err);
     size_t n = c->solver.n;
     double **const arrays[] = {&c->z, &c->pressure, &c->gap};
@@ -49,6 +52,11 @@ int contact_create(struct contact **out, const struct compliance *compliance,
     if (status == 0) {
         c->opening = compliance->weight != NULL ? array_create(n, sizeof(double)) : c->gap;
         if (c->opening == NULL)
+            status = error_memory(err, n * sizeof(double), "a contact");
+    }
+    if (status == 0 && !c->tangent) {
+        c->last = array_create(n, sizeof(double));
+        if (c->last == NULL)
             status = error_memory(err, n * sizeof(double), "a contact");
     }
     if (status != 0)
@@ -67,6 +75,7 @@ void contact_destroy(struct contact **contact) {
     free(c->z);
     free(c->pressure);
     free(c->gap);
+    free(c->last);
     free(c);
     *contact = NULL;
 }
@@ -173,16 +182,28 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
     out->violation = fmax(end->inside, end->penetration);
     out->penetration = end->penetration;
     /* All nodes can be in contact when the load is a rounding error below that of full contact. */
-    out->stiffness =
-        out->nodes == d->n ? INFINITY : 1 / (conjugate_gradient_tangent(d) * d->largest);
-    out->tangent = out->nodes == d->n ? NULL : d->q;
+    bool full = out->nodes == d->n;
+    out->stiffness = full ? INFINITY : (double)NAN;
+    if (c->tangent && !full) {
+        out->stiffness = 1 / (conjugate_gradient_tangent(d) * d->largest);
+        out->tangent = d->q;
+    }
 }
 
-/* Predicts the pressures at a mean from those of the last load and their tangent; uniform before
- * the first load. */
+/* Without a tangent the next load is predicted by the secant from the last one. */
+static void take_secant(struct contact *c, double change) {
+    struct conjugate_gradient *d = &c->solver;
+    for (size_t i = 0; i < d->n; i++)
+        d->q[i] = (d->p[i] - c->last[i]) / change;
+}
+
+/* Predicts the pressures at a mean from those of the last load and their tangent or secant; uniform
+ * before the first load. */
 static void predict(struct contact *c, double mean) {
     struct conjugate_gradient *d = &c->solver;
     double sum = 0;
+    for (size_t i = 0; !c->tangent && i < d->n; i++)
+        c->last[i] = c->mean > 0 ? d->p[i] : 0;
     for (size_t i = 0; i < d->n; i++) {
         double p = c->mean > 0 ? d->p[i] + (mean - c->mean) * d->q[i] : mean;
         d->p[i] = fmax(0, p);
@@ -210,6 +231,8 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
                          "left gaps of %.2g and penetrations of %.2g RMS heights",
                          pressure, end.iterations, end.inside, end.penetration);
     }
+    if (!c->tangent && mean != c->mean)
+        take_secant(c, mean - c->mean);
     c->mean = mean;
     fill_partial(c, &end, out);
     out->work = d->transforms * (double)d->n;

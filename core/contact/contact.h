@@ -18,6 +18,8 @@ struct contact_options {
     size_t max_iterations;   /* a load; default 5000 */
     size_t stall_iterations; /* without halving the violation, after which steps become careful
                                 (conjugate_gradient.h); default 400 */
+    bool without_tangent; /* neither stiffness nor tangent is found, which takes up to a quarter of
+                             the work; of no effect on meshes of elements, whose areas need them */
 };
 extern const struct contact_options CONTACT_DEFAULTS;
 
@@ -30,10 +32,10 @@ struct contact_state {
                           in core/full over the face as pressed */
     const double *opening; /* grid_points: the weighted gap, which is 0 in contact */
     const double *tangent; /* grid_points, d p/d pressure with the contact held: mean 1, 0 where
-                              open; NULL where nothing or all touches */
+                              open; NULL where nothing or all touches, or without_tangent */
     double mean_gap;       /* the grid's length */
     double stiffness;   /* -d pressure/d mean_gap, E* per length; INFINITY in full contact, 0 when
-                           nothing touches */
+                           nothing touches; NaN without_tangent */
     size_t nodes;       /* in contact (p > 0) */
     size_t iterations;  /* of the conjugate gradients on this grid, 0 in full contact */
     double work;        /* points x transforms, over all grids: what the time is made of */

@@ -1,21 +1,20 @@
 /* The answer of a case that asks for an error: its curves, what it errs by, and what each component
  * lacks. */
-#include "jobs/contact/contact_sum.h"
+#include "jobs/contact/contact_plan.h"
 #include "jobs/contact/contact_target.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const ROLE_NAMES[ROLES] = {"base", "cell", "mesh", "model"};
+/* Components on cells of rising length, whose last two that have begun are the base and the cell
+ * beside it; and the others. */
+static const char *const LENGTHS[CONTACT_LENGTHS_MOST] = {"cell", "base", "longer", "longest"};
+enum { LENGTH_COUNT = CONTACT_LENGTHS_MOST, LENGTH_BASE = 1 };
+static const char *const ROLE_NAMES[ROLES] = {
+    [ROLE_MESH] = "mesh", [ROLE_FINE] = "fine", [ROLE_MODEL] = "model"};
 
-/* Of the error asked for: rounds bring chance to the first share, and from there on to what the
- * bounds of the other sources leave, which few realisations tell badly; where that is less than the
- * second share, the error is out of reach, and sampling ends with the first. */
-static const double CHANCE_FIRST = 0.5, CHANCE_LEAST = 0.25;
-enum { SHARPENED_MOST = 64 };
-
-/* --- what is reached, and what is missing --- */
+/* --- what is reached --- */
 
 /* What the error is made of at the load where it is largest. Loads without a value are left out:
  * their curve says so. */
@@ -28,67 +27,13 @@ static struct reached error_reached(const struct contact_answer *answer,
     struct reached most = {0};
     for (size_t k = 0; k < answer->loads; k++) {
         double y = fabs(sum->value[k]);
-        double all = (sum->width[k] + contact_sum_bounds(answer, sum, k)) / y;
+        double all = hypot(sum->width[k], contact_sum_bounds(answer, sum, k)) / y;
         if (!isnan(y) && !(all <= most.all))
             most = (struct reached){isnan(all) ? INFINITY : all, sum->width[k] / y,
                                     answer->named_mesh ? 0 : sum->mesh[k] / y, sum->cell[k] / y,
                                     sum->model[k] / y};
     }
     return most;
-}
-
-/* Doubles a component whose bound alone takes a quarter of the error asked for at a load where all
- * bounds leave too little: whether levels show their order is seen better by more realisations. */
-static bool sharpen(const struct contact_answer *answer, const struct contact_sum *sum,
-                    enum role role, uint64_t *wanted) {
-    const double *bound = role == ROLE_MESH ? sum->mesh : sum->model;
-    const struct target_component *of = answer->of[role];
-    if (of == NULL || of->done >= SHARPENED_MOST || component_case(of)->level_count < 3 ||
-        (role == ROLE_MESH && answer->named_mesh))
-        return false;
-    for (size_t k = 0; k < answer->loads; k++) {
-        double all = answer->target.error * fabs(sum->value[k]);
-        double left = all - contact_sum_bounds(answer, sum, k);
-        if (left < CHANCE_LEAST * all && bound[k] > CHANCE_LEAST * all && *wanted < 2 * of->done) {
-            *wanted = 2 * of->done;
-            return true;
-        }
-    }
-    return false;
-}
-
-static int plan(const struct contact_answer *answer, const struct contact_sum *sum,
-                uint64_t wanted[ROLES], struct error *err) {
-    struct target_part parts[ROLES];
-    size_t count = contact_sum_parts(answer, sum, parts), part = 0;
-    uint64_t allotted[ROLES];
-    double *allowed = array_create(answer->loads, sizeof *allowed);
-    if (allowed == NULL)
-        return error_memory(err, answer->loads * sizeof *allowed, "a plan");
-    for (size_t k = 0; k < answer->loads; k++) {
-        double all = answer->target.error * fabs(sum->value[k]);
-        double left = all - contact_sum_bounds(answer, sum, k);
-        bool first = sum->width[k] > CHANCE_FIRST * all || left < CHANCE_LEAST * all;
-        allowed[k] = first ? fmax(left, CHANCE_FIRST * all) : left;
-    }
-    struct target_plan plan = {&answer->target, answer->loads, allowed};
-    target_allot(&plan, count, parts, allotted);
-    bool sharpened = false;
-    for (size_t a = 0; a < ROLES; a++) {
-        if (answer->of[a] == NULL)
-            continue;
-        if (a == ROLE_MESH || a == ROLE_MODEL)
-            sharpened = sharpen(answer, sum, (enum role)a, &allotted[part]) || sharpened;
-        part++;
-    }
-    if (sharpened)
-        target_hold(&answer->target, count, parts, allotted);
-    part = 0;
-    for (size_t a = 0; a < ROLES; a++)
-        if (answer->of[a] != NULL)
-            wanted[a] = allotted[part++];
-    free(allowed);
-    return 0;
 }
 
 /* --- curves --- */
@@ -106,7 +51,7 @@ static int put_curve(const struct contact_answer *answer, const struct contact_s
                      enum contact_measure measure, struct error *err) {
     const struct contact_case *one_case = answer->one_case;
     const struct contact_model *model = one_case->models[one_case->model_count - 1];
-    bool area = measure == MEASURE_EDGES;
+    bool area = measure != MEASURE_GAP;
     struct curve curve = curve_named(area ? "contact_area" : "mean_gap", "p/(E* h'_rms)",
                                      area ? "A/A0" : "mean gap/sqrt(m0)");
     double *loads = result_numbers(answer->result, answer->loads);
@@ -135,14 +80,19 @@ static int put_curve(const struct contact_answer *answer, const struct contact_s
 
 /* --- scalars: what was reached, and the checks of the sum --- */
 
-/* The coarsest level has one mean, whether by the component "base" or by "mesh": their difference
- * in standard errors, the largest of the loads, shows whether the sum is one (Giles 2015, section
- * 3.5). */
+/* The coarsest level has one mean, whether by the component "mesh" or by one on cells of the same
+ * length: their difference in standard errors, the largest of the loads, shows whether the sum is
+ * one (Giles 2015, section 3.5). NaN without two such components. */
 static double consistency(const struct contact_answer *answer, enum contact_measure measure) {
+    const struct target_component *mesh = answer->of[ROLE_MESH], *other = NULL;
     double most = NAN;
-    for (size_t k = 0; answer->of[ROLE_MESH] != NULL && k < answer->loads; k++) {
-        struct estimate a = contact_tally_mean(component_tally(answer->of[ROLE_BASE]), measure, k);
-        struct estimate b = contact_tally_mean(component_tally(answer->of[ROLE_MESH]), measure, k);
+    for (size_t a = 0; mesh != NULL && a < answer->length_count; a++)
+        if (component_case(answer->lengths[a])->surface.length_ratio ==
+            component_case(mesh)->surface.length_ratio)
+            other = answer->lengths[a];
+    for (size_t k = 0; other != NULL && k < answer->loads; k++) {
+        struct estimate a = contact_tally_mean(component_tally(other), measure, k);
+        struct estimate b = contact_tally_mean(component_tally(mesh), measure, k);
         most = fmax(most, fabs(a.value - b.value) / hypot(a.standard_error, b.standard_error));
     }
     return most;
@@ -152,7 +102,7 @@ static double consistency(const struct contact_answer *answer, enum contact_meas
  * where they fall least; NaN with fewer than three levels. */
 static double bias_rate(const struct contact_answer *answer, enum contact_measure measure) {
     double least = NAN;
-    const struct target_component *mesh = answer->of[ROLE_MESH];
+    const struct target_component *mesh = answer->of[contact_sum_mesh(answer)];
     for (size_t k = 0; mesh != NULL && component_case(mesh)->level_count > 2 && k < answer->loads;
          k++)
         least = fmin(
@@ -189,39 +139,41 @@ static double kurtosis(const struct contact_answer *answer, enum contact_measure
     return most;
 }
 
-/* What plain sampling of the model that is asked for would take on the finest mesh where it was
- * solved, for the same error by chance alone. */
+/* What plain sampling would take for the same error: of the model that is asked for, on the finest
+ * mesh where it was solved, and on the cells of the base. Their own errors, which remain, are those
+ * of the cell alone here: that of the mesh is left out in favour of plain sampling. */
 static double plain_work(const struct contact_answer *answer, const struct contact_sum *sum,
-                         enum contact_measure measure) {
+                         double error) {
+    const struct target_component *base = answer->of[ROLE_BASE];
     const struct target_component *from =
-        answer->of[ROLE_MODEL] != NULL ? answer->of[ROLE_MODEL] : answer->of[ROLE_BASE];
+        answer->of[ROLE_MODEL] != NULL ? answer->of[ROLE_MODEL] : base;
     const struct contact_case *one_case = component_case(from);
     size_t first =
         contact_case_cell(one_case, one_case->model_count - 1, one_case->level_count - 1, 0);
+    double waves = component_case(base)->surface.length_ratio / one_case->surface.length_ratio;
     double quantile = gsl_cdf_ugaussian_Pinv((1 + answer->target.confidence) / 2);
     double realisations = 0, work = 0;
     for (size_t k = 0; k < answer->loads; k++) {
-        double variance = component_variance(
-            from, contact_tally_mean(component_tally(from), measure, first + k).standard_error);
-        double allowed = answer->target.error * sum->value[k] / quantile;
-        realisations = fmax(realisations, variance / (allowed * allowed));
+        double all = error * fabs(sum->value[k]), left = all * all - sum->cell[k] * sum->cell[k];
+        realisations = fmax(realisations, sum->variance[ROLE_BASE][k] * quantile * quantile / left);
         work += contact_tally_total(component_tally(from), MEASURE_WORK, first + k) /
                 (double)from->done * (double)grid_points(&contact_case_finest(one_case)->grid);
     }
-    return realisations * work;
+    return realisations * work * pow(waves, one_case->surface.dimension);
 }
 
-static double work_done(const struct contact_answer *answer) {
+static double work_done(size_t count, const struct target_component *components) {
     double sum = 0;
-    for (size_t a = 0; a < ROLES; a++)
-        if (answer->of[a] != NULL)
-            sum += contact_sum_work(answer->of[a]) * (double)answer->of[a]->done;
+    for (size_t a = 0; a < count; a++)
+        if (components[a].done > 0)
+            sum += contact_sum_work(&components[a]) * (double)components[a].done;
     return sum;
 }
 
 static int put_scalars(const struct contact_answer *answer, const struct contact_sum *sum,
-                       enum contact_measure measure, struct error *err) {
+                       enum contact_measure measure, double work, struct error *err) {
     const struct reached reached = error_reached(answer, sum);
+    double error = fmax(answer->target.error, reached.all);
     const struct {
         const char *name;
         double value;
@@ -231,8 +183,9 @@ static int put_scalars(const struct contact_answer *answer, const struct contact
                    {"error_mesh", reached.mesh},
                    {"error_cell", reached.cell},
                    {"error_model", reached.model},
-                   {"work", work_done(answer)},
-                   {"plain_work", plain_work(answer, sum, measure)},
+                   {"length_ratio", component_case(answer->of[ROLE_BASE])->surface.length_ratio},
+                   {"work", work},
+                   {"plain_work", plain_work(answer, sum, error)},
                    {"consistency", consistency(answer, measure)},
                    {"bias_rate", bias_rate(answer, measure)},
                    {"difference_kurtosis", kurtosis(answer, measure)}};
@@ -244,28 +197,43 @@ static int put_scalars(const struct contact_answer *answer, const struct contact
 
 /* --- together --- */
 
-/* Which component is what. */
+/* Which component is what. Of the lengths those that have begun are the first, without a gap. */
 static int find_components(struct contact_answer *out, size_t count,
                            const struct target_component *components, struct error *err) {
+    const struct target_component *lengths[LENGTH_COUNT] = {0};
     for (size_t a = 0; a < count; a++) {
-        size_t r = 0;
-        while (r < ROLES && strcmp(components[a].role, ROLE_NAMES[r]) != 0)
+        size_t r = 0, l = 0;
+        while (r < ROLES &&
+               (ROLE_NAMES[r] == NULL || strcmp(components[a].role, ROLE_NAMES[r]) != 0))
             r++;
-        if (r == ROLES)
+        while (l < LENGTH_COUNT && strcmp(components[a].role, LENGTHS[l]) != 0)
+            l++;
+        if (r < ROLES)
+            out->of[r] = &components[a];
+        else if (l < LENGTH_COUNT)
+            lengths[l] = &components[a];
+        else
             return error_set(err, ERROR_INPUT, "a component of the unknown role \"%.40s\"",
                              components[a].role);
-        out->of[r] = &components[a];
     }
-    if (out->of[ROLE_BASE] == NULL)
+    if (lengths[LENGTH_BASE] == NULL)
         return error_set(err, ERROR_INPUT, "a target without its component \"base\"");
+    for (size_t l = 0; l < LENGTH_COUNT && out->longer == NULL; l++) {
+        if (lengths[l] != NULL && l > LENGTH_BASE && lengths[l]->done == 0)
+            out->longer = lengths[l];
+        else if (lengths[l] != NULL)
+            out->lengths[out->length_count++] = lengths[l];
+    }
+    out->of[ROLE_BASE] = out->lengths[out->length_count - 1];
+    out->of[ROLE_CELL] = out->length_count > 1 ? out->lengths[out->length_count - 2] : NULL;
     return 0;
 }
 
-static bool has_begun(size_t count, const struct target_component *components) {
-    for (size_t a = 0; a < count; a++)
-        if (components[a].done == 0)
+static bool has_begun(const struct contact_answer *answer) {
+    for (size_t a = 0; a < ROLES; a++)
+        if (answer->of[a] != NULL && answer->of[a]->done == 0)
             return false;
-    return count > 0;
+    return true;
 }
 
 static int read_target(struct contact_answer *out, const cJSON *parameters, struct error *err) {
@@ -277,21 +245,29 @@ static int read_target(struct contact_answer *out, const cJSON *parameters, stru
     return status;
 }
 
-static int answer_sums(const struct contact_answer *answer, uint64_t wanted[ROLES],
+/* Areas by edges: as they are under load where the model that is asked for tells them so. The cheap
+ * model knows that to first order, which leaves less to the difference of models. */
+static enum contact_measure area_measure(const struct contact_answer *answer) {
+    const struct contact_case *one_case = answer->one_case;
+    return contact_case_stretches(one_case, one_case->model_count - 1) ? MEASURE_EDGES_STRETCHED
+                                                                       : MEASURE_EDGES;
+}
+
+static int answer_sums(const struct contact_answer *answer, double work, uint64_t wanted[ROLES + 1],
                        struct error *err) {
-    static const enum contact_measure MEASURES[] = {MEASURE_EDGES, MEASURE_GAP}; /* as the enum */
+    const enum contact_measure measures[] = {area_measure(answer), MEASURE_GAP}; /* as the enum */
     struct contact_sum sums[2];
     int status = 0;
     for (size_t a = 0; a < 2 && status == 0; a++)
-        status = contact_sum_create(answer, MEASURES[a], &sums[a], err);
+        status = contact_sum_create(answer, measures[a], &sums[a], err);
     for (size_t a = 0; a < 2 && status == 0; a++)
-        status = put_curve(answer, &sums[a], MEASURES[a], err);
+        status = put_curve(answer, &sums[a], measures[a], err);
     size_t place = (size_t)answer->target.quantity - TARGET_CONTACT_AREA;
     const struct contact_sum *asked = &sums[place];
     if (status == 0)
-        status = plan(answer, asked, wanted, err);
+        status = contact_plan(answer, asked, wanted, err);
     if (status == 0)
-        status = put_scalars(answer, asked, MEASURES[place], err);
+        status = put_scalars(answer, asked, measures[place], work, err);
     return status;
 }
 
@@ -299,21 +275,23 @@ int contact_target_answer(const cJSON *parameters, size_t count,
                           const struct target_component *components, uint64_t *wanted,
                           struct case_result *out, struct error *err) {
     struct contact_answer answer = {.result = out};
-    uint64_t allotted[ROLES] = {0};
+    uint64_t allotted[ROLES + 1] = {0};
     for (size_t a = 0; a < count; a++)
         wanted[a] = components[a].done;
     int status = find_components(&answer, count, components, err);
     if (status == 0)
         status = read_target(&answer, parameters, err);
-    if (status != 0 || !has_begun(count, components))
+    if (status != 0 || !has_begun(&answer))
         return status;
     answer.one_case = component_case(answer.of[ROLE_MODEL] != NULL ? answer.of[ROLE_MODEL]
                                                                    : answer.of[ROLE_BASE]);
     answer.loads = answer.one_case->load_count;
-    status = answer_sums(&answer, allotted, err);
-    for (size_t a = 0; a < count && status == 0; a++)
-        for (size_t r = 0; r < ROLES; r++)
-            if (answer.of[r] == &components[a])
-                wanted[a] = allotted[r];
+    status = answer_sums(&answer, work_done(count, components), allotted, err);
+    size_t part = 0;
+    for (size_t r = 0; r < ROLES && status == 0; r++)
+        if (answer.of[r] != NULL)
+            wanted[answer.of[r] - components] = allotted[part++];
+    if (status == 0 && answer.longer != NULL)
+        wanted[answer.longer - components] = allotted[part];
     return status;
 }

@@ -271,6 +271,7 @@ static int read_pdf(struct contact_case *out, struct values *values, struct erro
 static int read_contact(struct contact_case *out, struct values *values, struct error *err) {
     const struct surface_case *surface = &out->surface;
     out->tolerance = values_number(values, "/contact/tolerance");
+    out->stiffness = values_choice(values, "/contact/stiffness") != STIFFNESS_OMITTED;
     if (surface->grid.nx > 0)
         out->band = surface_case_exact(surface) ? surface_case_band(surface) : surface->grid.nx / 2;
     read_estimators(out, values);

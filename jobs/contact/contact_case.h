@@ -53,6 +53,7 @@ struct contact_case {
     size_t load_count;
     double *loads;                /* owned: p/(E* h'), rising, > 0 */
     bool nodes, edges, perimeter; /* estimators shown */
+    bool stiffness;               /* is measured */
     double tolerance;
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */

@@ -155,7 +155,9 @@ static int append_rows(struct contact_curve_maker *maker, size_t count, const st
                        struct error *err) {
     int status = 0;
     for (size_t a = 0; a < count && status == 0; a++)
-        for (size_t m = 0; m < maker->one_case->model_count && status == 0; m++)
+        for (size_t m = 0; m < maker->one_case->model_count && status == 0 &&
+                           (rows[a].measure != MEASURE_STIFFNESS || maker->one_case->stiffness);
+             m++)
             status = append_model(maker, &rows[a], m, err);
     return status;
 }

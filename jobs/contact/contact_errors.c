@@ -174,7 +174,8 @@ static bool block_errors(const struct contact_tally *tally, enum contact_measure
 static bool solver_errors(const struct contact_tally *tally, enum contact_measure measure,
                           size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
-    bool smooth = measure == MEASURE_EDGES || measure == MEASURE_GAP || measure == MEASURE_KAPPA ||
+    bool smooth = measure == MEASURE_EDGES || measure == MEASURE_EDGES_STRETCHED ||
+                  measure == MEASURE_GAP || measure == MEASURE_KAPPA ||
                   measure == MEASURE_POWER_LAW_A || measure == MEASURE_POWER_LAW_B;
     double share = one_case->tolerance * (smooth ? SMOOTH_TOLERANCES : COUNTED_TOLERANCES);
     for (size_t k = 0; k < one_case->load_count; k++) {

@@ -16,6 +16,9 @@ static const struct choice CELL_ERRORS[] = {
 static const struct choice ESTIMATORS[] = {
     {"nodes", AREA_NODES}, {"edges", AREA_EDGES}, {"perimeter", AREA_PERIMETER}, {0}};
 
+static const struct choice STIFFNESSES[] = {
+    {"measured", STIFFNESS_MEASURED}, {"omitted", STIFFNESS_OMITTED}, {0}};
+
 static const struct parameter ROWS[] = {
     {.path = "/contact/model",
      .type = PARAMETER_CHOICES,
@@ -122,6 +125,14 @@ static const struct parameter ROWS[] = {
      .help =
          "of the contact area: nodes (with its bracket), edges, and in surfaces perimeter; all of "
          "them unless given"},
+    {.path = "/contact/stiffness",
+     .type = PARAMETER_CHOICE,
+     .choices = STIFFNESSES,
+     .later = true,
+     .example_json = "\"omitted\"",
+     .help =
+         "measured (unless given) or omitted, which spares half-spaces up to a quarter of their "
+         "work and other models none"},
     {.path = "/contact/levels",
      .type = PARAMETER_NUMBERS,
      .minimum = 2,

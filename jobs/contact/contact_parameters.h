@@ -12,6 +12,8 @@ enum area_estimator { AREA_NODES, AREA_EDGES, AREA_PERIMETER, AREA_ESTIMATORS };
 /* Whether the error of the cell is probed (contact_cell.h). */
 enum cell_error { CELL_ERROR_PROBED, CELL_ERROR_NONE };
 
+enum stiffness_choice { STIFFNESS_MEASURED, STIFFNESS_OMITTED };
+
 extern const struct choice KINEMATICS_CHOICES[]; /* of enum kinematics */
 extern const struct parameter_table CONTACT_PARAMETERS;
 

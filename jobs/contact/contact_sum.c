@@ -11,52 +11,65 @@ static void add_base(const struct contact_answer *answer, enum contact_measure m
     const struct target_component *base = answer->of[ROLE_BASE], *cell = answer->of[ROLE_CELL];
     for (size_t k = 0; k < answer->loads; k++) {
         struct estimate mean = contact_tally_mean(component_tally(base), measure, k);
-        sum->value[k] = mean.value;
+        sum->value[k] = sum->base[k] = mean.value;
         sum->variance[ROLE_BASE][k] = component_variance(base, mean.standard_error);
         if (cell == NULL)
             continue;
         struct estimate other = contact_tally_mean(component_tally(cell), measure, k);
         double change = mean.value - other.value;
         double chance = hypot(mean.standard_error, other.standard_error);
-        sum->cell[k] = CELL_SHARE * sqrt(fmax(0, change * change - chance * chance));
+        sum->length[k] = CELL_SHARE * sqrt(fmax(0, change * change - chance * chance));
+        sum->length_chance[k] = CELL_SHARE * chance;
+        sum->cell[k] = sum->length[k];
         sum->variance[ROLE_CELL][k] =
             CELL_SHARE * CELL_SHARE * component_variance(cell, other.standard_error);
     }
 }
 
-/* The finest level of the cheap model less the coarsest, on the same surfaces. The changes between
- * levels go together, so that their standard errors add up at most. */
+/* Adds to the bound of the cell what is added at a load on a shorter one errs by. */
+static void bound_added(const struct contact_answer *answer, enum role role, double share,
+                        double added, size_t load, struct contact_sum *sum) {
+    const struct surface_case *own = &component_case(answer->of[role])->surface;
+    if (own->length_ratio < component_case(answer->of[ROLE_BASE])->surface.length_ratio)
+        sum->cell[load] += fmin(1, share / pow(own->length_ratio, own->dimension)) * fabs(added);
+}
+
+/* The changes of the cheap model from a level on: to the next one, or with a limit to that; what
+ * they are on the coarsest level is the base's. They go together, so that their standard errors add
+ * up at most. */
 static void add_levels(const struct contact_answer *answer, enum contact_measure measure,
-                       const struct contact_error *limit, struct contact_sum *sum) {
-    const struct target_component *mesh = answer->of[ROLE_MESH];
+                       enum role role, size_t from, const struct contact_error *limit,
+                       struct contact_sum *sum) {
+    const struct target_component *mesh = answer->of[role];
     const struct contact_tally *tally = component_tally(mesh);
-    size_t levels = component_case(mesh)->level_count;
+    size_t levels = limit != NULL ? component_case(mesh)->level_count : from + 2;
     for (size_t k = 0; k < answer->loads; k++) {
-        double standard_error = 0;
-        for (size_t l = 1; l < levels; l++) {
+        double scale = sum->base[k] / contact_tally_mean(tally, measure, k).value;
+        double standard_error = 0, added = 0;
+        for (size_t l = from + 1; l < levels; l++) {
             struct estimate change = contact_tally_level(tally, measure, 0, l, k);
-            sum->value[k] += change.value;
+            added += change.value;
             standard_error += change.standard_error;
         }
-        if (!answer->named_mesh) {
-            sum->value[k] -= limit[k].value;
-            sum->mesh[k] = limit[k].bound;
+        if (limit != NULL && !answer->named_mesh) {
+            added -= limit[k].value;
+            sum->mesh[k] = scale * limit[k].bound;
             standard_error += limit[k].standard_error;
-        } else {
-            sum->mesh[k] = fabs(limit[k].value) + limit[k].bound;
+        } else if (limit != NULL) {
+            sum->mesh[k] = scale * (fabs(limit[k].value) + limit[k].bound);
         }
-        sum->variance[ROLE_MESH][k] = component_variance(mesh, standard_error);
+        sum->value[k] += scale * added;
+        sum->variance[role][k] = component_variance(mesh, scale * standard_error);
+        bound_added(answer, role, LEVELS_CELL, scale * added, k, sum);
     }
 }
 
-/* The model that is asked for less the cheap one, which is the first of the two. On its shorter
- * cell the difference is taken as a share of the value of the cheap model there, since values on
- * short cells are higher. */
+/* The model that is asked for less the cheap one, which is the first of the two. What is added on
+ * cells of another length is a share of the value there, since values on short cells are higher. */
 static void add_models(const struct contact_answer *answer, enum contact_measure measure,
                        const struct contact_error *limit, struct contact_sum *sum) {
     const struct target_component *model = answer->of[ROLE_MODEL];
     const struct contact_case *one_case = component_case(model);
-    double length = component_case(answer->of[ROLE_BASE])->surface.length_ratio;
     for (size_t k = 0; k < answer->loads; k++) {
         struct estimate cheap = contact_tally_model(component_tally(model), measure, 0, k);
         double bound = 0;
@@ -69,8 +82,7 @@ static void add_models(const struct contact_answer *answer, enum contact_measure
             sum->value[k] / contact_tally_mean(component_tally(model), measure, cell).value;
         sum->value[k] -= scale * cheap.value;
         sum->model[k] = scale * bound;
-        if (one_case->surface.length_ratio < length)
-            sum->cell[k] += MODEL_CELL_SHARE * fabs(scale * cheap.value);
+        bound_added(answer, ROLE_MODEL, MODELS_CELL, scale * cheap.value, k, sum);
         sum->variance[ROLE_MODEL][k] = component_variance(model, scale * cheap.standard_error);
     }
 }
@@ -87,7 +99,7 @@ static void tell_mesh(const struct contact_answer *answer, enum contact_measure 
 
 static int add_all(const struct contact_answer *answer, enum contact_measure measure,
                    struct contact_sum *sum, struct error *err) {
-    const struct target_component *mesh = answer->of[ROLE_MESH], *model = answer->of[ROLE_MODEL];
+    const struct target_component *model = answer->of[ROLE_MODEL];
     struct contact_error *error = array_create(answer->loads, sizeof *error);
     if (error == NULL)
         return error_memory(err, answer->loads * sizeof *error, "errors of a sum");
@@ -95,9 +107,13 @@ static int add_all(const struct contact_answer *answer, enum contact_measure mea
     if (contact_errors(component_tally(answer->of[ROLE_BASE]), measure, 0, ERROR_SOLVER, error))
         for (size_t k = 0; k < answer->loads; k++)
             sum->solver[k] = error[k].bound;
-    if (mesh != NULL &&
-        contact_errors(component_tally(mesh), measure, 0, ERROR_DISCRETISATION, error))
-        add_levels(answer, measure, error, sum);
+    enum role last = contact_sum_mesh(answer);
+    if (answer->of[last] != NULL && contact_errors(component_tally(answer->of[last]), measure, 0,
+                                                   ERROR_DISCRETISATION, error)) {
+        if (last == ROLE_FINE)
+            add_levels(answer, measure, ROLE_MESH, 0, NULL, sum);
+        add_levels(answer, measure, last, last == ROLE_FINE ? 1 : 0, error, sum);
+    }
     if (model != NULL && contact_errors(component_tally(model), measure, 0, ERROR_MODEL, error))
         add_models(answer, measure, error, sum);
     if (answer->named_mesh)
@@ -111,13 +127,17 @@ static int add_all(const struct contact_answer *answer, enum contact_measure mea
 static int sum_create(const struct contact_answer *answer, struct contact_sum *out,
                       struct error *err) {
     size_t n = answer->loads;
-    double *room = result_numbers(answer->result, (7 + ROLES) * n);
+    double **const arrays[] = {&out->base,   &out->value,        &out->standard_error, &out->width,
+                               &out->mesh,   &out->cell,         &out->model,          &out->solver,
+                               &out->length, &out->length_chance};
+    const size_t own = sizeof arrays / sizeof *arrays;
+    double *room = result_numbers(answer->result, (own + ROLES) * n);
     if (room == NULL)
-        return error_memory(err, (7 + ROLES) * n * sizeof *room, "a sum");
-    *out = (struct contact_sum){room,         room + n,     room + 2 * n, room + 3 * n,
-                                room + 4 * n, room + 5 * n, room + 6 * n, {0}};
+        return error_memory(err, (own + ROLES) * n * sizeof *room, "a sum");
+    for (size_t a = 0; a < own; a++)
+        *arrays[a] = room + a * n;
     for (size_t a = 0; a < ROLES; a++)
-        out->variance[a] = room + (7 + a) * n;
+        out->variance[a] = room + (own + a) * n;
     return 0;
 }
 
@@ -147,8 +167,8 @@ size_t contact_sum_parts(const struct contact_answer *answer, const struct conta
 
 double contact_sum_bounds(const struct contact_answer *answer, const struct contact_sum *sum,
                           size_t load) {
-    return (answer->named_mesh ? 0 : sum->mesh[load]) + sum->cell[load] + sum->model[load] +
-           sum->solver[load];
+    double mesh = answer->named_mesh ? 0 : sum->mesh[load];
+    return hypot(hypot(mesh, sum->solver[load]), hypot(sum->cell[load], sum->model[load]));
 }
 
 /* The interval counts what chance does to the bound of the cell; the standard error is that of the

@@ -9,20 +9,31 @@
 #include "jobs/kind.h"
 #include "jobs/target.h"
 
-enum role { ROLE_BASE, ROLE_CELL, ROLE_MESH, ROLE_MODEL, ROLES };
+/* base: the coarsest level on the longest cell that has begun; cell: the same on the next shorter
+ * one; mesh: from there to the next level; fine: from that one to the limit; model: from the cheap
+ * model to the one that is asked for. */
+enum role { ROLE_BASE, ROLE_CELL, ROLE_MESH, ROLE_FINE, ROLE_MODEL, ROLES };
+
+enum { CONTACT_LENGTHS_MOST = 4 };
 
 /* A quantity of the answer, by load; all arrays are the result's. */
 struct contact_sum {
     double *value, *standard_error, *width; /* width: of the interval at the confidence, half */
+    double *base;                           /* of the base alone */
     double *mesh, *cell, *model, *solver;   /* bounds; 0 where the source has no component */
-    double *variance[ROLES];                /* of one realisation */
+    double *length, *length_chance; /* of the bound of the cell: what the change between the two
+                                       lengths tells, and how far chance may bring it */
+    double *variance[ROLES];        /* of one realisation */
 };
 
 struct contact_answer {
     struct target target;
     const struct target_component *of[ROLES]; /* NULL: none; borrowed */
-    const struct contact_case *one_case;      /* that whose loads are told */
-    bool named_mesh;                          /* the finest level stands in place of the limit */
+    size_t length_count; /* components on cells of rising length that have begun */
+    const struct target_component *lengths[CONTACT_LENGTHS_MOST];
+    const struct target_component *longer; /* not begun yet; NULL: none */
+    const struct contact_case *one_case;   /* that whose loads are told */
+    bool named_mesh;                       /* the finest level stands in place of the limit */
     size_t loads;
     struct case_result *result;
 };
@@ -36,6 +47,11 @@ component_tally(const struct target_component *component) {
     return component->tally;
 }
 
+/* The component whose levels tell the limit of the mesh. */
+static inline enum role contact_sum_mesh(const struct contact_answer *answer) {
+    return answer->of[ROLE_FINE] != NULL ? ROLE_FINE : ROLE_MESH;
+}
+
 /* Variance of one realisation behind the standard error of a mean. */
 static inline double component_variance(const struct target_component *component,
                                         double standard_error) {
@@ -46,9 +62,12 @@ static inline double component_variance(const struct target_component *component
  * of an error that falls at least as 1/L. */
 #define CELL_SHARE contact_cell_share(0.25, 0.5)
 
-/* Of a difference of models on a cell at least four waves long: the most that a longer one changes.
- * Measured on profiles of slope 0.1: 0.1 % of the area, of 2 %. */
-#define MODEL_CELL_SHARE 0.05
+/* What is added on a cell of L longest waves a side, over its value on a long one, is within these
+ * over L (profiles) or L^2 (surfaces) of 1: a difference of levels, and one of models whose areas
+ * are stretched alike. Measured on profiles of slope 0.1, loads of 0.01 to 0.3, L from 2 to 64:
+ * levels 1.3, models 0.7 (Weibull minimum, C = 1; Gaussian ones change less). */
+#define LEVELS_CELL 1.6
+#define MODELS_CELL 0.8
 
 /* Sums a measure over the components, all of which have realisations. Arrays are of the arena of
  * the result. */
@@ -59,7 +78,9 @@ size_t contact_sum_parts(const struct contact_answer *answer, const struct conta
                          struct target_part parts[ROLES]);
 /* Work of one realisation: points x transforms of all its loads, levels and models. */
 double contact_sum_work(const struct target_component *component);
-/* Bounds of the sources that the target counts at a load: of what the study names, none. */
+/* What the bounds of the sources that the target counts come to at a load: of what the study names
+ * none. Sources are independent of each other and of chance, so that they add up by their squares
+ * (JCGM 100 2008, section 5.1), those of one source as they are. */
 double contact_sum_bounds(const struct contact_answer *answer, const struct contact_sum *sum,
                           size_t load);
 

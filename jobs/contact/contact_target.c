@@ -6,7 +6,14 @@
 #include <string.h>
 
 /* Realisations that the first round begins with: enough for variances. */
-enum { BASE_FIRST = 32, CELL_FIRST = 64, MESH_FIRST = 8, MODEL_FIRST = 16, COMPONENTS_MOST = 4 };
+enum {
+    BASE_FIRST = 32,
+    CELL_FIRST = 64,
+    MESH_FIRST = 16,
+    FINE_FIRST = 16,
+    MODEL_FIRST = 8,
+    COMPONENTS_MOST = 7
+};
 enum { LADDER_MOST = 5, LADDER_LEAST = 3, MODEL_LEVELS_MOST = 4 };
 static const double COARSEST = 4; /* points a shortest wave, of meshes that are chosen */
 
@@ -14,12 +21,12 @@ static const double COARSEST = 4; /* points a shortest wave, of meshes that are 
 struct choices {
     struct target target;
     const char *model; /* borrowed from the parameters */
-    bool mesh, length, height, tolerance;
+    bool mesh, length, height, weighting, tolerance;
     bool profile;
     bool own_grid; /* the surface depends on the grid that it is made on, which stays */
     double ladder[LADDER_MOST];
     size_t levels;
-    double length_ratio, model_length_ratio;
+    double length_ratio, fine_length_ratio, model_length_ratio;
     double wavelength_ratio; /* in place of nayak_alpha, which gives another on each cell; or NaN */
 };
 
@@ -84,10 +91,14 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
         return NULL;
     cJSON_DeleteItemFromObjectCaseSensitive(all, "target");
     take_out(all, "contact", "estimators"); /* all of them, among them that of the answer */
-    int status =
-        put(all, "contact", "model", cJSON_CreateStringArray(models, variant->both ? 2 : 1));
+    int status = put(all, "contact", "stiffness", cJSON_CreateString("omitted"));
+    if (status == 0)
+        status =
+            put(all, "contact", "model", cJSON_CreateStringArray(models, variant->both ? 2 : 1));
     if (!variant->both) /* of elements alone */
         take_out(all, "contact", "gap_weighting");
+    else if (status == 0 && choices->weighting) /* whose limit is nearer in profiles */
+        status = put(all, "contact", "gap_weighting", cJSON_CreateString("dual"));
     if (status == 0)
         status =
             put(all, "contact", "levels", cJSON_CreateDoubleArray(ladder, (int)variant->count));
@@ -156,18 +167,19 @@ static void read_ladder(struct choices *out, const cJSON *document, const cJSON 
             out->ladder[out->levels++] = ldexp(points, -halvings);
 }
 
-/* Cells are long enough for the error asked for, as far as that is known beforehand: the component
- * "cell" tells afterwards. The difference of models needs no long cells, and costs most. */
+/* Cells that are chosen begin with a length that is often enough; four times as long ones follow
+ * where the change to them asks for it. What is added to the value on them changes less with the
+ * length, and costs more: shorter cells do for it. */
 static void read_length(struct choices *out, const cJSON *document, const cJSON *parameters) {
-    double usual = out->profile ? 32 : 8, needed = out->profile ? 4 : 1;
-    if (out->own_grid)
-        usual *= 2;
     size_t steps = steps_of(out->target.error);
-    usual = ldexp(usual, (int)(out->profile ? steps : steps / 2));
+    double usual = ldexp(out->profile ? 16 : 8, (int)(out->profile ? steps : steps / 2));
+    if (out->own_grid && out->profile)
+        usual *= 2;
     out->length = json_at(document, "/surface/length_ratio") == NULL;
     out->length_ratio =
         out->length ? usual : json_number_at(parameters, "/surface/length_ratio", 8);
-    out->model_length_ratio = fmin(out->length_ratio, needed);
+    out->fine_length_ratio = fmin(out->length_ratio, out->profile ? 16 : 4);
+    out->model_length_ratio = fmin(out->length_ratio, out->profile ? 4 : 1);
 }
 
 /* Solves nayak_alpha on the cell of the base. */
@@ -206,6 +218,7 @@ static int read_choices(struct choices *out, const cJSON *document, const cJSON 
     out->tolerance = json_at(document, "/contact/tolerance") == NULL;
     out->model = read_model(parameters, faults);
     out->profile = json_number_at(parameters, "/surface/dimension", 2) == 1;
+    out->weighting = out->profile && json_at(document, "/contact/gap_weighting") == NULL;
     read_ladder(out, document, parameters);
     read_length(out, document, parameters);
     return read_alpha(out, parameters, faults, err);
@@ -237,17 +250,28 @@ static int add_all(struct study_case *one, const struct choices *choices) {
     } else if (levels > MODEL_LEVELS_MOST) {
         model.count = MODEL_LEVELS_MOST;
     }
-    const struct variant mesh = {"mesh", MESH_FIRST, 0.25, false, 0, levels, choices->length_ratio};
+    const struct variant fine = {
+        "fine", FINE_FIRST, 0.01, false, 0, levels, choices->fine_length_ratio};
+    const struct variant mesh = {"mesh", MESH_FIRST, 0.1, false, 0, pair, choices->length_ratio};
     const struct variant cell = {"cell", CELL_FIRST, 0.3, false, 0, 1, choices->length_ratio / 4};
     const struct variant base = {"base", BASE_FIRST, 1, false, 0, 1, choices->length_ratio};
+    const struct variant longer = {"longer", 0, 1, false, 0, 1, 4 * choices->length_ratio};
+    const struct variant longest = {"longest", 0, 1, false, 0, 1, 16 * choices->length_ratio};
     int status = 0;
     if (strcmp(choices->model, "halfspace") != 0)
         status = add(one, choices, &model);
+    if (status == 0 && levels > 2)
+        status = add(one, choices, &fine);
     if (status == 0 && levels > 1)
         status = add(one, choices, &mesh);
     if (status == 0 && choices->length)
         status = add(one, choices, &cell);
-    return status != 0 ? status : add(one, choices, &base);
+    if (status == 0)
+        status = add(one, choices, &base);
+    if (status == 0 && choices->length)
+        status = add(one, choices, &longer);
+    return status == 0 && choices->length && choices->profile ? add(one, choices, &longest)
+                                                              : status;
 }
 
 /* What is chosen is no parameter of the case; a mesh that is named is one, by its level. */
@@ -256,6 +280,8 @@ static int keep_named(cJSON *parameters, const struct choices *choices) {
         take_out(parameters, "surface", "length_ratio");
     if (choices->tolerance)
         take_out(parameters, "contact", "tolerance");
+    if (choices->weighting)
+        take_out(parameters, "contact", "gap_weighting");
     if (choices->mesh && !choices->own_grid)
         take_out(parameters, "surface", "points_per_wavelength");
     const double *finest = &choices->ladder[choices->levels - 1];

@@ -39,7 +39,7 @@ int override_apply(cJSON *document, const char *text, struct error *err) {
     char *path = strndup(text, (size_t)(equals - text));
     if (path == NULL)
         return error_memory(err, strlen(text), "a path");
-    const char *separator = *path == '/' ? "/" : ".";
+    const char *separator = strchr(path, '/') != NULL ? "/" : ".";
     cJSON *object = document, *value = NULL;
     char *rest = NULL, *name = strtok_r(path, separator, &rest);
     int status = 0;

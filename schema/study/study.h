@@ -45,8 +45,9 @@ struct study_kind {
 struct study_case {
     cJSON *parameters; /* owned: effective values, lists replaced, defaults filled in */
     struct study_cost cost;
-    uint64_t block;        /* realisations a job */
-    uint64_t realisations; /* to begin with */
+    uint64_t block; /* realisations a job */
+    uint64_t
+        realisations; /* to begin with; of a component 0: only where it turns out to be needed */
     /* Of a case that asks for an error: cases of which its answer is made. */
     size_t component_count;
     struct study_case *components; /* owned; without components of their own */

@@ -87,7 +87,9 @@ static void check_names(const struct study_kind *kind, const cJSON *object, cons
     for (const cJSON *member = object->child; member != NULL; member = member->next) {
         char pointer[POINTER_SIZE], hint[96], text[48];
         snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
-        switch (pointer_place(kind, pointer)) {
+        /* a name with a slash would make the pointer of another one */
+        bool whole = strchr(member->string, '/') == NULL;
+        switch (whole ? pointer_place(kind, pointer) : PLACE_UNKNOWN) {
         case PLACE_PARAMETER:
             break;
         case PLACE_INSIDE:
@@ -168,7 +170,7 @@ uint64_t study_block(uint64_t realisations, const struct study_cost *cost) {
 uint64_t study_block_shared(uint64_t realisations, const struct study_cost *cost) {
     double least = cost->seconds > 0 ? floor(SHARE_SECONDS / cost->seconds) : (double)realisations;
     uint64_t share = (realisations + SHARES - 1) / SHARES;
-    double most = fmax((double)share, least);
+    double most = fmax(fmax((double)share, least), 1);
     uint64_t block = study_block(realisations, cost);
     return most < (double)block ? (uint64_t)most : block;
 }

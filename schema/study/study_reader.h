@@ -5,9 +5,10 @@
 #include "schema/study/study.h"
 
 /* Reads and checks a study, all faults at once. overrides: PATH=VALUE strings of --set (PATH a
- * pointer or dotted, VALUE JSON or a bare word), NULL-terminated or NULL. memory_limit in bytes: a
- * case that needs more is a fault (0: no limit). Returns ERROR_INPUT with faults filled (or, where
- * the text is no JSON, with err alone); *out is then untouched. */
+ * pointer, whose first slash may be missing, or dotted, VALUE JSON or a bare word), NULL-terminated
+ * or NULL. memory_limit in bytes: a case that needs more is a fault (0: no limit). Returns
+ * ERROR_INPUT with faults filled (or, where the text is no JSON, with err alone); *out is then
+ * untouched. */
 int study_read(struct study **out, const char *text, size_t size, const char *const *overrides,
                const struct study_kind *const *kinds, double memory_limit,
                struct fault_list *faults, struct error *err);

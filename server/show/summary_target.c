@@ -10,7 +10,7 @@ static double scalar_of(const struct case_result *one, const char *name) {
 }
 
 /* Tells which source keeps the answer from the error asked for, and what more sampling would take:
- * chance falls with the root of the work. */
+ * sources add up by their squares, and that of chance falls as the work grows. */
 static void print_left(const struct case_result *one, FILE *file) {
     static const char *const SOURCES[] = {"error_mesh", "error_cell", "error_model"};
     static const char *const NAMES[] = {"mesh", "cell", "model"};
@@ -18,13 +18,14 @@ static void print_left(const struct case_result *one, FILE *file) {
     double bounds = 0;
     size_t most = 0;
     for (size_t a = 0; a < 3; a++) {
-        bounds += result_scalar(one, SOURCES[a]) != NULL ? scalar_of(one, SOURCES[a]) : 0;
+        if (result_scalar(one, SOURCES[a]) != NULL)
+            bounds = hypot(bounds, scalar_of(one, SOURCES[a]));
         if (scalar_of(one, SOURCES[a]) > scalar_of(one, SOURCES[most]))
             most = a;
     }
     if (bounds < asked)
         fprintf(file, "Not reached: it would take about %.2g times the work done.\n",
-                pow(chance / (asked - bounds), 2));
+                chance * chance / (asked * asked - bounds * bounds));
     else
         fprintf(file,
                 "Not reached: what is left is the %s, which no number of realisations "

@@ -114,6 +114,37 @@ static void tolerances_refused(void **state) {
     compliance_destroy(&compliance);
 }
 
+/* Without its tangent a half-space has the same pressures, load after load, and no stiffness. */
+static void tangents_can_be_left_out(void **state) {
+    (void)state;
+    struct scene scene, bare;
+    noisy_scene(&scene, square(16), DEEP, 1e-10);
+    noisy_scene(&bare, square(16), DEEP, 1e-10);
+    struct contact_options options = CONTACT_DEFAULTS;
+    struct error err = {0};
+    options.tolerance = 1e-10;
+    options.without_tangent = true;
+    contact_destroy(&bare.contact);
+    assert_int_equal(contact_create(&bare.contact, bare.compliance, &options, &err), 0);
+    scene_begin(&scene);
+    scene_begin(&bare);
+    double full = contact_full_pressure(scene.contact);
+    static const double LOADS[] = {0.01, 0.02, 0.3, 0.1, 0.1};
+    for (size_t k = 0; k < sizeof LOADS / sizeof *LOADS; k++) {
+        scene_press(&scene, LOADS[k] * full);
+        scene_press(&bare, LOADS[k] * full);
+        assert_int_equal(bare.state.nodes, scene.state.nodes);
+        for (size_t i = 0; i < 256; i++)
+            check_close(bare.state.p[i], scene.state.p[i], 1e-8 * full);
+        check_relative(bare.state.mean_gap, scene.state.mean_gap, 1e-8);
+        assert_null(bare.state.tangent);
+        assert_true(isnan(bare.state.stiffness));
+        assert_true(scene.state.stiffness > 0);
+    }
+    scene_close(&bare);
+    scene_close(&scene);
+}
+
 static void too_few_iterations(void **state) {
     (void)state;
     struct scene scene, sound;
@@ -622,25 +653,16 @@ static void areas_of_anything(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pressures_refused),
-        cmocka_unit_test(heights_refused),
-        cmocka_unit_test(tolerances_refused),
-        cmocka_unit_test(too_few_iterations),
-        cmocka_unit_test(no_load),
-        cmocka_unit_test(flat_surface),
-        cmocka_unit_test(one_point),
-        cmocka_unit_test(beyond_full_contact),
-        cmocka_unit_test(any_path_of_loads),
-        cmocka_unit_test(surfaces_leave_nothing),
-        cmocka_unit_test(any_unit),
-        cmocka_unit_test(what_does_not_enter),
-        cmocka_unit_test(any_grid),
-        cmocka_unit_test(shifted_grid),
-        cmocka_unit_test(weightings_agree),
-        cmocka_unit_test(patterns_of_patches),
-        cmocka_unit_test(patches_of_profiles),
-        cmocka_unit_test(areas_of_patterns),
-        cmocka_unit_test(areas_of_profiles),
+        cmocka_unit_test(pressures_refused),      cmocka_unit_test(heights_refused),
+        cmocka_unit_test(tolerances_refused),     cmocka_unit_test(tangents_can_be_left_out),
+        cmocka_unit_test(too_few_iterations),     cmocka_unit_test(no_load),
+        cmocka_unit_test(flat_surface),           cmocka_unit_test(one_point),
+        cmocka_unit_test(beyond_full_contact),    cmocka_unit_test(any_path_of_loads),
+        cmocka_unit_test(surfaces_leave_nothing), cmocka_unit_test(any_unit),
+        cmocka_unit_test(what_does_not_enter),    cmocka_unit_test(any_grid),
+        cmocka_unit_test(shifted_grid),           cmocka_unit_test(weightings_agree),
+        cmocka_unit_test(patterns_of_patches),    cmocka_unit_test(patches_of_profiles),
+        cmocka_unit_test(areas_of_patterns),      cmocka_unit_test(areas_of_profiles),
         cmocka_unit_test(areas_of_anything),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

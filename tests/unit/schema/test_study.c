@@ -54,6 +54,7 @@ static void faults_are_told_with_pointer_and_range(void **state) {
         {BOX(",\"colour\":1"), "/box/colour", "1 is not one of \"red\", \"green\""},
         {BOX(",\"color\":\"red\""), "/box/color", "unknown name; did you mean \"colour\"?"},
         {BOX(",\"weight\":1"), "/box/weight", "unknown name"},
+        {WIDE("\"box/colour\":\"red\""), "/box/colour", "unknown name"},
         {STUDY("\"box\":{\"width\":1},\"bin\":[0,1]"), "/bin",
          "unknown name; did you mean \"bins\"?"},
         {STUDY("\"box\":{\"width\":1},\"bins\":[1]"), "/bins",
@@ -264,7 +265,7 @@ static void blocks_take_about_a_minute(void **state) {
 static void overrides_change_the_document(void **state) {
     (void)state;
     static const char *const SETS[] = {"/box/width=[0.25,0.5]", "realisations=7",
-                                       "box.colour=green", NULL};
+                                       "box.colour=green", "box/count=3", NULL};
     static const char *const BAD[] = {"nothing", NULL}, *const THROUGH[] = {"name.x=1", NULL};
     struct fault_list faults = {0};
     struct study *study = NULL;
@@ -274,6 +275,7 @@ static void overrides_change_the_document(void **state) {
     assert_int_equal(study->case_count, 2);
     assert_int_equal(study->realisations, 7);
     assert_string_equal(json_at(study->cases[1].parameters, "/box/colour")->valuestring, "green");
+    check_close(json_at(study->cases[1].parameters, "/box/count")->valuedouble, 3, 0);
     assert_non_null(strstr(study->source, "\"realisations\":7"));
     study_destroy(&study);
     assert_int_equal(study_read(&study, text, strlen(text), BAD, FAKE_KINDS, 0, &faults, &err),
