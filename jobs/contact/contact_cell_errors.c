@@ -5,7 +5,7 @@
  * the length is held to leave this much. As a change vanishes somewhere between loads where its
  * sign is one and the other, loads within this ratio of each other share the largest of theirs.
  * Measured by tests/validation/jobs/test_contact_cells.c. */
-static const double LEFT = 2.0 / 3, NEAR_LOADS = 2;
+static const double LEFT = 0.7, NEAR_LOADS = 2;
 static const double ROUNDING = 1e-9; /* of ratios that are meant to be round */
 
 /* Of the mean of another length less that of the case's own, relative to this. */
@@ -40,19 +40,35 @@ static double change_around(const struct contact_case *one_case, struct contact_
     return isnan(own) ? own : most;
 }
 
-/* The bound by one length goes into *out where it is less than what is there. It holds what chance
- * does to a change of few surfaces, which totals have no other place for. */
-static void take_less(const struct contact_tally *tally, enum contact_measure measure,
-                      enum contact_length length, size_t load, double y, double around,
-                      struct contact_error *out) {
-    double factor = tally->one_case->lengths[length].length;
-    double scale = contact_cell_share(factor, LEFT) * fabs(y);
-    double standard_error = scale * change_of(tally, measure, length, load).standard_error;
-    double bound = hypot(scale * around, standard_error);
-    if (!(out->value <= bound) && !isnan(bound)) {
-        out->value = bound;
-        out->standard_error = standard_error;
-    }
+/* What one length says of the error at a load. A bound holds what chance does to a change of few
+ * surfaces, which totals have no other place for; least: the part of it that is no chance. */
+struct verdict {
+    double bound, least, standard_error; /* NaN: nothing */
+};
+
+static struct verdict judge(const struct contact_tally *tally, enum contact_measure measure,
+                            enum contact_length length, size_t load, double y,
+                            struct contact_error *errors) {
+    const struct contact_case *one_case = tally->one_case;
+    if (!contact_case_has_length(one_case, length))
+        return (struct verdict){NAN, NAN, NAN};
+    double scale = contact_cell_share(one_case->lengths[length].length, LEFT) * fabs(y);
+    double change = scale * change_around(one_case, errors, length, load);
+    double chance = scale * change_of(tally, measure, length, load).standard_error;
+    return (struct verdict){hypot(change, chance), fmax(0, change - chance), chance};
+}
+
+/* Shorter surfaces tell their change well, and nothing of what longer ones change: their bound
+ * stands where it is the lesser, but not below what longer ones show beyond chance. */
+static struct verdict weigh(struct verdict longer, struct verdict shorter) {
+    if (isnan(longer.bound) || shorter.bound >= longer.bound)
+        return isnan(longer.bound) ? shorter : longer;
+    if (isnan(shorter.bound))
+        return longer;
+    if (shorter.bound >= longer.least)
+        return shorter;
+    longer.bound = longer.least;
+    return longer;
 }
 
 /* The change is that of a half-space on a coarse mesh; of other models and meshes it is the same
@@ -63,15 +79,16 @@ bool contact_cell_errors(const struct contact_tally *tally, enum contact_measure
     size_t n = one_case->load_count, finest = one_case->level_count - 1;
     bool any = false;
     for (size_t k = 0; k < n; k++) {
-        out[k] = (struct contact_error){.value = NAN, .standard_error = NAN};
+        out[k] = (struct contact_error){.value = NAN};
         for (enum contact_length l = 0; l < CONTACT_LENGTHS; l++)
             *change_at(&out[k], l) = change_of(tally, measure, l, k).value;
     }
     for (size_t k = 0; k < n; k++) {
         double y = contact_errors_mean(tally, measure, model, finest, k).value;
-        for (enum contact_length l = 0; l < CONTACT_LENGTHS; l++)
-            if (contact_case_has_length(one_case, l))
-                take_less(tally, measure, l, k, y, change_around(one_case, out, l, k), &out[k]);
+        struct verdict of = weigh(judge(tally, measure, LENGTH_LONGER, k, y, out),
+                                  judge(tally, measure, LENGTH_SHORTER, k, y, out));
+        out[k].value = of.bound;
+        out[k].standard_error = of.standard_error;
     }
     for (size_t k = 0; k < n; k++) {
         bool known = !isnan(out[k].value);

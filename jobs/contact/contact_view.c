@@ -13,8 +13,8 @@ static const struct quantity_table TABLE = {
     .error_words = {[ERROR_DISCRETISATION] = "mesh"},
     .legend =
         "load: p/(E* h'_rms); area: A/A0, +- one standard error; errors in percent of it, what is "
-        "told less what is true: mesh, from the limit of the levels; block, from an infinitely "
-        "high one; model, from the limit of the most complete one",
+        "told less what is true: mesh, from the limit of the levels; cell, from a very long one; "
+        "block, from an infinitely high one; model, from the limit of the most complete one",
     .scalars = SCALARS,
     .left_out = LEFT_OUT,
 };
