@@ -3,51 +3,72 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the error asked for: what chance is to have, for which bounds are made sharper; the most that
- * one bound may take for it; and the least that chance is brought to, where the bounds leave less
- * and the error is out of reach. */
-static const double CHANCE_USUAL = 0.8, BOUND_MOST = 0.4, CHANCE_LEAST = 0.5;
-enum { SHARPENED_MOST = 64 };
+/* Of the error asked for: the least that chance is brought to, where the bounds leave less and the
+ * error is out of reach; and the most that the length of the cell may take. */
+static const double CHANCE_LEAST = 0.5, BOUND_MOST = 0.4;
+enum { SHARPENED_MOST = 64, LEVELS_SHARPENED = 3 };
 /* A longer cell begins where the bound by the change between lengths is larger than that and than
  * so many times what chance may make of it, or with all the sampling there was. */
 static const double LENGTH_SEEN = 2.8;
 enum { LONGER_FIRST = 16 };
 
-/* What the bounds leave to chance at a load; 0 where they leave nothing. */
+/* What bounds that come to so much leave to chance of an error; 0 where they leave nothing. */
+static double left_by(double error, double bounds) {
+    return bounds < error ? sqrt(error * error - bounds * bounds) : 0;
+}
+
+static double asked_at(const struct contact_answer *answer, const struct contact_sum *sum,
+                       size_t load) {
+    return answer->target.error * fabs(sum->value[load]);
+}
+
 static double left_at(const struct contact_answer *answer, const struct contact_sum *sum,
                       size_t load) {
-    double all = answer->target.error * fabs(sum->value[load]);
-    double bounds = contact_sum_bounds(answer, sum, load);
-    return bounds < all ? sqrt(all * all - bounds * bounds) : 0;
+    return left_by(asked_at(answer, sum, load), contact_sum_bounds(answer, sum, load));
 }
 
-/* Doubles a component whose bound alone is too large at a load where all bounds leave less than
- * chance is to have: whether levels show their order is seen better by more realisations. */
-static bool sharpen(const struct contact_answer *answer, const struct contact_sum *sum,
-                    enum role role, uint64_t *wanted) {
+/* How many times the work done so far it takes to bring chance to what the bounds leave at every
+ * load, if those of a role were `times` what they are; INFINITY where they leave too little. */
+static double work_with(const struct contact_answer *answer, const struct contact_sum *sum,
+                        enum role role, double times) {
     const double *bound = role == ROLE_MODEL ? sum->model : sum->mesh;
-    const struct target_component *of = answer->of[role];
-    if (of->done >= SHARPENED_MOST || component_case(of)->level_count < 3 ||
+    double most = 0;
+    for (size_t k = 0; k < answer->loads; k++) {
+        double asked = asked_at(answer, sum, k), all = contact_sum_bounds(answer, sum, k);
+        double less = bound[k] * bound[k] * (1 - times * times);
+        double left = left_by(asked, sqrt(fmax(0, all * all - less)));
+        double ratio = left < CHANCE_LEAST * asked ? INFINITY : sum->width[k] / left;
+        most = fmax(most, ratio * ratio);
+    }
+    return most;
+}
+
+/* Doubles a component whose levels tell a bound, where a bound half as large saves more work than
+ * that takes: whether levels show their order is seen better by more realisations. */
+static bool sharpen(const struct contact_answer *answer, const struct contact_sum *sum,
+                    enum role role, const struct target_part *part, double work, uint64_t *wanted) {
+    if (part->done >= SHARPENED_MOST ||
+        component_case(answer->of[role])->level_count < LEVELS_SHARPENED ||
         (role != ROLE_MODEL && (answer->named_mesh || role != contact_sum_mesh(answer))))
         return false;
-    for (size_t k = 0; k < answer->loads; k++) {
-        double all = answer->target.error * fabs(sum->value[k]);
-        if (left_at(answer, sum, k) < CHANCE_USUAL * all && bound[k] > BOUND_MOST * all) {
-            *wanted = 2 * of->done;
-            return true;
-        }
-    }
-    return false;
+    double now = work_with(answer, sum, role, 1), then = work_with(answer, sum, role, 0.5);
+    double least = work_with(answer, sum, role, 0);
+    bool saves =
+        isfinite(now) ? (now - then) * work > part->work * (double)part->done : isfinite(least);
+    if (saves)
+        *wanted = 2 * part->done;
+    return saves;
 }
 
-/* Whether the change between the two longest cells keeps the answer from the error asked for, and
- * more realisations would not tell another one. */
+/* Whether the change between the two longest cells keeps the answer from the error asked for: by
+ * far more than chance, or with all the sampling there was. */
 static bool is_short(const struct contact_answer *answer, const struct contact_sum *sum,
                      bool sampled) {
     for (size_t k = 0; k < answer->loads; k++) {
         double all = answer->target.error * fabs(sum->value[k]);
-        if (sum->length[k] > BOUND_MOST * all &&
-            (sampled || sum->length[k] > LENGTH_SEEN * sum->length_chance[k]))
+        bool missed = sampled && sum->width[k] > left_at(answer, sum, k);
+        bool seen = sum->length[k] > LENGTH_SEEN * sum->length_chance[k];
+        if (sum->length[k] > BOUND_MOST * all && (missed || seen))
             return true;
     }
     return false;
@@ -81,12 +102,20 @@ static bool lengthen(const struct contact_answer *answer, const struct contact_s
 
 /* Adds what sharper bounds need. */
 static bool sharpen_all(const struct contact_answer *answer, const struct contact_sum *sum,
-                        uint64_t *wanted) {
+                        const struct target_part *parts, uint64_t *wanted) {
     bool sharpened = false;
+    double work = 0;
+    for (size_t a = 0, part = 0; a < ROLES; a++)
+        if (answer->of[a] != NULL) {
+            work += parts[part].work * (double)parts[part].done;
+            part++;
+        }
     for (size_t a = 0, part = 0; a < ROLES; a++)
         if (answer->of[a] != NULL) {
             bool bounds = a == ROLE_MESH || a == ROLE_FINE || a == ROLE_MODEL;
-            sharpened = (bounds && sharpen(answer, sum, (enum role)a, &wanted[part])) || sharpened;
+            sharpened =
+                (bounds && sharpen(answer, sum, (enum role)a, &parts[part], work, &wanted[part])) ||
+                sharpened;
             part++;
         }
     return sharpened;
@@ -111,7 +140,7 @@ int contact_plan(const struct contact_answer *answer, const struct contact_sum *
     uint64_t sharper[ROLES];
     for (size_t a = 0; a < count; a++)
         sharper[a] = parts[a].done;
-    if (sharpen_all(answer, sum, sharper)) {
+    if (sharpen_all(answer, sum, parts, sharper)) {
         memcpy(wanted, sharper, count * sizeof *sharper);
         target_hold(&answer->target, count, parts, wanted);
     }

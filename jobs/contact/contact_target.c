@@ -172,9 +172,7 @@ static void read_ladder(struct choices *out, const cJSON *document, const cJSON 
  * length, and costs more: shorter cells do for it. */
 static void read_length(struct choices *out, const cJSON *document, const cJSON *parameters) {
     size_t steps = steps_of(out->target.error);
-    double usual = ldexp(out->profile ? 16 : 8, (int)(out->profile ? steps : steps / 2));
-    if (out->own_grid && out->profile)
-        usual *= 2;
+    double usual = ldexp(out->profile ? 32 : 8, (int)(out->profile ? steps : steps / 2));
     out->length = json_at(document, "/surface/length_ratio") == NULL;
     out->length_ratio =
         out->length ? usual : json_number_at(parameters, "/surface/length_ratio", 8);
