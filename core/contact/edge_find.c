@@ -42,12 +42,13 @@ struct edge_crossing edge_crossing_at(const struct edge_family *family, size_t l
 /* One crossing as it is found. Distances are true ones, in spacings along the normal. */
 struct found {
     struct edge_direction direction;
-    double cosine;  /* between the line and the normal, without its sign */
-    double spacing; /* along the normal, the grid's length */
-    double scale;   /* 1/c^(2/3) */
-    double apart;   /* of the two nodes */
-    double field;   /* distance of the inside node by its pressure, without the bend */
-    double inside;  /* of the inside node */
+    double cosine;     /* between the line and the normal, without its sign */
+    double spacing;    /* along the normal, the grid's length */
+    double scale;      /* 1/c^(2/3) */
+    double apart;      /* of the two nodes */
+    double field;      /* distance of the inside node by its pressure, without the bend */
+    double inside;     /* of the inside node */
+    double open_field; /* of the outside node by its gap, without the bend */
     double bend;
     double bent;      /* 1 - bend d there */
     double open_bent; /* the same of the gap's rise at the outside node */
@@ -67,6 +68,7 @@ static void find_edge(const struct edge_crossing *x, const struct edge_law *law,
     f->scale = edge_scale(&f->direction, squared, open, f->apart, f->scale);
     f->field = squared * f->scale * f->scale * f->scale;
     f->inside = edge_inside(&f->direction, f->field);
+    f->open_field = open * f->scale;
 }
 
 /* Signed distance of a node to the edge. */
@@ -117,13 +119,6 @@ static void find_bend(const struct edge_crossing *x, const double *rise, struct 
     f->next = next / fmax(field, 1e-9);
 }
 
-static double field_outside(const struct found *f, double distance) {
-    double field = distance;
-    for (int a = 0; a < INVERSE_STEPS; a++)
-        field = fmax(0, field + distance - edge_outside(&f->direction, field));
-    return field;
-}
-
 /* The same of the gap, by the next node further outside. */
 static void find_open_bend(const struct edge_crossing *x, const double *rise, struct found *f) {
     double outside = fmax(0, f->apart - f->inside), next = outside + f->apart;
@@ -131,8 +126,8 @@ static void find_open_bend(const struct edge_crossing *x, const double *rise, st
     if (!two || rise[x->far_beyond] > 0) {
         f->open_bent = bent_chord(outside / f->apart, two);
     } else if (rise[x->outside] < 0) {
-        double ratio = rise[x->beyond] / rise[x->outside] * field_outside(f, outside) /
-                       fmax(field_outside(f, next), 1e-9);
+        double field = fmax(1e-9, 2 * next - edge_outside(&f->direction, next));
+        double ratio = rise[x->beyond] / rise[x->outside] * f->open_field / field;
         f->open_bent = 1 - bend_of(ratio, outside, next) * outside;
     }
 }
