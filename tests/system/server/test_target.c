@@ -14,7 +14,7 @@ static uint64_t seed;
 
 /* Takes a few rounds, and about a second. */
 static const char STUDY[] =
-    "{\"name\":\"target\",\"kind\":\"contact\",\"seed\":5,\"target\":{\"error\":0.02},\"surface\":{"
+    "{\"name\":\"target\",\"kind\":\"contact\",\"seed\":5,\"target\":{\"error\":0.01},\"surface\":{"
     "\"dimension\":1,\"hurst\":[0.5,0.8],\"wavelength_ratio\":2,\"rms_slope\":0.1},\"contact\":{"
     "\"model\":\"layered\",\"pressures\":{\"to\":0.2,\"steps\":2}}}";
 
@@ -78,9 +78,9 @@ static void check_same(const char *database) {
 static void reaches_the_error(void **state) {
     (void)state;
     assert_true(read_number("one.db", "SELECT max(realisations) FROM case_components") > 64);
-    assert_true(read_number("one.db", "SELECT error_reached FROM study_progress") <= 0.02);
+    assert_true(read_number("one.db", "SELECT error_reached FROM study_progress") <= 0.01);
     assert_true(read_number("one.db", "SELECT error_reached FROM study_progress") > 0.002);
-    assert_true(contains("one.out", "error asked 2 %, reached"));
+    assert_true(contains("one.out", "error asked 1 %, reached"));
     check_close(read_number("one.db", "SELECT count(*) FROM case_progress"), 2, 0);
     check_close(read_number("one.db", "SELECT percent FROM study_progress"), 100, 0);
 }
