@@ -19,6 +19,7 @@ static int coarse_fill(struct contact_coarse *coarse, double height, struct erro
     struct block block = {.model = MODEL_HALFSPACE, .height = height, .layer_growth = 1};
     struct contact_options options = CONTACT_DEFAULTS;
     options.tolerance = coarse->one_case->tolerance;
+    options.without_tangent = !coarse->one_case->stiffness;
     int status = compliance_create(&coarse->compliance, &coarse->grid, &block, err);
     if (status == 0)
         status = contact_create(&coarse->solver, coarse->compliance, &options, err);
