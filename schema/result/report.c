@@ -47,15 +47,6 @@ static double statistical_error(const struct curve *curve) {
 
 /* --- which curve belongs to which --- */
 
-static bool same_model(const struct curve *a, const struct curve *b) {
-    return a->model == NULL || b->model == NULL ? a->model == b->model
-                                                : strcmp(a->model, b->model) == 0;
-}
-
-static bool same_level(const struct curve *a, const struct curve *b) {
-    return a->level == b->level || (isnan(a->level) && isnan(b->level));
-}
-
 /* The curve of the same series and model that has errors of a source at its points, as only that of
  * the finest level has; NULL without one. */
 static const struct curve *finest_with(const struct case_result *result, const struct curve *curve,
@@ -63,7 +54,7 @@ static const struct curve *finest_with(const struct case_result *result, const s
     for (size_t a = 0; a < result->curve_count; a++) {
         const struct curve *other = &result->curves[a];
         if (other->errors[source].value != NULL && curve_same_series(other, curve) &&
-            same_model(other, curve))
+            same_text(other->model, curve->model))
             return other;
     }
     return NULL;
@@ -123,7 +114,8 @@ static double share_of(const struct case_result *result, const struct curve *cur
         if (strcmp(work->quantity, "work") != 0)
             continue;
         double cost = cost_of(work);
-        own += same_model(work, curve) && same_level(work, curve) ? cost : 0;
+        own += same_text(work->model, curve->model) && same_number(work->level, curve->level) ? cost
+                                                                                              : 0;
         all += cost;
     }
     return all > 0 ? own / all : 1;

@@ -30,7 +30,10 @@ bool query_number(struct exchange *exchange, const char *name, int64_t least, in
  */
 struct comparison;
 int query_difference(struct exchange *exchange, struct comparison *out, bool *asked);
-/* Answers with a difference, or fails without an answer. */
+/* Answers with curves as a whole, or fails without an answer. */
+int answer_study(struct exchange *exchange, const struct study_result *study, bool csv,
+                 struct error *err);
+/* Likewise with a difference. */
 int send_difference(struct exchange *exchange, const char *id, const struct comparison *comparison,
                     bool csv, struct error *err);
 

@@ -201,12 +201,29 @@ static void list_missing(struct exchange *exchange, const struct study_result *s
         answer_header(exchange, "Rugo-Missing-Cases", text);
 }
 
+int answer_study(struct exchange *exchange, const struct study_result *study, bool csv,
+                 struct error *err) {
+    struct memory_file file;
+    char *text = NULL;
+    bool printed = false;
+    if (memory_file_open(&file)) {
+        printed = csv ? csv_print(file.file, study->case_count, study->cases, NULL)
+                      : study_print(file.file, study);
+        text = memory_file_close(&file, NULL);
+    }
+    if (!printed || text == NULL) {
+        free(text);
+        return error_memory(err, 0, "a table of curves");
+    }
+    answer_text(exchange, 200, csv ? "text/csv; charset=utf-8" : "application/json", text);
+    list_missing(exchange, study);
+    return 0;
+}
+
 static int send_csv(struct exchange *exchange, const char *id, const struct result_filter *filter,
                     uint64_t cases, struct error *err) {
     struct store *reader;
     struct study_result study = {0};
-    struct memory_file table;
-    char *text = NULL;
     if (filter->case_number < 0 && cases > CSV_CASES_MOST)
         return error_set(err, ERROR_INPUT,
                          "%llu cases are too many for one table; ask for each with ?case=",
@@ -215,20 +232,8 @@ static int send_csv(struct exchange *exchange, const char *id, const struct resu
     if (status == 0)
         status = aggregate_study(reader, id, filter, &study, err);
     service_give_back(exchange->service, reader);
-    if (status == 0 && memory_file_open(&table)) {
-        bool printed = csv_print(table.file, study.case_count, study.cases, NULL);
-        text = memory_file_close(&table, NULL);
-        if (!printed || text == NULL)
-            status = error_memory(err, 0, "a table");
-    } else if (status == 0) {
-        status = error_memory(err, 0, "a table");
-    }
-    if (status == 0) {
-        answer_text(exchange, 200, "text/csv; charset=utf-8", text);
-        list_missing(exchange, &study);
-    } else {
-        free(text);
-    }
+    if (status == 0)
+        status = answer_study(exchange, &study, true, err);
     study_result_clear(&study);
     return status;
 }

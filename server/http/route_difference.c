@@ -1,7 +1,4 @@
 /* One case less another over HTTP. It is made and sent as a whole: two cases are never many. */
-#include "core/memory_file.h"
-#include "schema/result/csv.h"
-#include "schema/result/result_json.h"
 #include "server/http/route.h"
 #include "worker/comparison.h"
 #include <errno.h>
@@ -40,26 +37,12 @@ int send_difference(struct exchange *exchange, const char *id, const struct comp
                     bool csv, struct error *err) {
     struct store *reader;
     struct study_result study = {0};
-    struct memory_file file;
-    char *text = NULL;
     int status = service_reader(exchange->service, &reader, err);
     if (status == 0)
         status = comparison_make(reader, id, comparison, &study, err);
     service_give_back(exchange->service, reader);
-    if (status != 0)
-        return status;
-    if (memory_file_open(&file)) {
-        bool printed = csv ? csv_print(file.file, study.case_count, study.cases, NULL)
-                           : study_print(file.file, &study);
-        text = memory_file_close(&file, NULL);
-        if (!printed) {
-            free(text);
-            text = NULL;
-        }
-    }
+    if (status == 0)
+        status = answer_study(exchange, &study, csv, err);
     study_result_clear(&study);
-    if (text == NULL)
-        return error_memory(err, 0, "a difference");
-    answer_text(exchange, 200, csv ? "text/csv; charset=utf-8" : "application/json", text);
-    return 0;
+    return status;
 }
