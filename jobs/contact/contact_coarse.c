@@ -109,7 +109,9 @@ void contact_coarse_copy(const struct contact_case *one_case, size_t from, size_
 
 double contact_coarse_bytes(const struct grid *grid) {
     const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY};
-    return 40 * (double)grid_points(grid) + contact_bytes(grid) + compliance_bytes(grid, &block);
+    double patches = 16 * (double)grid_points(grid);
+    return patches + contact_bytes(grid) + area_workspace_bytes(grid, &block) +
+           compliance_bytes(grid, &block);
 }
 
 double contact_coarse_seconds(const struct contact_case *one_case, const struct grid *grid) {
