@@ -1,5 +1,6 @@
 /* The kind "contact": rough elastic blocks pressed on a rigid flat, a scene over models (model.h).
  */
+#include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_curves.h"
 #include "jobs/contact/contact_pairs.h"
 #include "jobs/contact/contact_scalars.h"

@@ -59,9 +59,6 @@ struct contact_case {
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
     struct bins pressure; /* of p/(E* h') */
 };
-/* Reads a case as surface_case_read does. */
-int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,
-                      struct error *err);
 void contact_case_clear(struct contact_case *one_case);
 
 static inline const struct contact_level *contact_case_finest(const struct contact_case *one_case) {
@@ -114,10 +111,8 @@ double contact_case_block_bound(const struct contact_case *one_case, size_t mode
 /* Beyond this a block's height is probed (contact_probe.h). */
 #define CONTACT_BLOCK_LOW 1e-4
 
-/* The position of the model that the half-space of the probe is solved by already, on the coarsest
- * level; model_count without one. And of the cheapest model that has a value of every realisation,
- * likewise. */
-size_t contact_case_twin(const struct contact_case *one_case);
+/* The position of the cheapest model that has a value of every realisation; model_count without
+ * one. */
 size_t contact_case_control(const struct contact_case *one_case);
 
 /* The most complete of the models: that from which the errors of the others are counted. */

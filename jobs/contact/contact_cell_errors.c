@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_cell_errors.h"
 #include "jobs/contact/contact_cell.h"
+#include "jobs/contact/contact_mean.h"
 
 /* Series of lengths are not monotone, and fall slower than 1/L here and there: of an error doubling
  * the length is held to leave this much. As a change vanishes somewhere between loads where its
@@ -84,7 +85,7 @@ bool contact_cell_errors(const struct contact_tally *tally, enum contact_measure
             *change_at(&out[k], l) = change_of(tally, measure, l, k).value;
     }
     for (size_t k = 0; k < n; k++) {
-        double y = contact_errors_mean(tally, measure, model, finest, k).value;
+        double y = contact_mean(tally, measure, model, finest, k).value;
         struct verdict of = weigh(judge(tally, measure, LENGTH_LONGER, k, y, out),
                                   judge(tally, measure, LENGTH_SHORTER, k, y, out));
         out[k].value = of.bound;

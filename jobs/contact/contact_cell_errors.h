@@ -2,7 +2,8 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_CELL_ERRORS_H
 #define RUGO_JOBS_CONTACT_CONTACT_CELL_ERRORS_H
 
-#include "jobs/contact/contact_errors.h"
+#include "jobs/contact/contact_error.h"
+#include "jobs/contact/contact_tally.h"
 
 /* Of a measure of a model at every load, as contact_errors tells them; FORMULAS.md, F15.7. */
 bool contact_cell_errors(const struct contact_tally *tally, enum contact_measure measure,

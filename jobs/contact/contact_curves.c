@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_curves.h"
 #include "jobs/contact/contact_errors.h"
+#include "jobs/contact/contact_mean.h"
 #include "jobs/contact/contact_theory.h"
 #include <math.h>
 #include <string.h>
@@ -127,7 +128,7 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
         factor *= curve.points;
     for (size_t k = 0; k < n; k++) {
         size_t cell = contact_case_cell(one_case, model, level, k);
-        struct estimate mean = contact_errors_mean(maker->tally, row->measure, model, level, k);
+        struct estimate mean = contact_mean(maker->tally, row->measure, model, level, k);
         x[k] = one_case->loads[k];
         y[k] = factor * mean.value;
         standard_error[k] = factor * mean.standard_error;

@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_errors.h"
 #include "core/statistics/richardson.h"
 #include "jobs/contact/contact_cell_errors.h"
+#include "jobs/contact/contact_mean.h"
 #include <math.h>
 
 /* The block's share of a value is that of a half-space on a coarse mesh; for other models and
@@ -19,7 +20,7 @@ static size_t finest_of(const struct contact_case *one_case) {
 
 static struct estimate finest_mean(const struct contact_tally *tally, enum contact_measure measure,
                                    size_t model, size_t load) {
-    return contact_errors_mean(tally, measure, model, finest_of(tally->one_case), load);
+    return contact_mean(tally, measure, model, finest_of(tally->one_case), load);
 }
 
 /* --- the mesh --- */
@@ -185,47 +186,6 @@ static bool solver_errors(const struct contact_tally *tally, enum contact_measur
     return true;
 }
 
-/* The most complete of the other models that has a value of every realisation at this load of the
- * finest level; model_count without one. */
-static size_t control_of(const struct contact_tally *tally, enum contact_measure measure,
-                         size_t load) {
-    const struct contact_case *one_case = tally->one_case;
-    size_t found = one_case->model_count;
-    for (size_t m = 0; m < one_case->model_count; m++) {
-        size_t cell = contact_case_cell(one_case, m, finest_of(one_case), load);
-        bool better = found == one_case->model_count ||
-                      one_case->models[m]->rank > one_case->models[found]->rank;
-        if (m != contact_case_complete(one_case) && better &&
-            contact_tally_valueless(tally, measure, cell) == 0)
-            found = m;
-    }
-    return found;
-}
-
-static bool controlled(const struct contact_tally *tally, enum contact_measure measure,
-                       size_t model, size_t level, size_t load) {
-    const struct contact_case *one_case = tally->one_case;
-    size_t cell = contact_case_cell(one_case, model, level, load);
-    uint64_t valueless = contact_tally_valueless(tally, measure, cell);
-    return measure < MEASURE_PAIRED && valueless > 0 && valueless < tally->realisations &&
-           model == contact_case_complete(one_case) && level == finest_of(one_case) &&
-           control_of(tally, measure, load) < one_case->model_count;
-}
-
-struct estimate contact_errors_mean(const struct contact_tally *tally, enum contact_measure measure,
-                                    size_t model, size_t level, size_t load) {
-    const struct contact_case *one_case = tally->one_case;
-    size_t cell = contact_case_cell(one_case, model, level, load);
-    if (!controlled(tally, measure, model, level, load))
-        return contact_tally_mean(tally, measure, cell);
-    size_t control = control_of(tally, measure, load);
-    struct estimate all =
-        contact_tally_mean(tally, measure, contact_case_cell(one_case, control, level, load));
-    struct estimate less = contact_tally_model(tally, measure, control, load);
-    /* The two errors may go together. */
-    return (struct estimate){all.value - less.value, all.standard_error + less.standard_error};
-}
-
 static bool missing_errors(const struct contact_tally *tally, enum contact_measure measure,
                            size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
@@ -236,9 +196,9 @@ static bool missing_errors(const struct contact_tally *tally, enum contact_measu
         double missing = (double)contact_tally_valueless(tally, measure, cell);
         double share = missing / (double)tally->realisations;
         out[k] = missing > 0 ? UNKNOWN : (struct contact_error){.order = NAN};
-        if (controlled(tally, measure, model, finest, k)) {
-            struct estimate pairs =
-                contact_tally_model(tally, measure, control_of(tally, measure, k), k);
+        size_t control = contact_mean_control(tally, measure, model, finest, k);
+        if (control < one_case->model_count) {
+            struct estimate pairs = contact_tally_model(tally, measure, control, k);
             double deviation = pairs.standard_error * sqrt((double)tally->realisations - missing);
             out[k] = (struct contact_error){.bound = share * MISSING_DEVIATIONS * deviation,
                                             .order = NAN};

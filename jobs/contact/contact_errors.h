@@ -3,14 +3,10 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_ERRORS_H
 #define RUGO_JOBS_CONTACT_CONTACT_ERRORS_H
 
+#include "jobs/contact/contact_error.h"
 #include "jobs/contact/contact_tally.h"
 #include "schema/result/result.h"
 
-struct contact_error {
-    double value; /* NaN: not known at this load */
-    double bound, standard_error;
-    double order; /* of the mesh, where the levels show it; else NaN */
-};
 /* Of a measure below MEASURE_PAIRED, at every load, into out[load_count]; false, and nothing in
  * out, where the source is not known at all. */
 bool contact_errors(const struct contact_tally *tally, enum contact_measure measure, size_t model,
@@ -18,13 +14,6 @@ bool contact_errors(const struct contact_tally *tally, enum contact_measure meas
 /* Whether the source bears on what is measured of contact with a model. */
 bool contact_error_applies(const struct contact_tally *tally, enum contact_measure measure,
                            size_t model, size_t level, enum error_source source);
-
-/* The mean of a measure over the realisations. On the finest level, where the most complete model
- * lacks values that another one has in all realisations, it is the mean of that one over all, less
- * the mean of their difference over those that have both: a control variate (Glasserman 2004,
- * section 4.1). */
-struct estimate contact_errors_mean(const struct contact_tally *tally, enum contact_measure measure,
-                                    size_t model, size_t level, size_t load);
 
 /* The error of the mesh of the density of pressures at position `at` of pdf_loads, by bin: bounds
  * on both sides from the two finest levels, at least those of the two bins on either side, and

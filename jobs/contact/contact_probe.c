@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_probe.h"
 #include "jobs/contact/contact_sample.h"
+#include "jobs/contact/model_linear.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -54,8 +55,17 @@ static size_t first_of_height(const struct contact_case *one_case, size_t number
     return first;
 }
 
+size_t contact_probe_twin(const struct contact_case *one_case) {
+    size_t m = 0;
+    while (m < one_case->model_count &&
+           (one_case->models[m]->press != linear_press ||
+            one_case->blocks[m].model != MODEL_HALFSPACE || isfinite(one_case->blocks[m].height)))
+        m++;
+    return one_case->probe.grid.nx == one_case->levels[0].grid.nx ? m : one_case->model_count;
+}
+
 static bool has_twin(const struct contact_case *one_case) {
-    return contact_case_twin(one_case) < one_case->model_count;
+    return contact_probe_twin(one_case) < one_case->model_count;
 }
 
 static int probe_fill(struct contact_probe *probe, const struct moments *moments,
@@ -105,7 +115,7 @@ void contact_probe_destroy(struct contact_probe **probe) {
 /* The twin tells areas undeformed and as they are under load, the probe only undeformed. */
 static void copy_twin(const struct contact_case *one_case, struct contact_tally *tally) {
     size_t to = contact_case_probe_cell(one_case, 0, 0);
-    contact_coarse_copy(one_case, contact_case_cell(one_case, contact_case_twin(one_case), 0, 0),
+    contact_coarse_copy(one_case, contact_case_cell(one_case, contact_probe_twin(one_case), 0, 0),
                         to, tally);
     for (size_t k = 0; k < one_case->load_count; k++)
         contact_tally_values(tally, MEASURE_EDGES_STRETCHED)[to + k] =

@@ -11,6 +11,9 @@
 
 /* Chooses the mesh of the probe, once the case has its levels. */
 void contact_probe_choose(struct contact_case *one_case);
+/* Returns the position of the model by which the half-space of the probe is solved already, on the
+ * coarsest level; model_count without one. */
+size_t contact_probe_twin(const struct contact_case *one_case);
 /* Whether a realisation is probed: where blocks are low, the first sixteen, and then each fourth;
  * else as seldom as the error of the cell takes; never where neither is told. */
 bool contact_probe_due(const struct contact_case *one_case, uint64_t realisation);

@@ -2,6 +2,7 @@
 #include "core/statistics/fit.h"
 #include "core/theory/contact.h"
 #include "jobs/contact/contact_errors.h"
+#include "jobs/contact/contact_mean.h"
 #include "jobs/estimate.h"
 #include <math.h>
 #include <stdlib.h>
@@ -172,10 +173,8 @@ static const double LIGHT_LOAD_MOST = 0.1, POWER_LAW_MOST = 0.5;
 /* Number of loads, from the lightest on, at which the mean area is at most this. */
 static size_t loads_within(const struct contact_tally *tally, double most) {
     size_t n = 0;
-    while (
-        n < tally->one_case->load_count &&
-        contact_errors_mean(tally, MEASURE_EDGES, 0, tally->one_case->level_count - 1, n).value <=
-            most)
+    while (n < tally->one_case->load_count &&
+           contact_mean(tally, MEASURE_EDGES, 0, tally->one_case->level_count - 1, n).value <= most)
         n++;
     return n;
 }
@@ -189,7 +188,7 @@ static int put_measure(const struct contact_tally *tally, enum contact_measure m
     if (errors == NULL)
         return error_memory(err, one_case->load_count * sizeof *errors, "errors of a scalar");
     if (loads > 0)
-        mean = contact_errors_mean(tally, measure, 0, one_case->level_count - 1, loads - 1);
+        mean = contact_mean(tally, measure, 0, one_case->level_count - 1, loads - 1);
     out->value = mean.value;
     out->standard_error = mean.standard_error;
     for (enum error_source s = 0; s < ERROR_SOURCES; s++) {

@@ -1,6 +1,6 @@
 /* A contact case is read as it was meant: defaults, models, blocks, loads, meshes; and what does
  * not fit together is refused, with its pointer. */
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/contact_case_read.h"
 #include "schema/study/fault.h"
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,7 @@
 /* Surfaces of other lengths: what stands in their cells of the tally is what a case of that
  * length gives for the same random numbers, solved by itself; and which cases have them, on which
  * realisations, for how much time and memory. */
+#include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_cell.h"
 #include "jobs/contact/contact_probe.h"
 #include "jobs/contact/contact_scene.h"
@@ -128,7 +129,7 @@ static void the_twin_stands_for_the_probe(void **state) {
     struct contact_tally tally;
     read_case(&one_case, STUDY(PROFILE "\"length_ratio\": 2, \"points_per_wavelength\": 4",
                                ", \"model\": [\"layered\", \"halfspace\"]"));
-    assert_int_equal(contact_case_twin(&one_case), 1);
+    assert_int_equal(contact_probe_twin(&one_case), 1);
     assert_true(contact_probe_seconds(&one_case) == 0);
     solve_case(&one_case, (struct random_key){7, 0, 0}, &tally);
     const double *gap = contact_tally_values(&tally, MEASURE_GAP);

@@ -1,6 +1,6 @@
 /* A contact model is one struct: a fourth one, springs without neighbours (Winkler's foundation),
  * stands in this file alone, and goes from parameters to curves beside a half-space. */
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/contact_case_read.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"
 #include <stdlib.h>

@@ -3,6 +3,7 @@
  */
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
+#include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_scene.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"

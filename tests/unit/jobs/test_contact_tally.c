@@ -1,6 +1,7 @@
 /* Sums of contact realisations: values at very light loads keep their digits, realisations without
  * a value are left out and counted, pressures lie on the area in contact, and the rows of single
  * realisations are the same however they were merged. */
+#include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_tally.h"
 #include "jobs/partial.h"
 #include "tests/support/check.h"
