@@ -1,55 +1,171 @@
-/* Studies that ask for an error: how many points are within it, against plain sampling; and the
- * counted work of a study at 1 % of the model full against plain sampling of it. */
+/* Studies that ask for an error: how many of their points are within it, and within the error that
+ * they tell, against references of long cells and fine meshes; and what a study of the model full
+ * at 1 % takes against plain sampling of it.
+ *
+ * bench_target [FIRST [COUNT [SEEDS]]]: some of the questions, numbered from 1. */
 #include "tests/support/target_coverage.h"
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-enum { SEEDS = 10, REFERENCES = 150 };
+enum { SEEDS = 6 };
 
-static const struct coverage_question QUESTIONS[] = {
-    {"\"distribution\":\"gaussian\"", "halfspace", 0.8, 0.05, 1},
-    {"\"distribution\":\"gaussian\"", "layered", 0.5, 0.02, 1},
-    {"\"distribution\":\"weibull_min\",\"shape\":2", "halfspace", 0.8, 0.02, 1},
-    {"\"distribution\":\"weibull_max\",\"shape\":2", "layered", 0.8, 0.05, 1}};
+#define GAUSSIAN "\"distribution\":\"gaussian\""
+#define WEIBULL(kind, shape) "\"distribution\":\"weibull_" kind "\",\"shape\":" shape
+#define LOADS "[0.01,0.03,0.1,0.3]"
 
-static const char COSTLY[] =
-    "{\"name\":\"area\",\"kind\":\"contact\",\"seed\":1,\"target\":{\"error\":0.01},\"surface\":{"
-    "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":8,\"rms_slope\":0.1},\"contact\":{"
-    "\"model\":\"full\",\"pressures\":{\"to\":0.3,\"steps\":10}}}";
+static const struct coverage_scene SMOOTH = {GAUSSIAN, 1, 0.8, 4, LOADS},
+                                   MIDDLE = {GAUSSIAN, 1, 0.5, 2, LOADS},
+                                   ROUGH = {GAUSSIAN, 1, 0.3, 2, LOADS},
+                                   PEAKS = {WEIBULL("max", "1"), 1, 0.8, 2, LOADS},
+                                   PITS = {WEIBULL("min", "1"), 1, 0.8, 2, LOADS},
+                                   LOW = {WEIBULL("min", "2"), 1, 0.6, 2, LOADS},
+                                   HIGH = {WEIBULL("max", "2"), 1, 0.9, 3, LOADS},
+                                   SURFACE = {GAUSSIAN, 2, 0.8, 2, LOADS},
+                                   SURFACE_LOW = {WEIBULL("min", "2"), 2, 0.5, 2, LOADS},
+                                   PRESSED = {GAUSSIAN, 2, 0.8, 2, "[0.1,0.3]"},
+                                   PRESSED_LOW = {WEIBULL("min", "2"), 2, 0.8, 2, "[0.1,0.3]"};
 
-/* Points within the error asked for, and how many there are. */
-static int cover(const struct coverage_question *question, int *within, int *points) {
-    struct coverage_points answer, reference;
-    struct coverage_question one = *question;
-    double largest = 0;
-    int own = 0;
-    if (!coverage_ask(&one, REFERENCES, &reference))
-        return 1;
-    for (one.seed = 1; one.seed <= SEEDS; one.seed++) {
-        if (!coverage_ask(&one, 0, &answer))
-            return 1;
-        for (int k = 0; k < COVERAGE_LOADS; k++)
-            own += fabs(answer.y[k] - reference.y[k]) <= question->error * reference.y[k];
-        largest = fmax(largest, answer.reached);
+static const struct coverage_question QUESTIONS[] = {{&SMOOTH, "halfspace", NULL, 0.01},
+                                                     {&MIDDLE, "halfspace", NULL, 0.005},
+                                                     {&ROUGH, "halfspace", NULL, 0.05},
+                                                     {&PITS, "halfspace", NULL, 0.02},
+                                                     {&HIGH, "halfspace", "mean_gap", 0.02},
+                                                     {&LOW, "layered", NULL, 0.02},
+                                                     {&PEAKS, "layered", NULL, 0.05},
+                                                     {&HIGH, "layered", NULL, 0.01},
+                                                     {&SMOOTH, "full", NULL, 0.02},
+                                                     {&PITS, "full", NULL, 0.01},
+                                                     {&PITS, "full", NULL, 0.05},
+                                                     {&PEAKS, "full", NULL, 0.02},
+                                                     {&MIDDLE, "full", "mean_gap", 0.05},
+                                                     {&SURFACE, "halfspace", NULL, 0.02},
+                                                     {&SURFACE_LOW, "halfspace", NULL, 0.05},
+                                                     {&PRESSED, "layered", NULL, 0.05},
+                                                     {&PRESSED, "full", NULL, 0.05},
+                                                     {&PRESSED_LOW, "full", NULL, 0.05}};
+enum { COUNT = sizeof QUESTIONS / sizeof *QUESTIONS };
+
+/* Realisations are those of an error of 1 %; for others they are fewer or more. */
+static const struct coverage_effort PROFILES = {400, 40, 128, 16, "[8,16,32]", "[8,16,32]"},
+                                    SURFACES = {80, 16, 12, 1, "[4,8,16]", "[4,8,16]"};
+enum { REALISATIONS_LEAST = 20 };
+
+#define COSTLY(heights)                                                                            \
+    "{\"name\":\"area\",\"kind\":\"contact\",\"seed\":1,\"target\":{\"error\":0.01},\"surface\":{" \
+    "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":8,\"rms_slope\":0.1,\"heights\":{" heights \
+    "}},\"contact\":{\"model\":\"full\",\"pressures\":{\"to\":0.3,\"steps\":10}}}"
+
+/* Points, and those within what was asked, within the larger of that and what the study reached,
+ * and within what the curve tells of each. */
+struct counts {
+    int points, asked, reached, told;
+    double cpu_seconds;
+};
+
+static void print_head(void) {
+    puts("             error        points within the error");
+    puts("   asked  reached reference  points  asked  reached  told  worst  work/plain    CPU");
+}
+
+/* Adds a study to the counts, and the largest of its errors over what it tells to worst. */
+static void count(const struct coverage_question *question, const struct coverage_points *answer,
+                  const struct coverage_points *reference, struct counts *counts, double *worst) {
+    for (int k = 0; k < answer->count; k++) {
+        double off = fabs(answer->y[k] - reference->y[k]);
+        double asked = question->error * fabs(reference->y[k]);
+        counts->points++;
+        counts->asked += off <= asked;
+        counts->reached += off <= fmax(question->error, answer->reached) * fabs(reference->y[k]);
+        counts->told += off <= coverage_told(answer, k);
+        *worst = fmax(*worst, off / asked);
     }
-    printf("%s, %s, H %g, error asked %g, told up to %.3g: %d of %d points within it; reference "
-           "+-%.2g\n",
-           question->heights, question->model, question->hurst, question->error, largest, own,
-           SEEDS * COVERAGE_LOADS, reference.error[0] / reference.y[0]);
-    *within += own;
-    *points += SEEDS * COVERAGE_LOADS;
+    counts->cpu_seconds += answer->cpu_seconds;
+}
+
+/* By load: what all seeds err by in the mean, and their scatter, in percent. */
+static void print_loads(int seeds, const struct coverage_points *answers,
+                        const struct coverage_points *reference) {
+    printf("          by load, %%: mean error +- of the mean (reference +-, told)");
+    for (int k = 0; k < reference->count; k++) {
+        double y = reference->y[k], mean = 0, square = 0, told = 0;
+        for (int s = 0; s < seeds; s++) {
+            mean += (answers[s].y[k] / y - 1) / seeds;
+            square += pow(answers[s].y[k] / y - 1, 2) / seeds;
+            told = fmax(told, coverage_told(&answers[s], k) / fabs(y));
+        }
+        printf("; %.2f +- %.2f (%.2f, %.2f)", 100 * mean,
+               100 * sqrt(fmax(0, square - mean * mean) / seeds),
+               100 * coverage_told(reference, k) / fabs(y), 100 * told);
+    }
+    puts("");
+}
+
+/* Returns 0, or 1 where a study fails. */
+static int cover(const struct coverage_question *question, int seeds, struct counts *all) {
+    struct coverage_points answers[64], reference;
+    struct counts own = {0};
+    double worst = 0, reached = 0, work = 0, plain = 0, error = 0;
+    struct coverage_effort effort = question->scene->dimension == 1 ? PROFILES : SURFACES;
+    effort.realisations =
+        (int)fmax(REALISATIONS_LEAST, 0.01 / question->error * effort.realisations);
+    if (!coverage_reference(question, &effort, &reference))
+        return 1;
+    for (int s = 0; s < seeds; s++) {
+        if (!coverage_ask(question, s + 1, &answers[s]) || answers[s].count != reference.count)
+            return 1;
+        count(question, &answers[s], &reference, &own, &worst);
+        reached = fmax(reached, answers[s].reached);
+        work += answers[s].work;
+        plain += answers[s].plain_work;
+    }
+    for (int k = 0; k < reference.count; k++)
+        error = fmax(error, reference.standard_error[k] / fabs(reference.y[k]));
+    printf("%7.3g%% %7.3g%% %8.2g%% %7d %6d %8d %5d %6.2f %11.2g %4.0f s  %s, %s, %s, {%s}, H %g, "
+           "ratio %g; reference %.0f s\n",
+           100 * question->error, 100 * reached, 100 * error, own.points, own.asked, own.reached,
+           own.told, worst, work / plain, own.cpu_seconds,
+           question->scene->dimension == 1 ? "2D" : "3D", question->model,
+           question->quantity != NULL ? question->quantity : "contact_area",
+           question->scene->heights, question->scene->hurst, question->scene->wavelength_ratio,
+           reference.cpu_seconds);
+    print_loads(seeds, answers, &reference);
+    fflush(stdout);
+    all->points += own.points;
+    all->asked += own.asked;
+    all->reached += own.reached;
+    all->told += own.told;
+    all->cpu_seconds += own.cpu_seconds + reference.cpu_seconds;
     return 0;
 }
 
-int main(void) {
-    int within = 0, points = 0;
-    struct coverage_points costly;
-    for (size_t a = 0; a < sizeof QUESTIONS / sizeof *QUESTIONS; a++)
-        if (cover(&QUESTIONS[a], &within, &points) != 0)
-            return 1;
-    printf("coverage: %d of %d points\n", within, points);
-    if (!coverage_run(COSTLY, &costly))
+static int cost(const char *name, const char *text) {
+    struct coverage_points points;
+    if (!coverage_run(text, "contact_area", "full", "edges", &points))
         return 1;
-    printf("full at 1 %%: reached %.3g, work %.3g, plain sampling for chance alone %.3g: 1/%.3g\n",
-           costly.reached, costly.work, costly.plain_work, costly.plain_work / costly.work);
+    printf("%s, full at 1 %%: reached %.3g %%, work %.3g, plain sampling %.3g: 1/%.3g; %.0f s of "
+           "CPU\n",
+           name, 100 * points.reached, points.work, points.plain_work,
+           points.plain_work / points.work, points.cpu_seconds);
     return 0;
+}
+
+int main(int argc, char **argv) {
+    long first = argc > 1 ? strtol(argv[1], NULL, 10) - 1 : 0;
+    long last = argc > 2 ? first + strtol(argv[2], NULL, 10) : COUNT;
+    long seeds = argc > 3 ? strtol(argv[3], NULL, 10) : SEEDS;
+    struct counts all = {0};
+    if (first < 0 || last > COUNT || seeds < 1 || seeds > 64)
+        return 2;
+    print_head();
+    for (long a = first; a < last; a++)
+        if (cover(&QUESTIONS[a], (int)seeds, &all) != 0)
+            return 1;
+    printf("of %d points %d are within the error asked, %d within it or what was reached, %d "
+           "within what is told of them; %.0f s of CPU\n",
+           all.points, all.asked, all.reached, all.told, all.cpu_seconds);
+    if (argc > 1)
+        return 0;
+    return cost("Gaussian", COSTLY(GAUSSIAN)) != 0 ||
+           cost("Weibull minimum, C = 1", COSTLY(WEIBULL("min", "1"))) != 0;
 }
