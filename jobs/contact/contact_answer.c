@@ -141,7 +141,8 @@ static double kurtosis(const struct contact_answer *answer, enum contact_measure
 
 /* What plain sampling would take for the same error: of the model that is asked for, on the finest
  * mesh where it was solved, and on the cells of the base. Their own errors, which remain, are those
- * of the cell alone here: that of the mesh is left out in favour of plain sampling. */
+ * of the cell alone here: that of the mesh is left out in favour of plain sampling. It takes two
+ * realisations at least, since one tells no error. */
 static double plain_work(const struct contact_answer *answer, const struct contact_sum *sum,
                          double error) {
     const struct target_component *base = answer->of[ROLE_BASE];
@@ -152,7 +153,7 @@ static double plain_work(const struct contact_answer *answer, const struct conta
         contact_case_cell(one_case, one_case->model_count - 1, one_case->level_count - 1, 0);
     double waves = component_case(base)->surface.length_ratio / one_case->surface.length_ratio;
     double quantile = gsl_cdf_ugaussian_Pinv((1 + answer->target.confidence) / 2);
-    double realisations = 0, work = 0;
+    double realisations = 2, work = 0;
     for (size_t k = 0; k < answer->loads; k++) {
         double all = error * fabs(sum->value[k]), left = all * all - sum->cell[k] * sum->cell[k];
         realisations = fmax(realisations, sum->variance[ROLE_BASE][k] * quantile * quantile / left);

@@ -10,7 +10,7 @@ enum { SHARPENED_MOST = 64, LEVELS_SHARPENED = 3 };
 /* A longer cell begins where the bound by the change between lengths is larger than that and than
  * so many times what chance may make of it, or with all the sampling there was. */
 static const double LENGTH_SEEN = 2.8;
-enum { LONGER_FIRST = 16 };
+enum { LONGER_FIRST = 8 };
 
 /* What bounds that come to so much leave to chance of an error; 0 where they leave nothing. */
 static double left_by(double error, double bounds) {

@@ -33,6 +33,17 @@ static void print_left(const struct case_result *one, FILE *file) {
                 NAMES[most]);
 }
 
+/* less: how many times as much plain sampling takes. */
+static void print_work(double less, double consistency, FILE *file) {
+    if (less >= 1)
+        fprintf(file, "work: 1/%.3g of plain sampling", less);
+    else
+        fprintf(file, "work: %.3g times that of plain sampling", 1 / less);
+    if (!isnan(consistency))
+        fprintf(file, "; levels agree within %.2g standard errors", consistency);
+    fputc('\n', file);
+}
+
 void summary_of_target(const struct case_result *one, FILE *file) {
     double asked = scalar_of(one, "error_asked"), reached = scalar_of(one, "error_reached");
     if (isnan(asked))
@@ -44,9 +55,8 @@ void summary_of_target(const struct case_result *one, FILE *file) {
                 100 * scalar_of(one, "error_cell"), 100 * scalar_of(one, "error_model"));
     fputc('\n', file);
     if (result_scalar(one, "plain_work") != NULL)
-        fprintf(file, "work: 1/%.3g of plain sampling; levels agree within %.2g standard errors\n",
-                scalar_of(one, "plain_work") / scalar_of(one, "work"),
-                scalar_of(one, "consistency"));
+        print_work(scalar_of(one, "plain_work") / scalar_of(one, "work"),
+                   scalar_of(one, "consistency"), file);
     if (reached > asked)
         print_left(one, file);
 }
