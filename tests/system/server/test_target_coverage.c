@@ -28,7 +28,7 @@ static void profiles_are_within_the_error(void **state) {
     static const struct coverage_scene SMOOTH = {GAUSSIAN, 1, 0.8, 2, "[0.03,0.1,0.2]"},
                                        ROUGH = {GAUSSIAN, 1, 0.5, 2, "[0.1,0.2]"},
                                        LOW = {WEIBULL, 1, 0.8, 2, "[0.1,0.2]"};
-    static const struct coverage_effort EFFORT = {60, 0, 128, 0, "[8,16,32]", ""};
+    static const struct coverage_effort EFFORT = {16, 40, 0, 512, 64, 0, "[8]", "[8,16,32]", ""};
     check_question(&(struct coverage_question){&SMOOTH, "halfspace", NULL, 0.03}, 1, &EFFORT);
     check_question(&(struct coverage_question){&ROUGH, "layered", NULL, 0.05}, 2, &EFFORT);
     check_question(&(struct coverage_question){&LOW, "halfspace", NULL, 0.05}, 3, &EFFORT);
@@ -37,14 +37,15 @@ static void profiles_are_within_the_error(void **state) {
 static void profiles_of_full_are_within_the_error(void **state) {
     (void)state;
     static const struct coverage_scene LOW = {WEIBULL, 1, 0.8, 2, "[0.1,0.2]"};
-    static const struct coverage_effort EFFORT = {60, 10, 128, 8, "[8,16,32]", "[4,8,16]"};
+    static const struct coverage_effort EFFORT = {16, 40,    10,          512,       64,
+                                                  8,  "[8]", "[8,16,32]", "[4,8,16]"};
     check_question(&(struct coverage_question){&LOW, "full", NULL, 0.03}, 1, &EFFORT);
 }
 
 static void surfaces_are_within_the_error(void **state) {
     (void)state;
     static const struct coverage_scene SURFACE = {GAUSSIAN, 2, 0.8, 2, "[0.1,0.2]"};
-    static const struct coverage_effort EFFORT = {10, 0, 8, 0, "[4,8,16]", ""};
+    static const struct coverage_effort EFFORT = {16, 6, 0, 8, 4, 0, "[4]", "[4,8,16]", ""};
     check_question(&(struct coverage_question){&SURFACE, "halfspace", NULL, 0.05}, 1, &EFFORT);
 }
 
