@@ -4,6 +4,16 @@
 
 /* --- the components --- */
 
+/* What the heights of a non-Gaussian profile of this cell leave to that of a long one, at least: 0
+ * for others, whose lengths alone tell it. */
+static double heights_bound(const struct target_component *base, double value, size_t load) {
+    const struct surface_case *surface = &component_case(base)->surface;
+    if (surface->dimension != 1 || surface->options.heights.type == HEIGHTS_GAUSSIAN)
+        return 0;
+    double area = contact_tally_mean(component_tally(base), MEASURE_EDGES, load).value;
+    return HEIGHTS_CELL / (surface->length_ratio * sqrt(area)) * fabs(value);
+}
+
 /* The change between the cells is taken without what chance adds to its square; chance itself
  * widens the interval of the sum. */
 static void add_base(const struct contact_answer *answer, enum contact_measure measure,
@@ -18,7 +28,8 @@ static void add_base(const struct contact_answer *answer, enum contact_measure m
         struct estimate other = contact_tally_mean(component_tally(cell), measure, k);
         double change = mean.value - other.value;
         double chance = hypot(mean.standard_error, other.standard_error);
-        sum->length[k] = CELL_SHARE * sqrt(fmax(0, change * change - chance * chance));
+        sum->length[k] = fmax(CELL_SHARE * sqrt(fmax(0, change * change - chance * chance)),
+                              heights_bound(base, mean.value, k));
         sum->length_chance[k] = CELL_SHARE * chance;
         sum->cell[k] = sum->length[k];
         sum->variance[ROLE_CELL][k] =
