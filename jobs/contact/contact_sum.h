@@ -65,8 +65,8 @@ static inline double component_variance(const struct target_component *component
 /* Non-Gaussian profiles change with their length slowly and not always one way, since their heights
  * are made for each cell: their areas A on a cell of L longest waves are within this over L sqrt(A)
  * of those on long ones, whatever the change from L/4. Measured on Weibull profiles, minimum C = 2,
- * H = 0.6, and maximum C = 1, H = 0.8, of wavelength ratio 2, loads of 0.01 to 0.3, L from 32 to
- * 256, against 1024: at most 0.55. */
+ * H = 0.6, and maximum C = 1, H = 0.8, of wavelength ratio 2, loads of 0.01 to 0.3, L of 32 and 64
+ * against 1024: 0.1 to 0.6, with a standard error of up to 0.2; on longer cells chance hides it. */
 #define HEIGHTS_CELL 0.6
 
 /* What is added on a cell of L longest waves a side, over its value on a long one, is within these
