@@ -10,6 +10,9 @@
 const struct contact_options CONTACT_DEFAULTS = {
     .tolerance = 1e-8, .max_iterations = 5000, .stall_iterations = 400};
 
+/* Nodes of a side, up to which the most iterations are those of the options. */
+static const double SIDE_USUAL = 4096;
+
 /* In this file heights are in units of the surface's RMS height and pressures in RMS height over
  * the largest compliance, so that all numbers are near 1 whatever the user's units. */
 struct contact {
@@ -215,6 +218,13 @@ static void predict(struct contact *c, double mean) {
         d->p[i] = isfinite(factor) ? d->p[i] * factor : mean;
 }
 
+/* Conjugate gradients take about the square root of a side as many iterations. */
+static size_t iterations_most(const struct contact *c) {
+    const struct grid *grid = &c->compliance->grid;
+    double side = fmax((double)grid->nx, (double)grid->ny);
+    return (size_t)((double)c->options.max_iterations * fmax(1, sqrt(side / SIDE_USUAL)));
+}
+
 static int press_partial(struct contact *c, double pressure, struct contact_state *out,
                          struct error *err) {
     struct conjugate_gradient *d = &c->solver;
@@ -223,7 +233,7 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
     d->transforms = 0;
     predict(c, mean);
     conjugate_gradient_run(d, mean, c->options.tolerance, c->options.stall_iterations,
-                           c->options.max_iterations, &end);
+                           iterations_most(c), &end);
     if (!end.converged) {
         c->mean = 0;
         return error_set(err, ERROR_NUMERIC,

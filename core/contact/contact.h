@@ -15,7 +15,8 @@
 struct contact_options {
     double tolerance;        /* on the largest violation of complementarity, over the largest
                                 displacement from the mean; default 1e-8; 1e-12 is reachable */
-    size_t max_iterations;   /* a load; default 5000 */
+    size_t max_iterations;   /* a load; default 5000; on sides of more than 4096 nodes more, by the
+                                square root of their number */
     size_t stall_iterations; /* without halving the violation, after which steps become careful
                                 (conjugate_gradient.h); default 400 */
     bool without_tangent; /* neither stiffness nor tangent is found, which takes up to a quarter of

@@ -50,7 +50,7 @@ static void put_bound(const struct contact_answer *answer, double *bound, struct
 static int put_curve(const struct contact_answer *answer, const struct contact_sum *sum,
                      enum contact_measure measure, struct error *err) {
     const struct contact_case *one_case = answer->one_case;
-    const struct contact_model *model = one_case->models[one_case->model_count - 1];
+    const struct contact_model *model = answer->model;
     bool area = measure != MEASURE_GAP;
     struct curve curve = curve_named(area ? "contact_area" : "mean_gap", "p/(E* h'_rms)",
                                      area ? "A/A0" : "mean gap/sqrt(m0)");
@@ -243,6 +243,13 @@ static int read_target(struct contact_answer *out, const cJSON *parameters, stru
     /* what is chosen was taken out of the parameters, but for the grid of a surface that needs it
      */
     out->named_mesh = json_at(parameters, "/contact/levels") != NULL;
+    const cJSON *name = json_at(parameters, "/contact/model");
+    if (cJSON_IsArray(name))
+        name = name->child;
+    const struct choice *model = choice_find(CONTACT_MODEL_CHOICES, cJSON_GetStringValue(name));
+    if (status == 0 && model == NULL)
+        return error_set(err, ERROR_INPUT, "a target without its model");
+    out->model = status == 0 ? CONTACT_MODELS[model->value] : NULL;
     return status;
 }
 

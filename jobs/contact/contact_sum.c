@@ -11,7 +11,7 @@ static double heights_bound(const struct target_component *base, double value, s
     if (surface->dimension != 1 || surface->options.heights.type == HEIGHTS_GAUSSIAN)
         return 0;
     double area = contact_tally_mean(component_tally(base), MEASURE_EDGES, load).value;
-    return HEIGHTS_CELL / (surface->length_ratio * sqrt(area)) * fabs(value);
+    return HEIGHTS_CELL / (surface->grid.lx * sqrt(area)) /* lambda_s is 1 */ * fabs(value);
 }
 
 /* The change between the cells is taken without what chance adds to its square; chance itself

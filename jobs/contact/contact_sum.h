@@ -33,6 +33,7 @@ struct contact_answer {
     const struct target_component *lengths[CONTACT_LENGTHS_MOST];
     const struct target_component *longer; /* not begun yet; NULL: none */
     const struct contact_case *one_case;   /* that whose loads are told */
+    const struct contact_model *model;     /* that is asked for */
     bool named_mesh;                       /* the finest level stands in place of the limit */
     size_t loads;
     struct case_result *result;
@@ -63,11 +64,12 @@ static inline double component_variance(const struct target_component *component
 #define CELL_SHARE contact_cell_share(0.25, 0.5)
 
 /* Non-Gaussian profiles change with their length slowly and not always one way, since their heights
- * are made for each cell: their areas A on a cell of L longest waves are within this over L sqrt(A)
- * of those on long ones, whatever the change from L/4. Measured on Weibull profiles, minimum C = 2,
- * H = 0.6, and maximum C = 1, H = 0.8, of wavelength ratio 2, loads of 0.01 to 0.3, L of 32 and 64
- * against 1024: 0.1 to 0.6, with a standard error of up to 0.2; on longer cells chance hides it. */
-#define HEIGHTS_CELL 0.6
+ * are made for each cell: their areas A on a cell of N shortest waves are within this over N
+ * sqrt(A) of those on long ones, whatever the change from L/4. Measured on Weibull profiles,
+ * minimum and maximum C = 1 and minimum C = 2, H of 0.6 and 0.8, wavelength ratios 2 and 8, loads
+ * of 0.01 to 0.3, cells of 32 and 64 longest waves against 256 and 1024: 0.5 to 1.3, with standard
+ * errors of 0.1 to 0.4; on longer cells chance hides it. */
+#define HEIGHTS_CELL 1.4
 
 /* What is added on a cell of L longest waves a side, over its value on a long one, is within these
  * over L (profiles) or L^2 (surfaces) of 1: a difference of levels, and one of models whose areas

@@ -235,6 +235,12 @@ static int add(struct study_case *one, const struct choices *choices,
     return component->parameters != NULL ? 0 : ERROR_MEMORY;
 }
 
+/* Layers that are thin without end, on a block that is high without end, are a half-space. */
+static bool is_halfspace(const struct choices *choices) {
+    bool layers = strcmp(choices->model, "layered") == 0;
+    return strcmp(choices->model, "halfspace") == 0 || (layers && choices->mesh && choices->height);
+}
+
 /* The dearest first, so that none of its jobs is left to the end of a round. */
 static int add_all(struct study_case *one, const struct choices *choices) {
     const size_t levels = choices->levels, pair = levels > 1 ? 2 : 1;
@@ -256,7 +262,7 @@ static int add_all(struct study_case *one, const struct choices *choices) {
     const struct variant longer = {"longer", 0, 1, false, 0, 1, 4 * choices->length_ratio};
     const struct variant longest = {"longest", 0, 1, false, 0, 1, 16 * choices->length_ratio};
     int status = 0;
-    if (strcmp(choices->model, "halfspace") != 0)
+    if (!is_halfspace(choices))
         status = add(one, choices, &model);
     if (status == 0 && levels > 2)
         status = add(one, choices, &fine);
