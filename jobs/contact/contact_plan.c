@@ -65,7 +65,7 @@ static bool sharpen(const struct contact_answer *answer, const struct contact_su
 static bool is_short(const struct contact_answer *answer, const struct contact_sum *sum,
                      bool sampled) {
     for (size_t k = 0; k < answer->loads; k++) {
-        double all = answer->target.error * fabs(sum->value[k]);
+        double all = asked_at(answer, sum, k);
         bool missed = sampled && sum->width[k] > left_at(answer, sum, k);
         bool seen = sum->length[k] > LENGTH_SEEN * sum->length_chance[k];
         if (sum->length[k] > BOUND_MOST * all && (missed || seen))
@@ -102,14 +102,11 @@ static bool lengthen(const struct contact_answer *answer, const struct contact_s
 
 /* Adds what sharper bounds need. */
 static bool sharpen_all(const struct contact_answer *answer, const struct contact_sum *sum,
-                        const struct target_part *parts, uint64_t *wanted) {
+                        size_t count, const struct target_part *parts, uint64_t *wanted) {
     bool sharpened = false;
     double work = 0;
-    for (size_t a = 0, part = 0; a < ROLES; a++)
-        if (answer->of[a] != NULL) {
-            work += parts[part].work * (double)parts[part].done;
-            part++;
-        }
+    for (size_t part = 0; part < count; part++)
+        work += parts[part].work * (double)parts[part].done;
     for (size_t a = 0, part = 0; a < ROLES; a++)
         if (answer->of[a] != NULL) {
             bool bounds = a == ROLE_MESH || a == ROLE_FINE || a == ROLE_MODEL;
@@ -129,8 +126,7 @@ int contact_plan(const struct contact_answer *answer, const struct contact_sum *
     if (allowed == NULL)
         return error_memory(err, answer->loads * sizeof *allowed, "a plan");
     for (size_t k = 0; k < answer->loads; k++)
-        allowed[k] = fmax(left_at(answer, sum, k),
-                          CHANCE_LEAST * answer->target.error * fabs(sum->value[k]));
+        allowed[k] = fmax(left_at(answer, sum, k), CHANCE_LEAST * asked_at(answer, sum, k));
     struct target_plan plan = {&answer->target, answer->loads, allowed};
     target_allot(&plan, count, parts, wanted);
     free(allowed);
@@ -140,7 +136,7 @@ int contact_plan(const struct contact_answer *answer, const struct contact_sum *
     uint64_t sharper[ROLES];
     for (size_t a = 0; a < count; a++)
         sharper[a] = parts[a].done;
-    if (sharpen_all(answer, sum, parts, sharper)) {
+    if (sharpen_all(answer, sum, count, parts, sharper)) {
         memcpy(wanted, sharper, count * sizeof *sharper);
         target_hold(&answer->target, count, parts, wanted);
     }

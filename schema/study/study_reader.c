@@ -195,6 +195,30 @@ static int check_case(const struct study_kind *kind, struct study_case *one, dou
     return status;
 }
 
+/* Checks the components of a case. One that begins later, where it is needed, and cannot be had is
+ * none: the others answer without it. */
+static int check_components(const struct study_kind *kind, struct study_case *one,
+                            double memory_limit, struct fault_list *faults, struct error *err) {
+    size_t kept = 0;
+    int status = 0;
+    for (size_t a = 0; a < one->component_count; a++) {
+        struct study_case component = one->components[a];
+        struct fault_list found = {0};
+        if (status == 0)
+            status = check_case(kind, &component, memory_limit, &found, err);
+        bool spare = status == 0 && component.realisations == 0 && found.count > 0;
+        if (spare)
+            cJSON_Delete(component.parameters);
+        else
+            one->components[kept++] = component;
+        if (!spare)
+            merge_faults(faults, &found);
+        fault_list_clear(&found);
+    }
+    one->component_count = kept;
+    return status;
+}
+
 /* Of a case that asks for an error its components are what runs. */
 static int check_cases(struct study *study, const cJSON *document, double memory_limit,
                        struct fault_list *faults, struct error *err) {
@@ -207,8 +231,8 @@ static int check_cases(struct study *study, const cJSON *document, double memory
         if (status == 0)
             status = check_case(study->kind, one, one->component_count > 0 ? 0 : memory_limit,
                                 faults, err);
-        for (size_t a = 0; a < one->component_count && status == 0; a++)
-            status = check_case(study->kind, &one->components[a], memory_limit, faults, err);
+        if (status == 0)
+            status = check_components(study->kind, one, memory_limit, faults, err);
     }
     return status;
 }

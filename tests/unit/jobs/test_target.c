@@ -3,6 +3,7 @@
  * time there is is kept. */
 #include "jobs/kind.h"
 #include "jobs/target.h"
+#include "schema/study/study_reader.h"
 #include "tests/support/check.h"
 #include <stdio.h>
 #include <string.h>
@@ -159,6 +160,32 @@ static void chooses_what_is_left_out(void **state) {
     study_destroy(&study);
 }
 
+/* A component that may never be needed does not keep a study from running where it has no room. */
+static void goes_without_what_has_no_room(void **state) {
+    (void)state;
+    char text[1024];
+    struct fault_list faults = {0};
+    struct study *all = NULL, *fitting = NULL;
+    snprintf(text, sizeof text, STUDY, "", "", "\"halfspace\"", "");
+    size_t size = strlen(text);
+    assert_int_equal(study_read(&all, text, size, NULL, JOB_KINDS, 0, &faults, NULL), 0);
+    double most = component(all, "longest")->cost.memory_bytes;
+    for (size_t a = 0; a < all->cases[0].component_count; a++)
+        if (strcmp(all->cases[0].components[a].role, "longest") != 0)
+            assert_true(all->cases[0].components[a].cost.memory_bytes < most);
+    assert_int_equal(study_read(&fitting, text, size, NULL, JOB_KINDS, most - 1, &faults, NULL), 0);
+    assert_int_equal(faults.count, 0);
+    assert_null(component(fitting, "longest"));
+    assert_int_equal(fitting->cases[0].component_count, all->cases[0].component_count - 1);
+    double base = component(all, "base")->cost.memory_bytes;
+    study_destroy(&fitting);
+    assert_int_equal(study_read(&fitting, text, size, NULL, JOB_KINDS, base - 1, &faults, NULL),
+                     ERROR_INPUT);
+    assert_true(faults.count > 0);
+    fault_list_clear(&faults);
+    study_destroy(&all);
+}
+
 /* What it names is kept: no cell beside the named one, no mesh beyond the named level. */
 static void keeps_what_is_named(void **state) {
     (void)state;
@@ -221,6 +248,7 @@ int main(void) {
         cmocka_unit_test(distrusts_few_realisations),
         cmocka_unit_test(keeps_within_the_time),
         cmocka_unit_test(chooses_what_is_left_out),
+        cmocka_unit_test(goes_without_what_has_no_room),
         cmocka_unit_test(keeps_what_is_named),
         cmocka_unit_test(tells_faults),
         cmocka_unit_test(solves_the_nayak_parameter_once),
