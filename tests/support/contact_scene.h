@@ -7,6 +7,7 @@
 #include "core/contact/contact.h"
 #include "core/contact/patches.h"
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,6 +61,15 @@ static inline void scene_begin(struct scene *scene) {
     struct error err = {0};
     if (contact_begin(scene->contact, scene->z, &err) != 0)
         fail_msg("%s", err.text);
+}
+
+/* Fills a profile of unit length with one wave, whose crest stands `shift` steps before the first
+ * node, and lifts it off. */
+static inline void scene_begin_wave(struct scene *scene, double shift) {
+    double points = (double)scene->grid.nx;
+    for (size_t i = 0; i < scene->grid.nx; i++)
+        scene->z[i] = cos(2 * M_PI * ((double)i + shift) / points);
+    scene_begin(scene);
 }
 
 static inline void scene_press(struct scene *scene, double pressure) {

@@ -46,9 +46,7 @@ static void wave_shares(size_t points, double r, const struct bins *bins, double
     double shares[BINS + 2];
     scene_open(&scene, (struct grid){points, 1, 1, 1}, DEEP, 1e-10);
     for (size_t place = 0; place < PLACES; place++) {
-        for (size_t i = 0; i < points; i++)
-            scene.z[i] = cos(2 * M_PI * ((double)i + (double)place / PLACES) / (double)points);
-        scene_begin(&scene);
+        scene_begin_wave(&scene, (double)place / PLACES);
         scene_press(&scene, r * M_PI);
         share(&scene, bins, 2 * M_PI, shares);
         for (size_t b = 0; b < BINS + 2; b++)

@@ -6,6 +6,7 @@
 #include "jobs/contact/contact_probe.h"
 #include "jobs/contact/contact_scene.h"
 #include "tests/support/check.h"
+#include "tests/support/unstopped.h"
 #include <stdlib.h>
 
 enum { LOADS = 3 };
@@ -15,16 +16,6 @@ enum { LOADS = 3 };
 #define PROFILE "\"dimension\": 1, \"wavelength_ratio\": 4, \"rms_slope\": 0.1, "
 #define SURFACE "\"dimension\": 2, \"wavelength_ratio\": 2, \"rms_slope\": 0.1, "
 #define WEIBULL "\"heights\": {\"distribution\": \"weibull_min\", \"shape\": 1}, "
-
-static int go_on(void *context) {
-    (void)context;
-    return 0;
-}
-
-static void must(int status, const struct error *err) {
-    if (status != 0)
-        fail_msg("%s", err->text);
-}
 
 static void read_case(struct contact_case *one_case, const char *text) {
     struct error err = {0};

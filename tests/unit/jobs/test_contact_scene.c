@@ -7,6 +7,7 @@
 #include "jobs/contact/contact_scene.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"
+#include "tests/support/unstopped.h"
 #include <stdlib.h>
 
 /* Fine bins, so that their centres tell the mean pressure. */
@@ -27,16 +28,6 @@ struct scene_fixture {
     struct moments moments;
     double *z;
 };
-
-static int go_on(void *context) {
-    (void)context;
-    return 0;
-}
-
-static void must(int status, const struct error *err) {
-    if (status != 0)
-        fail_msg("%s", err->text);
-}
 
 static void fixture_surface(struct scene_fixture *f) {
     struct generator *generator;
