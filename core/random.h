@@ -9,7 +9,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum random_stream { STREAM_PHASES = 0, STREAM_HEIGHTS = 1, STREAM_HEIGHT_PHASES = 2 };
+enum random_stream {
+    STREAM_PHASES = 0,
+    STREAM_HEIGHTS = 1,
+    STREAM_HEIGHT_PHASES = 2,
+    STREAM_AMPLITUDES = 3
+};
 
 /* Selects random numbers. Plain data that may be copied. */
 struct random_key {

@@ -82,8 +82,9 @@ struct rugo_moments {
     double nayak_alpha;                          /* m0 m4/m2^2 (Nayak 1971); NaN for a flat map */
     double rms_height, rms_slope, rms_curvature; /* curvature: (z_xx + z_yy)/2; profile z_xx */
 };
-/* Of the surfaces that this spectrum makes on this grid; the same for each of them. INPUT where the
- * grid holds no wave of the spectrum or does not resolve its shortest one. */
+/* Of the surfaces that this spectrum makes on this grid; the same for each of them, or with random
+ * amplitudes of their mean. INPUT where the grid holds no wave of the spectrum or does not resolve
+ * its shortest one. */
 RUGO_API int rugo_spectrum_moments(const struct rugo_spectrum *spectrum,
                                    const struct rugo_grid *grid, struct rugo_moments *out,
                                    struct rugo_error *err);
@@ -115,6 +116,8 @@ struct rugo_surface_options {
     int keep_heights;      /* which is exact in the end: 0 the spectrum, 1 the heights */
     double tolerance;      /* of the iteration, on its three errors */
     size_t max_iterations; /* of the iteration */
+    int random_amplitudes; /* 0: each surface has the spectrum; 1: their mean has it, waves having
+                              amplitudes after Rayleigh, as a piece of an endless surface has */
 };
 /* Returns options for Gaussian surfaces, with a tolerance of 1e-3 and at most 1000 iterations. */
 RUGO_API struct rugo_surface_options rugo_surface_defaults(void);

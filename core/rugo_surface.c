@@ -118,6 +118,7 @@ static int options_take(struct surface_options *out, const struct rugo_surface_o
                                     .shape = from->shape,
                                     .quantile = from->quantile,
                                     .context = from->quantile_context};
+    out->amplitudes = from->random_amplitudes != 0 ? AMPLITUDES_RANDOM : AMPLITUDES_FIXED;
     out->keep = from->keep_heights != 0 ? KEEP_HEIGHTS : KEEP_SPECTRUM;
     out->tolerance = from->tolerance;
     out->max_iterations = from->max_iterations;

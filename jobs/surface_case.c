@@ -15,6 +15,7 @@ static void read_heights(struct surface_case *out, struct values *values) {
     *options = SURFACE_DEFAULTS;
     options->heights.type =
         (enum heights_type)values_choice(values, "/surface/heights/distribution");
+    options->amplitudes = (enum surface_amplitudes)values_choice(values, "/surface/amplitudes");
     double shape = values_number(values, "/surface/heights/shape");
     const struct distribution *distribution = heights_distribution(options->heights.type);
     if (distribution->shape_means != NULL) {

@@ -26,10 +26,15 @@ int surface_case_read(struct surface_case *out, const cJSON *parameters, struct 
 int surface_case_fill(struct surface_case *out, struct values *values, struct error *err);
 void surface_case_clear(struct surface_case *surface);
 
-/* Returns whether the returned surfaces have the prescribed spectrum exactly. */
-static inline bool surface_case_exact(const struct surface_case *surface) {
+/* Returns whether the returned surfaces have no waves but those of the prescribed band. */
+static inline bool surface_case_band_limited(const struct surface_case *surface) {
     return surface->options.heights.type == HEIGHTS_GAUSSIAN ||
            surface->options.keep == KEEP_SPECTRUM;
+}
+/* Returns whether each of them has the prescribed spectrum exactly; with random amplitudes it is
+ * that of their mean. */
+static inline bool surface_case_exact(const struct surface_case *surface) {
+    return surface_case_band_limited(surface) && surface->options.amplitudes == AMPLITUDES_FIXED;
 }
 /* Highest wave number that the spectrum can have on the grid, in x as in y: at most nx/2. */
 size_t surface_case_band(const struct surface_case *surface);

@@ -8,6 +8,8 @@ static const struct choice SPECTRA[] = {{"self_affine", SPECTRUM_SELF_AFFINE},
                                         {"exponential_acf", SPECTRUM_EXPONENTIAL_ACF},
                                         {"table", SPECTRUM_TABLE},
                                         {0}};
+static const struct choice AMPLITUDES[] = {
+    {"fixed", AMPLITUDES_FIXED}, {"random", AMPLITUDES_RANDOM}, {0}};
 #define CHOICE(type, name) {name, HEIGHTS_##type},
 static const struct choice DISTRIBUTIONS[] = {HEIGHT_DISTRIBUTIONS(CHOICE){0}};
 
@@ -99,6 +101,16 @@ static const struct parameter ROWS[] = {
      .unit = "lambda_s",
      .example_json = "0.05",
      .help = "RMS height that fixes the scale"},
+    {.path = "/surface/amplitudes",
+     .type = PARAMETER_CHOICE,
+     .choices = AMPLITUDES,
+     .sweep = true,
+     .later = true,
+     .default_json = "\"fixed\"",
+     .example_json = "[\"fixed\", \"random\"]",
+     .help = "of the waves: fixed, so that each surface has the spectrum, rms_slope and rms_height "
+             "exactly; or random (Rayleigh), so that these are of the mean and a cell is like a "
+             "piece of an endless Gaussian surface"},
     {.path = "/surface/spectrum/type",
      .type = PARAMETER_CHOICE,
      .choices = SPECTRA,

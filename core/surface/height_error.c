@@ -73,7 +73,6 @@ int height_error_create(struct height_error **out, const struct modes *modes, st
         height_error_destroy(&e);
         return status;
     }
-    amplitudes_sum(e);
     *out = e;
     return 0;
 }
@@ -111,6 +110,7 @@ static void histogram_count(const struct height_error *e, const double *z, uint3
 void height_error_start(struct height_error *e, const struct height_moments *moments,
                         const double *sorted) {
     size_t n = grid_points(&e->modes->grid);
+    amplitudes_sum(e);
     e->width = SCOTT / cbrt((double)n);
     double edge = isfinite(moments->highest)  ? moments->highest
                   : isfinite(moments->lowest) ? moments->lowest

@@ -15,8 +15,8 @@ int height_error_create(struct height_error **out, const struct modes *modes, st
 void height_error_destroy(struct height_error **height_error);
 double height_error_bytes(const struct grid *grid);
 
-/* Fixes the bins of a run: Scott's width, an edge on the bound of the distribution (or on its
- * mean). sorted[points]: all heights of z_h, rising. */
+/* Takes the powers of modes as they are now, and fixes the bins of a run: Scott's width, an edge on
+ * the bound of the distribution (or on its mean). sorted[points]: all heights of z_h, rising. */
 void height_error_start(struct height_error *e, const struct height_moments *moments,
                         const double *sorted);
 

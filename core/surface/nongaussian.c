@@ -54,17 +54,24 @@ static int options_check(const struct surface_options *o, struct error *err) {
     return 0;
 }
 
-static int amplitude_create(struct nongaussian *g, struct error *err) {
-    const struct modes *modes = g->modes;
-    size_t count = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
+static size_t band_size(const struct modes *modes) {
+    return (modes->mode_x + 1) * (2 * modes->mode_y + 1);
+}
+
+static void amplitude_fill(struct nongaussian *g) {
     struct moments moments;
-    modes_moments(modes, &moments);
+    modes_moments(g->modes, &moments);
     g->deviation = moments.rms_height;
+    for (size_t k = 0; k < band_size(g->modes); k++)
+        g->amplitude[k] = sqrt(g->modes->power[k]) / g->deviation;
+}
+
+static int amplitude_create(struct nongaussian *g, struct error *err) {
+    size_t count = band_size(g->modes);
     g->amplitude = array_create(count, sizeof *g->amplitude);
     if (g->amplitude == NULL)
         return error_memory(err, count * sizeof *g->amplitude, "amplitudes");
-    for (size_t k = 0; k < count; k++)
-        g->amplitude[k] = sqrt(modes->power[k]) / g->deviation;
+    amplitude_fill(g);
     return 0;
 }
 
@@ -287,6 +294,8 @@ int nongaussian_run(struct nongaussian *g, struct transform *transform, struct r
                                      g->ranker, g->sorted, err);
     if (status != 0)
         return status;
+    if (options->amplitudes == AMPLITUDES_RANDOM)
+        amplitude_fill(g);
     height_error_start(g->height_error, &g->moments, g->sorted);
     for (size_t i = 0; i < g->points; i++)
         z[i] /= g->deviation;

@@ -11,7 +11,9 @@
 
 struct nongaussian;
 
-/* Borrows modes; copies options. ERROR_INPUT (options or heights out of range), ERROR_MEMORY. */
+/* Borrows modes; copies options. With random amplitudes modes are those of the next run's start:
+ * their powers may change from run to run, not to or from 0. ERROR_INPUT (options or heights out of
+ * range), ERROR_MEMORY. */
 int nongaussian_create(struct nongaussian **out, const struct modes *modes,
                        const struct surface_options *options, struct error *err);
 void nongaussian_destroy(struct nongaussian **nongaussian);

@@ -8,9 +8,12 @@ struct generator {
     struct modes *modes;
     struct transform *transform;
     struct nongaussian *nongaussian; /* NULL: Gaussian heights */
+    struct modes *drawn;             /* spectrum of the last draw, where amplitudes are random and
+                                        heights not Gaussian; else NULL */
     double *amplitude;  /* sqrt(power), rows of wave numbers: [(my + mode_y)*(mode_x + 1) + mx] */
     size_t *row_length; /* 2 mode_y + 1: 1 + highest mx of the row that is not null; 0: none */
-    uint64_t *words;    /* mode_x + 1 */
+    uint64_t *words;    /* mode_x + 1, as row_drawn */
+    double *row_drawn;  /* amplitudes of a row, where they are random; else NULL */
 };
 
 static void amplitudes_fill(struct generator *g) {
@@ -28,14 +31,33 @@ static void amplitudes_fill(struct generator *g) {
     }
 }
 
-static int arrays_create(struct generator *g, struct error *err) {
+static int arrays_create(struct generator *g, bool random, struct error *err) {
     size_t columns = g->modes->mode_x + 1, rows = 2 * g->modes->mode_y + 1;
     g->amplitude = array_create(columns * rows, sizeof *g->amplitude);
     g->row_length = array_create(rows, sizeof *g->row_length);
     g->words = array_create(columns, sizeof *g->words);
-    if (g->amplitude == NULL || g->row_length == NULL || g->words == NULL)
+    g->row_drawn = random ? array_create(columns, sizeof *g->row_drawn) : NULL;
+    if (g->amplitude == NULL || g->row_length == NULL || g->words == NULL ||
+        (random && g->row_drawn == NULL))
         return error_memory(err, columns * rows * sizeof *g->amplitude, "amplitudes");
     amplitudes_fill(g);
+    return 0;
+}
+
+/* Makes room for the spectrum of a draw, which is that of the mean until something is drawn. */
+static int drawn_create(struct generator *g, struct error *err) {
+    size_t count = (g->modes->mode_x + 1) * (2 * g->modes->mode_y + 1);
+    struct modes *drawn = array_create(1, sizeof *drawn);
+    double *power = array_create(count, sizeof *power);
+    if (drawn == NULL || power == NULL) {
+        free(drawn);
+        free(power);
+        return error_memory(err, count * sizeof *power, "a drawn spectrum");
+    }
+    memcpy(power, g->modes->power, count * sizeof *power);
+    *drawn = *g->modes;
+    drawn->power = power;
+    g->drawn = drawn;
     return 0;
 }
 
@@ -45,13 +67,17 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
     struct generator *g = array_create(1, sizeof *g);
     if (g == NULL)
         return error_memory(err, sizeof *g, "a generator");
+    bool random = options->amplitudes == AMPLITUDES_RANDOM;
+    bool iterated = options->heights.type != HEIGHTS_GAUSSIAN;
     int status = modes_create(&g->modes, spectrum, grid, err);
     if (status == 0)
         status = transform_create(&g->transform, grid, g->modes->mode_x, g->modes->mode_y, err);
     if (status == 0)
-        status = arrays_create(g, err);
-    if (status == 0 && options->heights.type != HEIGHTS_GAUSSIAN)
-        status = nongaussian_create(&g->nongaussian, g->modes, options, err);
+        status = arrays_create(g, random, err);
+    if (status == 0 && random && iterated)
+        status = drawn_create(g, err);
+    if (status == 0 && iterated)
+        status = nongaussian_create(&g->nongaussian, random ? g->drawn : g->modes, options, err);
     if (status != 0) {
         generator_destroy(&g);
         return status;
@@ -67,9 +93,11 @@ void generator_destroy(struct generator **generator) {
     nongaussian_destroy(&g->nongaussian);
     transform_destroy(&g->transform);
     modes_destroy(&g->modes);
+    modes_destroy(&g->drawn);
     free(g->amplitude);
     free(g->row_length);
     free(g->words);
+    free(g->row_drawn);
     free(g);
     *generator = NULL;
 }
@@ -84,13 +112,16 @@ double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
     double band = (double)(mode_x + 1) * (double)(2 * mode_y + 1);
     double columns = (double)(mode_x + 1) * (double)grid->ny;
     double bytes = sizeof(double) * (points + 2 * band) + sizeof(double complex) * columns;
-    if (options->heights.type != HEIGHTS_GAUSSIAN)
-        bytes += nongaussian_bytes(grid, mode_x, mode_y, options);
-    return bytes;
+    if (options->heights.type == HEIGHTS_GAUSSIAN)
+        return bytes;
+    if (options->amplitudes == AMPLITUDES_RANDOM)
+        bytes += sizeof(double) * band;
+    return bytes + nongaussian_bytes(grid, mode_x, mode_y, options);
 }
 
 /* Words of a row are numbered by its wave vectors alone (in units of 2 pi/L), so that a wave has
- * the same phase on every grid and in every spectrum of the same cell. */
+ * the same phase, and the same chance of its amplitude, on every grid and in every spectrum of the
+ * same cell. */
 static uint64_t row_first_word(long my) {
     uint64_t zigzag = my >= 0 ? 2 * (uint64_t)my : 2 * (uint64_t)-my - 1;
     return zigzag << 32;
@@ -101,19 +132,31 @@ static size_t column_row(long my, size_t ny) {
     return my >= 0 ? (size_t)my : ny - (size_t)-my;
 }
 
+static double uniform(uint64_t word) {
+    return (double)(word >> 11) * 0x1p-53;
+}
+
 static double complex with_phase(double amplitude, uint64_t word) {
-    double phase = 2 * M_PI * ((double)(word >> 11) * 0x1p-53), sine, cosine;
+    double phase = 2 * M_PI * uniform(word), sine, cosine;
     sincos(phase, &sine, &cosine);
     return amplitude * cosine + amplitude * sine * I;
 }
 
+/* Returns a mode that is its own conjugate, and so real: of one of two signs and full amplitude, or
+ * where amplitudes are random normal of that deviation (the real part of a normal complex mode). */
+static double own_conjugate_mode(const struct generator *g, double amplitude, uint64_t word) {
+    double size =
+        g->row_drawn != NULL ? M_SQRT2 * fabs(creal(with_phase(amplitude, word))) : amplitude;
+    return word >> 63 != 0 ? -size : size;
+}
+
 /* A column that is its own mirror image (mx = 0, and Nyquist of an even nx): the modes of my < 0
- * are conjugates of those drawn at my > 0, and a mode that is its own conjugate (my = 0, Nyquist)
- * is real: full amplitude, one of two signs. */
-static void own_mirror_mode(double complex *column, long my, size_t ny, double amplitude,
-                            uint64_t word) {
+ * are conjugates of those drawn at my > 0, and modes at my = 0 and Nyquist are their own. */
+static void own_mirror_mode(const struct generator *g, double complex *column, long my,
+                            double amplitude, uint64_t word) {
+    size_t ny = g->modes->grid.ny;
     if (my == 0 || 2 * (size_t)my == ny) {
-        column[column_row(my, ny)] = word >> 63 != 0 ? -amplitude : amplitude;
+        column[column_row(my, ny)] = own_conjugate_mode(g, amplitude, word);
         return;
     }
     double complex mode = with_phase(amplitude, word);
@@ -121,7 +164,21 @@ static void own_mirror_mode(double complex *column, long my, size_t ny, double a
     column[column_row(-my, ny)] = conj(mode);
 }
 
-/* Draws amplitudes that are fixed and phases that are random (Wu 2000; F3.1). */
+/* Returns the amplitudes of a row of wave numbers, those that are random drawn anew: after
+ * Rayleigh, of the prescribed mean square. */
+static const double *row_amplitudes(struct generator *g, struct random_key key, long my) {
+    size_t row = (size_t)(my + (long)g->modes->mode_y), length = g->row_length[row];
+    const double *amplitude = g->amplitude + row * (g->modes->mode_x + 1);
+    if (g->row_drawn == NULL)
+        return amplitude;
+    random_words(key, STREAM_AMPLITUDES, row_first_word(my), length, g->words);
+    for (size_t mx = 0; mx < length; mx++)
+        g->row_drawn[mx] =
+            amplitude[mx] > 0 ? amplitude[mx] * sqrt(-log1p(-uniform(g->words[mx]))) : 0;
+    return g->row_drawn;
+}
+
+/* Draws phases that are random, with amplitudes that are fixed (Wu 2000; F3.1) or random (F3.4). */
 static void spectrum_draw(struct generator *g, struct random_key key) {
     const struct modes *modes = g->modes;
     size_t columns = modes->mode_x + 1, ny = modes->grid.ny, nx = modes->grid.nx;
@@ -129,8 +186,8 @@ static void spectrum_draw(struct generator *g, struct random_key key) {
     double complex *spectrum = transform_spectrum(g->transform);
     memset(spectrum, 0, columns * ny * sizeof *spectrum);
     for (long my = -mode_y; my <= mode_y; my++) {
-        size_t row = (size_t)(my + mode_y), length = g->row_length[row];
-        const double *amplitude = g->amplitude + row * columns;
+        size_t length = g->row_length[my + mode_y];
+        const double *amplitude = row_amplitudes(g, key, my);
         double complex *at = spectrum + column_row(my, ny);
         random_words(key, STREAM_PHASES, row_first_word(my), length, g->words);
         for (size_t mx = 0; mx < length; mx++) {
@@ -139,14 +196,31 @@ static void spectrum_draw(struct generator *g, struct random_key key) {
             if (mx > 0 && 2 * mx < nx)
                 at[mx * ny] = with_phase(amplitude[mx], g->words[mx]);
             else if (my >= 0)
-                own_mirror_mode(spectrum + mx * ny, my, ny, amplitude[mx], g->words[mx]);
+                own_mirror_mode(g, spectrum + mx * ny, my, amplitude[mx], g->words[mx]);
         }
     }
+}
+
+/* Fills in the powers of what was drawn; modes without power stay so. */
+static void drawn_measure(struct generator *g) {
+    struct modes *drawn = g->drawn;
+    size_t rows = 2 * drawn->mode_y + 1, ny = drawn->grid.ny;
+    const double complex *spectrum = transform_spectrum(g->transform);
+    for (size_t mx = 0; mx <= drawn->mode_x; mx++)
+        for (size_t row = 0; row < rows; row++) {
+            double complex mode =
+                spectrum[mx * ny + column_row((long)row - (long)drawn->mode_y, ny)];
+            bool any = g->modes->power[mx * rows + row] > 0;
+            drawn->power[mx * rows + row] =
+                any ? creal(mode) * creal(mode) + cimag(mode) * cimag(mode) : 0;
+        }
 }
 
 int generator_run(struct generator *g, struct random_key key, double *z,
                   struct surface_report *report, struct error *err) {
     spectrum_draw(g, key);
+    if (g->drawn != NULL)
+        drawn_measure(g);
     transform_inverse(g->transform, z);
     if (g->nongaussian != NULL)
         return nongaussian_run(g->nongaussian, g->transform, key, z, report, err);

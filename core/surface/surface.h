@@ -3,8 +3,9 @@
  * A generator is made once a case and used for every realisation of it; one thread each. Phases
  * belong to wave numbers in units of 2 pi/L, not to points: the same realisation on a finer grid is
  * the same surface, one of other amplitudes (H, scale) has the same phases, and one of shorter
- * waves has those of the longer ones too. Target heights are quantiles of the same uniform numbers,
- * as many as the grid has points. */
+ * waves has those of the longer ones too; of random amplitudes it is alike, each over the
+ * prescribed one. Target heights are quantiles of the same uniform numbers, as many as the grid has
+ * points. */
 #ifndef RUGO_CORE_SURFACE_SURFACE_H
 #define RUGO_CORE_SURFACE_SURFACE_H
 
@@ -19,7 +20,8 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
                      const struct grid *grid, const struct surface_options *options,
                      struct error *err);
 void generator_destroy(struct generator **generator);
-/* Returns the discrete spectrum in use, which lives as long as the generator. */
+/* Returns the prescribed spectrum, which lives as long as the generator: that of every surface, or
+ * where amplitudes are random that of the mean. */
 const struct modes *generator_modes(const struct generator *generator);
 /* Peak bytes of a generator with these settings, the caller's z of grid_points doubles included. */
 double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,

@@ -2,6 +2,7 @@
 
 const struct surface_options SURFACE_DEFAULTS = {
     .heights = {.type = HEIGHTS_GAUSSIAN},
+    .amplitudes = AMPLITUDES_FIXED,
     .keep = KEEP_SPECTRUM,
     .iteration = ITERATION_RELAXED,
     .draw = DRAW_RANDOM,

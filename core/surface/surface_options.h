@@ -4,15 +4,21 @@
 
 #include "core/surface/heights.h"
 
+/* What chance there is in a wave (FORMULAS.md, F3.1 and F3.4): its phase alone, so that every
+ * surface of a cell has the prescribed spectrum; or its amplitude too, so that the spectrum is that
+ * of the mean over surfaces, and a cell is like a piece cut out of an endless Gaussian surface. */
+enum surface_amplitudes { AMPLITUDES_FIXED, AMPLITUDES_RANDOM };
 enum surface_keep { KEEP_SPECTRUM, KEEP_HEIGHTS };
 enum surface_iteration { ITERATION_RELAXED, ITERATION_PLAIN };
 enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
 
-/* The iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4). Gaussian heights need
- * none of it. */
+/* Behind `amplitudes`: the iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4).
+ * Gaussian heights need none of it. */
 struct surface_options {
     struct heights heights;
-    enum surface_keep keep;           /* which of the two last iterates is returned */
+    enum surface_amplitudes amplitudes; /* random, not Gaussian: heights have the deviation and the
+                                           spectrum of the Gaussian start of each surface */
+    enum surface_keep keep;             /* which of the two last iterates is returned */
     enum surface_iteration iteration; /* accelerated and relaxed (F5.4), or plain alternation (F5.1)
                                          as in the reference */
     enum surface_draw draw;           /* target heights drawn at random, or exact quantiles */

@@ -231,7 +231,8 @@ static int read_contact(struct contact_case *out, struct values *values, struct 
     out->tolerance = values_number(values, "/contact/tolerance");
     out->stiffness = values_choice(values, "/contact/stiffness") != STIFFNESS_OMITTED;
     if (surface->grid.nx > 0)
-        out->band = surface_case_exact(surface) ? surface_case_band(surface) : surface->grid.nx / 2;
+        out->band =
+            surface_case_band_limited(surface) ? surface_case_band(surface) : surface->grid.nx / 2;
     read_estimators(out, values);
     int status = read_blocks(out, values, err);
     if (status == 0)

@@ -58,7 +58,8 @@ static bool choose_grids(const struct contact_case *one_case, struct contact_sur
     if (!scale_grid(&one_case->probe.grid, out->length, &out->level.grid) ||
         !scale_grid(&one_case->surface.grid, out->length, &surface->grid))
         return false;
-    out->band = surface_case_exact(surface) ? surface_case_band(surface) : surface->grid.nx / 2;
+    out->band =
+        surface_case_band_limited(surface) ? surface_case_band(surface) : surface->grid.nx / 2;
     if (surface->options.heights.type == HEIGHTS_GAUSSIAN && out->level.grid.nx > 2 * out->band) {
         surface->grid = out->level.grid;
         out->level.stride = 1;

@@ -84,9 +84,10 @@ int contact_theories_make(struct contact_theories *out, const struct contact_cas
                                result_numbers(result, THEORIES_MOST * one_case->load_count)};
     if (list.values == NULL)
         return error_memory(err, THEORIES_MOST * one_case->load_count * sizeof(double), "theories");
-    if (is_one_wave(one_case, modes))
+    /* Of a wave of random amplitude no theory here tells the mean. */
+    if (is_one_wave(one_case, modes) && surface_case_exact(&one_case->surface))
         put_wave(&list);
-    else
+    else if (!is_one_wave(one_case, modes))
         put_rough(&list, moments);
     return 0;
 }

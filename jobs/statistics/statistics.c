@@ -40,13 +40,14 @@ static int workspace_create(void *workspace, const void *one_case,
     const struct statistics_case *statistics = one_case;
     const struct grid *grid = &statistics->surface.grid;
     const struct modes *modes = basis->modes;
-    bool exact = surface_case_exact(&statistics->surface); /* else heights placed point by point */
+    /* else heights placed point by point */
+    bool limited = surface_case_band_limited(&statistics->surface);
     (void)shared;
     work->one_case = statistics;
     work->moments = basis->moments;
     int status = summit_finder_create(&work->finder, grid, statistics->stencil,
-                                      statistics->curvature, exact ? modes->mode_x : grid->nx / 2,
-                                      exact ? modes->mode_y : grid->ny / 2, err);
+                                      statistics->curvature, limited ? modes->mode_x : grid->nx / 2,
+                                      limited ? modes->mode_y : grid->ny / 2, err);
     return status != 0 ? status : spectra_create(&work->spectra, statistics, modes, err);
 }
 

@@ -41,15 +41,15 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
         fmax(1, spectrum_expected_summits(&surface->spectrum, grid, surface->length_ratio,
                                           (double)mode_x, &alpha));
     double spread = sqrt(fmax(0.05, 1 - 0.8968 / fmax(alpha, 1))); /* of summit heights */
-    bool exact = surface_case_exact(surface);
+    bool exact = surface_case_exact(surface), limited = surface_case_band_limited(surface);
     out->nx = grid->nx;
     out->ny = grid->ny;
     /* a list of summits doubles as it grows; spectra of height maps take a transform of the grid */
     out->memory_bytes =
         generator_bytes(grid, mode_x, mode_y, &surface->options) +
-        (exact ? summit_finder_bytes(grid, one_case->stencil, one_case->curvature, mode_x, mode_y)
-               : summit_finder_bytes(grid, one_case->stencil, one_case->curvature, grid->nx / 2,
-                                     grid->ny / 2)) +
+        (limited ? summit_finder_bytes(grid, one_case->stencil, one_case->curvature, mode_x, mode_y)
+                 : summit_finder_bytes(grid, one_case->stencil, one_case->curvature, grid->nx / 2,
+                                       grid->ny / 2)) +
         statistics_tally_bytes(one_case) + 2 * summits * sizeof(struct summit) +
         (exact ? 0 : 24 * points) + 6e6;
     out->seconds = expected_seconds(one_case);

@@ -101,7 +101,7 @@ static int characterise(const struct generate_order *order, const struct surface
     FILE *file = beside ? stderr : stdout;
     size_t mode_x = surface_case_band(surface);
     size_t mode_y = surface->dimension == 1 ? 0 : mode_x;
-    if (!surface_case_exact(surface)) {
+    if (!surface_case_band_limited(surface)) {
         mode_x = surface->grid.nx / 2;
         mode_y = surface->grid.ny / 2;
     }

@@ -110,6 +110,40 @@ static void kept_spectrum_is_exact(void **state) {
         }
 }
 
+/* With random amplitudes the spectrum to be had is that of the Gaussian start of the same key, and
+ * so changes from run to run, to rounding. */
+static void random_amplitudes_are_those_of_the_start(void **state) {
+    (void)state;
+    struct grid grid = {64, 48, 1, 1};
+    struct spectrum spectrum = self_affine(0.5, 1. / 8);
+    struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 1), gaussian = SURFACE_DEFAULTS;
+    struct height_sample s, start;
+    struct transform *transform = NULL, *other = NULL;
+    options.amplitudes = gaussian.amplitudes = AMPLITUDES_RANDOM;
+    assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+    assert_int_equal(sample_create(&start, grid, &spectrum, &gaussian, NULL), 0);
+    assert_int_equal(transform_create(&transform, &grid, 32, 24, NULL), 0);
+    assert_int_equal(transform_create(&other, &grid, 32, 24, NULL), 0);
+    for (uint64_t r = 0; r < 3; r++) {
+        const struct random_key key = {11, 3, r};
+        double largest = 0;
+        assert_int_equal(generator_run(s.generator, key, s.z, &s.report, NULL), 0);
+        assert_int_equal(generator_run(start.generator, key, start.z, NULL, NULL), 0);
+        check_report(&s.report);
+        transform_forward(transform, s.z);
+        transform_forward(other, start.z);
+        for (size_t k = 0; k < 33 * 48; k++)
+            largest = fmax(largest, cabs(transform_spectrum(other)[k]));
+        for (size_t k = 0; k < 33 * 48; k++)
+            check_close(cabs(transform_spectrum(transform)[k]), cabs(transform_spectrum(other)[k]),
+                        1e-12 * largest);
+    }
+    transform_destroy(&transform);
+    transform_destroy(&other);
+    sample_destroy(&s);
+    sample_destroy(&start);
+}
+
 static int by_value(const void *a, const void *b) {
     const double *x = a, *y = b;
     return (*x > *y) - (*x < *y);
@@ -396,6 +430,7 @@ static void bad_options_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(kept_spectrum_is_exact),
+        cmocka_unit_test(random_amplitudes_are_those_of_the_start),
         cmocka_unit_test(kept_heights_are_exact),
         cmocka_unit_test(drawn_heights_are_standardised),
         cmocka_unit_test(shapes_are_drawn_by_the_same_numbers),

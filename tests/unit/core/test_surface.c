@@ -177,6 +177,93 @@ static void one_mode_is_one_wave(void **state) {
     free(z);
 }
 
+/* --- random amplitudes --- */
+
+static void draw_random(const struct spectrum *spectrum, const struct grid *grid,
+                        struct generator **generator) {
+    struct surface_options options = SURFACE_DEFAULTS;
+    options.amplitudes = AMPLITUDES_RANDOM;
+    assert_int_equal(generator_create(generator, spectrum, grid, &options, NULL), 0);
+}
+
+/* Of every wave the power is exponential about the prescribed one (complex modes: mean square 2),
+ * and of one that is its own conjugate that of a normal number (mean square 3); over all waves of
+ * 400 surfaces, within four standard errors: of the mean 1/sqrt(n), of the square sqrt(20/n), and
+ * of real ones sqrt(2/n) and sqrt(96/n). A grid of two points a shortest wave has real modes. */
+static void random_powers_are_those_of_normal_modes(void **state) {
+    (void)state;
+    enum { SURFACES = 400 };
+    const struct grid grid = {16, 16, 8, 8};
+    struct spectrum spectrum = self_affine(8);
+    struct generator *generator = NULL;
+    struct transform *transform = NULL;
+    double sum[2] = {0}, square[2] = {0}, count[2] = {0}, z[256];
+    draw_random(&spectrum, &grid, &generator);
+    const struct modes *modes = generator_modes(generator);
+    assert_int_equal(transform_create(&transform, &grid, modes->mode_x, modes->mode_y, NULL), 0);
+    for (uint64_t r = 0; r < SURFACES; r++) {
+        assert_int_equal(generator_run(generator, (struct random_key){5, 0, r}, z, NULL, NULL), 0);
+        transform_forward(transform, z);
+        for (size_t mx = 0; mx <= modes->mode_x; mx++)
+            for (size_t my = 0; my <= modes->mode_y; my++) {
+                double power = modes_power(modes, mx, (long)my);
+                if (!(power > 0))
+                    continue;
+                double complex mode = transform_spectrum(transform)[mx * grid.ny + my];
+                double share = (creal(mode) * creal(mode) + cimag(mode) * cimag(mode)) / power;
+                bool real = (mx == 0 || mx == 8) && (my == 0 || my == 8);
+                sum[real] += share;
+                square[real] += share * share;
+                count[real]++;
+            }
+    }
+    assert_true(count[0] > 10 * SURFACES && count[1] >= 2 * SURFACES);
+    for (int real = 0; real < 2; real++) {
+        double n = count[real];
+        check_close(sum[real] / n, 1, 4 * sqrt((real ? 2 : 1) / n));
+        check_close(square[real] / n, real ? 3 : 2, 4 * sqrt((real ? 96 : 20) / n));
+    }
+    transform_destroy(&transform);
+    generator_destroy(&generator);
+}
+
+/* On every grid, and in every spectrum of the cell over its own amplitude. */
+static void a_wave_keeps_its_random_amplitude(void **state) {
+    (void)state;
+    const struct grid coarse = {64, 64, 16, 16}, fine = {150, 97, 16, 16};
+    const struct random_key key = {20211, 3, 17};
+    struct spectrum spectrum = self_affine(4), rough = self_affine(4);
+    struct generator *a = NULL, *b = NULL;
+    struct transform *one = NULL, *two = NULL;
+    static double z[64 * 64], dense[150 * 97];
+    rough.hurst = 0.2;
+    draw_random(&spectrum, &coarse, &a);
+    draw_random(&rough, &fine, &b);
+    assert_int_equal(generator_run(a, key, z, NULL, NULL), 0);
+    assert_int_equal(generator_run(b, key, dense, NULL, NULL), 0);
+    assert_int_equal(transform_create(&one, &coarse, 16, 16, NULL), 0);
+    assert_int_equal(transform_create(&two, &fine, 16, 16, NULL), 0);
+    transform_forward(one, z);
+    transform_forward(two, dense);
+    size_t common = 0;
+    for (size_t mx = 0; mx <= 16; mx++)
+        for (size_t my = 0; my <= 16; my++) {
+            double power = modes_power(generator_modes(a), mx, (long)my);
+            double other = modes_power(generator_modes(b), mx, (long)my);
+            if (!(power > 0))
+                continue;
+            double complex first = transform_spectrum(one)[mx * coarse.ny + my] / sqrt(power);
+            double complex second = transform_spectrum(two)[mx * fine.ny + my] / sqrt(other);
+            check_close(cabs(first - second), 0, 1e-9);
+            common++;
+        }
+    assert_true(common > 100);
+    transform_destroy(&one);
+    transform_destroy(&two);
+    generator_destroy(&a);
+    generator_destroy(&b);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spectrum_is_exact),
@@ -184,6 +271,8 @@ int main(void) {
         cmocka_unit_test(a_wave_keeps_its_phase_in_other_spectra),
         cmocka_unit_test(realisation_depends_on_its_key_alone),
         cmocka_unit_test(one_mode_is_one_wave),
+        cmocka_unit_test(random_powers_are_those_of_normal_modes),
+        cmocka_unit_test(a_wave_keeps_its_random_amplitude),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,6 +69,29 @@ static void everything_given(void **state) {
     surface_case_clear(&surface);
 }
 
+/* Random amplitudes leave the band as it is, and the spectrum of each surface not; heights that are
+ * placed leave neither. */
+static void what_is_exact(void **state) {
+    (void)state;
+    static const struct {
+        const char *more;
+        bool exact, band_limited;
+    } CASES[] = {{"\"amplitudes\": \"fixed\"", true, true},
+                 {"\"amplitudes\": \"random\"", false, true},
+                 {"\"heights\": {\"distribution\": \"weibull_min\", \"shape\": 2}", true, true},
+                 {"\"heights\": {\"distribution\": \"weibull_min\", \"shape\": 2,"
+                  " \"keep\": \"heights\"}",
+                  false, false}};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        char text[200];
+        snprintf(text, sizeof text, "{\"hurst\": 0.8, \"wavelength_ratio\": 8, %s}", CASES[c].more);
+        struct surface_case surface = read(text);
+        assert_true(surface_case_exact(&surface) == CASES[c].exact);
+        assert_true(surface_case_band_limited(&surface) == CASES[c].band_limited);
+        surface_case_clear(&surface);
+    }
+}
+
 /* dx is never coarser than asked; an integer behind a rounding is that integer. */
 static void grids(void **state) {
     (void)state;
@@ -214,6 +237,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
         cmocka_unit_test(everything_given),
+        cmocka_unit_test(what_is_exact),
         cmocka_unit_test(grids),
         cmocka_unit_test(ratios_of_alpha),
         cmocka_unit_test(other_spectra),

@@ -44,6 +44,7 @@ static void ready_studies(void **state) {
                    {"rce-3d-full", 2, 16, 10},
                    {"rce-length", 18, 2048, 2000},
                    {"rce-length-3d", 12, 256, 100},
+                   {"rce-amplitudes", 6, 1024, 2000},
                    {"rce-block", 15, 512, 100}};
     for (size_t a = 0; a < sizeof studies / sizeof *studies; a++) {
         struct study *study = study_of(studies[a].name);
