@@ -136,13 +136,6 @@ static int band_edge(const struct spectrum *s, double length, size_t points, siz
     return 0;
 }
 
-/* How many modes of the full plane a stored one stands for. Column 0 and, for even nx, the Nyquist
- * column hold both signs of my themselves; every other column stands for its mirror image too. The
- * Nyquist row of an even ny is stored once, at +ny/2. */
-static unsigned mode_weight(const struct grid *grid, size_t mx) {
-    return mx == 0 || 2 * mx == grid->nx ? 1 : 2;
-}
-
 static void modes_fill(struct modes *modes, const struct spectrum *s) {
     const struct grid *grid = &modes->grid;
     bool profile = grid_is_profile(grid);
@@ -157,7 +150,7 @@ static void modes_fill(struct modes *modes, const struct spectrum *s) {
             double ky = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
             *power = density(s, profile, kx, ky);
             if (*power > 0)
-                modes->count += mode_weight(grid, mx);
+                modes->count += modes_weight(grid, mx);
         }
 }
 
@@ -233,7 +226,7 @@ void modes_moments(const struct modes *modes, struct moments *out) {
         for (long my = -mode_y; my <= mode_y; my++, power++) {
             if (*power == 0)
                 continue;
-            double weighted = *power * mode_weight(grid, mx);
+            double weighted = *power * modes_weight(grid, mx);
             double kx = 2 * M_PI * (double)mx / grid->lx;
             double ky = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
             double x[5] = {1, kx, kx * kx, kx * kx * kx, kx * kx * kx * kx};

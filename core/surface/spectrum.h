@@ -51,6 +51,12 @@ void modes_destroy(struct modes **modes);
 static inline double modes_power(const struct modes *modes, size_t mx, long my) {
     return modes->power[mx * (2 * modes->mode_y + 1) + (size_t)(my + (long)modes->mode_y)];
 }
+/* How many modes of the full plane a stored one stands for. Column 0 and, for even nx, the Nyquist
+ * column hold both signs of my themselves; every other column stands for its mirror image too. The
+ * Nyquist row of an even ny is stored once, at +ny/2. */
+static inline unsigned modes_weight(const struct grid *grid, size_t mx) {
+    return mx == 0 || 2 * mx == grid->nx ? 1 : 2;
+}
 
 /* Spectral moments (FORMULAS.md, F2.3). A profile has m00 = m0, m20 = m2, m40 = m4; the others are
  * 0. */

@@ -32,12 +32,12 @@ double profile_peak_joint_pdf(double z, double t1, double alpha);
 double profile_mean_curvature(double z, double alpha);
 double profile_peak_density(double m2, double m4);
 
-/* Theory expects this of the summits of a surface (dimension 2: F6.4, F6.5, F6.7) or the peaks of a
- * profile (dimension 1: F7.2, F7.3). */
+/* Theory expects this of the summits of a surface (dimension 2: F6.4, F6.5, F6.7, F6.11) or the
+ * peaks of a profile (dimension 1: F7.2 to F7.4). */
 struct summit_expectation {
-    double density;                      /* per area (length) */
-    double height_mean, height_variance; /* of z* */
-    double curvature;                    /* mean curvature over sqrt(m4), over all summits */
+    double density;                                                        /* per area (length) */
+    double height_mean, height_variance, height_skewness, height_kurtosis; /* of z* */
+    double curvature; /* mean curvature over sqrt(m4), over all summits */
 };
 struct summit_expectation summit_expectation(int dimension, double m2, double m4, double alpha);
 

@@ -83,18 +83,3 @@ double profile_mean_curvature(double z, double alpha) {
 double profile_peak_density(double m2, double m4) {
     return sqrt(m4 / m2) / (2 * M_PI);
 }
-
-struct summit_expectation summit_expectation(int dimension, double m2, double m4, double alpha) {
-    const double half_pi = 1.5707963267948966;
-    if (dimension == 2)
-        return (struct summit_expectation){.density = nayak_summit_density(m2, m4),
-                                           .height_mean = nayak_summit_mean(alpha),
-                                           .height_variance = nayak_summit_variance(alpha),
-                                           .curvature = nayak_overall_curvature()};
-    /* Cartwright & Longuet-Higgins (1956) with epsilon^2 = 1 - 1/alpha; curvatures of all peaks are
-     * Rayleigh distributed. */
-    return (struct summit_expectation){.density = profile_peak_density(m2, m4),
-                                       .height_mean = sqrt(half_pi / alpha),
-                                       .height_variance = 1 - (half_pi - 1) / alpha,
-                                       .curvature = sqrt(half_pi)};
-}

@@ -195,6 +195,57 @@ static void profile_peaks(void **state) {
     assert_true(isnan(profile_peak_pdf(0, 1)));
 }
 
+/* --- moments of all summit heights --- */
+
+struct height_slice {
+    double (*joint)(double, double, double);
+    double alpha, z;
+    int order;
+};
+
+static double over_curvature(double s, const void *context) {
+    const struct height_slice *slice = context;
+    return slice->joint(slice->z, -s, slice->alpha);
+}
+
+static double over_height(double z, const void *context) {
+    struct height_slice slice = *(const struct height_slice *)context;
+    slice.z = z;
+    return pow(z, slice.order) * quadrature(over_curvature, &slice, 0, 16, 20);
+}
+
+/* The first four moments of the joint density over heights and curvatures, term by term. */
+static void check_moments(int dimension, double alpha, double (*joint)(double, double, double)) {
+    double m[5];
+    for (int order = 0; order <= 4; order++) {
+        struct height_slice slice = {joint, alpha, 0, order};
+        m[order] = quadrature(over_height, &slice, -12, 12, 50);
+    }
+    double variance = m[2] - m[1] * m[1];
+    double third = m[3] - 3 * m[1] * m[2] + 2 * m[1] * m[1] * m[1];
+    double fourth = m[4] - 4 * m[1] * m[3] + 6 * m[1] * m[1] * m[2] - 3 * pow(m[1], 4);
+    struct summit_expectation found = summit_expectation(dimension, 1, 1, alpha);
+    check_close(m[0], 1, 1e-9);
+    check_close(found.height_mean, m[1], 1e-9);
+    check_close(found.height_variance, variance, 1e-9);
+    check_close(found.height_skewness, third / pow(variance, 1.5), 1e-8);
+    check_close(found.height_kurtosis, fourth / (variance * variance), 1e-8);
+}
+
+static void moments_of_heights(void **state) {
+    (void)state;
+    static const double SOME[] = {2, 5, 206.45};
+    for (size_t a = 0; a < sizeof SOME / sizeof *SOME; a++) {
+        check_moments(2, SOME[a], nayak_joint_pdf);
+        check_moments(1, SOME[a], profile_peak_joint_pdf);
+    }
+    struct summit_expectation nearly_normal = summit_expectation(2, 1, 1, 1e9);
+    check_close(nearly_normal.height_skewness, 0, 1e-9);
+    check_close(nearly_normal.height_kurtosis, 3, 1e-9);
+    assert_true(isnan(summit_expectation(2, 1, 1, 1.5).height_skewness));
+    assert_true(isnan(summit_expectation(1, 1, 1, 1).height_kurtosis));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values),
@@ -206,6 +257,7 @@ int main(void) {
         cmocka_unit_test(out_of_domain_is_no_number),
         cmocka_unit_test(profile_joint_has_its_marginals),
         cmocka_unit_test(profile_peaks),
+        cmocka_unit_test(moments_of_heights),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,12 @@
 /* Heights and curvatures together: refined summits of Gaussian surfaces against Nayak's joint
  * density, refined peaks of Gaussian profiles against that of Rice (1945) and Cartwright &
- * Longuet-Higgins (1956), and the curvature of grid summits. Four standard errors over the
- * realisations; the seed is fixed, so a pass stays a pass. */
+ * Longuet-Higgins (1956), and grid summits against theory of the same grid. Four standard errors
+ * over the realisations; the seed is fixed, so a pass stays a pass. */
 #include "core/statistics/summits.h"
 #include "core/surface/surface.h"
 #include "core/theory/nayak.h"
 #include "core/theory/quadrature.h"
+#include "core/theory/sampled_summits.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 
@@ -100,6 +101,9 @@ static void measure(const struct grid *grid, double ratio, enum summit_stencil s
     free(z);
 }
 
+/* Bins of less than a thousandth of the summits are left out, their errors being poorly known. */
+static const double SHARE_LEAST = 1e-3;
+
 struct joint_slice {
     double (*joint)(double, double, double);
     double alpha, z, low; /* t1 from low to low + STEP_T */
@@ -116,8 +120,7 @@ static double along_z(double z, const void *context) {
     return quadrature(along_t, &slice, slice.low, slice.low + STEP_T, 2);
 }
 
-/* The largest distance of a bin from theory, in standard errors; bins of less than a thousandth of
- * the summits are left out, their errors being poorly known. */
+/* The largest distance of a bin from theory, in standard errors. */
 static double worst_bin(const struct joint_figures *f, double (*joint)(double, double, double)) {
     double worst = 0, covered = 0;
     for (size_t row = 0; row < ROWS; row++)
@@ -126,7 +129,7 @@ static double worst_bin(const struct joint_figures *f, double (*joint)(double, d
                                         LOW_T + (double)column * STEP_T};
             double low = LOW_Z + (double)row * STEP_Z;
             double expected = quadrature(along_z, &slice, low, low + STEP_Z, 2);
-            if (expected < 1e-3)
+            if (expected < SHARE_LEAST)
                 continue;
             covered += expected;
             worst = fmax(worst, fabs(f->shares[row][column] - expected) / f->errors[row][column]);
@@ -178,10 +181,63 @@ static void curvature_at_grid_summits(void **state) {
     check_close(exact.density, differences.density, 0);
 }
 
+/* What a grid shows, against theory of the same grid (F8.4): density, mean curvature, and heights
+ * and curvatures together. Surfaces of 13000 waves of fixed amplitude are Gaussian to less than the
+ * errors. */
+static void check_grid(size_t points, enum summit_stencil stencil,
+                       enum summit_curvature curvature) {
+    const struct grid grid = {64 * points, 64 * points, 64, 64};
+    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                      .hurst = 0.8,
+                                      .wavelength_long = 8,
+                                      .wavelength_rolloff = 8,
+                                      .wavelength_short = 1};
+    const struct bins height = {LOW_Z, LOW_Z + ROWS * STEP_Z, ROWS};
+    const struct bins t1 = {LOW_T, LOW_T + COLUMNS * STEP_T, COLUMNS};
+    double joint[ROWS * COLUMNS], worst = 0, covered = 0;
+    const struct sampled_bins bins = {.height = &height, .t1 = &t1, .joint = joint};
+    struct joint_figures f;
+    struct modes *modes = NULL;
+    struct sampled_summits expected;
+    measure(&grid, 8, stencil, curvature, 150, &f);
+    assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
+    const struct sampled_surface surface = {modes, &f.moments, stencil, curvature};
+    assert_int_equal(sampled_summits(&surface, &expected, &bins, NULL), 0);
+    modes_destroy(&modes);
+    for (size_t b = 0; b < (size_t)ROWS * COLUMNS; b++) {
+        double share = joint[b] * STEP_Z * STEP_T;
+        if (share < SHARE_LEAST)
+            continue;
+        covered += share;
+        worst = fmax(worst, fabs(f.shares[b / COLUMNS][b % COLUMNS] - share) /
+                                f.errors[b / COLUMNS][b % COLUMNS]);
+    }
+    double nayak = nayak_summit_density(f.moments.m2, f.moments.m4);
+    double density = f.density / 4096;
+    print_message("seed %d, %zu points, stencil %d, curvature %d: worst bin %.1f, density %.4f +- "
+                  "%.4f (theory %.4f), curvature %.4f +- %.4f (theory %.4f)\n",
+                  SEED, points, (int)stencil, (int)curvature, worst, density / nayak,
+                  f.density_error / 4096 / nayak, expected.density / nayak, f.curvature,
+                  f.curvature_error, expected.curvature);
+    assert_true(covered > 0.9 && worst < 4);
+    check_close(density, expected.density,
+                4 * hypot(f.density_error / 4096, expected.density * expected.density_error));
+    check_close(f.curvature, expected.curvature, 4 * f.curvature_error + 2e-4);
+}
+
+static void summits_of_grids(void **state) {
+    (void)state;
+    for (int stencil = SUMMITS_NINE_POINT; stencil <= SUMMITS_FIVE_POINT; stencil++)
+        for (int curvature = 0; curvature <= CURVATURE_SPECTRAL; curvature++)
+            check_grid(curvature == CURVATURE_SPECTRAL ? 3 : 6, (enum summit_stencil)stencil,
+                       (enum summit_curvature)curvature);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(summits_of_surfaces),
         cmocka_unit_test(peaks_of_profiles),
+        cmocka_unit_test(summits_of_grids),
         cmocka_unit_test(curvature_at_grid_summits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

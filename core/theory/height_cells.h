@@ -1,0 +1,25 @@
+/* Sums over points whose heights are normal about means of their own, all with one variance: the
+ * means are counted in narrow cells, and each cell is spread over bins of height in the end. */
+#ifndef RUGO_CORE_THEORY_HEIGHT_CELLS_H
+#define RUGO_CORE_THEORY_HEIGHT_CELLS_H
+
+#include "core/statistics/histogram.h"
+
+/* Cells of 1/64 of a standard deviation of heights, to 12 of them on either side. */
+enum { HEIGHT_CELLS = 24 * 64 };
+
+/* Adds weight to the two cells next to a mean, so that their mean is that mean. */
+void height_cells_add(double cells[HEIGHT_CELLS], double mean, double weight);
+/* Fills, at the edges of the bins (count + 1), the weight of heights below and above. With moments
+ * not NULL: likewise in below_moment and above_moment the sums of the cells' moments plus rise
+ * times weight times (height - mean). Arrays have count + 1 entries. */
+struct height_edges {
+    double *below, *above;
+    double *below_moment, *above_moment;
+};
+void height_cells_spread(const double cells[HEIGHT_CELLS], const double *moments, double variance,
+                         double rise, const struct bins *bins, const struct height_edges *out);
+/* Weight in bin b, from the smaller side, so that tails keep their digits. */
+double height_edges_within(const double *below, const double *above, size_t b);
+
+#endif

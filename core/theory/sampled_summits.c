@@ -1,0 +1,469 @@
+#include "core/theory/sampled_summits.h"
+#include "core/random.h"
+#include "core/theory/height_cells.h"
+#include "core/theory/sampled_field.h"
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The even vector of sampled_field.h is taken in other coordinates: the curvature by differences,
+ * which leads and is positive at a summit, then s along x, which it bounds (s along y is the rest
+ * of the curvature), then s along the diagonals. */
+
+/* A lower triangle such that root root' is a covariance. A pivot that the pivots before it explain
+ * to rounding is 0: such a variable is known once they are. */
+struct triangle {
+    size_t n;
+    double root[PAIRS_MOST][PAIRS_MOST];
+};
+static const double EXPLAINED = 1e-13; /* of a variance, by the variables before */
+
+static void triangle_fill(size_t n, double covariance[PAIRS_MOST][PAIRS_MOST],
+                          struct triangle *out) {
+    *out = (struct triangle){.n = n};
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b <= a; b++) {
+            double rest = covariance[a][b];
+            for (size_t c = 0; c < b; c++)
+                rest -= out->root[a][c] * out->root[b][c];
+            if (a == b)
+                out->root[a][a] = rest > EXPLAINED * covariance[a][a] ? sqrt(rest) : 0;
+            else
+                out->root[a][b] = out->root[b][b] > 0 ? rest / out->root[b][b] : 0;
+        }
+}
+
+/* A Gaussian variable by the unit normals of a triangle; what they do not tell is normal. */
+struct regression {
+    double slope[PAIRS_MOST];
+    double variance; /* of the rest */
+};
+
+static struct regression regress(const struct triangle *t, const double *covariance,
+                                 double variance) {
+    struct regression out = {.variance = variance};
+    for (size_t a = 0; a < t->n; a++) {
+        double rest = covariance[a];
+        for (size_t c = 0; c < a; c++)
+            rest -= out.slope[c] * t->root[a][c];
+        out.slope[a] = t->root[a][a] > 0 ? rest / t->root[a][a] : 0;
+        out.variance -= out.slope[a] * out.slope[a];
+    }
+    out.variance = fmax(out.variance, 0);
+    return out;
+}
+
+static double dot(size_t n, const double *a, const double *b) {
+    double sum = 0;
+    for (size_t c = 0; c < n; c++)
+        sum += a[c] * b[c];
+    return sum;
+}
+
+/* All that the integrand needs. */
+struct integrand_of_summits {
+    size_t pairs;
+    double bend[2];
+    struct triangle even, odd;
+    struct regression height, curvature; /* of z* and of kappa_m/sqrt(m4) */
+    double common;                       /* covariance of what is left of height and curvature */
+};
+
+/* Rows of the coordinates over the even vector. */
+static void coordinates_fill(const struct sampled_field *field,
+                             double rows[PAIRS_MOST][EVEN_MOST]) {
+    memset(rows, 0, sizeof(double[PAIRS_MOST][EVEN_MOST]));
+    rows[0][0] = field->bend[0];
+    if (field->pairs > 1) {
+        rows[0][1] = field->bend[1];
+        rows[1][0] = 1;
+    }
+    for (size_t a = 2; a < field->pairs; a++)
+        rows[a][a] = 1;
+}
+
+static void prepare(struct sampled_field *field, enum summit_curvature curvature,
+                    struct integrand_of_summits *out) {
+    size_t n = field->pairs, all = n + 2;
+    double rows[PAIRS_MOST][EVEN_MOST], half[PAIRS_MOST][EVEN_MOST];
+    double covariance[PAIRS_MOST][PAIRS_MOST], heights[PAIRS_MOST] = {0};
+    double curvatures[PAIRS_MOST] = {0};
+    coordinates_fill(field, rows);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < all; b++)
+            half[a][b] = dot(all, rows[a], field->even[b]);
+    for (size_t a = 0; a < n; a++) {
+        for (size_t b = 0; b < n; b++)
+            covariance[a][b] = dot(all, half[a], rows[b]);
+        heights[a] = half[a][n];
+        curvatures[a] = half[a][n + 1];
+    }
+    *out = (struct integrand_of_summits){.pairs = n, .bend = {field->bend[0], field->bend[1]}};
+    triangle_fill(n, covariance, &out->even);
+    triangle_fill(n, field->odd, &out->odd);
+    out->height = regress(&out->even, heights, field->even[n][n]);
+    if (curvature == CURVATURE_FINITE_DIFFERENCE) {
+        out->curvature.slope[0] = out->even.root[0][0];
+        return;
+    }
+    out->curvature = regress(&out->even, curvatures, field->even[n + 1][n + 1]);
+    out->common = field->even[n][n + 1] - dot(n, out->height.slope, out->curvature.slope);
+}
+
+/* --- the integrand --- */
+
+static double normal_below(double x) {
+    return erfc(-x / M_SQRT2) / 2;
+}
+
+/* Returns the unit normal variable below which lies the share u of its probability between low and
+ * high, by which the weight is multiplied. */
+static double between(double low, double high, double u, double *weight) {
+    bool upper = low > 0; /* is mirrored: lower tails are told to the last digit */
+    double a = upper ? -high : low, b = upper ? -low : high;
+    double below = normal_below(a), share = normal_below(b) - below;
+    if (!(share > 0 && high > low)) {
+        *weight = 0;
+        return 0;
+    }
+    *weight *= share;
+    double y = gsl_cdf_ugaussian_Pinv(below + u * share);
+    return upper ? -y : y;
+}
+
+/* Bounds of one variable by many conditions. */
+struct interval {
+    double low, high;
+};
+
+/* Narrows it to where low < fixed + slope x < high. */
+static void narrow(struct interval *x, double fixed, double slope, double low, double high) {
+    if (slope == 0) {
+        if (!(fixed > low && fixed < high))
+            x->high = -INFINITY;
+        return;
+    }
+    double one = (low - fixed) / slope, other = (high - fixed) / slope;
+    x->low = fmax(x->low, fmin(one, other));
+    x->high = fmin(x->high, fmax(one, other));
+}
+
+/* Conditions of a triangle's variables from `first` on, low < variable < high[a], narrow the unit
+ * normal y[at], which is 0 on entry; the others are known. */
+static struct interval bounds(const struct triangle *t, size_t at, size_t first, const double *y,
+                              const double *low, const double *high) {
+    struct interval x = {-INFINITY, INFINITY};
+    for (size_t a = first; a < t->n; a++)
+        narrow(&x, dot(a + 1, t->root[a], y), t->root[a][at], low[a], high[a]);
+    return x;
+}
+
+/* The curvature by differences goes from 0 to this many of its deviations: beyond, exp(-36) of the
+ * density is left. */
+static const double LEAD_MOST = 8.5;
+enum { LATTICE_MOST = 2 * PAIRS_MOST - 2 }; /* dimensions beside that of the curvature */
+
+/* On fine grids the diagonals are nearly known from the sides: s of the second one from s of the
+ * other three, t of both from t along x and y. What is left of them is drawn first, and the
+ * variable before is held by all conditions at once, so that no condition falls like a step. */
+
+/* Draws the unit normals of the even vector of a point behind y[0], fills s of each pair and
+ * returns the weight. */
+static double weigh_even(const struct integrand_of_summits *f, const double *u, double *y,
+                         double *s) {
+    static const double LEAST[PAIRS_MOST] = {0, 0, 0, 0};
+    static const double MOST[PAIRS_MOST] = {INFINITY, INFINITY, INFINITY, INFINITY};
+    double curvature = y[0] * f->even.root[0][0], weight = 1;
+    s[0] = curvature / f->bend[0];
+    if (f->pairs == 1)
+        return weight;
+    struct interval x = {-INFINITY, INFINITY};
+    narrow(&x, f->even.root[1][0] * y[0], f->even.root[1][1], 0, s[0]);
+    y[1] = between(x.low, x.high, u[0], &weight);
+    s[0] = dot(2, f->even.root[1], y);
+    s[1] = (curvature - f->bend[0] * s[0]) / f->bend[1];
+    if (f->pairs == PAIRS_NINE_POINT) {
+        y[3] = gsl_cdf_ugaussian_Pinv(u[1]);
+        x = bounds(&f->even, 2, 2, y, LEAST, MOST);
+        y[2] = between(x.low, x.high, u[2], &weight);
+        for (size_t a = 2; a < f->pairs; a++)
+            s[a] = dot(a + 1, f->even.root[a], y);
+    }
+    return weight;
+}
+
+/* Returns the probability that |t| < s for all pairs, by draws of t along x and of what is left of
+ * the diagonals. */
+static double weigh_odd(const struct integrand_of_summits *f, const double *u, const double *s) {
+    const struct triangle *t = &f->odd;
+    double y[PAIRS_MOST] = {0}, least[PAIRS_MOST], weight = 2;
+    for (size_t a = 0; a < f->pairs; a++)
+        least[a] = -s[a];
+    struct interval x = {0, INFINITY}; /* the other half is its mirror image */
+    narrow(&x, 0, t->root[0][0], -s[0], s[0]);
+    y[0] = between(x.low, x.high, u[0], &weight);
+    if (f->pairs == 1)
+        return weight;
+    for (size_t a = 2; a < f->pairs; a++)
+        y[a] = gsl_cdf_ugaussian_Pinv(u[a - 1]);
+    x = bounds(t, 1, 1, y, least, s);
+    between(x.low, x.high, 0.5, &weight);
+    return weight;
+}
+
+/* Fills the unit normals of the even vector of a point, whose curvature by differences is lead of
+ * its deviations, and returns its weight; u[LATTICE_MOST] lies in (0, 1). */
+static double weigh(const struct integrand_of_summits *f, double lead, const double *u, double *y) {
+    double s[PAIRS_MOST];
+    y[0] = lead;
+    for (size_t a = 1; a < PAIRS_MOST; a++)
+        y[a] = 0;
+    double weight = weigh_even(f, u, y, s);
+    if (weight > 0)
+        weight *= weigh_odd(f, u + LATTICE_MOST / 2, s);
+    return weight * LEAD_MOST * exp(-lead * lead / 2) * 0.39894228040143268;
+}
+
+/* --- sums over a lattice --- */
+
+/* A lattice rule: point n is at the fractions of n times these steps, beside 1 of the curvature.
+ * They are chosen component by component (Sloan & Reztsov 2002) for smooth periodic functions;
+ * folding makes the ends of others meet. Independent shifts tell the error: 2e-4 of the density of
+ * nine-point summits, 1e-6 of others. */
+enum { SHIFTS_MOST = 8, LATTICE_SEED = 1, LATTICE_POINTS = 16381 };
+static const unsigned STEPS[LATTICE_MOST] = {3711, 5711, 3321, 7766, 7145, 6041};
+static size_t shift_count(size_t pairs) {
+    return pairs == PAIRS_NINE_POINT ? SHIFTS_MOST : 2;
+}
+
+struct lattice_sums {
+    double weight, curvature, height[4]; /* weight times curvature, means of heights to a power */
+    double shifted[SHIFTS_MOST];         /* weight of each shift */
+    double *cells, *moments;             /* owned, HEIGHT_CELLS; NULL: not wanted */
+    double *t1;                          /* of the caller; NULL: not wanted */
+    double *joint;                       /* owned, HEIGHT_CELLS of each bin of t1; NULL */
+};
+
+/* Adds a weight that is evenly spread over an interval of t1 to the bins under it: to counts[b], or
+ * to heights with this mean in the cells of bin b. */
+static void add_t1(const struct bins *bins, double low, double high, double weight, double *counts,
+                   double *joint, double mean) {
+    double width = bins_width(bins), from = (low - bins->low) / width;
+    double to = (high - bins->low) / width, span = to - from;
+    size_t last = (size_t)fmin(fmax(ceil(to), 0), (double)bins->count);
+    for (size_t b = (size_t)fmin(fmax(from, 0), (double)bins->count); b < last; b++) {
+        double share = span > 0 ? (fmin(to, (double)b + 1) - fmax(from, (double)b)) / span : 1;
+        if (counts != NULL)
+            counts[b] += weight * share;
+        if (joint != NULL)
+            height_cells_add(joint + b * HEIGHT_CELLS, mean, weight * share);
+    }
+}
+
+/* Gauss and Hermite's rule for a unit normal. */
+enum { HERMITE = 5 };
+static const double HERMITE_NODES[HERMITE] = {-2.8569700138728056, -1.3556261799742659, 0,
+                                              1.3556261799742659, 2.8569700138728056};
+static const double HERMITE_WEIGHTS[HERMITE] = {0.011257411327720689, 0.22207592200561266,
+                                                0.53333333333333333, 0.22207592200561266,
+                                                0.011257411327720689};
+
+/* How much height goes with a curvature that is not known from the even vector. */
+static double height_by_curvature(const struct integrand_of_summits *f) {
+    return f->curvature.variance > 0 ? f->common / f->curvature.variance : 0;
+}
+
+static void add_curvatures(const struct integrand_of_summits *f, const struct bins *t1,
+                           double height, double curvature, double interval, double weight,
+                           struct lattice_sums *sums) {
+    double factor = f->pairs == PAIRS_PROFILE ? 1 : sqrt(3), half = factor * interval / 2;
+    double deviation = sqrt(f->curvature.variance);
+    for (size_t node = 0; node < HERMITE; node++) {
+        bool single = deviation == 0;
+        double rest = single ? 0 : deviation * HERMITE_NODES[node];
+        double at = -factor * (curvature + rest);
+        add_t1(t1, at - half, at + half, weight * (single ? 1 : HERMITE_WEIGHTS[node]), sums->t1,
+               sums->joint, height + height_by_curvature(f) * rest);
+        if (single)
+            break;
+    }
+}
+
+static void add_point(const struct integrand_of_summits *f, const struct bins *t1, const double *y,
+                      double interval, double weight, struct lattice_sums *sums) {
+    double height = dot(f->pairs, f->height.slope, y);
+    double curvature = dot(f->pairs, f->curvature.slope, y), power = weight;
+    sums->weight += weight;
+    sums->curvature += weight * curvature;
+    for (size_t n = 0; n < 4; n++)
+        sums->height[n] += power *= height;
+    if (sums->cells != NULL) {
+        height_cells_add(sums->cells, height, weight);
+        height_cells_add(sums->moments, height, weight * curvature);
+    }
+    if (sums->t1 != NULL || sums->joint != NULL)
+        add_curvatures(f, t1, height, curvature, interval * fabs(f->curvature.slope[0]), weight,
+                       sums);
+}
+
+/* Curvatures by differences rise in equal steps, so that each bin of t1 sees as many points as
+ * the next; the other coordinates are those of a lattice, folded so that its ends meet. */
+static void integrate(const struct integrand_of_summits *f, const struct bins *t1,
+                      struct lattice_sums *sums) {
+    const double interval = LEAD_MOST / LATTICE_POINTS;
+    for (size_t shift = 0; shift < shift_count(f->pairs); shift++) {
+        double random[LATTICE_MOST + 1], u[LATTICE_MOST], y[PAIRS_MOST] = {0};
+        double before = sums->weight;
+        random_uniform((struct random_key){LATTICE_SEED, 0, shift}, STREAM_PHASES, 0,
+                       LATTICE_MOST + 1, random);
+        for (size_t n = 0; n < LATTICE_POINTS; n++) {
+            for (size_t a = 0; a < LATTICE_MOST; a++) {
+                double place = (double)n * STEPS[a] / LATTICE_POINTS + random[a];
+                u[a] = fmin(fmax(fabs(2 * (place - floor(place)) - 1), 1e-15), 1 - 1e-15);
+            }
+            double lead = interval * ((double)n + random[LATTICE_MOST]);
+            double weight = weigh(f, lead, u, y);
+            if (weight > 0)
+                add_point(f, t1, y, interval, weight, sums);
+        }
+        sums->shifted[shift] = sums->weight - before;
+    }
+}
+
+/* --- what comes out --- */
+
+static double relative_error(const struct lattice_sums *sums, size_t shifts) {
+    double n = (double)shifts, mean = sums->weight / n, squares = 0;
+    for (size_t shift = 0; shift < shifts; shift++)
+        squares += (sums->shifted[shift] - mean) * (sums->shifted[shift] - mean);
+    return sqrt(squares / (n * (n - 1))) / mean;
+}
+
+/* Heights are their means, with these moments, plus a normal rest. */
+static void moments_take(const struct lattice_sums *sums, double rest,
+                         struct sampled_summits *out) {
+    double m[4];
+    for (size_t n = 0; n < 4; n++)
+        m[n] = sums->height[n] / sums->weight;
+    double second = m[1] - m[0] * m[0];
+    double third = m[2] - 3 * m[0] * m[1] + 2 * m[0] * m[0] * m[0];
+    double fourth = m[3] - 4 * m[0] * m[2] + 6 * m[0] * m[0] * m[1] - 3 * m[0] * m[0] * m[0] * m[0];
+    double variance = second + rest;
+    out->height_mean = m[0];
+    out->height_variance = variance;
+    out->height_skewness = third / (variance * sqrt(variance));
+    out->height_kurtosis = (fourth + 6 * rest * second + 3 * rest * rest) / (variance * variance);
+}
+
+/* Below this share of all summits in a bin their curvature is not told. */
+static const double SHARE_LEAST = 1e-14;
+
+static int heights_take(const struct integrand_of_summits *f, const struct lattice_sums *sums,
+                        const struct sampled_bins *bins, struct error *err) {
+    size_t edges = bins->height->count + 1;
+    double *room = array_create(edges, 4 * sizeof *room), width = bins_width(bins->height);
+    if (room == NULL)
+        return error_memory(err, edges * 4 * sizeof *room, "bins of theory");
+    struct height_edges out = {room, room + edges, room + 2 * edges, room + 3 * edges};
+    double rest = f->height.variance;
+    height_cells_spread(sums->cells, sums->moments, rest, rest > 0 ? f->common / rest : 0,
+                        bins->height, &out);
+    for (size_t b = 0; b + 1 < edges; b++) {
+        double weight = height_edges_within(out.below, out.above, b);
+        bool lower = out.below[b] < out.above[b + 1];
+        double moment = lower ? out.below_moment[b + 1] - out.below_moment[b]
+                              : out.above_moment[b] - out.above_moment[b + 1];
+        bins->pdf[b] = weight / sums->weight / width;
+        bins->cdf[b] = fmin(out.below[b + 1] / sums->weight, 1);
+        bins->curvature[b] = weight > SHARE_LEAST * sums->weight ? moment / weight : (double)NAN;
+    }
+    free(room);
+    return 0;
+}
+
+static int joint_take(const struct integrand_of_summits *f, const struct lattice_sums *sums,
+                      const struct sampled_bins *bins, struct error *err) {
+    size_t edges = bins->height->count + 1, columns = bins->t1->count;
+    double *room = array_create(edges, 2 * sizeof *room);
+    if (room == NULL)
+        return error_memory(err, edges * 2 * sizeof *room, "bins of theory");
+    struct height_edges out = {.below = room, .above = room + edges};
+    double rest = fmax(f->height.variance - f->common * height_by_curvature(f), 0);
+    double cell = bins_width(bins->height) * bins_width(bins->t1) * sums->weight;
+    for (size_t column = 0; column < columns; column++) {
+        height_cells_spread(sums->joint + column * HEIGHT_CELLS, NULL, rest, 0, bins->height, &out);
+        for (size_t b = 0; b + 1 < edges; b++)
+            bins->joint[b * columns + column] = height_edges_within(out.below, out.above, b) / cell;
+    }
+    free(room);
+    return 0;
+}
+
+static int take(const struct integrand_of_summits *f, const struct sampled_surface *surface,
+                const struct lattice_sums *sums, const struct sampled_bins *bins,
+                struct sampled_summits *out, struct error *err) {
+    const struct grid *grid = &surface->modes->grid;
+    int status = 0;
+    if (sums->cells != NULL)
+        status = heights_take(f, sums, bins, err);
+    if (sums->joint != NULL && status == 0)
+        status = joint_take(f, sums, bins, err);
+    if (status != 0)
+        return status;
+    for (size_t b = 0; sums->t1 != NULL && b < bins->t1->count; b++)
+        sums->t1[b] /= sums->weight * bins_width(bins->t1);
+    double points = (double)shift_count(f->pairs) * LATTICE_POINTS;
+    double area = grid_is_profile(grid) ? grid_dx(grid) : grid_dx(grid) * grid_dy(grid);
+    out->density = sums->weight / points / area;
+    out->density_error = relative_error(sums, shift_count(f->pairs));
+    out->curvature = sums->curvature / sums->weight;
+    moments_take(sums, f->height.variance, out);
+    return 0;
+}
+
+static int sums_create(struct lattice_sums *sums, const struct sampled_bins *bins,
+                       struct error *err) {
+    *sums = (struct lattice_sums){0};
+    if (bins == NULL)
+        return 0;
+    size_t cells = bins->pdf != NULL ? 2 : 0, joint = bins->joint != NULL ? bins->t1->count : 0;
+    size_t bytes = (cells + joint) * HEIGHT_CELLS * sizeof(double);
+    sums->t1 = bins->t1_pdf;
+    if (sums->t1 != NULL)
+        memset(sums->t1, 0, bins->t1->count * sizeof *sums->t1);
+    if (cells != 0)
+        sums->cells = array_create(2 * HEIGHT_CELLS, sizeof *sums->cells);
+    if (joint != 0)
+        sums->joint = array_create(joint * HEIGHT_CELLS, sizeof *sums->joint);
+    if ((cells != 0 && sums->cells == NULL) || (joint != 0 && sums->joint == NULL))
+        return error_memory(err, bytes, "sums of theory");
+    sums->moments = cells != 0 ? sums->cells + HEIGHT_CELLS : NULL;
+    return 0;
+}
+
+int sampled_summits(const struct sampled_surface *surface, struct sampled_summits *out,
+                    const struct sampled_bins *bins, struct error *err) {
+    struct sampled_field field;
+    struct integrand_of_summits f;
+    struct lattice_sums sums;
+    size_t pairs = grid_is_profile(&surface->modes->grid)   ? PAIRS_PROFILE
+                   : surface->stencil == SUMMITS_NINE_POINT ? PAIRS_NINE_POINT
+                                                            : PAIRS_FIVE_POINT;
+    if (surface->stencil == SUMMITS_REFINED)
+        return error_set(err, ERROR_INPUT,
+                         "refined summits are not those of a grid; allowed: "
+                         "nine-point and five-point ones");
+    int status = sampled_field_fill(surface->modes, surface->moments, pairs, &field, err);
+    if (status != 0)
+        return status;
+    prepare(&field, surface->curvature, &f);
+    status = sums_create(&sums, bins, err);
+    if (status == 0) {
+        integrate(&f, bins != NULL ? bins->t1 : NULL, &sums);
+        status = take(&f, surface, &sums, bins, out, err);
+    }
+    free(sums.cells);
+    free(sums.joint);
+    return status;
+}
