@@ -1,229 +1,10 @@
 #include "core/theory/sampled_summits.h"
 #include "core/random.h"
 #include "core/theory/height_cells.h"
-#include "core/theory/sampled_field.h"
-#include <gsl/gsl_cdf.h>
+#include "core/theory/summit_integrand.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The even vector of sampled_field.h is taken in other coordinates: the curvature by differences,
- * which leads and is positive at a summit, then s along x, which it bounds (s along y is the rest
- * of the curvature), then s along the diagonals. */
-
-/* A lower triangle such that root root' is a covariance. A pivot that the pivots before it explain
- * to rounding is 0: such a variable is known once they are. */
-struct triangle {
-    size_t n;
-    double root[PAIRS_MOST][PAIRS_MOST];
-};
-static const double EXPLAINED = 1e-13; /* of a variance, by the variables before */
-
-static void triangle_fill(size_t n, double covariance[PAIRS_MOST][PAIRS_MOST],
-                          struct triangle *out) {
-    *out = (struct triangle){.n = n};
-    for (size_t a = 0; a < n; a++)
-        for (size_t b = 0; b <= a; b++) {
-            double rest = covariance[a][b];
-            for (size_t c = 0; c < b; c++)
-                rest -= out->root[a][c] * out->root[b][c];
-            if (a == b)
-                out->root[a][a] = rest > EXPLAINED * covariance[a][a] ? sqrt(rest) : 0;
-            else
-                out->root[a][b] = out->root[b][b] > 0 ? rest / out->root[b][b] : 0;
-        }
-}
-
-/* A Gaussian variable by the unit normals of a triangle; what they do not tell is normal. */
-struct regression {
-    double slope[PAIRS_MOST];
-    double variance; /* of the rest */
-};
-
-static struct regression regress(const struct triangle *t, const double *covariance,
-                                 double variance) {
-    struct regression out = {.variance = variance};
-    for (size_t a = 0; a < t->n; a++) {
-        double rest = covariance[a];
-        for (size_t c = 0; c < a; c++)
-            rest -= out.slope[c] * t->root[a][c];
-        out.slope[a] = t->root[a][a] > 0 ? rest / t->root[a][a] : 0;
-        out.variance -= out.slope[a] * out.slope[a];
-    }
-    out.variance = fmax(out.variance, 0);
-    return out;
-}
-
-static double dot(size_t n, const double *a, const double *b) {
-    double sum = 0;
-    for (size_t c = 0; c < n; c++)
-        sum += a[c] * b[c];
-    return sum;
-}
-
-/* All that the integrand needs. */
-struct integrand_of_summits {
-    size_t pairs;
-    double bend[2];
-    struct triangle even, odd;
-    struct regression height, curvature; /* of z* and of kappa_m/sqrt(m4) */
-    double common;                       /* covariance of what is left of height and curvature */
-};
-
-/* Rows of the coordinates over the even vector. */
-static void coordinates_fill(const struct sampled_field *field,
-                             double rows[PAIRS_MOST][EVEN_MOST]) {
-    memset(rows, 0, sizeof(double[PAIRS_MOST][EVEN_MOST]));
-    rows[0][0] = field->bend[0];
-    if (field->pairs > 1) {
-        rows[0][1] = field->bend[1];
-        rows[1][0] = 1;
-    }
-    for (size_t a = 2; a < field->pairs; a++)
-        rows[a][a] = 1;
-}
-
-static void prepare(struct sampled_field *field, enum summit_curvature curvature,
-                    struct integrand_of_summits *out) {
-    size_t n = field->pairs, all = n + 2;
-    double rows[PAIRS_MOST][EVEN_MOST], half[PAIRS_MOST][EVEN_MOST];
-    double covariance[PAIRS_MOST][PAIRS_MOST], heights[PAIRS_MOST] = {0};
-    double curvatures[PAIRS_MOST] = {0};
-    coordinates_fill(field, rows);
-    for (size_t a = 0; a < n; a++)
-        for (size_t b = 0; b < all; b++)
-            half[a][b] = dot(all, rows[a], field->even[b]);
-    for (size_t a = 0; a < n; a++) {
-        for (size_t b = 0; b < n; b++)
-            covariance[a][b] = dot(all, half[a], rows[b]);
-        heights[a] = half[a][n];
-        curvatures[a] = half[a][n + 1];
-    }
-    *out = (struct integrand_of_summits){.pairs = n, .bend = {field->bend[0], field->bend[1]}};
-    triangle_fill(n, covariance, &out->even);
-    triangle_fill(n, field->odd, &out->odd);
-    out->height = regress(&out->even, heights, field->even[n][n]);
-    if (curvature == CURVATURE_FINITE_DIFFERENCE) {
-        out->curvature.slope[0] = out->even.root[0][0];
-        return;
-    }
-    out->curvature = regress(&out->even, curvatures, field->even[n + 1][n + 1]);
-    out->common = field->even[n][n + 1] - dot(n, out->height.slope, out->curvature.slope);
-}
-
-/* --- the integrand --- */
-
-static double normal_below(double x) {
-    return erfc(-x / M_SQRT2) / 2;
-}
-
-/* Returns the unit normal variable below which lies the share u of its probability between low and
- * high, by which the weight is multiplied. */
-static double between(double low, double high, double u, double *weight) {
-    bool upper = low > 0; /* is mirrored: lower tails are told to the last digit */
-    double a = upper ? -high : low, b = upper ? -low : high;
-    double below = normal_below(a), share = normal_below(b) - below;
-    if (!(share > 0 && high > low)) {
-        *weight = 0;
-        return 0;
-    }
-    *weight *= share;
-    double y = gsl_cdf_ugaussian_Pinv(below + u * share);
-    return upper ? -y : y;
-}
-
-/* Bounds of one variable by many conditions. */
-struct interval {
-    double low, high;
-};
-
-/* Narrows it to where low < fixed + slope x < high. */
-static void narrow(struct interval *x, double fixed, double slope, double low, double high) {
-    if (slope == 0) {
-        if (!(fixed > low && fixed < high))
-            x->high = -INFINITY;
-        return;
-    }
-    double one = (low - fixed) / slope, other = (high - fixed) / slope;
-    x->low = fmax(x->low, fmin(one, other));
-    x->high = fmin(x->high, fmax(one, other));
-}
-
-/* Conditions of a triangle's variables from `first` on, low < variable < high[a], narrow the unit
- * normal y[at], which is 0 on entry; the others are known. */
-static struct interval bounds(const struct triangle *t, size_t at, size_t first, const double *y,
-                              const double *low, const double *high) {
-    struct interval x = {-INFINITY, INFINITY};
-    for (size_t a = first; a < t->n; a++)
-        narrow(&x, dot(a + 1, t->root[a], y), t->root[a][at], low[a], high[a]);
-    return x;
-}
-
-/* The curvature by differences goes from 0 to this many of its deviations: beyond, exp(-36) of the
- * density is left. */
-static const double LEAD_MOST = 8.5;
-enum { LATTICE_MOST = 2 * PAIRS_MOST - 2 }; /* dimensions beside that of the curvature */
-
-/* On fine grids the diagonals are nearly known from the sides: s of the second one from s of the
- * other three, t of both from t along x and y. What is left of them is drawn first, and the
- * variable before is held by all conditions at once, so that no condition falls like a step. */
-
-/* Draws the unit normals of the even vector of a point behind y[0], fills s of each pair and
- * returns the weight. */
-static double weigh_even(const struct integrand_of_summits *f, const double *u, double *y,
-                         double *s) {
-    static const double LEAST[PAIRS_MOST] = {0, 0, 0, 0};
-    static const double MOST[PAIRS_MOST] = {INFINITY, INFINITY, INFINITY, INFINITY};
-    double curvature = y[0] * f->even.root[0][0], weight = 1;
-    s[0] = curvature / f->bend[0];
-    if (f->pairs == 1)
-        return weight;
-    struct interval x = {-INFINITY, INFINITY};
-    narrow(&x, f->even.root[1][0] * y[0], f->even.root[1][1], 0, s[0]);
-    y[1] = between(x.low, x.high, u[0], &weight);
-    s[0] = dot(2, f->even.root[1], y);
-    s[1] = (curvature - f->bend[0] * s[0]) / f->bend[1];
-    if (f->pairs == PAIRS_NINE_POINT) {
-        y[3] = gsl_cdf_ugaussian_Pinv(u[1]);
-        x = bounds(&f->even, 2, 2, y, LEAST, MOST);
-        y[2] = between(x.low, x.high, u[2], &weight);
-        for (size_t a = 2; a < f->pairs; a++)
-            s[a] = dot(a + 1, f->even.root[a], y);
-    }
-    return weight;
-}
-
-/* Returns the probability that |t| < s for all pairs, by draws of t along x and of what is left of
- * the diagonals. */
-static double weigh_odd(const struct integrand_of_summits *f, const double *u, const double *s) {
-    const struct triangle *t = &f->odd;
-    double y[PAIRS_MOST] = {0}, least[PAIRS_MOST], weight = 2;
-    for (size_t a = 0; a < f->pairs; a++)
-        least[a] = -s[a];
-    struct interval x = {0, INFINITY}; /* the other half is its mirror image */
-    narrow(&x, 0, t->root[0][0], -s[0], s[0]);
-    y[0] = between(x.low, x.high, u[0], &weight);
-    if (f->pairs == 1)
-        return weight;
-    for (size_t a = 2; a < f->pairs; a++)
-        y[a] = gsl_cdf_ugaussian_Pinv(u[a - 1]);
-    x = bounds(t, 1, 1, y, least, s);
-    between(x.low, x.high, 0.5, &weight);
-    return weight;
-}
-
-/* Fills the unit normals of the even vector of a point, whose curvature by differences is lead of
- * its deviations, and returns its weight; u[LATTICE_MOST] lies in (0, 1). */
-static double weigh(const struct integrand_of_summits *f, double lead, const double *u, double *y) {
-    double s[PAIRS_MOST];
-    y[0] = lead;
-    for (size_t a = 1; a < PAIRS_MOST; a++)
-        y[a] = 0;
-    double weight = weigh_even(f, u, y, s);
-    if (weight > 0)
-        weight *= weigh_odd(f, u + LATTICE_MOST / 2, s);
-    return weight * LEAD_MOST * exp(-lead * lead / 2) * 0.39894228040143268;
-}
 
 /* --- sums over a lattice --- */
 
@@ -232,7 +13,7 @@ static double weigh(const struct integrand_of_summits *f, double lead, const dou
  * folding makes the ends of others meet. Independent shifts tell the error: 2e-4 of the density of
  * nine-point summits, 1e-6 of others. */
 enum { SHIFTS_MOST = 8, LATTICE_SEED = 1, LATTICE_POINTS = 16381 };
-static const unsigned STEPS[LATTICE_MOST] = {3711, 5711, 3321, 7766, 7145, 6041};
+static const unsigned STEPS[UNIFORMS] = {3711, 5711, 3321, 7766, 7145, 6041};
 static size_t shift_count(size_t pairs) {
     return pairs == PAIRS_NINE_POINT ? SHIFTS_MOST : 2;
 }
@@ -270,12 +51,12 @@ static const double HERMITE_WEIGHTS[HERMITE] = {0.011257411327720689, 0.22207592
                                                 0.011257411327720689};
 
 /* How much height goes with a curvature that is not known from the even vector. */
-static double height_by_curvature(const struct integrand_of_summits *f) {
+static double height_by_curvature(const struct summit_integrand *f) {
     return f->curvature.variance > 0 ? f->common / f->curvature.variance : 0;
 }
 
-static void add_curvatures(const struct integrand_of_summits *f, const struct bins *t1,
-                           double height, double curvature, double interval, double weight,
+static void add_curvatures(const struct summit_integrand *f, const struct bins *t1, double height,
+                           double curvature, double interval, double weight,
                            struct lattice_sums *sums) {
     double factor = f->pairs == PAIRS_PROFILE ? 1 : sqrt(3), half = factor * interval / 2;
     double deviation = sqrt(f->curvature.variance);
@@ -290,10 +71,10 @@ static void add_curvatures(const struct integrand_of_summits *f, const struct bi
     }
 }
 
-static void add_point(const struct integrand_of_summits *f, const struct bins *t1, const double *y,
+static void add_point(const struct summit_integrand *f, const struct bins *t1, const double *y,
                       double interval, double weight, struct lattice_sums *sums) {
-    double height = dot(f->pairs, f->height.slope, y);
-    double curvature = dot(f->pairs, f->curvature.slope, y), power = weight;
+    double height = regression_value(&f->height, y);
+    double curvature = regression_value(&f->curvature, y), power = weight;
     sums->weight += weight;
     sums->curvature += weight * curvature;
     for (size_t n = 0; n < 4; n++)
@@ -309,21 +90,21 @@ static void add_point(const struct integrand_of_summits *f, const struct bins *t
 
 /* Curvatures by differences rise in equal steps, so that each bin of t1 sees as many points as
  * the next; the other coordinates are those of a lattice, folded so that its ends meet. */
-static void integrate(const struct integrand_of_summits *f, const struct bins *t1,
+static void integrate(const struct summit_integrand *f, const struct bins *t1,
                       struct lattice_sums *sums) {
     const double interval = LEAD_MOST / LATTICE_POINTS;
     for (size_t shift = 0; shift < shift_count(f->pairs); shift++) {
-        double random[LATTICE_MOST + 1], u[LATTICE_MOST], y[PAIRS_MOST] = {0};
+        double random[UNIFORMS + 1], u[UNIFORMS], y[PAIRS_MOST] = {0};
         double before = sums->weight;
-        random_uniform((struct random_key){LATTICE_SEED, 0, shift}, STREAM_PHASES, 0,
-                       LATTICE_MOST + 1, random);
+        random_uniform((struct random_key){LATTICE_SEED, 0, shift}, STREAM_PHASES, 0, UNIFORMS + 1,
+                       random);
         for (size_t n = 0; n < LATTICE_POINTS; n++) {
-            for (size_t a = 0; a < LATTICE_MOST; a++) {
+            for (size_t a = 0; a < UNIFORMS; a++) {
                 double place = (double)n * STEPS[a] / LATTICE_POINTS + random[a];
                 u[a] = fmin(fmax(fabs(2 * (place - floor(place)) - 1), 1e-15), 1 - 1e-15);
             }
-            double lead = interval * ((double)n + random[LATTICE_MOST]);
-            double weight = weigh(f, lead, u, y);
+            double lead = interval * ((double)n + random[UNIFORMS]);
+            double weight = summit_integrand_weigh(f, lead, u, y);
             if (weight > 0)
                 add_point(f, t1, y, interval, weight, sums);
         }
@@ -359,7 +140,7 @@ static void moments_take(const struct lattice_sums *sums, double rest,
 /* Below this share of all summits in a bin their curvature is not told. */
 static const double SHARE_LEAST = 1e-14;
 
-static int heights_take(const struct integrand_of_summits *f, const struct lattice_sums *sums,
+static int heights_take(const struct summit_integrand *f, const struct lattice_sums *sums,
                         const struct sampled_bins *bins, struct error *err) {
     size_t edges = bins->height->count + 1;
     double *room = array_create(edges, 4 * sizeof *room), width = bins_width(bins->height);
@@ -382,7 +163,7 @@ static int heights_take(const struct integrand_of_summits *f, const struct latti
     return 0;
 }
 
-static int joint_take(const struct integrand_of_summits *f, const struct lattice_sums *sums,
+static int joint_take(const struct summit_integrand *f, const struct lattice_sums *sums,
                       const struct sampled_bins *bins, struct error *err) {
     size_t edges = bins->height->count + 1, columns = bins->t1->count;
     double *room = array_create(edges, 2 * sizeof *room);
@@ -400,7 +181,7 @@ static int joint_take(const struct integrand_of_summits *f, const struct lattice
     return 0;
 }
 
-static int take(const struct integrand_of_summits *f, const struct sampled_surface *surface,
+static int take(const struct summit_integrand *f, const struct sampled_surface *surface,
                 const struct lattice_sums *sums, const struct sampled_bins *bins,
                 struct sampled_summits *out, struct error *err) {
     const struct grid *grid = &surface->modes->grid;
@@ -445,7 +226,7 @@ static int sums_create(struct lattice_sums *sums, const struct sampled_bins *bin
 int sampled_summits(const struct sampled_surface *surface, struct sampled_summits *out,
                     const struct sampled_bins *bins, struct error *err) {
     struct sampled_field field;
-    struct integrand_of_summits f;
+    struct summit_integrand f;
     struct lattice_sums sums;
     size_t pairs = grid_is_profile(&surface->modes->grid)   ? PAIRS_PROFILE
                    : surface->stencil == SUMMITS_NINE_POINT ? PAIRS_NINE_POINT
@@ -457,7 +238,7 @@ int sampled_summits(const struct sampled_surface *surface, struct sampled_summit
     int status = sampled_field_fill(surface->modes, surface->moments, pairs, &field, err);
     if (status != 0)
         return status;
-    prepare(&field, surface->curvature, &f);
+    summit_integrand_prepare(&field, surface->curvature, &f);
     status = sums_create(&sums, bins, err);
     if (status == 0) {
         integrate(&f, bins != NULL ? bins->t1 : NULL, &sums);

@@ -68,7 +68,10 @@ static void figures_fill(struct joint_figures *f, const struct joint_sample *sam
 }
 
 static void measure(const struct grid *grid, double ratio, enum summit_stencil stencil,
-                    enum summit_curvature curvature, size_t count, struct joint_figures *figures) {
+                    enum summit_curvature curvature, enum surface_amplitudes amplitudes,
+                    size_t count, struct joint_figures *figures) {
+    struct surface_options options = SURFACE_DEFAULTS;
+    options.amplitudes = amplitudes;
     struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
                                 .hurst = 0.8,
                                 .wavelength_long = ratio,
@@ -81,7 +84,7 @@ static void measure(const struct grid *grid, double ratio, enum summit_stencil s
     double *z = malloc(grid_points(grid) * sizeof *z);
     struct joint_sample *samples = malloc(count * sizeof *samples);
     assert_true(z && samples);
-    assert_int_equal(generator_create(&generator, &spectrum, grid, &SURFACE_DEFAULTS, NULL), 0);
+    assert_int_equal(generator_create(&generator, &spectrum, grid, &options, NULL), 0);
     const struct modes *modes = generator_modes(generator);
     modes_moments(modes, &figures->moments);
     assert_int_equal(
@@ -142,7 +145,7 @@ static void summits_of_surfaces(void **state) {
     (void)state;
     const struct grid grid = {256, 256, 64, 64};
     struct joint_figures f;
-    measure(&grid, 8, SUMMITS_REFINED, CURVATURE_SPECTRAL, 300, &f);
+    measure(&grid, 8, SUMMITS_REFINED, CURVATURE_SPECTRAL, AMPLITUDES_FIXED, 300, &f);
     double worst = worst_bin(&f, nayak_joint_pdf);
     print_message("seed %d: worst bin of the joint density at %.1f standard errors\n", SEED, worst);
     assert_true(worst < 4);
@@ -153,7 +156,7 @@ static void peaks_of_profiles(void **state) {
     (void)state;
     const struct grid grid = {4096, 1, 512, 1};
     struct joint_figures f;
-    measure(&grid, 8, SUMMITS_REFINED, CURVATURE_SPECTRAL, 1500, &f);
+    measure(&grid, 8, SUMMITS_REFINED, CURVATURE_SPECTRAL, AMPLITUDES_FIXED, 1500, &f);
     const struct moments *m = &f.moments;
     double worst = worst_bin(&f, profile_peak_joint_pdf);
     double density = f.density / 512 / profile_peak_density(m->m2, m->m4);
@@ -171,8 +174,9 @@ static void curvature_at_grid_summits(void **state) {
     (void)state;
     const struct grid grid = {512, 512, 64, 64};
     struct joint_figures exact, differences;
-    measure(&grid, 8, SUMMITS_NINE_POINT, CURVATURE_SPECTRAL, 60, &exact);
-    measure(&grid, 8, SUMMITS_NINE_POINT, CURVATURE_FINITE_DIFFERENCE, 60, &differences);
+    measure(&grid, 8, SUMMITS_NINE_POINT, CURVATURE_SPECTRAL, AMPLITUDES_FIXED, 60, &exact);
+    measure(&grid, 8, SUMMITS_NINE_POINT, CURVATURE_FINITE_DIFFERENCE, AMPLITUDES_FIXED, 60,
+            &differences);
     print_message("seed %d: mean curvature %.4f exact, %.4f by differences, +- %.4f\n", SEED,
                   exact.curvature, differences.curvature, exact.curvature_error);
     check_close(exact.curvature, 1.495, 4 * exact.curvature_error + 5e-4);
@@ -199,7 +203,7 @@ static void check_grid(size_t points, enum summit_stencil stencil,
     struct joint_figures f;
     struct modes *modes = NULL;
     struct sampled_summits expected;
-    measure(&grid, 8, stencil, curvature, 150, &f);
+    measure(&grid, 8, stencil, curvature, AMPLITUDES_RANDOM, 200, &f);
     assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
     const struct sampled_surface surface = {modes, &f.moments, stencil, curvature};
     assert_int_equal(sampled_summits(&surface, &expected, &bins, NULL), 0);
