@@ -161,8 +161,8 @@ struct rugo_map {
     double *z; /* owned: rugo_map_clear */
 };
 /* Reads NumPy's npy, csv (a grid row a line) or xyz (x y z lines), by the ending of the name. dx:
- * the spacing of points where the file does not tell (0: 1). INPUT names the line at fault; SYSTEM.
- */
+ * the spacing of points where the file does not tell (0: 1). INPUT names the line at fault, or the
+ * first hole (NaN); SYSTEM. */
 RUGO_API int rugo_map_read(struct rugo_map *out, const char *path, double dx,
                            struct rugo_error *err);
 /* Frees the heights; NULL and {0} are accepted. */

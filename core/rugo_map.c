@@ -47,7 +47,10 @@ int rugo_map_read(struct rugo_map *out, const char *path, double dx, struct rugo
     if (status == 0)
         status = height_map_parse(&map, format, text, size, dx, &why);
     free(text);
+    if (status == 0)
+        status = height_map_check_whole(&map, &why);
     if (status != 0) {
+        height_map_clear(&map);
         error_context(&why, "%s", path);
         return error_give(status, &why, err);
     }

@@ -1,4 +1,5 @@
 #include "core/map/height_map.h"
+#include <math.h>
 #include <stdlib.h>
 
 void height_map_clear(struct height_map *map) {
@@ -15,4 +16,24 @@ int height_map_shape(struct height_map *map, size_t ny, size_t nx, double dx, st
                          ny, nx);
     map->grid = (struct grid){nx, ny, dx * (double)nx, dx * (double)ny};
     return grid_check(&map->grid, err);
+}
+
+size_t height_map_holes(const struct height_map *map) {
+    size_t holes = 0;
+    for (size_t point = 0; point < grid_points(&map->grid); point++)
+        holes += isnan(map->z[point]) ? 1 : 0;
+    return holes;
+}
+
+int height_map_check_whole(const struct height_map *map, struct error *err) {
+    size_t points = grid_points(&map->grid), first = 0;
+    while (first < points && !isnan(map->z[first]))
+        first++;
+    if (first == points)
+        return 0;
+    return error_set(
+        err, ERROR_INPUT,
+        "%zu of %zu heights are holes (NaN), the first in row %zu, column %zu, counted "
+        "from 1; all heights are needed here",
+        height_map_holes(map), points, first / map->grid.nx + 1, first % map->grid.nx + 1);
 }

@@ -2,7 +2,8 @@
  *
  * npy: versions 1 and 2, '<f8' or '<f4', C order, shape (ny, nx) or (n,). csv: one grid row a line,
  * separated by commas, semicolons, tabs or spaces; lines that start with # and empty lines are left
- * out; one column is a profile. xyz: three numbers a line, x fastest, a regular grid. */
+ * out; one column is a profile. xyz: three numbers a line, x fastest, a regular grid. A height that
+ * was not measured is NaN, in text "nan". */
 #ifndef RUGO_CORE_MAP_HEIGHT_MAP_FILE_H
 #define RUGO_CORE_MAP_HEIGHT_MAP_FILE_H
 
@@ -16,8 +17,8 @@ extern const char *const HEIGHT_MAP_NAMES[HEIGHT_MAP_FORMATS]; /* "npy", "csv", 
 enum height_map_format height_map_format_of(const char *name);
 
 /* Reads a map from the bytes of a file; text[size] must be 0. dx: spacing of points in x and y,
- * where the file does not say (0: 1). ERROR_INPUT names the line or field at fault; a height that
- * is not finite is one. *out is untouched on failure. */
+ * where the file does not say (0: 1). ERROR_INPUT names the line or field at fault; an infinite
+ * height is one, NaN is none. *out is untouched on failure. */
 int height_map_parse(struct height_map *out, enum height_map_format format, const char *text,
                      size_t size, double dx, struct error *err);
 

@@ -95,8 +95,10 @@ static int read_heights(double *z, size_t n, const char *data, size_t width, str
             z[a] = (double)single;
         } else
             memcpy(&z[a], &bits, sizeof bits);
-        if (!isfinite(z[a]))
+        if (isinf(z[a]))
             return error_set(err, ERROR_INPUT, "height %zu is not finite", a);
+        if (isnan(z[a]))
+            z[a] = NAN; /* one of many */
     }
     return 0;
 }

@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* Numbers of a text, line by line; the shape is found on the way. */
 struct table {
@@ -33,11 +34,21 @@ static const char *skip_blank(const char *at, const char *end) {
     return at;
 }
 
-/* One number in plain decimal; *at moves behind it. */
+/* Returns whether a hole stands at `at`: "nan" and then a separator or the end. */
+static bool is_hole(const char *at) {
+    return strncasecmp(at, "nan", 3) == 0 && strchr(",; \t\r\n", at[3]) != NULL;
+}
+
+/* One number in plain decimal, or nan; *at moves behind it. */
 static int read_number(const struct table *table, const char **at, const char *end, double *number,
                        struct error *err) {
     size_t length = strspn(*at, "+-.0123456789eE");
     char *stop;
+    if (is_hole(*at)) {
+        *number = NAN;
+        *at += 3;
+        return 0;
+    }
     *number = strtod(*at, &stop);
     if (length == 0 || stop != *at + length || stop > end) {
         int shown = (int)strcspn(*at, ",; \t\r\n");
@@ -174,16 +185,24 @@ int height_map_xyz_parse(struct height_map *map, const char *text, size_t size, 
     return status;
 }
 
+static void height_write(FILE *file, double z, char stop) {
+    if (isnan(z))
+        fprintf(file, "nan%c", stop); /* without the sign that some have */
+    else
+        fprintf(file, "%.17g%c", z, stop);
+}
+
 void height_map_csv_write(FILE *file, const struct grid *grid, const double *z) {
     for (size_t j = 0; j < grid->ny; j++)
         for (size_t i = 0; i < grid->nx; i++)
-            fprintf(file, "%.17g%c", z[j * grid->nx + i], i + 1 < grid->nx ? ',' : '\n');
+            height_write(file, z[j * grid->nx + i], i + 1 < grid->nx ? ',' : '\n');
 }
 
 void height_map_xyz_write(FILE *file, const struct grid *grid, const double *z) {
     double dy = grid_is_profile(grid) ? 0 : grid_dy(grid);
     for (size_t j = 0; j < grid->ny; j++)
-        for (size_t i = 0; i < grid->nx; i++)
-            fprintf(file, "%.17g %.17g %.17g\n", (double)i * grid_dx(grid), (double)j * dy,
-                    z[j * grid->nx + i]);
+        for (size_t i = 0; i < grid->nx; i++) {
+            fprintf(file, "%.17g %.17g ", (double)i * grid_dx(grid), (double)j * dy);
+            height_write(file, z[j * grid->nx + i], '\n');
+        }
 }

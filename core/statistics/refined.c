@@ -1,5 +1,6 @@
 #include "core/statistics/refined.h"
 #include "core/statistics/grid_summits.h"
+#include "core/statistics/summit_climb.h"
 #include "core/surface/transform.h"
 #include <float.h>
 #include <math.h>
@@ -7,12 +8,10 @@
 #include <string.h>
 
 enum {
-    POINTS = 8,  /* of the interpolant along an axis: 3 before its cell, 4 behind */
-    TRAVEL = 6,  /* rows or columns that a search may move from its start */
-    MARGIN = 10, /* TRAVEL and half an interpolant */
-    STRIP = 8,   /* rows searched at a time */
+    POINTS = 8, /* of the interpolant along an axis: 3 before its cell, 4 behind */
+    MARGIN = CLIMB_TRAVEL + POINTS / 2, /* rows that a search may need beyond its start */
+    STRIP = 8,                          /* rows searched at a time */
     WINDOW = STRIP + 2 * MARGIN,
-    STEPS = 40,
 };
 
 static const double SHIFT_X = 0.2371, SHIFT_Y = 0.3119; /* of the fine points, in cells */
@@ -110,25 +109,7 @@ static void basis_at(double t, struct basis *basis) {
     }
 }
 
-/* Value and derivatives at a point, in units of the fine grid. */
-struct jet {
-    double z, x, y, xx, xy, yy;
-};
-
-/* The cell whose interpolant is used: the last one until x is well outside of it. Derivatives jump
- * a little from cell to cell, and a search that changed cells on the border would never settle on a
- * maximum there. */
-static void cell_follow(double x, long *cell) {
-    double t = x - (double)*cell;
-    if (!(t >= -0.25 && t <= 1.25))
-        *cell = (long)floor(x);
-}
-
-struct cell {
-    long x, y;
-};
-
-static void jet_of_profile(const struct refined *r, double x, const struct cell *cell,
+static void jet_of_profile(const struct refined *r, double x, const struct climb_cell *cell,
                            struct jet *jet) {
     long nx = (long)r->fine.nx;
     struct basis bx;
@@ -143,8 +124,9 @@ static void jet_of_profile(const struct refined *r, double x, const struct cell 
 }
 
 /* Interpolates at (x, y); y counts from the first row of the window. */
-static void jet_at(const struct refined *r, double x, double y, struct cell *cell,
+static void jet_at(const void *surface, double x, double y, struct climb_cell *cell,
                    struct jet *jet) {
+    const struct refined *r = surface;
     cell_follow(x, &cell->x);
     cell_follow(y, &cell->y);
     if (grid_is_profile(&r->fine)) {
@@ -177,64 +159,6 @@ static void jet_at(const struct refined *r, double x, double y, struct cell *cel
     }
 }
 
-/* Negative definite Hessian, its determinant above `share` of its squared trace (which is at most a
- * quarter). */
-static bool is_concave(const struct refined *r, const struct jet *jet, double share) {
-    if (grid_is_profile(&r->fine))
-        return jet->xx < 0;
-    double trace = jet->xx + jet->yy;
-    return trace < 0 && jet->xx * jet->yy - jet->xy * jet->xy > share * trace * trace;
-}
-
-/* Second derivatives of the interpolant are good to 1e-5: on the ridge of a single wave they
- * cannot tell a maximum from a saddle. Maxima of random surfaces are as flat as this once in 1e7.
- */
-static const double RIDGE = 1e-4;
-
-/* Newton's step where the surface is concave, a climb along the gradient elsewhere; at most half a
- * cell. */
-static void step_up(const struct refined *r, const struct jet *jet, double *dx, double *dy) {
-    bool concave = is_concave(r, jet, 0);
-    if (!concave) {
-        *dx = jet->x;
-        *dy = jet->y;
-    } else if (grid_is_profile(&r->fine)) {
-        *dx = -jet->x / jet->xx;
-        *dy = 0;
-    } else {
-        double determinant = jet->xx * jet->yy - jet->xy * jet->xy;
-        *dx = (jet->xy * jet->y - jet->yy * jet->x) / determinant;
-        *dy = (jet->xy * jet->x - jet->xx * jet->y) / determinant;
-    }
-    double length = hypot(*dx, *dy);
-    if (length > 0.5 || (!concave && length > 0)) {
-        *dx *= 0.5 / length;
-        *dy *= 0.5 / length;
-    }
-}
-
-/* Searches the true maximum near a grid maximum; returns false when there is none within TRAVEL. */
-static bool climb(const struct refined *r, double x0, double y0, double *x, double *y,
-                  struct jet *jet) {
-    struct cell cell = {(long)x0, (long)y0};
-    *x = x0;
-    *y = y0;
-    for (int step = 0; step < STEPS; step++) {
-        double dx, dy;
-        jet_at(r, *x, *y, &cell, jet);
-        step_up(r, jet, &dx, &dy);
-        *x += dx;
-        *y += dy;
-        if (!(fabs(*x - x0) < TRAVEL && fabs(*y - y0) < TRAVEL))
-            return false;
-        if (hypot(dx, dy) < 1e-7) {
-            jet_at(r, *x, *y, &cell, jet);
-            return is_concave(r, jet, RIDGE);
-        }
-    }
-    return false;
-}
-
 static double wrapped(double x, double period) {
     double inside = x - period * floor(x / period);
     return inside < period ? inside : 0;
@@ -251,10 +175,11 @@ static int row_search(struct refined *r, double first, size_t row, struct summit
     size_t found = row_summits(profile ? NULL : middle - nx, middle, profile ? NULL : middle + nx,
                                nx, false, r->columns);
     double dx = grid_dx(fine), dy = profile ? 1 : grid_dy(fine);
+    const struct climb climb = {r, jet_at, profile};
     for (size_t s = 0; s < found; s++) {
         double x, y;
         struct jet jet;
-        if (!climb(r, (double)r->columns[s], (double)row, &x, &y, &jet))
+        if (!summit_climb(&climb, (double)r->columns[s], (double)row, &x, &y, &jet))
             continue;
         double bend = profile ? jet.xx / (dx * dx) : (jet.xx / (dx * dx) + jet.yy / (dy * dy)) / 2;
         struct summit summit = {
@@ -268,49 +193,6 @@ static int row_search(struct refined *r, double first, size_t row, struct summit
             return status;
     }
     return 0;
-}
-
-static int by_row(const void *a, const void *b) {
-    const struct summit *s = a, *t = b;
-    if (s->y != t->y)
-        return s->y < t->y ? -1 : 1;
-    return (s->x > t->x) - (s->x < t->x);
-}
-
-/* Returns the distance of two places on a circle. */
-static double apart(double a, double b, double period) {
-    double distance = fabs(a - b);
-    return fmin(distance, period - distance);
-}
-
-/* Drops summits found from several starts: sorted by row, copies are near neighbours in the list.
- * A dropped one is marked by x < 0 until the list is closed up. */
-static void merge_copies(const struct grid *fine, struct summit_list *list) {
-    /* In fine cells: copies of one maximum found by interpolants of neighbouring cells are at most
-     * this far apart, and two different maxima are never so near. */
-    const double near = 0.02;
-    struct summit *s = list->summits;
-    bool profile = grid_is_profile(fine);
-    double near_x = near * grid_dx(fine), near_y = profile ? 1 : near * grid_dy(fine);
-    double ly = profile ? 2 : fine->ly;
-    if (list->count > 1)
-        qsort(s, list->count, sizeof *s, by_row);
-    for (size_t i = 0; i < list->count; i++) {
-        for (size_t step = 1; s[i].x >= 0 && step < list->count; step++) {
-            struct summit *other = &s[(i + step) % list->count];
-            double along = profile ? apart(other->x, s[i].x, fine->lx) - near_x
-                                   : apart(other->y, s[i].y, ly) - near_y;
-            if (other->x >= 0 && !(along < 0))
-                break;
-            if (other->x >= 0 && apart(other->x, s[i].x, fine->lx) < near_x)
-                other->x = -1;
-        }
-    }
-    size_t kept = 0;
-    for (size_t i = 0; i < list->count; i++)
-        if (s[i].x >= 0)
-            s[kept++] = s[i];
-    list->count = kept;
 }
 
 /* Fills window rows row .. row + count - 1 with the fine rows from `first` on, periodic. */
@@ -391,6 +273,6 @@ int refined_find(struct refined *r, const double *z, struct summit_list *list, s
         status = strips_search(r, list, err);
     }
     if (status == 0)
-        merge_copies(&r->fine, list);
+        summits_merge(&r->fine, list);
     return status;
 }

@@ -1,33 +1,34 @@
 /* rugo characterise FILE: what a height map in a file is like. */
 #include "server/command/command.h"
 #include "server/command/map_file.h"
-#include "server/show/characterisation.h"
+#include "server/show/map_characterisation.h"
 #include <stdlib.h>
 #include <string.h>
 
 struct characterise_options {
     double dx; /* 0: not given */
+    struct map_request request;
     int json;
 };
 #define AT(member) offsetof(struct characterise_options, member)
 static const struct option_row OPTIONS[] = {
     {"dx", 0, OPTION_NUMBER, 0, 0, AT(dx), "D", NULL, MAP_SPACING_HELP},
+    {"boundary", 0, OPTION_CHOICE, 0, 0, AT(request.boundary), MAP_BOUNDARIES, "auto",
+     "whether the map repeats (where its seam is no rougher than its inside)"},
+    {"detrend", 0, OPTION_CHOICE, 0, 0, AT(request.detrend), MAP_DETRENDS, "auto",
+     "taken out first (a plane, of an open map)"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
     {0}};
 
-static int print(const struct characterise_options *options, const struct height_map *map,
+static int print(const struct characterise_options *options, const struct characterisation *found,
                  struct error *err) {
-    struct characterisation values;
-    int status =
-        characterise_heights(&values, &map->grid, map->z, map->grid.nx / 2, map->grid.ny / 2, err);
-    if (status != 0)
-        return status;
+    int status = 0;
     if (options->json == 0)
-        characterisation_print(stdout, &values);
-    else if (characterisation_print_json(stdout, &values))
+        characterisation_print(stdout, found);
+    else if (characterisation_print_json(stdout, found))
         putchar('\n');
     else
-        status = error_memory(err, sizeof values, "the characterisation");
+        status = error_memory(err, sizeof *found, "the characterisation");
     if (status == 0 && (fflush(stdout) != 0 || ferror(stdout) != 0))
         status = error_set(err, ERROR_SYSTEM, "cannot write to standard output");
     return status;
@@ -36,10 +37,16 @@ static int print(const struct characterise_options *options, const struct height
 static int run(const void *values, const char *const *arguments) {
     const struct characterise_options *options = values;
     struct height_map map = {0};
+    struct characterisation found = {0};
     struct error err = {0};
     int status = map_file_read(&map, arguments[0], options->dx, &err);
+    if (status == 0) {
+        status = map_characterise(&found, &map, &options->request, &err);
+        if (status != 0)
+            error_context(&err, "%s", arguments[0]);
+    }
     if (status == 0)
-        status = print(options, &map, &err);
+        status = print(options, &found, &err);
     height_map_clear(&map);
     return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
 }

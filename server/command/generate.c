@@ -105,7 +105,7 @@ static int characterise(const struct generate_order *order, const struct surface
         mode_x = surface->grid.nx / 2;
         mode_y = surface->grid.ny / 2;
     }
-    struct characterisation values;
+    struct characterisation values = {0};
     int status = characterise_heights(&values, &surface->grid, z, mode_x, mode_y, err);
     if (status != 0)
         return status;

@@ -2,7 +2,9 @@
 #include "core/contact/area.h"
 #include "core/contact/contact.h"
 #include "core/contact/patches.h"
+#include "core/map/detrend.h"
 #include "core/statistics/roughness.h"
+#include "core/statistics/seam.h"
 #include "schema/json/json.h"
 #include "schema/study/parameter.h"
 #include "server/command/command.h"
@@ -19,10 +21,12 @@ enum { LOADS_MOST = 1000 };
 static const struct choice MODELS[] = {
     {"halfspace", MODEL_HALFSPACE}, {"layered", MODEL_LAYERED}, {NULL, 0}};
 
+#define DETRENDS "none|mean|plane|quadratic" /* in the order of enum detrend */
+
 struct press_options {
     const char *loads, *output, *model;
     double dx, poisson, lengths; /* dx, height of the block in lengths of the map: 0: not given */
-    int json;
+    int detrend, json;
 };
 #define AT(member) offsetof(struct press_options, member)
 static const struct option_row OPTIONS[] = {
@@ -34,6 +38,8 @@ static const struct option_row OPTIONS[] = {
     {"poisson", 0, OPTION_NUMBER, 0, 0.4999, AT(poisson), "NU", "0.3", "Poisson's ratio, layered"},
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
      "height of the block in lengths of the map (infinite; layered 1.5)"},
+    {"detrend", 0, OPTION_CHOICE, 0, 0, AT(detrend), DETRENDS, "none",
+     "taken out of the map first"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
     {"output", 'o', OPTION_TEXT, 0, 0, AT(output), "FILE", NULL,
      "write the pressures p/(E* h') of the last load there, as a map"},
@@ -44,6 +50,7 @@ struct press_order {
     const char *path, *output;
     struct block block;
     double lengths; /* 0: infinite */
+    enum detrend detrend;
     bool json;
     size_t loads;
     double load[LOADS_MOST]; /* p/(E* h'), rising */
@@ -195,6 +202,26 @@ static int write_pressures(const struct press *press, const struct press_order *
     return status;
 }
 
+/* Takes the trend out of the map, and tells of a seam: contact takes every map as periodic. */
+static int prepare_map(struct height_map *map, const struct press_order *order, struct error *err) {
+    struct trend trend;
+    struct seam seam;
+    int status = height_map_check_whole(map, err);
+    if (status == 0)
+        status = detrend(&map->grid, map->z, order->detrend, &trend, err);
+    if (status == 0)
+        status = seam_measure(&map->grid, map->z, &seam, err);
+    if (status != 0)
+        return error_context(err, "%s", order->path);
+    if (seam.x > 1 || seam.y > 1)
+        fprintf(
+            stderr,
+            "rugo press: warning: %s: contact takes the map as periodic, and its seam is rougher "
+            "than the roughest place inside: %.3g times across x, %.3g times across y\n",
+            order->path, seam.x, seam.y);
+    return 0;
+}
+
 static int press_map(const struct press_order *order, const struct height_map *map,
                      struct error *err) {
     struct press press;
@@ -221,6 +248,7 @@ static int run(const void *values, const char *const *arguments) {
         .path = arguments[0],
         .output = options->output,
         .lengths = options->lengths,
+        .detrend = (enum detrend)options->detrend,
         .json = options->json == 1,
         .block = {.poisson = options->poisson, .layer_growth = 1.1, .weighting = GAP_STANDARD}};
     struct height_map map = {0};
@@ -235,6 +263,8 @@ static int run(const void *values, const char *const *arguments) {
     if (order.block.model == MODEL_LAYERED && !(options->lengths > 0))
         order.lengths = 1.5;
     int status = map_file_read(&map, order.path, options->dx, &err);
+    if (status == 0)
+        status = prepare_map(&map, &order, &err);
     if (status == 0)
         status = press_map(&order, &map, &err);
     height_map_clear(&map);

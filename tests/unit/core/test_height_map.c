@@ -124,7 +124,7 @@ static void refused_npy(void **state) {
         refused(HEIGHT_MAP_NPY, file, npy(file, 1, cases[a].header, z, sizeof z), cases[a].words);
     const char *good = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }";
     refused(HEIGHT_MAP_NPY, file, npy(file, 3, good, z, sizeof z), "version 3");
-    z[4] = NAN;
+    z[4] = INFINITY;
     size_t size = npy(file, 1, good, z, sizeof z);
     refused(HEIGHT_MAP_NPY, file, size, "height 4 is not finite");
     for (size_t cut = 0; cut < size; cut++)
@@ -157,7 +157,8 @@ static void refused_text(void **state) {
         {HEIGHT_MAP_CSV, "# only a comment\n", "no number"},
         {HEIGHT_MAP_CSV, "1,2\n3\n", "line 2 has 1 numbers, the first row 2"},
         {HEIGHT_MAP_CSV, "1,2\n3,x\n", "line 2: 'x' is not a number"},
-        {HEIGHT_MAP_CSV, "1,nan\n", "'nan' is not a number"},
+        {HEIGHT_MAP_CSV, "1,nana\n", "'nana' is not a number"},
+        {HEIGHT_MAP_XYZ, "0 0 1\nnan 0 1\n2 0 1\n", "point 2"},
         {HEIGHT_MAP_CSV, "1,inf\n", "'inf' is not a number"},
         {HEIGHT_MAP_CSV, "1,0x10\n", "is not a number"},
         {HEIGHT_MAP_CSV, "1,1e999\n", "too large"},
@@ -188,6 +189,48 @@ static void xyz_coordinates(void **state) {
     struct height_map map = parse(HEIGHT_MAP_XYZ, text, strlen(text), 0);
     assert_true(map.grid.nx == 4 && map.grid.ny == 3 && map.z[11] == 11);
     assert_true(fabs(map.grid.lx - 4e-7) <= 1e-12 && fabs(map.grid.ly - 6e-7) <= 1e-12);
+    height_map_clear(&map);
+}
+
+/* What was not measured is NaN in every format, goes out and comes in as such, and is told to those
+ * who need all heights. */
+static void holes(void **state) {
+    (void)state;
+    static const struct {
+        enum height_map_format format;
+        const char *text;
+    } texts[] = {{HEIGHT_MAP_CSV, "1,nan,3\n4,NaN, 6\n"},
+                 {HEIGHT_MAP_XYZ, "0 0 1\n1 0 nan\n2 0 3\n0 1 4\n1 1 nan\n2 1 6\n"}};
+    for (size_t t = 0; t < 2; t++) {
+        struct height_map map = parse(texts[t].format, texts[t].text, strlen(texts[t].text), 1);
+        assert_int_equal(height_map_holes(&map), 2);
+        assert_true(isnan(map.z[1]) && isnan(map.z[4]) && map.z[5] == 6);
+        struct error err = {0};
+        assert_int_equal(height_map_check_whole(&map, &err), ERROR_INPUT);
+        assert_non_null(strstr(err.text, "2 of 6 heights are holes (NaN), the first in row 1, "
+                                         "column 2"));
+        for (int format = 0; format < HEIGHT_MAP_FORMATS; format++) {
+            char *text = NULL;
+            size_t size = 0;
+            FILE *file = open_memstream(&text, &size);
+            assert_non_null(file);
+            assert_int_equal(
+                height_map_write(file, (enum height_map_format)format, &map.grid, map.z, &err), 0);
+            fclose(file);
+            struct height_map again = parse((enum height_map_format)format, text, size, 1);
+            assert_memory_equal(again.z, map.z, 6 * sizeof *map.z);
+            height_map_clear(&again);
+            free(text);
+        }
+        height_map_clear(&map);
+    }
+    const double whole[] = {1, 2};
+    char file[300];
+    size_t size = npy(file, 1, "{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }", whole,
+                      sizeof whole);
+    struct height_map map = parse(HEIGHT_MAP_NPY, file, size, 1);
+    assert_int_equal(height_map_holes(&map), 0);
+    assert_int_equal(height_map_check_whole(&map, NULL), 0);
     height_map_clear(&map);
 }
 
@@ -225,11 +268,11 @@ static void formats_by_name(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip),      cmocka_unit_test(failing_write),
-        cmocka_unit_test(numpy_headers),   cmocka_unit_test(refused_npy),
-        cmocka_unit_test(csv_separators),  cmocka_unit_test(refused_text),
-        cmocka_unit_test(xyz_coordinates), cmocka_unit_test(random_bytes),
-        cmocka_unit_test(formats_by_name),
+        cmocka_unit_test(round_trip),     cmocka_unit_test(failing_write),
+        cmocka_unit_test(numpy_headers),  cmocka_unit_test(refused_npy),
+        cmocka_unit_test(csv_separators), cmocka_unit_test(refused_text),
+        cmocka_unit_test(holes),          cmocka_unit_test(xyz_coordinates),
+        cmocka_unit_test(random_bytes),   cmocka_unit_test(formats_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

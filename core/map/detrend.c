@@ -1,0 +1,144 @@
+#include "core/map/detrend.h"
+#include "core/sum.h"
+#include <math.h>
+
+enum { TERMS = 6, PASSES = 2, ORDERS = 5 };
+
+/* The terms are u^px v^py; u and v run from -1 to 1 over the points of the map. */
+static const size_t POWER_X[TERMS] = {0, 1, 0, 2, 1, 0}, POWER_Y[TERMS] = {0, 0, 1, 0, 1, 2};
+
+/* Which of them are fitted: all of the kind's degree, of a profile those without v. */
+struct terms {
+    size_t count, list[TERMS];
+};
+
+static struct terms terms_of(const struct grid *grid, enum detrend kind) {
+    struct terms terms = {0};
+    if (kind == DETREND_NONE)
+        return terms;
+    size_t degree = kind == DETREND_MEAN ? 0 : kind == DETREND_PLANE ? 1 : 2;
+    for (size_t t = 0; t < TERMS; t++)
+        if (POWER_X[t] + POWER_Y[t] <= degree && (POWER_Y[t] == 0 || !grid_is_profile(grid)))
+            terms.list[terms.count++] = t;
+    return terms;
+}
+
+/* Returns where point i of n lies between -1 and 1. */
+static double place(size_t i, size_t n) {
+    return n > 1 ? (2 * (double)i - (double)(n - 1)) / (double)(n - 1) : 0;
+}
+
+static double power(double u, size_t exponent) {
+    return exponent == 0   ? 1
+           : exponent == 1 ? u
+           : exponent == 2 ? u * u
+                           : u * u * power(u, exponent - 2);
+}
+
+/* Least squares as linear equations: matrix a = vector. */
+struct equations {
+    double matrix[TERMS][TERMS], vector[TERMS];
+};
+
+/* Sums over one row of u^a, and of z u^a, where there is a height. */
+static void row_powers(const double *row, size_t nx, double *powers, double *heights) {
+    for (size_t a = 0; a < ORDERS; a++)
+        powers[a] = heights[a] = 0;
+    for (size_t i = 0; i < nx; i++) {
+        double u = place(i, nx), term = 1;
+        if (isnan(row[i]))
+            continue;
+        for (size_t a = 0; a < ORDERS; a++, term *= u) {
+            powers[a] += term;
+            heights[a] += row[i] * term;
+        }
+    }
+}
+
+static void equations_make(const struct grid *grid, const double *z, const struct terms *terms,
+                           struct equations *out) {
+    struct sum matrix[TERMS][TERMS] = {0}, vector[TERMS] = {0};
+    double powers[ORDERS], heights[ORDERS];
+    for (size_t j = 0; j < grid->ny; j++) {
+        double v = place(j, grid->ny);
+        row_powers(z + j * grid->nx, grid->nx, powers, heights);
+        for (size_t a = 0; a < terms->count; a++) {
+            size_t s = terms->list[a];
+            sum_add(&vector[a], heights[POWER_X[s]] * power(v, POWER_Y[s]));
+            for (size_t b = 0; b < terms->count; b++) {
+                size_t t = terms->list[b];
+                sum_add(&matrix[a][b],
+                        powers[POWER_X[s] + POWER_X[t]] * power(v, POWER_Y[s] + POWER_Y[t]));
+            }
+        }
+    }
+    for (size_t a = 0; a < terms->count; a++) {
+        out->vector[a] = sum_value(&vector[a]);
+        for (size_t b = 0; b < terms->count; b++)
+            out->matrix[a][b] = sum_value(&matrix[a][b]);
+    }
+}
+
+/* Eliminates in place, which needs no pivots as the matrix is positive definite, and leaves the
+ * answer in the vector. Returns false where points do not tell the terms apart. */
+static bool equations_solve(struct equations *e, size_t n) {
+    double whole[TERMS]; /* the diagonal before */
+    for (size_t a = 0; a < n; a++)
+        whole[a] = e->matrix[a][a];
+    for (size_t a = 0; a < n; a++) {
+        if (!(e->matrix[a][a] > 1e-9 * whole[a]))
+            return false;
+        for (size_t b = a + 1; b < n; b++) {
+            double factor = e->matrix[b][a] / e->matrix[a][a];
+            for (size_t c = a; c < n; c++)
+                e->matrix[b][c] -= factor * e->matrix[a][c];
+            e->vector[b] -= factor * e->vector[a];
+        }
+    }
+    for (size_t a = n; a-- > 0;) {
+        for (size_t b = a + 1; b < n; b++)
+            e->vector[a] -= e->matrix[a][b] * e->vector[b];
+        e->vector[a] /= e->matrix[a][a];
+    }
+    return true;
+}
+
+static void subtract(const struct grid *grid, double *z, const double *coefficient) {
+    const double *c = coefficient;
+    for (size_t j = 0; j < grid->ny; j++) {
+        double *row = z + j * grid->nx, v = place(j, grid->ny);
+        for (size_t i = 0; i < grid->nx; i++) {
+            double u = place(i, grid->nx);
+            row[i] -= c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v;
+        }
+    }
+}
+
+int detrend(const struct grid *grid, double *z, enum detrend kind, struct trend *out,
+            struct error *err) {
+    const struct terms terms = terms_of(grid, kind);
+    double total[TERMS] = {0};
+    /* The second pass takes out what rounding left of a steep trend. */
+    for (int pass = 0; pass < PASSES && terms.count > 0; pass++) {
+        struct equations equations;
+        double coefficient[TERMS] = {0};
+        equations_make(grid, z, &terms, &equations);
+        if (!equations_solve(&equations, terms.count))
+            return error_set(err, ERROR_INPUT,
+                             "the heights are too few, or too much in line, to fit %zu terms of a "
+                             "trend",
+                             terms.count);
+        for (size_t a = 0; a < terms.count; a++)
+            total[terms.list[a]] += coefficient[terms.list[a]] = equations.vector[a];
+        subtract(grid, z, coefficient);
+    }
+    double half_x = grid->nx > 1 ? grid_dx(grid) * (double)(grid->nx - 1) / 2 : 1;
+    double half_y = grid->ny > 1 ? grid_dy(grid) * (double)(grid->ny - 1) / 2 : 1;
+    *out = (struct trend){.height = total[0],
+                          .slope_x = total[1] / half_x,
+                          .slope_y = total[2] / half_y,
+                          .bend_xx = 2 * total[3] / (half_x * half_x),
+                          .bend_xy = total[4] / (half_x * half_y),
+                          .bend_yy = 2 * total[5] / (half_y * half_y)};
+    return 0;
+}

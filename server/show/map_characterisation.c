@@ -1,0 +1,97 @@
+#include "server/show/map_characterisation.h"
+#include "core/map/detrend.h"
+#include "core/statistics/seam.h"
+#include <math.h>
+
+enum { BOUNDARY_AUTO, BOUNDARY_AS_OPEN, BOUNDARY_AS_PERIODIC };
+enum { DETREND_AUTO, DETREND_FIRST };
+
+/* What is done to the map, and what was seen before. */
+struct decision {
+    enum boundary boundary;
+    const char *reason; /* of the boundary; static */
+    enum detrend detrend;
+    struct seam seam;
+    double holes; /* share of the points */
+    struct trend trend;
+};
+
+static int check_request(const struct height_map *map, const struct map_request *request,
+                         double holes, struct error *err) {
+    if (holes == 1)
+        return error_set(err, ERROR_INPUT, "the map has no heights, only holes");
+    if (holes > 0 && request->boundary == BOUNDARY_AS_PERIODIC) {
+        int status = height_map_check_whole(map, err);
+        return status == 0 ? 0 : error_context(err, "a periodic map");
+    }
+    return 0;
+}
+
+static void choose_boundary(struct decision *decision, int request) {
+    bool rough = !(decision->seam.x <= 1 && decision->seam.y <= 1);
+    bool open =
+        request == BOUNDARY_AS_OPEN || (request == BOUNDARY_AUTO && (rough || decision->holes > 0));
+    decision->boundary = open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC;
+    decision->reason = request != BOUNDARY_AUTO ? "option" : decision->holes > 0 ? "holes" : "seam";
+}
+
+/* The seam is looked at as the map is measured, but for a trend that only an open map loses. */
+static int decide(struct decision *decision, struct height_map *map,
+                  const struct map_request *request, struct error *err) {
+    bool given = request->detrend != DETREND_AUTO;
+    *decision = (struct decision){
+        .holes = (double)height_map_holes(map) / (double)grid_points(&map->grid),
+        .detrend = given ? (enum detrend)(request->detrend - DETREND_FIRST) : DETREND_NONE};
+    int status = check_request(map, request, decision->holes, err);
+    if (status == 0 && given)
+        status = detrend(&map->grid, map->z, decision->detrend, &decision->trend, err);
+    if (status == 0)
+        status = seam_measure(&map->grid, map->z, &decision->seam, err);
+    if (status != 0)
+        return status;
+    choose_boundary(decision, request->boundary);
+    if (given || decision->boundary == BOUNDARY_PERIODIC)
+        return 0;
+    decision->detrend = DETREND_PLANE;
+    return detrend(&map->grid, map->z, decision->detrend, &decision->trend, err);
+}
+
+static void add_decision(struct characterisation *out, const struct decision *decision,
+                         bool profile) {
+    static const char GROUP[] = "map";
+    static const char *const DETRENDS[] = {"none", "mean", "plane", "quadratic"};
+    const struct trend *trend = &decision->trend;
+    characterisation_add_text(out, GROUP, "boundary",
+                              decision->boundary == BOUNDARY_OPEN ? "open" : "periodic");
+    characterisation_add_text(out, GROUP, "boundary_by", decision->reason);
+    characterisation_add(out, GROUP, "seam_x", decision->seam.x);
+    characterisation_add(out, GROUP, "seam_y", profile ? (double)NAN : decision->seam.y);
+    characterisation_add(out, GROUP, "holes", decision->holes);
+    characterisation_add_text(out, GROUP, "detrend", DETRENDS[decision->detrend]);
+    if (decision->detrend != DETREND_NONE)
+        characterisation_add(out, GROUP, "trend_height", trend->height);
+    if (decision->detrend >= DETREND_PLANE) {
+        characterisation_add(out, GROUP, "trend_slope_x", trend->slope_x);
+        characterisation_add(out, GROUP, "trend_slope_y", trend->slope_y);
+    }
+    if (decision->detrend == DETREND_QUADRATIC) {
+        characterisation_add(out, GROUP, "trend_bend_xx", trend->bend_xx);
+        characterisation_add(out, GROUP, "trend_bend_xy", trend->bend_xy);
+        characterisation_add(out, GROUP, "trend_bend_yy", trend->bend_yy);
+    }
+}
+
+int map_characterise(struct characterisation *out, struct height_map *map,
+                     const struct map_request *request, struct error *err) {
+    struct decision decision;
+    const struct grid *grid = &map->grid;
+    int status = decide(&decision, map, request, err);
+    if (status != 0)
+        return status;
+    const struct measured_map measured = {grid, map->z, decision.boundary};
+    *out = (struct characterisation){0};
+    add_decision(out, &decision, grid_is_profile(grid));
+    if (decision.boundary == BOUNDARY_OPEN)
+        return characterise_open(out, &measured, err);
+    return characterise_heights(out, grid, map->z, grid->nx / 2, grid->ny / 2, err);
+}

@@ -1,0 +1,83 @@
+/* Protects: maps that repeat are told from pieces cut out of them, by their seam. */
+#include "core/statistics/seam.h"
+#include "tests/support/check.h"
+#include "tests/support/cut.h"
+#include "tests/support/seed.h"
+
+static struct seam seam_of(const struct grid *grid, const double *z) {
+    struct seam seam = {NAN, NAN};
+    assert_int_equal(seam_measure(grid, z, &seam, NULL), 0);
+    return seam;
+}
+
+/* A seam of a periodic map is the roughest of its places by chance alone: once in tens of maps. */
+static void periodic_maps_have_none(void **state) {
+    (void)state;
+    const struct grid grids[] = {{128, 128, 128, 128}, {256, 1, 256, 1}};
+    for (size_t g = 0; g < 2; g++) {
+        size_t rough = 0, maps = 40;
+        for (size_t r = 0; r < maps; r++) {
+            double *z = whole_surface(&grids[g], r % 2 == 0 ? 0.2 : 0.8, r);
+            struct seam seam = seam_of(&grids[g], z);
+            rough += seam.x > 1 || seam.y > 1 ? 1 : 0;
+            free(z);
+        }
+        assert_true(rough <= 6);
+    }
+}
+
+/* Differences by chance small at the seam are rare even in profiles, whose seam is one place. */
+static void pieces_have_one(void **state) {
+    (void)state;
+    const struct grid grids[] = {{128, 128, 128, 128}, {256, 1, 256, 1}};
+    for (size_t g = 0; g < 2; g++) {
+        size_t smooth = 0, maps = 40;
+        for (size_t r = 0; r < maps; r++) {
+            struct grid piece;
+            double *z = whole_surface(&grids[g], r % 2 == 0 ? 0.2 : 0.8, r);
+            double *part = cut(&grids[g], z, 3, 0, 100, g == 0 ? 90 : 1, &piece);
+            struct seam seam = seam_of(&piece, part);
+            smooth += seam.x <= 1 || (g == 0 && seam.y <= 1) ? 1 : 0;
+            if (g == 0)
+                assert_true(seam.x > 2 && seam.y > 2);
+            free(z);
+            free(part);
+        }
+        assert_true(smooth <= 4);
+    }
+}
+
+/* Of a step the first differences tell: at the seam it is 10, inside 1. */
+static void a_tilt_is_a_step(void **state) {
+    (void)state;
+    double z[11 * 10];
+    const struct grid grid = {11, 10, 11, 10};
+    for (size_t point = 0; point < 110; point++)
+        z[point] = (double)(point % 11);
+    struct seam seam = seam_of(&grid, z);
+    assert_true(seam.x >= 10);
+    assert_true(seam.y == 0);
+}
+
+static void odd_maps(void **state) {
+    (void)state;
+    double z[100] = {0};
+    const struct grid grid = {10, 10, 1, 1}, short_one = {8, 1, 1, 1};
+    struct seam seam = seam_of(&grid, z);
+    assert_true(seam.x == 0 && seam.y == 0); /* flat */
+    assert_true(isinf(seam_of(&short_one, z).x));
+    for (size_t j = 0; j < 10; j++)
+        z[j * 10] = NAN; /* nothing to compare across x */
+    seam = seam_of(&grid, z);
+    assert_true(isinf(seam.x) && seam.y == 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(periodic_maps_have_none),
+        cmocka_unit_test(pieces_have_one),
+        cmocka_unit_test(a_tilt_is_a_step),
+        cmocka_unit_test(odd_maps),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
