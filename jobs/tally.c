@@ -42,12 +42,16 @@ void tally_total_get(struct byte_reader *reader, struct tally_total *total) {
     total->square = get_sum(reader, total->sum, SUM_MOST);
 }
 
-int tally_create(struct tally *out, size_t size, struct error *err) {
+int tally_create(struct tally *out, size_t size, size_t row, struct error *err) {
     *out = (struct tally){.size = size,
+                          .row = row,
                           .count = array_create(size, sizeof *out->count),
+                          .some = array_create(size, sizeof *out->some),
+                          .all = array_create(size, sizeof *out->all),
                           .square = array_create(size, sizeof *out->square),
                           .cross = array_create(size, sizeof *out->cross)};
-    if (out->count != NULL && out->square != NULL && out->cross != NULL)
+    if (out->count != NULL && out->some != NULL && out->all != NULL && out->square != NULL &&
+        out->cross != NULL)
         return 0;
     tally_clear(out);
     return error_memory(err, (size_t)tally_bytes(size), "a tally");
@@ -55,6 +59,8 @@ int tally_create(struct tally *out, size_t size, struct error *err) {
 
 void tally_clear(struct tally *tally) {
     free(tally->count);
+    free(tally->some);
+    free(tally->all);
     free(tally->square);
     free(tally->cross);
     *tally = (struct tally){0};
@@ -62,9 +68,11 @@ void tally_clear(struct tally *tally) {
 
 void tally_merge(struct tally *into, const struct tally *from) {
     for (size_t cell = 0; cell < into->size; cell++) {
-        if (from->count[cell] == 0) /* then all three are; most cells of a sparse tally */
+        if (from->count[cell] == 0) /* then all are; most cells of a sparse tally */
             continue;
         into->count[cell] += from->count[cell];
+        into->some[cell] += from->some[cell];
+        into->all[cell] += from->all[cell];
         into->square[cell] += from->square[cell];
         into->cross[cell] += from->cross[cell];
     }
@@ -75,6 +83,8 @@ void tally_put(struct bytes *bytes, const struct tally *tally) {
     for (size_t cell = 0; cell < tally->size; cell++) {
         if (tally->count[cell] == 0)
             continue;
+        bytes_put_unsigned(bytes, tally->some[cell]);
+        bytes_put_unsigned(bytes, tally->all[cell]);
         bytes_put_fixed(bytes, tally->square[cell]);
         bytes_put_fixed(bytes, tally->cross[cell]);
     }
@@ -86,6 +96,11 @@ static void get_tally(struct byte_reader *reader, struct tally *tally, bool with
         fixed_point count = tally->count[cell];
         if (count == 0)
             continue;
+        tally->some[cell] = bytes_get_unsigned(reader);
+        tally->all[cell] = bytes_get_unsigned(reader);
+        if (tally->some[cell] == 0 || tally->some[cell] > (uint64_t)count ||
+            tally->all[cell] > tally->some[cell])
+            reader->failed = true;
         tally->square[cell] = get_sum(reader, count, SUM_MOST);
         tally->cross[cell] = get_sum(reader, within ? tally->square[cell] : count, SUM_MOST);
     }
@@ -107,20 +122,107 @@ static double cross_difference(fixed_point a, fixed_point b, fixed_point c, fixe
     return (double)(left - right);
 }
 
+/* M/(M-1) sum (n_r - R N_r)^2: the sum of squares is sum N times less than A - R B with
+ * A = sum n_r (n_r sum N - n N_r), B likewise with N_r: each an exact integer before it is rounded,
+ * so that what cancels does so exactly. */
+static double cell_variance(const struct tally *tally, size_t cell,
+                            const struct tally_total *total) {
+    fixed_point n = tally->count[cell];
+    double things = (double)total->sum, share = (double)n / things;
+    double a = cross_difference(tally->square[cell], total->sum, n, tally->cross[cell]);
+    double b = cross_difference(tally->cross[cell], total->sum, n, total->square);
+    double m = (double)total->realisations;
+    return m / (m - 1) * fmax(0, (a - share * b) / things);
+}
+
+/* Cells first to last - 1 around one, grown by both its neighbours at a time within its row. */
+struct window {
+    size_t first, last, low, high; /* low and high: of the row */
+};
+static struct window window_at(const struct tally *tally, size_t cell) {
+    size_t low = cell - cell % tally->row;
+    return (struct window){cell, cell + 1, low, low + tally->row};
+}
+static bool window_grow(struct window *window) {
+    bool more = window->first > window->low || window->last < window->high;
+    window->first -= window->first > window->low;
+    window->last += window->last < window->high;
+    return more;
+}
+
+/* What a share is of: the things in a cell, or the things that are not. Both have one variance. */
+static fixed_point side_count(const struct tally *tally, size_t cell,
+                              const struct tally_total *total, bool outside) {
+    fixed_point n = tally->count[cell];
+    return outside ? total->sum - n : n;
+}
+static uint64_t side_some(const struct tally *tally, size_t cell, const struct tally_total *total,
+                          bool outside) {
+    return outside ? total->realisations - tally->all[cell] : tally->some[cell];
+}
+static bool is_rare(uint64_t some, uint64_t realisations) {
+    return some < TALLY_RARE && some < realisations;
+}
+
+/* Variance over mean of the counts of cells, at least that of things which are independent. */
+static double dispersion_of(double variance, double count) {
+    return count > 0 ? fmax(1, variance / count) : 1;
+}
+
+static double neighbours_dispersion(const struct tally *tally, size_t cell,
+                                    const struct tally_total *total, bool outside) {
+    struct window window = window_at(tally, cell);
+    double variance, count;
+    uint64_t some;
+    do {
+        variance = count = 0;
+        some = 0;
+        for (size_t a = window.first; a < window.last; a++) {
+            variance += tally->count[a] > 0 ? cell_variance(tally, a, total) : 0;
+            count += (double)side_count(tally, a, total, outside);
+            some += side_some(tally, a, total, outside);
+        }
+    } while (some < TALLY_RARE && window_grow(&window));
+    return dispersion_of(variance, count);
+}
+
+/* The error of a count of clusters as large as the dispersion: a Poisson mean of which n were seen
+ * has the variance n + 1 (its posterior, Gelman et al. 2013, section 2.6), and where none was seen
+ * it is below 1.841 at the confidence of one standard deviation (Gehrels 1986, table 1). */
+static double rare_error(double dispersion, double count) {
+    static const double NONE_SEEN = 1.841;
+    return count > 0 ? dispersion * sqrt(count / dispersion + 1) : dispersion * NONE_SEEN;
+}
+
 struct estimate tally_share(const struct tally *tally, size_t cell,
                             const struct tally_total *total) {
     if (total->sum == 0)
         return (struct estimate){NAN, NAN};
-    fixed_point n = tally->count[cell];
-    double things = (double)total->sum, share = (double)n / things;
+    double things = (double)total->sum, error;
+    struct estimate share = {(double)tally->count[cell] / things, NAN};
+    bool outside = 2 * (fixed_point)tally->count[cell] > total->sum;
     if (total->realisations < 2)
-        return (struct estimate){share, NAN};
-    /* sum (n_r - R N_r)^2 sum N = A - R B with A = sum n_r (n_r sum N - n N_r), B likewise with
-     * N_r: each an exact integer before it is rounded, so that what cancels does so exactly. */
-    double a = cross_difference(tally->square[cell], total->sum, n, tally->cross[cell]);
-    double b = cross_difference(tally->cross[cell], total->sum, n, total->square);
-    double squares = fmax(0, (a - share * b) / things), m = (double)total->realisations;
-    return (struct estimate){share, sqrt(m / (m - 1) * squares) / things};
+        return share;
+    if (is_rare(side_some(tally, cell, total, outside), total->realisations))
+        error = rare_error(neighbours_dispersion(tally, cell, total, outside),
+                           (double)side_count(tally, cell, total, outside));
+    else
+        error = sqrt(cell_variance(tally, cell, total));
+    share.standard_error = error / things;
+    return share;
+}
+
+double tally_empty_bound(const struct tally *tally, const struct tally_total *total) {
+    double variance = 0, count = 0;
+    if (total->sum == 0 || total->realisations < 2)
+        return NAN;
+    for (size_t cell = 0; cell < tally->size; cell++) {
+        if (tally->count[cell] == 0 || !is_rare(tally->some[cell], total->realisations))
+            continue;
+        variance += cell_variance(tally, cell, total);
+        count += (double)tally->count[cell];
+    }
+    return rare_error(dispersion_of(variance, count), 0) / (double)total->sum;
 }
 
 int tally_sums_create(struct tally_sums *out, size_t size, struct error *err) {
@@ -155,55 +257,86 @@ void tally_sums_merge(struct tally_sums *into, const struct tally_sums *from) {
     }
 }
 
-static void put_exact(struct bytes *bytes, const struct exact_sum *sum) {
+void exact_sum_put(struct bytes *bytes, const struct exact_sum *sum) {
     bytes_put_fixed(bytes, sum->total);
     bytes_put_unsigned(bytes, sum->lost);
 }
 
-static void get_exact(struct byte_reader *reader, struct exact_sum *sum) {
+void exact_sum_get(struct byte_reader *reader, struct exact_sum *sum) {
     sum->total = get_sum(reader, -EXACT_MOST, EXACT_MOST);
     sum->lost = bytes_get_unsigned(reader);
 }
 
 void tally_sums_put(struct bytes *bytes, const struct tally_sums *sums) {
     for (size_t cell = 0; cell < sums->size; cell++) {
-        put_exact(bytes, &sums->sum[cell]);
-        put_exact(bytes, &sums->square[cell]);
-        put_exact(bytes, &sums->cross[cell]);
+        exact_sum_put(bytes, &sums->sum[cell]);
+        exact_sum_put(bytes, &sums->square[cell]);
+        exact_sum_put(bytes, &sums->cross[cell]);
     }
 }
 
 void tally_sums_get(struct byte_reader *reader, struct tally_sums *sums) {
     for (size_t cell = 0; cell < sums->size && !reader->failed; cell++) {
-        get_exact(reader, &sums->sum[cell]);
-        get_exact(reader, &sums->square[cell]);
-        get_exact(reader, &sums->cross[cell]);
+        exact_sum_get(reader, &sums->sum[cell]);
+        exact_sum_get(reader, &sums->square[cell]);
+        exact_sum_get(reader, &sums->cross[cell]);
     }
-}
-
-/* Ratio of sums of k and n with sums of k^2, k n and n^2 over m realisations. */
-static struct estimate ratio(double k, double kk, double kn, double n, double nn, double m) {
-    if (!(n > 0))
-        return (struct estimate){NAN, NAN};
-    double value = k / n;
-    if (m < 2)
-        return (struct estimate){value, NAN};
-    double squares = fmax(0, (kk - value * kn) - value * (kn - value * nn));
-    return (struct estimate){value, sqrt(m / (m - 1) * squares) / n};
 }
 
 static double exact_value(const struct exact_sum *sum) {
     return sum->lost == 0 ? exact_sum_value(sum) : NAN;
 }
 
+/* sum (k_r - R n_r)^2 by sums of k^2, k n and n^2, R = k/n. */
+static double residual_squares(const struct tally_sums *sums, const struct tally *counts,
+                               size_t cell) {
+    double value = exact_value(&sums->sum[cell]) / (double)counts->count[cell];
+    double kk = exact_value(&sums->square[cell]), kn = exact_value(&sums->cross[cell]);
+    return fmax(0, (kk - value * kn) - value * (kn - value * (double)counts->square[cell]));
+}
+
 struct estimate tally_sums_ratio(const struct tally_sums *sums, const struct tally *counts,
-                                 size_t cell, uint64_t realisations) {
-    return ratio(exact_value(&sums->sum[cell]), exact_value(&sums->square[cell]),
-                 exact_value(&sums->cross[cell]), (double)counts->count[cell],
-                 (double)counts->square[cell], (double)realisations);
+                                 size_t cell) {
+    double n = (double)counts->count[cell], m = (double)counts->some[cell];
+    if (!(n > 0))
+        return (struct estimate){NAN, NAN};
+    struct estimate ratio = {exact_value(&sums->sum[cell]) / n, NAN};
+    if (m >= 2)
+        ratio.standard_error = sqrt(m / (m - 1) * residual_squares(sums, counts, cell)) / n;
+    return ratio;
+}
+
+struct estimate tally_sums_ratio_pooled(const struct tally_sums *sums, const struct tally *counts,
+                                        size_t cell) {
+    struct estimate ratio = tally_sums_ratio(sums, counts, cell);
+    uint64_t some = counts->some[cell];
+    if (some < 2 || some >= TALLY_RARE)
+        return ratio;
+    /* Residuals of m realisations with n things have the variance of n (m - 1)/m things. */
+    struct window window = window_at(counts, cell);
+    double squares, things, freedom;
+    do {
+        squares = things = freedom = 0;
+        for (size_t a = window.first; a < window.last; a++) {
+            double m = (double)counts->some[a];
+            if (!(m >= 2))
+                continue;
+            squares += residual_squares(sums, counts, a);
+            things += (double)counts->count[a] * (m - 1) / m;
+            freedom += m - 1;
+        }
+    } while (freedom < TALLY_RARE && window_grow(&window));
+    ratio.standard_error = sqrt(squares / things / (double)counts->count[cell]);
+    return ratio;
 }
 
 struct estimate tally_sums_mean(const struct tally_sums *sums, size_t cell, uint64_t realisations) {
-    double m = (double)realisations, k = exact_value(&sums->sum[cell]);
-    return ratio(k, exact_value(&sums->square[cell]), k, m, m, m);
+    double m = (double)realisations, k = exact_value(&sums->sum[cell]), value = k / m;
+    if (realisations == 0)
+        return (struct estimate){NAN, NAN};
+    if (realisations < 2)
+        return (struct estimate){value, NAN};
+    double kk = exact_value(&sums->square[cell]);
+    double squares = fmax(0, (kk - value * k) - value * (k - value * m));
+    return (struct estimate){value, sqrt(m / (m - 1) * squares) / m};
 }

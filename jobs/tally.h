@@ -4,12 +4,21 @@
  * Realisation r puts n_r(cell) of its N_r things into a cell. The share of a cell is
  * R = sum n_r / sum N_r, and as things of one realisation are not independent its error is that of
  * a ratio over realisations (Cochran 1977, section 2.11):
- * variance = M/(M-1) sum (n_r - R N_r)^2 / (sum N_r)^2. */
+ * variance = M/(M-1) sum (n_r - R N_r)^2 / (sum N_r)^2.
+ *
+ * A cell that few realisations have things in cannot tell its own variance: one that none has would
+ * tell 0. Such rare cells take the dispersion (variance over mean of a count, McCullagh & Nelder
+ * 1989, section 4.5) of their neighbours; FORMULAS.md, F15.8. Below two realisations there is no
+ * error. */
 #ifndef RUGO_JOBS_TALLY_H
 #define RUGO_JOBS_TALLY_H
 
 #include "jobs/estimate.h"
 #include "schema/result/bytes.h"
+
+void exact_sum_put(struct bytes *bytes, const struct exact_sum *sum);
+/* Fails the reader for a sum that could overflow in merging. */
+void exact_sum_get(struct byte_reader *reader, struct exact_sum *sum);
 
 /* All cells of a tally share these sums. */
 struct tally_total {
@@ -23,19 +32,25 @@ void tally_total_get(struct byte_reader *reader, struct tally_total *total);
 
 struct tally {
     size_t size;
+    size_t row;          /* cells that lie side by side are neighbours within rows of so many */
     uint64_t *count;     /* owned, as all: sum of n_r */
+    uint64_t *some;      /* realisations with n_r > 0 */
+    uint64_t *all;       /* of these, with n_r = N_r */
     fixed_point *square; /* sum of n_r^2 */
     fixed_point *cross;  /* sum of n_r N_r */
 };
-int tally_create(struct tally *out, size_t size, struct error *err);
+/* row: a divisor of size. */
+int tally_create(struct tally *out, size_t size, size_t row, struct error *err);
 void tally_clear(struct tally *tally);
 static inline double tally_bytes(size_t size) {
-    return 40.0 * (double)size;
+    return 56.0 * (double)size;
 }
 /* Adds one realisation's n of its N things to a cell; to be called once a cell and realisation, and
  * not for n = 0. */
 static inline void tally_add(struct tally *tally, size_t cell, uint64_t n, uint64_t things) {
     tally->count[cell] += n;
+    tally->some[cell]++;
+    tally->all[cell] += n == things;
     tally->square[cell] += (fixed_point)n * n;
     tally->cross[cell] += (fixed_point)n * things;
 }
@@ -46,9 +61,14 @@ void tally_get(struct byte_reader *reader, struct tally *tally);
 /* Does the same for things that weigh differently, so that n_r may pass N_r. */
 void tally_get_weighed(struct byte_reader *reader, struct tally *tally);
 
-/* Estimates the share of a cell and its error. */
+/* Cells with things of fewer realisations than this, and than all, are rare. */
+enum { TALLY_RARE = 10 };
+/* Estimates the share of a cell and its error; of an empty cell and of one with all things that is
+ * the bound which its share is within at the confidence of one standard deviation. */
 struct estimate tally_share(const struct tally *tally, size_t cell,
                             const struct tally_total *total);
+/* Returns the bound of empty cells from the dispersion of all rare cells. */
+double tally_empty_bound(const struct tally *tally, const struct tally_total *total);
 
 /* Exact sums of a quantity k over realisations where the cell counts are n_r: enough for the ratio
  * sum k_r / sum n_r, such as the mean curvature of the summits of a bin. */
@@ -65,9 +85,12 @@ void tally_sums_add(struct tally_sums *sums, size_t cell, double k, uint64_t n);
 void tally_sums_merge(struct tally_sums *into, const struct tally_sums *from);
 void tally_sums_put(struct bytes *bytes, const struct tally_sums *sums);
 void tally_sums_get(struct byte_reader *reader, struct tally_sums *sums);
-/* Estimates the ratio in a cell; `counts` holds n_r of `realisations` realisations. */
+/* Estimates the ratio in a cell over the realisations that have things there, n_r of `counts`. */
 struct estimate tally_sums_ratio(const struct tally_sums *sums, const struct tally *counts,
-                                 size_t cell, uint64_t realisations);
+                                 size_t cell);
+/* Does the same with the variance a thing of the neighbours where the cell is rare. */
+struct estimate tally_sums_ratio_pooled(const struct tally_sums *sums, const struct tally *counts,
+                                        size_t cell);
 /* Estimates the mean of k a realisation where every n_r was 1. */
 struct estimate tally_sums_mean(const struct tally_sums *sums, size_t cell, uint64_t realisations);
 

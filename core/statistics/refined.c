@@ -173,7 +173,7 @@ static int row_search(struct refined *r, double first, size_t row, struct summit
     bool profile = grid_is_profile(fine);
     const double *middle = r->window + row * nx;
     size_t found = row_summits(profile ? NULL : middle - nx, middle, profile ? NULL : middle + nx,
-                               nx, false, r->columns);
+                               nx, false, false, r->columns);
     double dx = grid_dx(fine), dy = profile ? 1 : grid_dy(fine);
     const struct climb climb = {r, jet_at, profile};
     for (size_t s = 0; s < found; s++) {
@@ -223,14 +223,14 @@ static int strips_search(struct refined *r, struct summit_list *list, struct err
     return 0;
 }
 
-/* Takes the mean out of the coarse spectrum and scales it by a power of two to about 1, so that
- * neither an offset nor a tiny unit drowns the search in rounding. What is no more than the
- * rounding of the mean is flat. */
-static void spectrum_normalise(struct refined *r) {
+/* Takes the mean out of the coarse spectrum, of the surface z or of the mirrored one -z, and scales
+ * it by a power of two to about 1, so that neither an offset nor a tiny unit drowns the search in
+ * rounding. What is no more than the rounding of the mean is flat. */
+static void spectrum_normalise(struct refined *r, bool mirrored) {
     double complex *mode = transform_spectrum(r->coarse);
     size_t count = (r->mode_x + 1) * r->grid.ny;
     double largest = 0;
-    r->mean = creal(mode[0]);
+    r->mean = mirrored ? -creal(mode[0]) : creal(mode[0]);
     mode[0] = 0;
     for (size_t k = 0; k < count; k++)
         largest = fmax(largest, fmax(fabs(creal(mode[k])), fabs(cimag(mode[k]))));
@@ -239,7 +239,7 @@ static void spectrum_normalise(struct refined *r) {
     r->unit = ldexp(1, exponent > -1000 ? exponent : -1000);
     double factor = largest > DBL_EPSILON * fabs(r->mean) ? 1 / r->unit : 0;
     for (size_t k = 0; k < count; k++)
-        mode[k] *= factor;
+        mode[k] *= mirrored ? -factor : factor;
 }
 
 /* Moves the fine points by SHIFT_X, SHIFT_Y of a cell: half-way between two of them a symmetric map
@@ -259,9 +259,10 @@ static void samples_shift(struct refined *r) {
     }
 }
 
-int refined_find(struct refined *r, const double *z, struct summit_list *list, struct error *err) {
+int refined_find(struct refined *r, const double *z, bool mirrored, struct summit_list *list,
+                 struct error *err) {
     transform_forward(r->coarse, z);
-    spectrum_normalise(r);
+    spectrum_normalise(r, mirrored);
     transform_pad(r->coarse, r->dense);
     samples_shift(r);
     transform_inverse_columns(r->dense);

@@ -21,3 +21,11 @@ int summit_list_add(struct summit_list *list, const struct summit *summit, struc
     list->summits[list->count++] = *summit;
     return 0;
 }
+
+int summit_list_append(struct summit_list *list, const struct summit_list *other,
+                       struct error *err) {
+    int status = 0;
+    for (size_t a = 0; a < other->count && status == 0; a++)
+        status = summit_list_add(list, &other->summits[a], err);
+    return status;
+}

@@ -17,5 +17,8 @@ struct summit_list {
 };
 void summit_list_clear(struct summit_list *list);
 int summit_list_add(struct summit_list *list, const struct summit *summit, struct error *err);
+/* Appends all of another list. */
+int summit_list_append(struct summit_list *list, const struct summit_list *other,
+                       struct error *err);
 
 #endif

@@ -106,17 +106,18 @@ static double difference_curvature(const struct grid *grid, const double *z, siz
     return -(xx + yy) / 2;
 }
 
-static int row_add(struct summit_finder *f, const double *z, size_t j, size_t found,
+static int row_add(struct summit_finder *f, const double *z, size_t j, size_t found, bool mirrored,
                    struct summit_list *list, struct error *err) {
     const struct grid *grid = &f->grid;
+    const double sign = mirrored ? -1 : 1;
     for (size_t s = 0; s < found; s++) {
         size_t i = f->columns[s], point = j * grid->nx + i;
         struct summit summit = {
             .x = (double)i * grid_dx(grid),
             .y = grid_is_profile(grid) ? 0 : (double)j * grid_dy(grid),
-            .height = z[point],
-            .curvature =
-                f->curvature != NULL ? f->curvature[point] : difference_curvature(grid, z, i, j),
+            .height = sign * z[point],
+            .curvature = sign * (f->curvature != NULL ? f->curvature[point]
+                                                      : difference_curvature(grid, z, i, j)),
         };
         int status = summit_list_add(list, &summit, err);
         if (status != 0)
@@ -125,11 +126,11 @@ static int row_add(struct summit_finder *f, const double *z, size_t j, size_t fo
     return 0;
 }
 
-int summits_find(struct summit_finder *f, const double *z, struct summit_list *list,
-                 struct error *err) {
+static int find(struct summit_finder *f, const double *z, bool mirrored, struct summit_list *list,
+                struct error *err) {
     list->count = 0;
     if (f->stencil == SUMMITS_REFINED)
-        return refined_find(f->refined, z, list, err);
+        return refined_find(f->refined, z, mirrored, list, err);
     if (f->curvature != NULL)
         curvature_fill(f, z);
     size_t nx = f->grid.nx, ny = f->grid.ny;
@@ -137,10 +138,20 @@ int summits_find(struct summit_finder *f, const double *z, struct summit_list *l
     for (size_t j = 0; j < ny; j++) {
         const double *up = profile ? NULL : z + (j != 0 ? j - 1 : ny - 1) * nx;
         const double *down = profile ? NULL : z + (j + 1 < ny ? j + 1 : 0) * nx;
-        size_t found = row_summits(up, z + j * nx, down, nx, corners, f->columns);
-        int status = row_add(f, z, j, found, list, err);
+        size_t found = row_summits(up, z + j * nx, down, nx, corners, mirrored, f->columns);
+        int status = row_add(f, z, j, found, mirrored, list, err);
         if (status != 0)
             return status;
     }
     return 0;
+}
+
+int summits_find(struct summit_finder *f, const double *z, struct summit_list *list,
+                 struct error *err) {
+    return find(f, z, false, list, err);
+}
+
+int pits_find(struct summit_finder *f, const double *z, struct summit_list *list,
+              struct error *err) {
+    return find(f, z, true, list, err);
 }

@@ -26,5 +26,8 @@ double summit_finder_bytes(const struct grid *grid, enum summit_stencil stencil,
 /* Replaces the contents of list by the summits of z, in row order. */
 int summits_find(struct summit_finder *finder, const double *z, struct summit_list *list,
                  struct error *err);
+/* Does the same with the pits of z, as the summits of the mirrored surface -z that they are. */
+int pits_find(struct summit_finder *finder, const double *z, struct summit_list *list,
+              struct error *err);
 
 #endif

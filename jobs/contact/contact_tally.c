@@ -31,7 +31,7 @@ bool contact_tally_counts(const struct contact_case *one_case, size_t level) {
 
 static int sums_create(struct contact_sums *out, size_t size, struct error *err) {
     int status = tally_sums_create(&out->sums, size, err);
-    return status != 0 ? status : tally_create(&out->counts, size, err);
+    return status != 0 ? status : tally_create(&out->counts, size, size, err);
 }
 
 static void sums_clear(struct contact_sums *sums) {
@@ -47,9 +47,9 @@ static void sums_add(struct contact_sums *sums, size_t cell, double value) {
     tally_add(&sums->counts, cell, 1, 1);
 }
 
-static struct estimate sums_mean(const struct contact_sums *sums, size_t cell,
-                                 uint64_t realisations, double scale) {
-    struct estimate mean = tally_sums_ratio(&sums->sums, &sums->counts, cell, realisations);
+/* Over the realisations that have a value. */
+static struct estimate sums_mean(const struct contact_sums *sums, size_t cell, double scale) {
+    struct estimate mean = tally_sums_ratio(&sums->sums, &sums->counts, cell);
     return (struct estimate){mean.value / scale, mean.standard_error / scale};
 }
 
@@ -102,7 +102,8 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
             status = sums_create(&out->sums[SUMS_PROBE + a], probe_pairs(one_case), err);
     }
     if (status == 0)
-        status = tally_create(&out->pressures, pressure_cells(one_case), err);
+        status = tally_create(&out->pressures, pressure_cells(one_case),
+                              contact_tally_bins(one_case), err);
     out->rows.width = contact_rows_width(one_case);
     if (status == 0)
         values_begin(out);
@@ -240,7 +241,7 @@ struct estimate contact_tally_mean(const struct contact_tally *tally, enum conta
                                    size_t cell) {
     double scale =
         contact_tally_scale(tally->one_case, measure, cell % tally->one_case->load_count);
-    return sums_mean(&tally->sums[measure], cell, tally->realisations, scale);
+    return sums_mean(&tally->sums[measure], cell, scale);
 }
 
 double contact_tally_total(const struct contact_tally *tally, enum contact_measure measure,
@@ -258,7 +259,7 @@ uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact
 struct estimate contact_tally_level(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t level, size_t load) {
     return sums_mean(&tally->sums[SUMS_LEVELS + measure],
-                     level_pair(tally->one_case, model, level, load), tally->realisations,
+                     level_pair(tally->one_case, model, level, load),
                      contact_tally_scale(tally->one_case, measure, load));
 }
 
@@ -267,7 +268,7 @@ struct estimate contact_tally_model(const struct contact_tally *tally, enum cont
     if (model == contact_case_complete(tally->one_case))
         return (struct estimate){NAN, NAN};
     return sums_mean(&tally->sums[SUMS_MODELS + measure], model_pair(tally->one_case, model, load),
-                     tally->realisations, contact_tally_scale(tally->one_case, measure, load));
+                     contact_tally_scale(tally->one_case, measure, load));
 }
 
 struct estimate contact_tally_block(const struct contact_tally *tally, enum contact_measure measure,
@@ -275,7 +276,7 @@ struct estimate contact_tally_block(const struct contact_tally *tally, enum cont
     if (block_pairs(tally->one_case) == 0)
         return (struct estimate){NAN, NAN};
     return sums_mean(&tally->sums[SUMS_BLOCKS + measure],
-                     model * tally->one_case->load_count + load, tally->realisations,
+                     model * tally->one_case->load_count + load,
                      contact_tally_scale(tally->one_case, measure, load));
 }
 
@@ -286,7 +287,7 @@ static struct estimate mean_of_few(const struct contact_tally *tally,
     uint64_t count = sums->counts.count[cell];
     if (count < 2)
         return (struct estimate){NAN, NAN};
-    return sums_mean(sums, cell, count, contact_tally_scale(tally->one_case, measure, load));
+    return sums_mean(sums, cell, contact_tally_scale(tally->one_case, measure, load));
 }
 
 /* On all realisations the control is known: its mean less that of the difference, which scatters

@@ -30,7 +30,7 @@ struct statistics_workspace {
     struct moments moments;                 /* of the prescribed spectrum */
     struct summit_finder *finder;
     struct spectra spectra;
-    struct summit_list summits;
+    struct summit_list summits[SIDES]; /* of a symmetric case the first has all of them */
 };
 
 static int workspace_create(void *workspace, const void *one_case,
@@ -55,24 +55,34 @@ static void workspace_clear(void *workspace) {
     struct statistics_workspace *work = workspace;
     summit_finder_destroy(&work->finder);
     spectra_clear(&work->spectra);
-    summit_list_clear(&work->summits);
+    for (size_t side = 0; side < SIDES; side++)
+        summit_list_clear(&work->summits[side]);
+}
+
+static int find_summits(struct statistics_workspace *work, const double *z, struct error *err) {
+    int status = summits_find(work->finder, z, &work->summits[SIDE_SUMMITS], err);
+    if (status == 0)
+        status = pits_find(work->finder, z, &work->summits[SIDE_PITS], err);
+    if (status != 0 || !statistics_case_symmetric(work->one_case))
+        return status;
+    return summit_list_append(&work->summits[SIDE_SUMMITS], &work->summits[SIDE_PITS], err);
 }
 
 static int realise(void *workspace, const struct realisation *realisation, void *tally,
                    double *scalars, struct error *err) {
     struct statistics_workspace *work = workspace;
     const struct grid *grid = &work->one_case->surface.grid;
-    int status = summits_find(work->finder, realisation->z, &work->summits, err);
+    int status = find_summits(work, realisation->z, err);
     if (status == 0)
         status = spectra_measure(&work->spectra, grid, realisation->z, tally, err);
     if (status != 0)
         return status;
-    statistics_tally_heights(tally, grid_points(grid), realisation->z);
-    statistics_tally_summits(tally, &work->summits);
+    statistics_tally_add(tally, realisation->key.realisation, grid_points(grid), realisation->z,
+                         work->summits);
     statistics_scalars_measure(work->one_case, &work->moments,
                                &(struct realisation_measures){.roughness = &realisation->roughness,
                                                               .moments = &realisation->moments,
-                                                              .summits = &work->summits,
+                                                              .summits = work->summits,
                                                               .report = &realisation->report},
                                scalars);
     return 0;
@@ -110,11 +120,16 @@ static bool adds_up(const void *tally) {
 
 static bool belongs(const void *tally, const struct block_result *result) {
     const struct statistics_tally *statistics = tally;
-    double summits = 0;
-    for (uint64_t r = 0; r < result->count; r++)
-        summits += result->scalars[r * result->scalar_count + SCALAR_SUMMITS];
-    return statistics->summits.realisations == result->count &&
-           summits == (double)statistics->summits.sum;
+    double found[SIDES] = {0}, both = statistics_case_symmetric(statistics->one_case) ? 2 : 1;
+    for (uint64_t r = 0; r < result->count; r++) {
+        const double *scalars = result->scalars + r * result->scalar_count;
+        found[SIDE_SUMMITS] += both * scalars[SCALAR_SUMMITS];
+        found[SIDE_PITS] += scalars[SCALAR_PITS];
+    }
+    bool belong = statistics->points.realisations == result->count;
+    for (size_t side = 0; side < statistics->sides; side++)
+        belong = belong && found[side] == (double)statistics->summits[side].total.sum;
+    return belong;
 }
 
 static int result(const void *one_case, const struct surface_basis *basis, const void *tally,
@@ -162,7 +177,7 @@ const struct job_kind STATISTICS_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x5354, /* "ST" */
-    .format_version = 1,
+    .format_version = 2,
     .put = put,
     .get = get,
     .adds_up = adds_up,

@@ -24,6 +24,16 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
                          struct fault_list *faults, struct error *err);
 void statistics_case_clear(struct statistics_case *one_case);
 
+/* Tells whether surfaces are as their mirror images -z in law: then pits are summits among others.
+ */
+static inline bool statistics_case_symmetric(const struct statistics_case *one_case) {
+    return one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN;
+}
+/* Counts the kinds of summits that are told apart: summits, and pits where those are not. */
+static inline size_t statistics_case_sides(const struct statistics_case *one_case) {
+    return statistics_case_symmetric(one_case) ? 1 : 2;
+}
+
 /* Estimates memory, time and error of one realisation before anything ran (statistics_cost.c). */
 void statistics_case_estimate(const struct statistics_case *one_case, struct study_cost *out);
 

@@ -10,7 +10,7 @@
 static double expected_seconds(const struct statistics_case *one_case) {
     double points = (double)grid_points(&one_case->surface.grid);
     double nanoseconds = cost_generation(&one_case->surface.options);
-    nanoseconds += cost_summits(one_case->stencil, one_case->curvature);
+    nanoseconds += 2 * cost_summits(one_case->stencil, one_case->curvature); /* and pits */
     if (!surface_case_exact(&one_case->surface))
         nanoseconds += cost_spectra();
     return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points);
@@ -50,7 +50,7 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
         (limited ? summit_finder_bytes(grid, one_case->stencil, one_case->curvature, mode_x, mode_y)
                  : summit_finder_bytes(grid, one_case->stencil, one_case->curvature, grid->nx / 2,
                                        grid->ny / 2)) +
-        statistics_tally_bytes(one_case) + 2 * summits * sizeof(struct summit) +
+        statistics_tally_bytes(one_case) + 6 * summits * sizeof(struct summit) +
         (exact ? 0 : 24 * points) + 6e6;
     out->seconds = expected_seconds(one_case);
     out->case_seconds = expected_case_seconds(one_case, summits);

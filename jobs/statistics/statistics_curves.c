@@ -9,24 +9,25 @@ struct statistics_curve_maker {
     const struct statistics_case *one_case;
     const struct statistics_tally *tally;
     const char *theory_name;       /* of summits; NULL: does not apply */
+    enum summit_side side;         /* of the curves under way */
     struct case_result *result;    /* its arena owns all arrays */
-    double *pdf, *cdf, *curvature; /* theories of heights by bin, of the curves under way */
+    double *pdf, *cdf, *curvature; /* theories by bin, of the curves under way */
 };
 
 static int no_room(struct error *err) {
     return error_set(err, ERROR_MEMORY, "no memory left for curves");
 }
 
-/* A curve over n points with room for its numbers; NULL in y when out of memory. */
+/* A curve over n points with room for its numbers. */
 struct curve_points {
-    double *x, *y, *standard_error;
+    double *x, *y, *standard_error, *valueless;
 };
 static int curve_points_create(struct statistics_curve_maker *maker, size_t n,
                                struct curve_points *out, struct error *err) {
-    double *x = result_numbers(maker->result, 3 * n);
+    double *x = result_numbers(maker->result, 4 * n);
     if (x == NULL)
         return no_room(err);
-    *out = (struct curve_points){x, x + n, x + 2 * n};
+    *out = (struct curve_points){x, x + n, x + 2 * n, x + 3 * n};
     return 0;
 }
 
@@ -54,6 +55,18 @@ static const char *equivalent_label(const struct statistics_curve_maker *maker) 
     return maker->one_case->surface.dimension == 2 ? "-sqrt(3/m4) kappa_m" : "z''/sqrt(m4)";
 }
 
+/* The curves of pits are told apart as a series. */
+static struct curve summit_curve(const struct statistics_curve_maker *maker, const char *quantity,
+                                 const char *x_label, const char *y_label) {
+    struct curve curve = curve_named(quantity, x_label, y_label);
+    if (maker->side == SIDE_PITS)
+        curve.series = "pits";
+    return curve;
+}
+static const struct summit_tally *side_tally(const struct statistics_curve_maker *maker) {
+    return &maker->tally->summits[maker->side];
+}
+
 /* A histogram becomes a density over its bins. */
 struct histogram {
     const char *quantity, *x_label;
@@ -69,7 +82,7 @@ static int add_density(struct statistics_curve_maker *maker, const struct histog
     const struct bins *bins = histogram->bins;
     double width = bins_width(bins);
     struct curve curve =
-        curve_named(histogram->quantity, histogram->x_label, "probability density");
+        summit_curve(maker, histogram->quantity, histogram->x_label, "probability density");
     struct curve_points points;
     int status = curve_points_create(maker, bins->count, &points, err);
     if (status != 0)
@@ -79,8 +92,11 @@ static int add_density(struct statistics_curve_maker *maker, const struct histog
         points.x[b] = bins_centre(bins, b);
         points.y[b] = share.value / width;
         points.standard_error[b] = share.standard_error / width;
+        points.valueless[b] =
+            (double)(histogram->total->realisations - histogram->cells->some[b + 1]);
     }
     curve_set_points(&curve, bins->count, points.x, points.y, points.standard_error);
+    curve.valueless = points.valueless;
     add_theory(&curve, histogram->theory_name, histogram->theory);
     curve.counted = true;
     curve.underflow = (double)histogram->cells->count[0];
@@ -93,7 +109,7 @@ static int add_cumulative(struct statistics_curve_maker *maker, const char *quan
                           const struct tally *below, const struct tally_total *total,
                           const char *theory_name, struct error *err) {
     const struct bins *bins = &maker->one_case->height;
-    struct curve curve = curve_named(quantity, height_label(), "cumulative probability");
+    struct curve curve = summit_curve(maker, quantity, height_label(), "cumulative probability");
     struct curve_points points;
     int status = curve_points_create(maker, bins->count, &points, err);
     if (status != 0)
@@ -111,22 +127,26 @@ static int add_cumulative(struct statistics_curve_maker *maker, const char *quan
 
 static int add_curvature(struct statistics_curve_maker *maker, struct error *err) {
     const struct bins *bins = &maker->one_case->height;
-    const struct statistics_tally *tally = maker->tally;
+    const struct summit_tally *tally = side_tally(maker);
     bool surface = maker->one_case->surface.dimension == 2;
-    struct curve curve = curve_named("summit_mean_curvature", height_label(),
-                                     surface ? "kappa_m/sqrt(m4)" : "-z''/sqrt(m4)");
+    struct curve curve = summit_curve(maker, "summit_mean_curvature", height_label(),
+                                      surface ? "kappa_m/sqrt(m4)" : "-z''/sqrt(m4)");
     struct curve_points points;
     int status = curve_points_create(maker, bins->count, &points, err);
     if (status != 0)
         return status;
     for (size_t b = 0; b < bins->count; b++) {
-        struct estimate mean =
-            tally_sums_ratio(&tally->curvature, &tally->summit, b + 1, tally->summits.realisations);
+        struct estimate mean = tally_sums_ratio_pooled(&tally->curvature, &tally->height, b + 1);
         points.x[b] = bins_centre(bins, b);
         points.y[b] = mean.value;
         points.standard_error[b] = mean.standard_error;
+        points.valueless[b] = (double)(tally->total.realisations - tally->height.some[b + 1]);
     }
     curve_set_points(&curve, bins->count, points.x, points.y, points.standard_error);
+    curve.valueless = points.valueless;
+    curve.counted = true;
+    curve.underflow = (double)tally->height.count[0];
+    curve.overflow = (double)tally->height.count[bins->count + 1];
     add_theory(&curve, maker->theory_name, maker->curvature);
     return result_add_curve(maker->result, &curve, err);
 }
@@ -144,8 +164,8 @@ static size_t joint_cell(const struct statistics_case *one_case, size_t cell) {
 static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
     const struct statistics_case *one_case = maker->one_case;
     const struct bins *height = &one_case->height, *equivalent = &one_case->equivalent;
-    const struct tally *tally = &maker->tally->joint;
-    const struct tally_total *total = &maker->tally->summits;
+    const struct tally *tally = &side_tally(maker)->joint;
+    const struct tally_total *total = &side_tally(maker)->total;
     double area = bins_width(height) * bins_width(equivalent), inside = 0;
     size_t all = height->count * equivalent->count, count = 0;
     for (size_t cell = 0; cell < all; cell++)
@@ -170,7 +190,8 @@ static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
         cells[count++] = (uint32_t)cell;
         inside += (double)n;
     }
-    struct curve curve = curve_named("summit_joint_pdf", height_label(), "probability density");
+    struct curve curve =
+        summit_curve(maker, "summit_joint_pdf", height_label(), "probability density");
     curve_set_points(&curve, height->count, axes, y, standard_error);
     curve.columns = equivalent->count;
     curve.x2 = axes + height->count;
@@ -178,7 +199,7 @@ static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
     curve.cells = cells;
     curve.cell_count = count;
     curve.empty_y = total->sum == 0 ? (double)NAN : 0;
-    curve.empty_standard_error = total->sum == 0 || total->realisations < 2 ? (double)NAN : 0;
+    curve.empty_standard_error = tally_empty_bound(tally, total) / area;
     add_theory(&curve, maker->theory_name, NULL);
     curve.counted = true;
     curve.underflow = 0;
@@ -224,40 +245,65 @@ static int add_heights(struct statistics_curve_maker *maker, struct error *err) 
     return status;
 }
 
+/* Adds a curve of each side, one beside the other as those of one quantity stand. */
+typedef int add_curve_function(struct statistics_curve_maker *maker, struct error *err);
+static int add_sides(struct statistics_curve_maker *maker, add_curve_function *add,
+                     struct error *err) {
+    int status = 0;
+    for (size_t side = 0; side < maker->tally->sides && status == 0; side++) {
+        maker->side = (enum summit_side)side;
+        status = add(maker, err);
+    }
+    maker->side = SIDE_SUMMITS;
+    return status;
+}
+
+static int add_summit_density(struct statistics_curve_maker *maker, struct error *err) {
+    const struct summit_tally *tally = side_tally(maker);
+    const struct histogram heights = {"summit_height_pdf", height_label(), &maker->one_case->height,
+                                      &tally->height,      &tally->total,  maker->theory_name,
+                                      maker->pdf};
+    return add_density(maker, &heights, err);
+}
+
+static int add_summit_cumulative(struct statistics_curve_maker *maker, struct error *err) {
+    const struct summit_tally *tally = side_tally(maker);
+    return add_cumulative(maker, "summit_height_cdf", &tally->below, &tally->total,
+                          maker->theory_name, err);
+}
+
 static int add_summit_heights(struct statistics_curve_maker *maker, double alpha,
                               struct error *err) {
-    const struct statistics_case *one_case = maker->one_case;
-    const struct statistics_tally *tally = maker->tally;
     int status = theories_create(maker, err);
     if (status != 0)
         return status;
     if (maker->theory_name != NULL)
-        statistics_theory_summits(one_case, alpha, maker->pdf, maker->cdf, maker->curvature);
-    const struct histogram heights = {"summit_height_pdf", height_label(),  &one_case->height,
-                                      &tally->summit,      &tally->summits, maker->theory_name,
-                                      maker->pdf};
-    status = add_density(maker, &heights, err);
+        statistics_theory_summits(maker->one_case, alpha, maker->pdf, maker->cdf, maker->curvature);
+    status = add_sides(maker, add_summit_density, err);
     if (status == 0)
-        status = add_cumulative(maker, "summit_height_cdf", &tally->summit_below, &tally->summits,
-                                maker->theory_name, err);
-    return status != 0 ? status : add_curvature(maker, err);
+        status = add_sides(maker, add_summit_cumulative, err);
+    return status != 0 ? status : add_sides(maker, add_curvature, err);
+}
+
+static int add_equivalent(struct statistics_curve_maker *maker, struct error *err) {
+    const struct summit_tally *tally = side_tally(maker);
+    const struct histogram curvatures = {"summit_curvature_pdf",
+                                         equivalent_label(maker),
+                                         &maker->one_case->equivalent,
+                                         &tally->equivalent,
+                                         &tally->total,
+                                         maker->theory_name,
+                                         maker->pdf};
+    return add_density(maker, &curvatures, err);
 }
 
 static int add_summit_curvatures(struct statistics_curve_maker *maker, struct error *err) {
-    const struct statistics_case *one_case = maker->one_case;
-    double *theory = result_numbers(maker->result, one_case->equivalent.count);
-    if (theory == NULL)
+    maker->pdf = result_numbers(maker->result, maker->one_case->equivalent.count);
+    if (maker->pdf == NULL)
         return no_room(err);
     if (maker->theory_name != NULL)
-        statistics_theory_equivalent(one_case, theory);
-    const struct histogram curvatures = {"summit_curvature_pdf",
-                                         equivalent_label(maker),
-                                         &one_case->equivalent,
-                                         &maker->tally->equivalent,
-                                         &maker->tally->summits,
-                                         maker->theory_name,
-                                         theory};
-    return add_density(maker, &curvatures, err);
+        statistics_theory_equivalent(maker->one_case, maker->pdf);
+    return add_sides(maker, add_equivalent, err);
 }
 
 int statistics_curves(const struct statistics_case *one_case, const struct modes *modes,
@@ -275,6 +321,6 @@ int statistics_curves(const struct statistics_case *one_case, const struct modes
     if (status == 0)
         status = add_summit_curvatures(&maker, err);
     if (status == 0)
-        status = add_joint(&maker, err);
+        status = add_sides(&maker, add_joint, err);
     return status != 0 ? status : spectra_curves(one_case, modes, tally, out, err);
 }

@@ -27,6 +27,12 @@ static const char *const NAMES[SCALAR_COUNT] = {
     [SCALAR_SUMMIT_HEIGHT_MEAN] = "summit_height_mean",
     [SCALAR_SUMMIT_HEIGHT_VARIANCE] = "summit_height_variance",
     [SCALAR_SUMMIT_CURVATURE_MEAN] = "summit_curvature_mean",
+    [SCALAR_PITS] = "pits",
+    [SCALAR_PIT_DENSITY] = "pit_density",
+    [SCALAR_PIT_DENSITY_PER_AREA] = "pit_density_per_area",
+    [SCALAR_PIT_HEIGHT_MEAN] = "pit_height_mean",
+    [SCALAR_PIT_HEIGHT_VARIANCE] = "pit_height_variance",
+    [SCALAR_PIT_CURVATURE_MEAN] = "pit_curvature_mean",
     [SCALAR_GENERATOR_ITERATIONS] = "generator_iterations",
     [SCALAR_GENERATOR_CONVERGED] = "generator_converged",
     [SCALAR_EPS_H] = "eps_h",
@@ -40,8 +46,11 @@ const char *statistics_scalar_name(size_t at) {
     return at < SCALAR_COUNT ? NAMES[at] : NULL;
 }
 
+/* The scalars of pits stand behind those of summits in the same order. */
+enum { SIDE_SCALARS = SCALAR_PITS - SCALAR_SUMMITS };
+
 /* Mean and variance of heights, mean curvature, of the summits of one realisation; NaN (0/0) where
- * there is none. */
+ * there is none. out: the scalars of summits, or of pits as if they were those. */
 static void measure_summits(const struct statistics_case *one_case, const struct moments *moments,
                             const struct summit_list *list, double *out) {
     const struct grid *grid = &one_case->surface.grid;
@@ -57,8 +66,8 @@ static void measure_summits(const struct statistics_case *one_case, const struct
         double deviation = list->summits[a].height - height;
         sum_add(&squares, deviation * deviation);
     }
-    out[SCALAR_SUMMITS] = n;
-    out[SCALAR_SUMMIT_DENSITY] = n / (surface ? grid->lx * grid->ly : grid->lx);
+    out[SCALAR_SUMMITS] = statistics_case_symmetric(one_case) ? n / 2 : n;
+    out[SCALAR_SUMMIT_DENSITY] = out[SCALAR_SUMMITS] / (surface ? grid->lx * grid->ly : grid->lx);
     out[SCALAR_SUMMIT_DENSITY_PER_AREA] =
         out[SCALAR_SUMMIT_DENSITY] * (surface ? ratio * ratio : ratio);
     out[SCALAR_SUMMIT_HEIGHT_MEAN] = height / sqrt(moments->m0);
@@ -87,7 +96,12 @@ void statistics_scalars_measure(const struct statistics_case *one_case,
     out[SCALAR_M2_DIFFERENCE] = roughness->m2;
     out[SCALAR_M4_DIFFERENCE] = roughness->m4;
     out[SCALAR_NAYAK_ALPHA_DIFFERENCE] = roughness->nayak_alpha;
-    measure_summits(one_case, moments, measures->summits, out);
+    for (size_t side = 0; side < SIDES; side++)
+        if (side < statistics_case_sides(one_case))
+            measure_summits(one_case, moments, &measures->summits[side], out + side * SIDE_SCALARS);
+        else
+            for (size_t a = SCALAR_PITS; a <= SCALAR_PIT_CURVATURE_MEAN; a++)
+                out[a] = NAN;
     out[SCALAR_GENERATOR_ITERATIONS] = (double)report->iterations;
     out[SCALAR_GENERATOR_CONVERGED] = iterated ? report->end == END_CONVERGED : NAN;
     out[SCALAR_EPS_H] = iterated ? report->eps_h : NAN;
@@ -106,8 +120,18 @@ static const double *column(const struct scalar_columns *columns, enum statistic
     return columns->values + (size_t)scalar * columns->n;
 }
 
-static bool is_of_summits(size_t scalar) {
-    return scalar >= SCALAR_SUMMIT_HEIGHT_MEAN && scalar <= SCALAR_SUMMIT_CURVATURE_MEAN;
+/* Returns the number of the scalar that counts the summits or pits which a scalar is a mean of;
+ * SCALAR_COUNT for another scalar. */
+static size_t number_behind(size_t scalar) {
+    if (scalar >= SCALAR_SUMMIT_HEIGHT_MEAN && scalar <= SCALAR_SUMMIT_CURVATURE_MEAN)
+        return SCALAR_SUMMITS;
+    if (scalar >= SCALAR_PIT_HEIGHT_MEAN && scalar <= SCALAR_PIT_CURVATURE_MEAN)
+        return SCALAR_PITS;
+    return SCALAR_COUNT;
+}
+/* Tells whether it is a variance; the mean stands before it. */
+static bool is_variance(size_t scalar) {
+    return scalar == SCALAR_SUMMIT_HEIGHT_VARIANCE || scalar == SCALAR_PIT_HEIGHT_VARIANCE;
 }
 
 /* Variances about the means of n realisations become those about the mean over all their summits.
@@ -121,9 +145,9 @@ static void centre(size_t n, const double *mean, const double *number, double *v
 /* Over all summits of the case; the variance about the common mean, which it replaces. */
 static struct estimate summit_estimate(const struct scalar_columns *columns,
                                        enum statistics_scalar scalar) {
-    const double *number = column(columns, SCALAR_SUMMITS);
-    if (scalar == SCALAR_SUMMIT_HEIGHT_VARIANCE)
-        centre(columns->n, column(columns, SCALAR_SUMMIT_HEIGHT_MEAN), number,
+    const double *number = column(columns, (enum statistics_scalar)number_behind(scalar));
+    if (is_variance(scalar))
+        centre(columns->n, column(columns, scalar - 1), number,
                columns->values + (size_t)scalar * columns->n);
     return estimate_weighted(columns->n, column(columns, scalar), number);
 }
@@ -132,21 +156,21 @@ int statistics_scalar_values(const struct realisations *realisations, size_t sca
                              double *weights, struct error *err) {
     size_t n = (size_t)realisations->count;
     realisations_column(realisations, scalar, values);
-    if (!is_of_summits(scalar))
+    if (number_behind(scalar) == SCALAR_COUNT)
         return 0;
-    realisations_column(realisations, SCALAR_SUMMITS, weights);
-    if (scalar != SCALAR_SUMMIT_HEIGHT_VARIANCE)
+    realisations_column(realisations, number_behind(scalar), weights);
+    if (!is_variance(scalar))
         return 0;
     double *mean = array_create(n, sizeof *mean);
     if (mean == NULL)
         return error_memory(err, n * sizeof *mean, "scalars");
-    realisations_column(realisations, SCALAR_SUMMIT_HEIGHT_MEAN, mean);
+    realisations_column(realisations, scalar - 1, mean);
     centre(n, mean, weights, values);
     free(mean);
     return 0;
 }
 
-/* Fills in what theory expects of the summits. */
+/* Fills in what theory expects of the summits, or of the pits as if they were those. */
 static void theory_of_summits(const struct statistics_case *one_case, const struct moments *moments,
                               double *out) {
     int dimension = one_case->surface.dimension;
@@ -188,7 +212,8 @@ static void theory_of_scalars(const struct statistics_case *one_case, const stru
         out[SCALAR_NAYAK_ALPHA] = moments->nayak_alpha;
     }
     if (statistics_theory_applies(one_case, moments))
-        theory_of_summits(one_case, moments, out);
+        for (size_t side = 0; side < statistics_case_sides(one_case); side++)
+            theory_of_summits(one_case, moments, out + side * SIDE_SCALARS);
 }
 
 /* Adds a scalar with a fixed name. */
@@ -211,7 +236,7 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
         struct estimate estimate;
         if (exact && a >= SCALAR_M0 && a <= SCALAR_NAYAK_ALPHA)
             estimate = (struct estimate){prescribed[a - SCALAR_M0], 0};
-        else if (is_of_summits(a))
+        else if (number_behind(a) < SCALAR_COUNT)
             estimate = summit_estimate(columns, a);
         else
             estimate = estimate_mean(columns->n, column(columns, a));

@@ -4,7 +4,7 @@
 
 #include "core/statistics/roughness.h"
 #include "jobs/realisations.h"
-#include "jobs/statistics/statistics_case.h"
+#include "jobs/statistics/statistics_tally.h"
 #include "schema/result/result.h"
 
 /* Lengths in lambda_s. Finite-difference values say so; m0 to nayak_alpha are spectral. */
@@ -23,12 +23,18 @@ enum statistics_scalar {
     SCALAR_M2_DIFFERENCE,
     SCALAR_M4_DIFFERENCE,
     SCALAR_NAYAK_ALPHA_DIFFERENCE,
-    SCALAR_SUMMITS,                 /* how many in the cell */
+    SCALAR_SUMMITS,                 /* how many in the cell; if Gaussian half of them and pits */
     SCALAR_SUMMIT_DENSITY,          /* per lambda_s^2, profiles per lambda_s */
     SCALAR_SUMMIT_DENSITY_PER_AREA, /* per lambda_l^2, profiles per lambda_l */
     SCALAR_SUMMIT_HEIGHT_MEAN,
     SCALAR_SUMMIT_HEIGHT_VARIANCE,
     SCALAR_SUMMIT_CURVATURE_MEAN, /* kappa_m/sqrt(m4) */
+    SCALAR_PITS,                  /* as the six above, of the summits of -z; none if Gaussian */
+    SCALAR_PIT_DENSITY,
+    SCALAR_PIT_DENSITY_PER_AREA,
+    SCALAR_PIT_HEIGHT_MEAN,
+    SCALAR_PIT_HEIGHT_VARIANCE,
+    SCALAR_PIT_CURVATURE_MEAN,
     SCALAR_GENERATOR_ITERATIONS,
     SCALAR_GENERATOR_CONVERGED, /* 1 below tolerance, 0 stalled or at the limit; none if Gaussian */
     SCALAR_EPS_H,
@@ -43,8 +49,8 @@ const char *statistics_scalar_name(size_t at); /* NULL behind the last */
 /* What is known of one realisation. */
 struct realisation_measures {
     const struct roughness *roughness;
-    const struct moments *moments; /* of this realisation's spectrum */
-    const struct summit_list *summits;
+    const struct moments *moments;     /* of this realisation's spectrum */
+    const struct summit_list *summits; /* of each side (statistics_tally.h) */
     const struct surface_report *report;
 };
 /* moments: of the prescribed spectrum, which sets the scale. NaN: none. */

@@ -1,29 +1,25 @@
-/* What a block of realisations adds up to: exact counts and sums, encoded into a partial result.
- *
- * z* = z/sqrt(m0) and t1 are measured in the scale of the case's discrete spectrum, the same for
- * all realisations. Histograms have an underflow cell, one cell a bin, and an overflow cell. */
+/* What a block of realisations adds up to: exact counts and sums, encoded into a partial result. */
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_TALLY_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_TALLY_H
 
-#include "jobs/statistics/statistics_case.h"
-#include "jobs/tally.h"
+#include "jobs/statistics/statistics_groups.h"
+#include "jobs/statistics/summit_tally.h"
+
+/* Pits are the summits of the mirrored surface. Of a surface that is as its mirror image in law,
+ * as Gaussian ones are, they are summits among the others; else they have a tally of their own. */
+enum summit_side { SIDE_SUMMITS, SIDE_PITS, SIDES };
 
 struct statistics_tally {
     const struct statistics_case *one_case; /* borrowed */
-    double height_scale;                    /* 1/sqrt(m0) */
-    double curvature_scale;                 /* t1 = curvature_scale * curvature; negative */
-    struct tally_total points, summits;
-    /* `below` cell b: values under the upper edge of bin b - 1 (cell 0: underflow alone) */
-    struct tally height, height_below, summit, summit_below;
-    struct tally equivalent;     /* t1 of summits */
-    struct tally joint;          /* cell zb * (equivalent.size) + tb */
-    struct tally_sums curvature; /* by height bin: kappa_m/sqrt(m4) of its summits */
+    struct summit_scales scales;
+    struct tally_total points;
+    struct tally height, height_below; /* as of summit_tally, of all points */
+    size_t sides;                      /* 1, or 2 where pits are told apart */
+    struct summit_tally summits[SIDES];
     /* Where the spectrum is not exact: measured density over the prescribed one, and correlation */
     struct tally_sums density, correlation;
-    /* scratch of one realisation */
-    uint64_t *count;       /* owned, zero in between; joint, summit, equivalent cells */
-    size_t *touched;       /* owned, joint.size: joint cells in use */
-    double *bin_curvature; /* owned, summit.size */
+    struct statistics_groups groups; /* of the histograms, in the order of statistics_group_at */
+    struct summit_counts counts;     /* scratch */
 };
 
 /* densities, correlations: sizes of psd and acf, 0 where the spectrum is exact. */
@@ -33,8 +29,16 @@ int statistics_tally_create(struct statistics_tally *out, const struct statistic
 void statistics_tally_clear(struct statistics_tally *tally);
 double statistics_tally_bytes(const struct statistics_case *one_case);
 
-void statistics_tally_heights(struct statistics_tally *tally, size_t n, const double *z);
-void statistics_tally_summits(struct statistics_tally *tally, const struct summit_list *summits);
+/* Adds a realisation: its heights, and of each side its summits. */
+void statistics_tally_add(struct statistics_tally *tally, uint64_t realisation, size_t n,
+                          const double *z, const struct summit_list summits[]);
+
+/* Where the counts (of curvature: the sums) of a histogram stand in a group. */
+struct group_place {
+    size_t height, summit[SIDES], equivalent[SIDES], counts;
+    size_t curvature[SIDES], sums;
+};
+struct group_place statistics_group_place(const struct statistics_case *one_case);
 
 /* As job_kind has them. A tally adds up where every thing of a histogram is in one of its cells. */
 void statistics_tally_put(struct bytes *bytes, const struct statistics_tally *tally);

@@ -133,9 +133,9 @@ static double total_of(const struct curve_report *report) {
 
 static double most_valueless(const struct curve *curve) {
     double most = 0;
-    for (size_t a = 0; curve->valueless != NULL && a < curve->n; a++)
+    for (size_t a = 0; curve_is_partial(curve) && a < curve->n; a++)
         most = fmax(most, curve->valueless[a]);
-    return curve->valueless != NULL ? most : (double)NAN;
+    return curve_is_partial(curve) ? most : (double)NAN;
 }
 
 /* Copies what tells the curve apart. */

@@ -173,6 +173,10 @@ static void *list_grow(void *list, size_t count, size_t size) {
     return capacity > SIZE_MAX / size ? NULL : realloc(list, capacity * size);
 }
 
+bool curve_is_partial(const struct curve *curve) {
+    return curve->valueless != NULL && (!curve->counted || curve->errors[ERROR_MISSING].applies);
+}
+
 int result_add_curve(struct case_result *result, const struct curve *curve, struct error *err) {
     struct curve *curves = list_grow(result->curves, result->curve_count, sizeof *curves);
     if (curves == NULL)

@@ -89,11 +89,12 @@ struct curve {
     size_t theory_count;
     struct theory theories[THEORIES_MOST]; /* of a matrix: dense, n x columns */
     struct curve_error errors[ERROR_SOURCES];
-    const double *valueless; /* realisations that have no value at a point; NULL: not told */
+    const double
+        *valueless; /* realisations without a value, or a thing in the bin; NULL: not told */
     /* Of a difference of two cases: their values, n each; NULL: none. */
     const double *minuend, *subtrahend;
-    bool paired;                /* of a difference: its standard error is that of pairs */
-    bool counted;               /* from a histogram: with what fell outside of the bins */
+    bool paired;  /* of a difference: its standard error is that of pairs */
+    bool counted; /* from a histogram, or over its bins: with what fell outside of them */
     double underflow, overflow; /* counts */
 };
 
@@ -102,6 +103,10 @@ struct curve curve_named(const char *quantity, const char *x_label, const char *
 /* Gives the curve n points; a matrix n rows, whose values are those of its cells. */
 void curve_set_points(struct curve *curve, size_t n, const double *x, const double *y,
                       const double *standard_error);
+
+/* Tells whether some realisations may be left out where all are meant: a bin without things is none
+ * of them. */
+bool curve_is_partial(const struct curve *curve);
 
 enum attribute_type { ATTRIBUTE_TEXT, ATTRIBUTE_NUMBER };
 struct curve_attribute {

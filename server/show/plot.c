@@ -67,7 +67,7 @@ static void draw_band(FILE *file, const struct frame *frame, const struct curve 
 
 /* Draws an open circle where some realisations have no value. */
 static void draw_partial(struct plot *plot, const struct curve *curve, const char *colour) {
-    for (size_t n = 0; n < curve->n && curve->valueless != NULL; n++) {
+    for (size_t n = 0; n < curve->n && curve_is_partial(curve); n++) {
         double x = curve->x[n], y = curve->y[n];
         if (!(curve->valueless[n] > 0) || !pen_reaches(&plot->pen, x, y))
             continue;

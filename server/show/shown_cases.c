@@ -53,7 +53,7 @@ static void find_varied(struct shown_cases *shown) {
 static bool is_partial(const struct case_result *one) {
     for (size_t a = 0; a < one->curve_count; a++) {
         const struct curve *curve = &one->curves[a];
-        for (size_t n = 0; n < curve->n && curve->valueless != NULL; n++)
+        for (size_t n = 0; n < curve->n && curve_is_partial(curve); n++)
             if (curve->valueless[n] > 0)
                 return true;
     }

@@ -41,7 +41,7 @@ static const char *needle_scalar(size_t at) {
 static int needle_create(void *tally, const void *study, const struct surface_basis *basis,
                          struct error *err) {
     (void)study, (void)basis;
-    return tally_create(tally, LENGTHS + 1, err);
+    return tally_create(tally, LENGTHS + 1, LENGTHS + 1, err);
 }
 static void needle_clear(void *tally) {
     tally_clear(tally);

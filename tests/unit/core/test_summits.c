@@ -166,6 +166,44 @@ static void refined_summits_belong_to_the_surface(void **state) {
     summit_list_clear(&lists[1]);
 }
 
+static struct summit_finder *finder_of(const struct grid *grid, enum summit_stencil stencil,
+                                       enum summit_curvature curvature) {
+    struct summit_finder *finder = NULL;
+    assert_int_equal(
+        summit_finder_create(&finder, grid, stencil, curvature, grid->nx / 2, grid->ny / 2, NULL),
+        0);
+    return finder;
+}
+
+/* Pits are the summits of -z, to the bit, for every rule, on surfaces and profiles, and summits are
+ * not among them. */
+static void pits_are_summits_of_the_mirror(void **state) {
+    (void)state;
+    const struct grid grids[] = {{64, 48, 2, 1.5}, {256, 1, 4, 0}};
+    double z[64 * 48], mirrored[64 * 48];
+    uint64_t seed = seed_or(11);
+    for (size_t a = 0; a < 64 * 48; a++) {
+        z[a] = (double)(next_word(&seed) % 1000);
+        mirrored[a] = -z[a];
+    }
+    for (size_t g = 0; g < 2; g++)
+        for (int stencil = SUMMITS_NINE_POINT; stencil <= SUMMITS_REFINED; stencil++)
+            for (int curvature = 0; curvature < 2; curvature++) {
+                struct summit_finder *finder = finder_of(&grids[g], (enum summit_stencil)stencil,
+                                                         (enum summit_curvature)curvature);
+                struct summit_list pits = {0}, summits = {0};
+                assert_int_equal(pits_find(finder, z, &pits, NULL), 0);
+                assert_int_equal(summits_find(finder, mirrored, &summits, NULL), 0);
+                assert_true(pits.count > 20);
+                assert_int_equal(pits.count, summits.count);
+                assert_memory_equal(pits.summits, summits.summits,
+                                    pits.count * sizeof *pits.summits);
+                summit_list_clear(&pits);
+                summit_list_clear(&summits);
+                summit_finder_destroy(&finder);
+            }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grid_summits_are_those_of_brute_force),
@@ -173,6 +211,7 @@ int main(void) {
         cmocka_unit_test(refined_summits_are_exact),
         cmocka_unit_test(curvatures_of_a_wave),
         cmocka_unit_test(refined_summits_belong_to_the_surface),
+        cmocka_unit_test(pits_are_summits_of_the_mirror),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -260,7 +260,7 @@ static void curves_against_brute_force(void **state) {
         merge(single, &result);
         merge(merger, &result);
         cJSON *document = curves_of(single);
-        n[r] = scalar(document, "summits", "value");
+        n[r] = 2 * scalar(document, "summits", "value"); /* Gaussian: with pits, half of both */
         share[r] = at(curve_of(document, "summit_height_pdf"), "/y", bin) * 0.2;
         assert_true(isnan(at(curve_of(document, "summit_height_pdf"), "/standard_error", bin)));
         cJSON_Delete(document);
@@ -277,7 +277,7 @@ static void curves_against_brute_force(void **state) {
     assert_true(fabs(at(pdf, "/y", bin) - sum / total / 0.2) <= 1e-12);
     assert_true(fabs(at(pdf, "/standard_error", bin) - sqrt(m / (m - 1) * squares) / total / 0.2) <=
                 1e-12);
-    assert_true(fabs(scalar(document, "summits", "value") - total / m) <= 1e-12 * total);
+    assert_true(fabs(scalar(document, "summits", "value") - total / m / 2) <= 1e-12 * total);
     cJSON_Delete(document);
     merger_destroy(&merger);
     runner_destroy(&runner);
@@ -294,7 +294,7 @@ static void normalisation(void **state) {
     const cJSON *pdf = curve_of(document, "summit_height_pdf");
     const cJSON *cdf = curve_of(document, "summit_height_cdf");
     const cJSON *joint = curve_of(document, "summit_joint_pdf");
-    double summits = scalar(document, "summits", "value") * REALISATIONS, inside = 0, all = 0;
+    double summits = 2 * scalar(document, "summits", "value") * REALISATIONS, inside = 0, all = 0;
     double below = json_at(pdf, "/underflow")->valuedouble;
     double above = json_at(pdf, "/overflow")->valuedouble;
     assert_true(below > 0 && above > 0);
@@ -328,9 +328,10 @@ static void bins_that_miss(void **state) {
     merge(merger, &result);
     cJSON *document = curves_of(merger);
     const cJSON *pdf = curve_of(document, "summit_height_pdf");
-    assert_true(at(pdf, "/y", 1) == 0 && at(pdf, "/standard_error", 1) == 0);
-    assert_true(json_at(pdf, "/underflow")->valuedouble ==
-                3 * scalar(document, "summits", "value"));
+    double summits = 6 * scalar(document, "summits", "value"), width = 10.0 / 3;
+    assert_true(at(pdf, "/y", 1) == 0 && at(pdf, "/valueless", 1) == 3);
+    assert_true(fabs(at(pdf, "/standard_error", 1) * width * summits - 1.841) <= 1e-12);
+    assert_true(json_at(pdf, "/underflow")->valuedouble == summits);
     cJSON_Delete(document);
     block_result_clear(&result);
     merger_destroy(&merger);

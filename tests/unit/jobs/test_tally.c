@@ -42,7 +42,7 @@ struct tally_block {
 
 static void block_create(struct tally_block *block) {
     *block = (struct tally_block){0};
-    assert_int_equal(tally_create(&block->tally, CELLS, NULL), 0);
+    assert_int_equal(tally_create(&block->tally, CELLS, CELLS, NULL), 0);
     assert_int_equal(tally_sums_create(&block->sums, CELLS, NULL), 0);
 }
 
@@ -113,16 +113,18 @@ static void errors_are_those_of_the_ratio(void **state) {
         }
         struct estimate got = tally_share(&block.tally, cell, &block.total);
         struct estimate expected = brute_force(n, things);
-        if (cell == 3) { /* an empty cell: nothing seen, and nothing to tell its error from */
-            assert_true(got.value == 0 && got.standard_error == 0);
-            assert_true(
-                isnan(tally_sums_ratio(&block.sums, &block.tally, cell, REALISATIONS).value));
+        if (cell == 3) { /* an empty cell: nothing seen, and a bound of that */
+            assert_true(got.value == 0 && got.standard_error > 0);
+            assert_true(isnan(tally_sums_ratio(&block.sums, &block.tally, cell).value));
             continue;
         }
         assert_close(got.value, expected.value, 1e-14);
         assert_close(got.standard_error, expected.standard_error, 1e-12);
-        got = tally_sums_ratio(&block.sums, &block.tally, cell, REALISATIONS);
+        got = tally_sums_ratio(&block.sums, &block.tally, cell);
         expected = brute_force(k, n);
+        assert_true(block.tally.some[cell] >= TALLY_RARE);
+        double m = (double)block.tally.some[cell]; /* brute_force counts all realisations */
+        expected.standard_error *= sqrt(m / (m - 1) * (REALISATIONS - 1) / REALISATIONS);
         assert_close(got.value, expected.value, 1e-13);
         assert_close(got.standard_error, expected.standard_error, 1e-10);
     }
@@ -167,7 +169,7 @@ static void a_million_realisations(void **state) {
     (void)state;
     struct tally tally;
     struct tally_total total = {0};
-    assert_int_equal(tally_create(&tally, 2, NULL), 0);
+    assert_int_equal(tally_create(&tally, 2, 2, NULL), 0);
     const uint64_t points = UINT64_C(1) << 26, n = UINT64_C(1) << 24;
     for (uint64_t r = 0; r < 1000000; r++) {
         tally_total_add(&total, points);
@@ -181,21 +183,86 @@ static void a_million_realisations(void **state) {
     tally_clear(&tally);
 }
 
-/* What all lies in one cell has a share without error; one realisation has none to tell. */
+/* What all lies in one cell may lie elsewhere as rarely as a thing was never seen there: 1.841 of
+ * all. One realisation has no error to tell. */
 static void certain_and_alone(void **state) {
     (void)state;
     struct tally tally;
     struct tally_total total = {0};
-    assert_int_equal(tally_create(&tally, 1, NULL), 0);
+    assert_int_equal(tally_create(&tally, 1, 1, NULL), 0);
     assert_true(isnan(tally_share(&tally, 0, &total).value));
     for (uint64_t things = 3; things < 10; things++) {
         tally_total_add(&total, things);
         tally_add(&tally, 0, things, things);
         struct estimate share = tally_share(&tally, 0, &total);
         assert_true(share.value == 1);
-        assert_true(things == 3 ? isnan(share.standard_error) : share.standard_error == 0);
+        if (things == 3)
+            assert_true(isnan(share.standard_error));
+        else
+            assert_close(share.standard_error, 1.841 / (double)total.sum, 1e-15);
     }
     tally_clear(&tally);
+}
+
+/* Clusters of 4 things, in one realisation of 100: the rare cell has the dispersion of its
+ * neighbours, 4 but for what the ratio takes off, and the empty one its bound. The error of a
+ * difference of neighbours is never 0. */
+static void rare_and_empty(void **state) {
+    (void)state;
+    struct tally tally;
+    struct tally_total total = {0};
+    const uint64_t realisations = 2000, cluster = 4;
+    assert_int_equal(tally_create(&tally, 5, 5, NULL), 0);
+    for (uint64_t r = 0; r < realisations; r++) {
+        uint64_t left = 50;
+        tally_total_add(&total, left);
+        if (r % 100 == 0) {
+            tally_add(&tally, 1, cluster, 50);
+            left -= cluster;
+        }
+        if (r == 7) {
+            tally_add(&tally, 2, cluster, 50);
+            left -= cluster;
+        }
+        tally_add(&tally, 0, left, 50);
+    }
+    double all = (double)total.sum;
+    struct estimate rare = tally_share(&tally, 2, &total);
+    assert_close(rare.value, 4 / all, 1e-15);
+    assert_close(rare.standard_error, 4 * sqrt(2) / all, 0.02);
+    assert_close(tally_share(&tally, 3, &total).standard_error, 4 * 1.841 / all, 0.02);
+    assert_close(tally_share(&tally, 4, &total).standard_error, 4 * 1.841 / all, 0.02);
+    assert_close(tally_empty_bound(&tally, &total), 4 * 1.841 / all, 0.02);
+    assert_close(tally_share(&tally, 1, &total).standard_error, 4 * sqrt(20) / all, 0.02);
+    tally_clear(&tally);
+}
+
+/* A ratio that one realisation has is told without an error; that of two has the error of the
+ * variance of all cells: k = 1 + u with u of variance 1/3, many in cell 0. */
+static void ratios_of_few(void **state) {
+    (void)state;
+    struct tally counts;
+    struct tally_sums sums;
+    uint64_t seed = seed_or(3);
+    assert_int_equal(tally_create(&counts, 3, 3, NULL), 0);
+    assert_int_equal(tally_sums_create(&sums, 3, NULL), 0);
+    for (uint64_t r = 0; r < 20000; r++)
+        for (size_t cell = 0; cell < 3; cell++) {
+            if (cell > 0 && r >= (cell == 1 ? 2 : 1))
+                continue;
+            double k = (double)(next_word(&seed) % 1000001) / 500000;
+            tally_add(&counts, cell, 1, 1);
+            tally_sums_add(&sums, cell, k, 1);
+        }
+    assert_true(isnan(tally_sums_ratio(&sums, &counts, 2).standard_error));
+    struct estimate alone = tally_sums_ratio_pooled(&sums, &counts, 2);
+    assert_true(alone.value >= 0 && isnan(alone.standard_error));
+    struct estimate two = tally_sums_ratio_pooled(&sums, &counts, 1);
+    assert_close(two.standard_error, sqrt(1.0 / 3 / 2), 0.03);
+    struct estimate many = tally_sums_ratio_pooled(&sums, &counts, 0);
+    assert_true(many.standard_error == tally_sums_ratio(&sums, &counts, 0).standard_error);
+    tally_clear(&counts);
+    tally_sums_clear(&sums);
 }
 
 static void means_and_weights(void **state) {
@@ -218,6 +285,8 @@ int main(void) {
         cmocka_unit_test(merging_is_exact),
         cmocka_unit_test(a_million_realisations),
         cmocka_unit_test(certain_and_alone),
+        cmocka_unit_test(rare_and_empty),
+        cmocka_unit_test(ratios_of_few),
         cmocka_unit_test(means_and_weights),
     };
     return cmocka_run_group_tests(tests, draw_sample, NULL);
