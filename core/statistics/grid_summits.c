@@ -47,8 +47,8 @@ static bool is_summit(const double *u, const double *m, const double *d, size_t 
     return beaten != 0;
 }
 
-size_t row_summits(const double *up, const double *middle, const double *down, size_t nx,
-                   bool corners, bool mirrored, size_t *columns) {
+static size_t search(const double *up, const double *middle, const double *down, size_t nx,
+                     bool corners, bool mirrored, size_t *columns) {
     size_t found = 0;
     int64_t beaten[BLOCK];
     if (is_summit(up, middle, down, nx, corners, mirrored, 0))
@@ -65,4 +65,14 @@ size_t row_summits(const double *up, const double *middle, const double *down, s
     if (is_summit(up, middle, down, nx, corners, mirrored, nx - 1))
         columns[found++] = nx - 1;
     return found;
+}
+
+size_t row_summits(const double *up, const double *middle, const double *down, size_t nx,
+                   bool corners, size_t *columns) {
+    return search(up, middle, down, nx, corners, false, columns);
+}
+
+size_t row_pits(const double *up, const double *middle, const double *down, size_t nx, bool corners,
+                size_t *columns) {
+    return search(up, middle, down, nx, corners, true, columns);
 }

@@ -6,10 +6,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Columns i where middle[i] is above (mirrored: below) its two neighbours in the row, the points
+/* Columns i where middle[i] is above its two neighbours in the row, the points
  * above and below, and with corners the four diagonal ones; the row is periodic, nx >= 2. up and
  * down are both NULL for a profile. Writes at most nx/2 columns, rising, and returns how many. */
 size_t row_summits(const double *up, const double *middle, const double *down, size_t nx,
-                   bool corners, bool mirrored, size_t *columns);
+                   bool corners, size_t *columns);
+/* Does the same with the columns that are below their neighbours. */
+size_t row_pits(const double *up, const double *middle, const double *down, size_t nx, bool corners,
+                size_t *columns);
 
 #endif

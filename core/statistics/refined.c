@@ -173,7 +173,7 @@ static int row_search(struct refined *r, double first, size_t row, struct summit
     bool profile = grid_is_profile(fine);
     const double *middle = r->window + row * nx;
     size_t found = row_summits(profile ? NULL : middle - nx, middle, profile ? NULL : middle + nx,
-                               nx, false, false, r->columns);
+                               nx, false, r->columns);
     double dx = grid_dx(fine), dy = profile ? 1 : grid_dy(fine);
     const struct climb climb = {r, jet_at, profile};
     for (size_t s = 0; s < found; s++) {
@@ -259,8 +259,8 @@ static void samples_shift(struct refined *r) {
     }
 }
 
-int refined_find(struct refined *r, const double *z, bool mirrored, struct summit_list *list,
-                 struct error *err) {
+static int find(struct refined *r, const double *z, bool mirrored, struct summit_list *list,
+                struct error *err) {
     transform_forward(r->coarse, z);
     spectrum_normalise(r, mirrored);
     transform_pad(r->coarse, r->dense);
@@ -276,4 +276,13 @@ int refined_find(struct refined *r, const double *z, bool mirrored, struct summi
     if (status == 0)
         summits_merge(&r->fine, list);
     return status;
+}
+
+int refined_find(struct refined *r, const double *z, struct summit_list *list, struct error *err) {
+    return find(r, z, false, list, err);
+}
+
+int refined_find_pits(struct refined *r, const double *z, struct summit_list *list,
+                      struct error *err) {
+    return find(r, z, true, list, err);
 }

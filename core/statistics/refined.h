@@ -13,7 +13,6 @@
 
 #include "core/statistics/summit_list.h"
 #include "core/surface/grid.h"
-#include <stdbool.h>
 
 enum { REFINED_POINTS = 16, REFINED_PROFILE_POINTS = 64 };
 
@@ -23,9 +22,11 @@ int refined_create(struct refined **out, const struct grid *grid, size_t mode_x,
 void refined_destroy(struct refined **refined);
 /* Returns the bytes of two bands of columns, one of the fine grid, and 28 fine rows. */
 double refined_bytes(const struct grid *grid, size_t mode_x, size_t mode_y);
-/* Appends the summits of z, or of the mirrored surface -z, to an empty list, in the order of rows.
- */
-int refined_find(struct refined *refined, const double *z, bool mirrored, struct summit_list *list,
+/* Appends the summits to an empty list, in the order of rows. */
+int refined_find(struct refined *refined, const double *z, struct summit_list *list,
                  struct error *err);
+/* Does the same with the summits of the mirrored surface -z. */
+int refined_find_pits(struct refined *refined, const double *z, struct summit_list *list,
+                      struct error *err);
 
 #endif

@@ -130,7 +130,8 @@ static int find(struct summit_finder *f, const double *z, bool mirrored, struct 
                 struct error *err) {
     list->count = 0;
     if (f->stencil == SUMMITS_REFINED)
-        return refined_find(f->refined, z, mirrored, list, err);
+        return mirrored ? refined_find_pits(f->refined, z, list, err)
+                        : refined_find(f->refined, z, list, err);
     if (f->curvature != NULL)
         curvature_fill(f, z);
     size_t nx = f->grid.nx, ny = f->grid.ny;
@@ -138,7 +139,8 @@ static int find(struct summit_finder *f, const double *z, bool mirrored, struct 
     for (size_t j = 0; j < ny; j++) {
         const double *up = profile ? NULL : z + (j != 0 ? j - 1 : ny - 1) * nx;
         const double *down = profile ? NULL : z + (j + 1 < ny ? j + 1 : 0) * nx;
-        size_t found = row_summits(up, z + j * nx, down, nx, corners, mirrored, f->columns);
+        size_t found = mirrored ? row_pits(up, z + j * nx, down, nx, corners, f->columns)
+                                : row_summits(up, z + j * nx, down, nx, corners, f->columns);
         int status = row_add(f, z, j, found, mirrored, list, err);
         if (status != 0)
             return status;

@@ -132,7 +132,7 @@ static void search(const struct grid *grid, size_t mode_x, size_t mode_y, const 
     struct refined *refined = NULL;
     list->count = 0;
     assert_int_equal(refined_create(&refined, grid, mode_x, mode_y, NULL), 0);
-    assert_int_equal(refined_find(refined, z, false, list, NULL), 0);
+    assert_int_equal(refined_find(refined, z, list, NULL), 0);
     refined_destroy(&refined);
 }
 
