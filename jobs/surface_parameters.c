@@ -14,8 +14,11 @@ static const struct choice AMPLITUDES[] = {
 static const struct choice DISTRIBUTIONS[] = {HEIGHT_DISTRIBUTIONS(CHOICE){0}};
 
 static const struct choice KEPT[] = {{"spectrum", KEEP_SPECTRUM}, {"heights", KEEP_HEIGHTS}, {0}};
-static const struct choice ITERATIONS[] = {
-    {"relaxed", ITERATION_RELAXED}, {"plain", ITERATION_PLAIN}, {0}};
+static const struct choice ITERATIONS[] = {{"relaxed", ITERATION_RELAXED},
+                                           {"plain", ITERATION_PLAIN},
+                                           {"reflections", ITERATION_REFLECTIONS},
+                                           {"momentum", ITERATION_MOMENTUM},
+                                           {0}};
 static const struct choice DRAWS[] = {{"random", DRAW_RANDOM}, {"quantiles", DRAW_QUANTILES}, {0}};
 
 static const struct parameter ROWS[] = {
@@ -186,8 +189,9 @@ static const struct parameter ROWS[] = {
      .sweep = true,
      .default_json = "\"relaxed\"",
      .example_json = "\"plain\"",
-     .help = "how non-Gaussian generation goes on: relaxed reflections, or plain alternation as "
-             "published (Perez-Rafols and Almqvist 2019)"},
+     .help = "how non-Gaussian generation goes on: relaxed, 43 iterations whatever the tolerance; "
+             "reflections, which work down to the tolerance or until they stall; momentum, "
+             "likewise; or plain alternation as published (Perez-Rafols and Almqvist 2019)"},
     {.path = "/surface/heights/draw",
      .type = PARAMETER_CHOICE,
      .choices = DRAWS,
@@ -220,13 +224,14 @@ static const struct parameter ROWS[] = {
      .sweep = true,
      .default_json = "1000",
      .example_json = "200",
-     .help = "most iterations, relaxed and plain together"},
+     .help = "most iterations, of all kinds together"},
     {.path = "/surface/heights/relaxed_iterations",
      .type = PARAMETER_INTEGER,
      .minimum = 0,
      .maximum = 1e6,
      .sweep = true,
      .example_json = "7",
-     .help = "relaxed reflections before the plain ones; the generator's own number unless given"},
+     .help = "of relaxed alone: iterations before the plain ones; the generator's own number "
+             "unless given"},
 };
 const struct parameter_table SURFACE_PARAMETERS = {"surface", ROWS, sizeof ROWS / sizeof *ROWS};

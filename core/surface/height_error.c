@@ -94,17 +94,21 @@ double height_error_bytes(const struct grid *grid) {
            2.0 * sizeof(uint32_t) * (double)bins_for(grid_points(grid));
 }
 
-static void histogram_count(const struct height_error *e, const double *z, uint32_t *count) {
-    size_t n = grid_points(&e->modes->grid);
+static void histogram_add(const struct height_error *e, size_t n, const double *z,
+                          uint32_t *count) {
     double last = (double)(e->bins - 1);
     double origin = e->first_edge - e->width;
     double scale = 1 / e->width;
-    memset(count, 0, e->bins * sizeof *count);
     for (size_t i = 0; i < n; i++) {
         double bin = (z[i] - origin) * scale;
         bin = bin > 0 ? bin : 0;
         count[(uint32_t)(int32_t)(bin < last ? bin : last)]++;
     }
+}
+
+static void histogram_count(const struct height_error *e, const double *z, uint32_t *count) {
+    memset(count, 0, e->bins * sizeof *count);
+    histogram_add(e, grid_points(&e->modes->grid), z, count);
 }
 
 void height_error_start(struct height_error *e, const struct height_moments *moments,
@@ -123,9 +127,15 @@ void height_error_start(struct height_error *e, const struct height_moments *mom
     histogram_count(e, sorted, e->target);
 }
 
-/* Returns eps_h of F5.2: the integral of the difference between the histogram densities. */
-static double heights_distance(const struct height_error *e, const double *z_s) {
-    histogram_count(e, z_s, e->count);
+void height_error_heights_start(struct height_error *e) {
+    memset(e->count, 0, e->bins * sizeof *e->count);
+}
+
+void height_error_heights_add(struct height_error *e, size_t n, const double *z_s) {
+    histogram_add(e, n, z_s, e->count);
+}
+
+double height_error_heights(const struct height_error *e) {
     uint64_t difference = 0;
     for (size_t b = 0; b < e->bins; b++)
         difference +=
@@ -187,7 +197,8 @@ double height_error_measure(struct height_error *e, const double *z_s, const dou
                             struct surface_report *report) {
     double count = (double)e->modes->count;
     double null_count = (double)(grid_points(&e->modes->grid) - e->modes->count);
-    report->eps_h = heights_distance(e, z_s);
+    histogram_count(e, z_s, e->count);
+    report->eps_h = height_error_heights(e);
     double null_power = fmax(1 - band_errors(e, spectrum, report), 0);
     double worst = fmax(report->eps_h, report->eps_s);
     report->eps_s0 = report->eps_s0_amplitude = 0;

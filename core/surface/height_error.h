@@ -20,6 +20,12 @@ double height_error_bytes(const struct grid *grid);
 void height_error_start(struct height_error *e, const struct height_moments *moments,
                         const double *sorted);
 
+/* eps_h alone of a surface z_s that is given in parts of n heights: the integral of the difference
+ * between the histogram densities (F5.2). */
+void height_error_heights_start(struct height_error *e);
+void height_error_heights_add(struct height_error *e, size_t n, const double *z_s);
+double height_error_heights(const struct height_error *e);
+
 /* Fills the errors of report. spectrum: the half spectrum of z_h on the band, as transform_forward
  * leaves it. eps_s0 needs a transform of the whole grid; without `complete` it is done only where
  * its bound by Parseval's sum exceeds both other errors, and eps_s0 is that bound otherwise: the

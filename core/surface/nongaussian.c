@@ -1,5 +1,7 @@
 #include "core/surface/nongaussian.h"
+#include "core/surface/fast_step.h"
 #include "core/surface/height_error.h"
+#include "core/surface/impose.h"
 #include "core/surface/rank.h"
 #include "core/surface/target_heights.h"
 #include <fftw3.h>
@@ -34,9 +36,15 @@ struct nongaussian {
     struct ranker *ranker;
     double *sorted; /* points: target heights, rising */
     double *h;      /* points: z_h, the target heights in the order of z_s */
-    double *x;      /* points: iterate of the relaxed phase; NULL for the plain iteration */
+    double *x;      /* points: iterate of reflections, last one of momentum; NULL for the plain
+                       iteration */
+    struct fast_step *fast; /* NULL for iterations that rank exactly throughout */
     struct height_error *height_error;
 };
+
+static bool is_fast(const struct surface_options *options) {
+    return options->iteration == ITERATION_REFLECTIONS || options->iteration == ITERATION_MOMENTUM;
+}
 
 static int options_check(const struct surface_options *o, struct error *err) {
     if (!(o->tolerance >= 0 && isfinite(o->tolerance)))
@@ -76,16 +84,16 @@ static int amplitude_create(struct nongaussian *g, struct error *err) {
 }
 
 static int arrays_create(struct nongaussian *g, struct error *err) {
-    bool relaxed = g->options.iteration == ITERATION_RELAXED;
+    bool plain = g->options.iteration == ITERATION_PLAIN;
     int status = ranker_create(&g->ranker, g->points, err);
     if (status != 0)
         return status;
     g->sorted = fftw_alloc_real(g->points);
     g->h = fftw_alloc_real(g->points);
-    g->x = relaxed ? fftw_alloc_real(g->points) : NULL;
-    if (g->sorted == NULL || g->h == NULL || (relaxed && g->x == NULL))
+    g->x = plain ? NULL : fftw_alloc_real(g->points);
+    if (g->sorted == NULL || g->h == NULL || (!plain && g->x == NULL))
         return error_memory(err, g->points * sizeof(double), "heights of one iteration");
-    return 0;
+    return is_fast(&g->options) ? fast_step_create(&g->fast, g->modes, err) : 0;
 }
 
 int nongaussian_create(struct nongaussian **out, const struct modes *modes,
@@ -122,60 +130,18 @@ void nongaussian_destroy(struct nongaussian **nongaussian) {
     fftw_free(g->sorted);
     fftw_free(g->h);
     fftw_free(g->x);
+    fast_step_destroy(&g->fast);
     height_error_destroy(&g->height_error);
     free(g->amplitude);
     free(g);
     *nongaussian = NULL;
 }
 
-/* Returns a mode with the given amplitude and the phase of `mode`, or the phase 0 where that is 0.
- */
-static double complex with_amplitude(double complex mode, double amplitude) {
-    double size = sqrt(creal(mode) * creal(mode) + cimag(mode) * cimag(mode));
-    return size > 0 ? amplitude / size * mode : amplitude;
-}
-
-/* A column that is its own mirror image (mx = 0, and Nyquist of an even nx): rows my > 0 decide, so
- * that the symmetry is exact; modes that are their own conjugates keep their sign. */
-static void mirror_column_impose(double complex *column, const double *amplitude, size_t ny,
-                                 size_t mode_y) {
-    for (size_t my = 0; my <= mode_y; my++) {
-        if (my == 0 || 2 * my == ny) {
-            column[my] = creal(column[my]) < 0 ? -amplitude[mode_y + my] : amplitude[mode_y + my];
-            continue;
-        }
-        column[my] = with_amplitude(column[my], amplitude[mode_y + my]);
-        column[ny - my] = conj(column[my]);
-    }
-}
-
-/* Gives a half spectrum the target amplitudes; all other modes become zero. */
-static void amplitudes_impose(const struct nongaussian *g, double complex *spectrum) {
-    const struct grid *grid = &g->modes->grid;
-    size_t mode_x = g->modes->mode_x;
-    size_t mode_y = g->modes->mode_y;
-    size_t ny = grid->ny;
-    for (size_t mx = 0; mx <= mode_x; mx++) {
-        double complex *column = spectrum + mx * ny;
-        const double *amplitude = g->amplitude + mx * (2 * mode_y + 1);
-        if (2 * mode_y + 1 < ny)
-            memset(column + mode_y + 1, 0, (ny - 2 * mode_y - 1) * sizeof *column);
-        if (mx == 0 || 2 * mx == grid->nx) {
-            mirror_column_impose(column, amplitude, ny, mode_y);
-            continue;
-        }
-        for (size_t my = 0; my <= mode_y; my++)
-            column[my] = with_amplitude(column[my], amplitude[mode_y + my]);
-        for (size_t my = 1; my <= mode_y && 2 * my != ny; my++)
-            column[ny - my] = with_amplitude(column[ny - my], amplitude[mode_y - my]);
-    }
-}
-
 /* The steps below start from the transform's spectrum of an iterate and leave that of the next. */
 
 /* Makes z_s of z: the surface of exact spectrum nearest to the iterate. */
 static void spectral_surface(const struct nongaussian *g, struct transform *transform, double *z) {
-    amplitudes_impose(g, transform_spectrum(transform));
+    amplitudes_impose(g->modes, g->amplitude, transform_spectrum(transform));
     transform_inverse(transform, z);
 }
 
@@ -266,9 +232,70 @@ static int plain_phase(struct nongaussian *g, struct transform *transform, doubl
     return 0;
 }
 
+/* Momentum for so many iterations before reflections: without it they need more, and leave other
+ * numbers of summits. */
+enum { OPENING = 15, CHECKED_EACH = 5 };
+static const double REFLECTION = 0.9;
+
+static struct fast_move fast_move(enum surface_iteration iteration, size_t number) {
+    if (iteration == ITERATION_REFLECTIONS && number >= OPENING)
+        return (struct fast_move){FAST_REFLECTION, REFLECTION, number == OPENING};
+    double t = (double)number;
+    double momentum = number < 2 ? 0 : fmin(MOMENTUM_MOST, (t - 1) / (t + 2));
+    return (struct fast_move){FAST_MOMENTUM, momentum, number == 0};
+}
+
+/* Iterates until eps_h is within the tolerance, or has not fallen by the share `stall_gain` in
+ * `stall_iterations` (END_LIMIT: neither, or not yet known). The opening does not stall. */
+static void fast_phase(struct nongaussian *g, struct transform *transform, double *z, size_t limit,
+                       struct surface_report *report) {
+    const struct surface_options *options = &g->options;
+    bool opens = options->iteration == ITERATION_REFLECTIONS;
+    double best = INFINITY;
+    size_t best_at = 0;
+    fast_step_start(g->fast, z);
+    report->end = END_LIMIT;
+    for (size_t number = 0; number < limit && report->end == END_LIMIT; number++) {
+        bool checked = number % CHECKED_EACH == 0;
+        double eps = fast_step_run(g->fast, transform, g->amplitude, g->sorted,
+                                   fast_move(options->iteration, number), z, g->x,
+                                   checked ? g->height_error : NULL);
+        report->iterations++;
+        if (!checked)
+            continue;
+        if (!(eps > best * (1 - options->stall_gain)) || (opens && number <= OPENING)) {
+            best = eps;
+            best_at = number;
+        }
+        if (eps <= options->tolerance)
+            report->end = END_CONVERGED;
+        else if (number - best_at >= options->stall_iterations)
+            report->end = END_STALLED;
+    }
+}
+
+/* Fast iterations, and a few plain ones that settle on the constraints: as many as it takes where
+ * the tolerance is near. */
+static int iterate_fast(struct nongaussian *g, struct transform *transform, double *z,
+                        struct surface_report *report, struct error *err) {
+    size_t most = g->options.max_iterations;
+    size_t polishing = most < POLISHING ? most : POLISHING;
+    transform_forward(transform, z);
+    fast_phase(g, transform, z, most - polishing, report);
+    enum surface_end end = report->end;
+    if (end == END_CONVERGED)
+        polishing = most - report->iterations;
+    int status = plain_phase(g, transform, z, polishing, report, err);
+    if (status == 0 && report->end == END_LIMIT && end == END_STALLED)
+        report->end = END_STALLED;
+    return status;
+}
+
 static int iterate(struct nongaussian *g, struct transform *transform, double *z,
                    struct surface_report *report, struct error *err) {
     const struct surface_options *options = &g->options;
+    if (is_fast(options))
+        return iterate_fast(g, transform, z, report, err);
     size_t plain = options->max_iterations;
     size_t relaxed = 0;
     if (options->iteration == ITERATION_RELAXED) {
@@ -312,8 +339,9 @@ int nongaussian_run(struct nongaussian *g, struct transform *transform, struct r
 
 double nongaussian_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
                          const struct surface_options *options) {
-    double arrays = options->iteration == ITERATION_RELAXED ? 3 : 2;
-    return sizeof(struct nongaussian) + height_error_bytes(grid) +
+    double arrays = options->iteration == ITERATION_PLAIN ? 2 : 3;
+    return sizeof(struct nongaussian) + (is_fast(options) ? fast_step_bytes(grid) : 0) +
+           height_error_bytes(grid) +
            sizeof(double) * (double)(mode_x + 1) * (double)(2 * mode_y + 1) +
            sizeof(double) * arrays * (double)grid_points(grid) +
            (double)ranker_bytes(grid_points(grid));

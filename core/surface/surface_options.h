@@ -9,7 +9,13 @@
  * of the mean over surfaces, and a cell is like a piece cut out of an endless Gaussian surface. */
 enum surface_amplitudes { AMPLITUDES_FIXED, AMPLITUDES_RANDOM };
 enum surface_keep { KEEP_SPECTRUM, KEEP_HEIGHTS };
-enum surface_iteration { ITERATION_RELAXED, ITERATION_PLAIN };
+/* How generation comes near to spectrum and heights (FORMULAS.md, F5.3 to F5.6). */
+enum surface_iteration {
+    ITERATION_RELAXED,     /* 43 iterations of a fixed schedule, whatever the tolerance */
+    ITERATION_PLAIN,       /* alternation, as in the reference */
+    ITERATION_REFLECTIONS, /* a little momentum, then relaxed reflections */
+    ITERATION_MOMENTUM     /* momentum alone */
+};
 enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
 
 /* Behind `amplitudes`: the iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4).
@@ -19,21 +25,20 @@ struct surface_options {
     enum surface_amplitudes amplitudes; /* random, not Gaussian: heights have the deviation and the
                                            spectrum of the Gaussian start of each surface */
     enum surface_keep keep;             /* which of the two last iterates is returned */
-    enum surface_iteration iteration; /* accelerated and relaxed (F5.4), or plain alternation (F5.1)
-                                         as in the reference */
-    enum surface_draw draw;           /* target heights drawn at random, or exact quantiles */
+    enum surface_iteration iteration;
+    enum surface_draw draw; /* target heights drawn at random, or exact quantiles */
     double
         tolerance; /* on eps_h, eps_s and eps_s0 (F5.2); default 1e-3; 0 iterates until it stalls */
     double stall_gain;         /* default 0.05: stuck when the worst error has not gained this */
     size_t stall_iterations;   /* default 10: ... in so many iterations */
-    size_t max_iterations;     /* default 1000, of both kinds together */
-    size_t relaxed_iterations; /* default 40; nongaussian.c says why */
-    double relaxation;         /* default 0.8 */
+    size_t max_iterations;     /* default 1000, of all kinds together */
+    size_t relaxed_iterations; /* of ITERATION_RELAXED, default 40; nongaussian.c says why */
+    double relaxation;         /* of ITERATION_RELAXED, default 0.8 */
 };
 extern const struct surface_options SURFACE_DEFAULTS; /* Gaussian, and the defaults above */
 
-/* END_DIRECT: Gaussian. END_LIMIT: the schedule of the relaxed iteration, or max_iterations, ended
- * it; the errors say how near it came. */
+/* END_DIRECT: Gaussian. END_CONVERGED: all errors are within the tolerance. END_LIMIT: the schedule
+ * of ITERATION_RELAXED, or max_iterations, ended it; the errors say how near it came. */
 enum surface_end { END_DIRECT, END_CONVERGED, END_STALLED, END_LIMIT };
 /* Tells what one generation did. Errors are those of the returned pair of iterates. */
 struct surface_report {

@@ -148,26 +148,41 @@ void transform_pad(struct transform *from, struct transform *to) {
     }
 }
 
-static void forward_rows(struct transform *t, const double *z, double scale) {
-    for (size_t j = 0; j < t->ny; j += ROWS) {
-        size_t rows = t->ny - j < ROWS ? t->ny - j : ROWS;
-        memcpy(t->lines, z + j * t->nx, rows * t->nx * sizeof *z);
-        fftw_execute(t->row_forward);
-        for (size_t i = 0; i < t->columns; i++)
-            for (size_t row = 0; row < rows; row++)
-                t->spectrum[i * t->ny + j + row] = scale * t->rows[row * t->half + i];
+/* Rows j .. j + rows - 1, at most ROWS of them, into the spectrum. */
+static void forward_batch(struct transform *t, size_t j, size_t rows, const double *z,
+                          double scale) {
+    memcpy(t->lines, z, rows * t->nx * sizeof *z);
+    fftw_execute(t->row_forward);
+    for (size_t i = 0; i < t->columns; i++)
+        for (size_t row = 0; row < rows; row++)
+            t->spectrum[i * t->ny + j + row] = scale * t->rows[row * t->half + i];
+}
+
+static void forward_rows(struct transform *t, size_t first, size_t count, const double *z,
+                         double scale) {
+    for (size_t j = first; j < first + count; j += ROWS) {
+        size_t rows = first + count - j < ROWS ? first + count - j : ROWS;
+        forward_batch(t, j, rows, z + (j - first) * t->nx, scale);
     }
 }
 
-void transform_forward(struct transform *t, const double *z) {
-    forward_rows(t, z, 1 / ((double)t->nx * (double)t->ny));
+void transform_forward_rows(struct transform *t, size_t first, size_t count, const double *z) {
+    forward_rows(t, first, count, z, 1 / ((double)t->nx * (double)t->ny));
+}
+
+void transform_forward_columns(struct transform *t) {
     if (t->ny > 1)
         fftw_execute(t->column_forward);
 }
 
+void transform_forward(struct transform *t, const double *z) {
+    transform_forward_rows(t, 0, t->ny, z);
+    transform_forward_columns(t);
+}
+
 void transform_filter(struct transform *t, const double *symbol, double factor, const double *in,
                       double *out) {
-    forward_rows(t, in, factor / ((double)t->nx * (double)t->ny));
+    forward_rows(t, 0, t->ny, in, factor / ((double)t->nx * (double)t->ny));
     for (size_t i = 0; i < t->columns; i++) {
         double complex *column = t->spectrum + i * t->ny;
         if (t->ny > 1)

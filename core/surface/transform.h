@@ -37,6 +37,11 @@ void transform_inverse_rows(struct transform *transform, size_t first, size_t co
 void transform_pad(struct transform *from, struct transform *to);
 /* The plan's spectrum (all of rows, columns up to mode_x) from z, which it keeps. */
 void transform_forward(struct transform *transform, const double *z);
+/* The same in two steps: rows first .. first + count - 1 from z[count*nx], all of them in any
+ * order, then the columns once. The columns of transform_inverse are to be done with before. */
+void transform_forward_rows(struct transform *transform, size_t first, size_t count,
+                            const double *z);
+void transform_forward_columns(struct transform *transform);
 /* out = the real field whose spectrum is factor * symbol * that of in (symbol real and even, one
  * value a wave of the half spectrum): forward, product and inverse with each column in cache.
  * Needs the whole band in y; in and out may be the same. */

@@ -28,6 +28,8 @@ static struct spectrum spectrum(void) {
 /* z is the surface that any later run must give again, once one point of it is not 0. */
 struct made {
     enum heights_type heights;
+    enum surface_iteration iteration;
+    enum surface_amplitudes amplitudes;
     double z[POINTS];
 };
 
@@ -38,6 +40,8 @@ static int make_surface(void *context, struct error *err) {
     struct generator *generator = NULL;
     double z[POINTS] = {0};
     options.heights = (struct heights){.type = made->heights, .shape = 3};
+    options.iteration = made->iteration;
+    options.amplitudes = made->amplitudes;
     int status = generator_create(&generator, &shape, &GRID, &options, err);
     if (status == 0)
         status = generator_run(generator, (struct random_key){.seed = 3}, z, NULL, err);
@@ -52,9 +56,13 @@ static int make_surface(void *context, struct error *err) {
 static void surfaces(void **state) {
     (void)state;
     static struct made gaussian = {.heights = HEIGHTS_GAUSSIAN},
-                       weibull = {.heights = HEIGHTS_WEIBULL_MIN};
+                       weibull = {.heights = HEIGHTS_WEIBULL_MIN},
+                       reflections = {.heights = HEIGHTS_WEIBULL_MIN,
+                                      .iteration = ITERATION_REFLECTIONS,
+                                      .amplitudes = AMPLITUDES_RANDOM};
     each_allocation(&(struct failing_call){.name = "Gaussian", make_surface, &gaussian});
     each_allocation(&(struct failing_call){.name = "Weibull", make_surface, &weibull});
+    each_allocation(&(struct failing_call){.name = "reflections", make_surface, &reflections});
 }
 
 static int resample(void *context, struct error *err) {

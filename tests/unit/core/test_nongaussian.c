@@ -23,6 +23,10 @@ static struct spectrum self_affine(double longest, double shortest) {
                              .scale_value = 2.5e-7};
 }
 
+static const enum surface_iteration ITERATIONS[] = {ITERATION_RELAXED, ITERATION_PLAIN,
+                                                    ITERATION_REFLECTIONS, ITERATION_MOMENTUM};
+enum { ITERATION_COUNT = sizeof ITERATIONS / sizeof *ITERATIONS };
+
 static struct surface_options weibull(enum heights_type type, double shape) {
     struct surface_options options = SURFACE_DEFAULTS;
     options.heights = (struct heights){.type = type, .shape = shape};
@@ -96,10 +100,10 @@ static void kept_spectrum_is_exact(void **state) {
     static const struct grid GRIDS[] = {
         {128, 128, 1, 1}, {97, 61, 1, 1}, {60, 250, 1, 2}, {2048, 1, 1, 1}, {32, 32, 1, 1}};
     struct spectrum spectrum = self_affine(0.5, 1. / 16); /* 32 x 32: two points a wave */
-    for (int iteration = 0; iteration < 2; iteration++)
+    for (int iteration = 0; iteration < ITERATION_COUNT; iteration++)
         for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++) {
             struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 1);
-            options.iteration = iteration ? ITERATION_PLAIN : ITERATION_RELAXED;
+            options.iteration = ITERATIONS[iteration];
             struct height_sample s;
             assert_int_equal(sample_create(&s, GRIDS[g], &spectrum, &options, NULL), 0);
             double elsewhere;
@@ -305,10 +309,10 @@ static void hard_cases_end(void **state) {
     static const double SHAPES[] = {0.5, 1, 20};
     struct spectrum spectrum = self_affine(1, 1); /* one wave, or one ring */
     for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++)
-        for (size_t c = 0; c < 12; c++) {
+        for (size_t c = 0; c < 6 * ITERATION_COUNT; c++) {
             struct surface_options options =
                 weibull(c % 2 ? HEIGHTS_WEIBULL_MIN : HEIGHTS_WEIBULL_MAX, SHAPES[c / 2 % 3]);
-            options.iteration = c < 6 ? ITERATION_RELAXED : ITERATION_PLAIN;
+            options.iteration = ITERATIONS[c / 6];
             options.tolerance = 0;
             struct height_sample s;
             assert_int_equal(sample_create(&s, GRIDS[g], &spectrum, &options, NULL), 0);
@@ -341,14 +345,57 @@ static void runs_end_as_they_should(void **state) {
     sample_destroy(&s);
     options.tolerance = 0;
     for (size_t limit = 1; limit < 8; limit++)
-        for (int iteration = 0; iteration < 2; iteration++) {
-            options.iteration = iteration ? ITERATION_PLAIN : ITERATION_RELAXED;
+        for (int iteration = 0; iteration < ITERATION_COUNT; iteration++) {
+            options.iteration = ITERATIONS[iteration];
             options.max_iterations = limit;
             assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
             assert_int_equal(s.report.end, END_LIMIT);
             assert_int_equal(s.report.iterations, limit);
             sample_destroy(&s);
         }
+}
+
+/* The fast iterations work down to the tolerance: a lower one takes more of them and is reached,
+ * until they stall, whatever is asked beyond. */
+static void tolerances_are_reached(void **state) {
+    (void)state;
+    static const double TOLERANCES[] = {0.3, 0.1, 0.05, 0.03, 1e-3, 1e-6};
+    enum { REACHED = 4, COUNT = sizeof TOLERANCES / sizeof *TOLERANCES };
+    struct grid grid = {128, 128, 1, 1};
+    struct spectrum spectrum = self_affine(0.25, 1. / 16);
+    for (int iteration = 2; iteration < ITERATION_COUNT; iteration++) {
+        size_t iterations[COUNT];
+        for (size_t a = 0; a < COUNT; a++) {
+            struct surface_options options = weibull(HEIGHTS_WEIBULL_MIN, 1);
+            options.iteration = ITERATIONS[iteration];
+            options.tolerance = TOLERANCES[a];
+            struct height_sample s;
+            assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+            double worst = fmax(s.report.eps_h, fmax(s.report.eps_s, s.report.eps_s0));
+            assert_int_equal(s.report.end, a < REACHED ? END_CONVERGED : END_STALLED);
+            assert_true(a >= REACHED || worst <= TOLERANCES[a]);
+            assert_true(a == 0 || s.report.iterations >= iterations[a - 1]);
+            iterations[a] = s.report.iterations;
+            sample_destroy(&s);
+        }
+        assert_true(iterations[REACHED] > 2 * iterations[1]);
+        assert_int_equal(iterations[COUNT - 1], iterations[REACHED]);
+    }
+}
+
+/* Where heights are nearly Gaussian, spectrum and heights are both had to 0.4 %: measured 0.2. */
+static void easy_heights_converge(void **state) {
+    (void)state;
+    struct grid grid = {512, 512, 1, 1};
+    struct spectrum spectrum = self_affine(0.125, 1. / 64);
+    struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 3.602);
+    options.iteration = ITERATION_REFLECTIONS;
+    options.tolerance = 4e-3;
+    struct height_sample s;
+    assert_int_equal(sample_create(&s, grid, &spectrum, &options, NULL), 0);
+    assert_int_equal(s.report.end, END_CONVERGED);
+    assert_true(s.report.eps_h <= 4e-3 && s.report.iterations < 60);
+    sample_destroy(&s);
 }
 
 /* A second run of a generator has the bits of a first one: nothing of a run stays behind. */
@@ -437,6 +484,8 @@ int main(void) {
         cmocka_unit_test(errors_are_those_of_the_pair),
         cmocka_unit_test(hard_cases_end),
         cmocka_unit_test(runs_end_as_they_should),
+        cmocka_unit_test(tolerances_are_reached),
+        cmocka_unit_test(easy_heights_converge),
         cmocka_unit_test(runs_repeat),
         cmocka_unit_test(quantile_functions_are_used),
         cmocka_unit_test(bad_options_are_refused),
