@@ -1,5 +1,6 @@
 /* The kind "statistics": summit statistics, spectra and roughness of random surfaces. */
 #include "jobs/statistics/statistics_curves.h"
+#include "jobs/statistics/statistics_grid_theory.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
 #include "jobs/statistics/statistics_target.h"
@@ -138,6 +139,8 @@ static int result(const void *one_case, const struct surface_basis *basis, const
     int status = statistics_scalars(one_case, &basis->moments, realisations, out, err);
     if (status == 0)
         status = statistics_curves(one_case, basis->modes, &basis->moments, tally, out, err);
+    if (status == 0)
+        status = statistics_grid_theory(one_case, basis, out, err);
     /* All are of a surface sampled on a grid, and what that changes is not known. */
     for (size_t a = 0; a < out->curve_count && status == 0; a++)
         out->curves[a].errors[ERROR_DISCRETISATION].applies = true;
@@ -152,7 +155,7 @@ static int scalar_values(const void *tally, const struct realisations *realisati
 
 static int complete(const void *one_case, const struct surface_basis *basis,
                     struct case_result *out, struct error *err) {
-    return statistics_curves_complete(one_case, basis->moments.nayak_alpha, out, err);
+    return statistics_curves_complete(one_case, basis, out, err);
 }
 
 const struct job_kind STATISTICS_KIND = {

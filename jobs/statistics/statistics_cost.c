@@ -18,6 +18,8 @@ static double expected_seconds(const struct statistics_case *one_case) {
 
 /* The theories of a bin of summit heights take so many CPU seconds, as in publishing_cost.h. */
 static const double PROFILE_BIN_SECONDS = 1.3e-5, SURFACE_BIN_SECONDS = 8.4e-5;
+/* Theory of the grid: of nine-point summits, of others (F8.4). */
+static const double NINE_POINT_SECONDS = 0.06, FEW_POINT_SECONDS = 0.015;
 enum { CURVES = 9, HEIGHT_CURVES = 5 };
 
 /* The joint density is taken to have as many cells as ten realisations have summits, acf and psd
@@ -28,6 +30,11 @@ static double expected_case_seconds(const struct statistics_case *one_case, doub
     double cells = fmin(10 * summits, (double)(heights * one_case->equivalent.count) / 4);
     double theories = (double)heights * (one_case->surface.dimension == 1 ? PROFILE_BIN_SECONDS
                                                                           : SURFACE_BIN_SECONDS);
+    if (one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN &&
+        one_case->stencil != SUMMITS_REFINED)
+        theories += one_case->surface.dimension == 2 && one_case->stencil == SUMMITS_NINE_POINT
+                        ? NINE_POINT_SECONDS
+                        : FEW_POINT_SECONDS;
     return theories + publishing_cost(CURVES, points + (size_t)cells);
 }
 

@@ -1,4 +1,5 @@
 #include "jobs/statistics/statistics_curves.h"
+#include "jobs/statistics/statistics_grid_theory.h"
 #include "jobs/statistics/statistics_spectra.h"
 #include "jobs/statistics/statistics_theory.h"
 #include <math.h>
@@ -207,8 +208,17 @@ static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
     return result_add_curve(maker->result, &curve, err);
 }
 
-int statistics_curves_complete(const struct statistics_case *one_case, double alpha,
-                               struct case_result *result, struct error *err) {
+static int complete_joint(const struct statistics_case *one_case, const struct surface_basis *basis,
+                          const char *theory, double *pdf, struct error *err) {
+    if (strcmp(theory, STATISTICS_GRID_THEORY) == 0)
+        return statistics_grid_theory_joint(one_case, basis, pdf, err);
+    statistics_theory_joint(one_case, basis->moments.nayak_alpha, pdf);
+    return 0;
+}
+
+int statistics_curves_complete(const struct statistics_case *one_case,
+                               const struct surface_basis *basis, struct case_result *result,
+                               struct error *err) {
     for (size_t a = 0; a < result->curve_count; a++) {
         struct curve *curve = &result->curves[a];
         for (size_t t = 0; t < curve->theory_count; t++) {
@@ -218,7 +228,9 @@ int statistics_curves_complete(const struct statistics_case *one_case, double al
             double *pdf = result_numbers(result, curve->n * curve->columns);
             if (pdf == NULL)
                 return no_room(err);
-            statistics_theory_joint(one_case, alpha, pdf);
+            int status = complete_joint(one_case, basis, curve->theories[t].name, pdf, err);
+            if (status != 0)
+                return status;
             curve->theories[t].y = pdf;
         }
     }

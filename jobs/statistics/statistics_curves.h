@@ -9,9 +9,9 @@
 int statistics_curves(const struct statistics_case *one_case, const struct modes *modes,
                       const struct moments *moments, const struct statistics_tally *tally,
                       struct case_result *out, struct error *err);
-/* Makes the theories that the curves name without holding them (the joint density's): alpha is that
- * of the prescribed spectrum. */
-int statistics_curves_complete(const struct statistics_case *one_case, double alpha,
-                               struct case_result *result, struct error *err);
+/* Makes the theories that the curves name without holding them (the joint density's). */
+int statistics_curves_complete(const struct statistics_case *one_case,
+                               const struct surface_basis *basis, struct case_result *result,
+                               struct error *err);
 
 #endif

@@ -332,6 +332,7 @@ static int add_scalar(struct maker *maker, const struct scalar *a, struct error 
     out.minuend = a->value;
     out.subtrahend = b->value;
     out.theory = a->theory - b->theory;
+    out.grid = a->grid - b->grid;
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         out.errors[s] = combine_scalar_error(&a->errors[s], &b->errors[s]);
     set_scalar(maker, a, b, &out);

@@ -225,6 +225,8 @@ static int make_scalars(struct case_report *report, const struct case_result *re
         to->statistical = from->standard_error / fabs(from->value);
         to->has_theory = !isnan(from->theory);
         to->deviation = fabs(from->value - from->theory) / fabs(from->theory);
+        to->has_grid = !isnan(from->grid);
+        to->grid_deviation = fabs(from->value - from->grid) / fabs(from->grid);
         if (to->name == NULL)
             return ERROR_MEMORY;
     }

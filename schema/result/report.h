@@ -31,8 +31,9 @@ struct curve_report {
 };
 struct scalar_report {
     const char *name;
-    double value, statistical, deviation;
-    bool has_theory;
+    double value, statistical;
+    double deviation, grid_deviation; /* from theory, from that of the grid */
+    bool has_theory, has_grid;
 };
 struct case_report {
     struct case_result about; /* number, realisations, parameters, notes, error, and the arena of

@@ -67,6 +67,8 @@ static bool print_scalar(FILE *file, const struct scalar_report *report) {
     put_number(file, "statistical_error", report->statistical);
     if (report->has_theory)
         put_number(file, "theory_deviation", report->deviation);
+    if (report->has_grid)
+        put_number(file, "grid_deviation", report->grid_deviation);
     fputc('}', file);
     return done;
 }
@@ -175,6 +177,8 @@ static int read_scalar(struct case_result *about, const cJSON *object, struct sc
                                   .value = field_number(object, "value"),
                                   .statistical = field_number(object, "statistical_error"),
                                   .deviation = field_number(object, "theory_deviation"),
+                                  .grid_deviation = field_number(object, "grid_deviation"),
+                                  .has_grid = field_at(object, "grid_deviation") != NULL,
                                   .has_theory = field_at(object, "theory_deviation") != NULL};
     return out->name != NULL ? 0 : no_memory(err);
 }

@@ -37,8 +37,11 @@ const struct curve_attribute *curve_column(size_t n) {
 }
 
 struct scalar scalar_named(const char *name, double value, double standard_error, double theory) {
-    return (struct scalar){
-        .name = name, .value = value, .standard_error = standard_error, .theory = theory};
+    return (struct scalar){.name = name,
+                           .value = value,
+                           .standard_error = standard_error,
+                           .theory = theory,
+                           .grid = NAN};
 }
 
 struct curve curve_named(const char *quantity, const char *x_label, const char *y_label) {

@@ -134,11 +134,12 @@ struct scalar {
     const char *name;
     double value, standard_error; /* NaN: none */
     double theory;                /* NaN: none */
-    bool difference, paired;      /* as of curves */
-    double minuend, subtrahend;   /* of a difference */
+    double grid;             /* theory of the same on the grid that it was measured on; NaN: none */
+    bool difference, paired; /* as of curves */
+    double minuend, subtrahend; /* of a difference */
     struct scalar_error errors[ERROR_SOURCES];
 };
-/* A scalar on which no source of error bears. */
+/* A scalar on which no source of error bears, without theory of a grid. */
 struct scalar scalar_named(const char *name, double value, double standard_error, double theory);
 
 struct result_note {

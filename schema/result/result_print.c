@@ -208,7 +208,8 @@ static bool print_scalar(FILE *file, const struct scalar *scalar) {
     fputc('{', file);
     bool done = put_number(file, &first, "value", scalar->value) &&
                 put_number(file, &first, "standard_error", scalar->standard_error) &&
-                (isnan(scalar->theory) || put_number(file, &first, "theory", scalar->theory));
+                (isnan(scalar->theory) || put_number(file, &first, "theory", scalar->theory)) &&
+                (isnan(scalar->grid) || put_number(file, &first, "grid_theory", scalar->grid));
     for (size_t s = 0; s < ERROR_SOURCES && done; s++)
         done = put_scalar_error(file, &first, &scalar->errors[s], &ERROR_SOURCE_ROWS[s]);
     if (done && scalar->difference)

@@ -237,6 +237,7 @@ static int read_scalars(const struct reading *reading, const cJSON *scalars) {
                                 .value = field_number(item, "value"),
                                 .standard_error = field_number(item, "standard_error"),
                                 .theory = field_number(item, "theory"),
+                                .grid = field_number(item, "grid_theory"),
                                 .difference = field_at(item, "minuend") != NULL,
                                 .paired = cJSON_IsTrue(field_at(item, "paired")),
                                 .minuend = field_number(item, "minuend"),

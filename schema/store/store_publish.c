@@ -25,9 +25,9 @@ static int insert_scalar(const struct target *target, const struct scalar *scala
     sqlite3_stmt *statement = NULL;
     int status = store_query(target->store, &statement, err,
                              "INSERT INTO scalar (study_id, case_number, name, value, "
-                             "standard_error, theory) VALUES (?, ?, ?, ?, ?, ?)",
-                             "iitddd", target->study, target->case_number, scalar->name,
-                             scalar->value, scalar->standard_error, scalar->theory);
+                             "standard_error, theory, grid_theory) VALUES (?, ?, ?, ?, ?, ?, ?)",
+                             "iitdddd", target->study, target->case_number, scalar->name,
+                             scalar->value, scalar->standard_error, scalar->theory, scalar->grid);
     if (status == 0)
         status = run_bound(target->store, statement, err);
     for (size_t s = 0; s < ERROR_SOURCES && status == 0; s++)

@@ -6,11 +6,18 @@
 
 /* --- scalars --- */
 
-/* Returns whether some case has this scalar; with its theory. */
-static bool has_scalar(const struct shown_cases *shown, const char *name, bool with_theory) {
+/* What stands beside a scalar. */
+enum comparison { ALONE, WITH_THEORY, WITH_GRID };
+
+static double expected(const struct scalar *scalar, enum comparison with) {
+    return scalar == NULL ? (double)NAN : with == WITH_GRID ? scalar->grid : scalar->theory;
+}
+
+/* Returns whether some case has this scalar, with what stands beside it. */
+static bool has_scalar(const struct shown_cases *shown, const char *name, enum comparison with) {
     for (size_t c = 0; c < shown->count; c++) {
         const struct scalar *scalar = result_scalar(shown->list[c], name);
-        if (scalar != NULL && (!with_theory || isfinite(scalar->theory)))
+        if (scalar != NULL && (with == ALONE || isfinite(expected(scalar, with))))
             return true;
     }
     return false;
@@ -22,27 +29,31 @@ static size_t shown_scalars(const struct shown_cases *shown, const char *const *
     const struct case_result *first = shown->list[0];
     size_t count = 0;
     for (; headlines != NULL && *headlines != NULL && count < COLUMNS_MOST; headlines++)
-        if (has_scalar(shown, *headlines, false))
+        if (has_scalar(shown, *headlines, ALONE))
             names[count++] = *headlines;
     if (count > 0)
         return count;
     for (size_t s = 0; s < first->scalar_count && count < COLUMNS_MOST; s++)
-        if (has_scalar(shown, first->scalars[s].name, true))
+        if (has_scalar(shown, first->scalars[s].name, WITH_THEORY))
             names[count++] = first->scalars[s].name;
     return count;
 }
 
-static void scalar_cells(struct text_table *table, const struct scalar *scalar, bool with_theory) {
-    double value = scalar != NULL ? scalar->value : (double)NAN;
-    double theory = scalar != NULL ? scalar->theory : (double)NAN;
-    measured_cell(table, value, scalar != NULL ? scalar->standard_error : (double)NAN);
-    if (!with_theory)
-        return;
+static void comparison_cells(struct text_table *table, double value, double theory) {
     table_number(table, theory);
     if (theory != 0 && isfinite(value / theory))
         table_cell(table, "%.4f", value / theory);
     else
         table_cell(table, "-");
+}
+
+static void scalar_cells(struct text_table *table, const struct scalar *scalar,
+                         const bool compared[]) {
+    double value = scalar != NULL ? scalar->value : (double)NAN;
+    measured_cell(table, value, scalar != NULL ? scalar->standard_error : (double)NAN);
+    for (enum comparison with = WITH_THEORY; with <= WITH_GRID; with++)
+        if (compared[with])
+            comparison_cells(table, value, expected(scalar, with));
 }
 
 /* --- a row a case --- */
@@ -53,8 +64,8 @@ struct scalar_table {
     const struct study_report *report; /* or NULL */
     size_t scalar_count;
     const char *scalars[COLUMNS_MOST];
-    bool compared[COLUMNS_MOST]; /* with a theory beside it */
-    bool uneven;                 /* not all cases have as many realisations */
+    bool compared[COLUMNS_MOST][WITH_GRID + 1]; /* with what beside it */
+    bool uneven;                                /* not all cases have as many realisations */
 };
 
 static bool is_even(const struct study_result *study) {
@@ -67,7 +78,7 @@ static bool is_even(const struct study_result *study) {
 static size_t column_count(const struct scalar_table *plan) {
     size_t columns = 1 + plan->shown->varied_count + plan->uneven + (plan->report != NULL);
     for (size_t s = 0; s < plan->scalar_count; s++)
-        columns += plan->compared[s] ? 3 : 1;
+        columns += 1 + 2u * plan->compared[s][WITH_THEORY] + 2u * plan->compared[s][WITH_GRID];
     return columns;
 }
 
@@ -77,13 +88,14 @@ static void put_heading(const struct scalar_table *plan, struct text_table *tabl
     if (plan->uneven)
         table_cell(table, "realisations");
     for (size_t s = 0; s < plan->scalar_count; s++) {
-        if (plan->compared[s])
+        if (plan->compared[s][WITH_THEORY] || plan->compared[s][WITH_GRID])
             table_fold(table);
         table_cell(table, "%s", plan->scalars[s]);
-        if (plan->compared[s]) {
-            table_cell(table, "theory");
-            table_cell(table, "ratio");
-        }
+        for (enum comparison with = WITH_THEORY; with <= WITH_GRID; with++)
+            if (plan->compared[s][with]) {
+                table_cell(table, with == WITH_GRID ? "grid" : "theory");
+                table_cell(table, "ratio");
+            }
     }
     if (plan->report != NULL) {
         table_fold(table);
@@ -153,7 +165,8 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
         struct scalar_table plan = {.shown = &shown, .report = report, .uneven = !is_even(study)};
         plan.scalar_count = shown_scalars(&shown, view->headlines, plan.scalars);
         for (size_t s = 0; s < plan.scalar_count; s++)
-            plan.compared[s] = has_scalar(&shown, plan.scalars[s], true);
+            for (enum comparison with = WITH_THEORY; with <= WITH_GRID; with++)
+                plan.compared[s][with] = has_scalar(&shown, plan.scalars[s], with);
         print_scalars(&plan, file);
         for (size_t c = 0; c < shown.count && c < TARGETS_SHOWN; c++)
             summary_of_target(shown.list[c], file);

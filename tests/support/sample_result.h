@@ -22,6 +22,7 @@ static inline void sample_result(struct case_result *out) {
     struct scalar m0 = scalar_named("m0", 1, 0.5, NAN), alpha = scalar_named("alpha", 5, NAN, 6);
     m0.errors[ERROR_CELL].applies = true;
     m0.errors[ERROR_MODEL] = (struct scalar_error){true, true, -0.5, 0.25, 0.125};
+    alpha.grid = 5.5;
     *out = (struct case_result){.case_number = 3, .realisations = 24, .notes = notes};
     out->note_count = 1;
     out->notes_all = 2;

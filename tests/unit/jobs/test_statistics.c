@@ -355,6 +355,44 @@ static int stop_at_two(void *context, uint64_t done) {
     return done == 2;
 }
 
+/* Theory of the grid stands beside that without a grid where it applies, and agrees with what is
+ * constant. */
+static void theory_of_the_grid(void **state) {
+    (void)state;
+    static const char *const OF_SUMMITS[] = {"summit_height_pdf", "summit_height_cdf",
+                                             "summit_mean_curvature", "summit_curvature_pdf",
+                                             "summit_joint_pdf"};
+    for (int s = 0; s < STUDY_COUNT; s++) {
+        struct job_runner *runner = runner_of(STUDIES[s]);
+        struct job_merger *merger = merger_of(STUDIES[s]);
+        struct block_result result = run(runner, 0, REALISATIONS);
+        merge(merger, &result);
+        cJSON *document = curves_of(merger);
+        bool grid = STUDIES[s] == GAUSSIAN, exact = STUDIES[s] != WEIBULL;
+        for (size_t q = 0; q < sizeof OF_SUMMITS / sizeof *OF_SUMMITS; q++)
+            assert_int_equal(json_at(curve_of(document, OF_SUMMITS[q]), "/theory/grid") != NULL,
+                             grid && strcmp(OF_SUMMITS[q], "summit_joint_pdf") != 0);
+        if (exact) {
+            double slope = scalar(document, "rms_slope", "value");
+            assert_true(fabs(scalar(document, "rms_slope", "grid_theory") - slope) < 1e-12 * slope);
+            assert_true(scalar(document, "rms_slope", "theory") > 1.001 * slope);
+        }
+        if (grid) {
+            double error = scalar(document, "summit_density", "standard_error");
+            double density = scalar(document, "summit_density", "value");
+            double expected = scalar(document, "summit_density", "grid_theory");
+            assert_true(fabs(density - expected) < 4 * error);
+            assert_true(scalar(document, "kurtosis", "grid_theory") < 2.95);
+        } else {
+            assert_true(isnan(scalar(document, "summit_density", "grid_theory")));
+        }
+        cJSON_Delete(document);
+        block_result_clear(&result);
+        merger_destroy(&merger);
+        runner_destroy(&runner);
+    }
+}
+
 static void stopping(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(GAUSSIAN);
@@ -401,6 +439,7 @@ int main(void) {
         cmocka_unit_test(normalisation),
         cmocka_unit_test(bins_that_miss),
         cmocka_unit_test(no_realisation_yet),
+        cmocka_unit_test(theory_of_the_grid),
         cmocka_unit_test(stopping),
         cmocka_unit_test(checking),
     };

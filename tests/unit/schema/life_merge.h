@@ -36,7 +36,8 @@ static inline void merge(struct store *store, const struct due_case *due, struct
     struct scalar scalar = {.name = "sum",
                             .value = sum.value,
                             .standard_error = (double)sum.realisations,
-                            .theory = NAN};
+                            .theory = NAN,
+                            .grid = NAN};
     struct curve curve = curve_named("blocks", "first", "count");
     curve_set_points(&curve, sum.blocks, sum.first, sum.count, errors);
     assert_int_equal(result_add_scalar(out, &scalar, NULL), 0);

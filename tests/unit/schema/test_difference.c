@@ -31,7 +31,7 @@ static void add(struct case_result *result, struct curve curve) {
 static void add_scalar(struct case_result *result, const char *name, double value, double error) {
     struct error err = {0};
     const struct scalar scalar = {
-        .name = name, .value = value, .standard_error = error, .theory = NAN};
+        .name = name, .value = value, .standard_error = error, .theory = NAN, .grid = NAN};
     assert_int_equal(result_add_scalar(result, &scalar, &err), 0);
 }
 

@@ -22,7 +22,7 @@ static const char PRINTED[] =
     "{\"case\":3,\"parameters\":{},\"realisations\":24,\"scalars\":{\"m0\":{\"value\":1,"
     "\"standard_error\":0.5,\"cell_error\":null,\"model_error\":-0.5,\"model_bound\":0.25,"
     "\"model_error_standard_error\":0.125},\"alpha\":{\"value\":5,\"standard_error\":null,"
-    "\"theory\":6}},"
+    "\"theory\":6,\"grid_theory\":5.5}},"
     "\"curves\":[{\"quantity\":\"q\",\"series\":\"x, \\\"y\\\"\",\"x\":[0.1,2],\"y\":[3,null],"
     "\"standard_error\":[0.1,null],\"discretisation_error\":null,\"theory\":{\"nayak\":[1.5,2.5]},"
     "\"x_label\":\"z/\302\265m\",\"underflow\":4,\"overflow\":0,\"y_label\":\"density\"},"

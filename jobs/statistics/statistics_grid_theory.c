@@ -1,0 +1,110 @@
+#include "jobs/statistics/statistics_grid_theory.h"
+#include "core/theory/sampled_field.h"
+#include "core/theory/sampled_summits.h"
+#include "jobs/statistics/statistics_scalars.h"
+#include <math.h>
+#include <string.h>
+
+const char STATISTICS_GRID_THEORY[] = "grid";
+
+static bool is_gaussian(const struct statistics_case *one_case) {
+    return one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN;
+}
+
+static bool applies_to_summits(const struct statistics_case *one_case) {
+    return is_gaussian(one_case) && one_case->stencil != SUMMITS_REFINED;
+}
+
+static struct sampled_surface surface_of(const struct statistics_case *one_case,
+                                         const struct surface_basis *basis) {
+    return (struct sampled_surface){basis->modes, &basis->moments, one_case->stencil,
+                                    one_case->curvature};
+}
+
+/* Adds the series to the curve of a quantity, if there is one. */
+static void add_series(struct case_result *out, const char *quantity, const double *y) {
+    for (size_t a = 0; a < out->curve_count; a++) {
+        struct curve *curve = &out->curves[a];
+        if (strcmp(curve->quantity, quantity) == 0 && curve->theory_count < THEORIES_MOST)
+            curve->theories[curve->theory_count++] = (struct theory){STATISTICS_GRID_THEORY, y};
+    }
+}
+
+static int add_curves(const struct statistics_case *one_case, const struct surface_basis *basis,
+                      struct sampled_summits *summits, struct case_result *out, struct error *err) {
+    const struct sampled_surface surface = surface_of(one_case, basis);
+    size_t n = one_case->height.count;
+    double *room = result_numbers(out, 3 * n + one_case->equivalent.count);
+    if (room == NULL)
+        return error_set(err, ERROR_MEMORY, "no memory left for theory of the grid");
+    const struct sampled_bins bins = {&one_case->height, &one_case->equivalent, room, room + n,
+                                      room + 2 * n,      room + 3 * n,          NULL};
+    int status = sampled_summits(&surface, summits, &bins, err);
+    if (status != 0)
+        return status;
+    add_series(out, "summit_height_pdf", bins.pdf);
+    add_series(out, "summit_height_cdf", bins.cdf);
+    add_series(out, "summit_mean_curvature", bins.curvature);
+    add_series(out, "summit_curvature_pdf", bins.t1_pdf);
+    add_series(out, "summit_joint_pdf", NULL);
+    return 0;
+}
+
+static void set_scalar(struct case_result *out, enum statistics_scalar scalar, double value) {
+    const char *name = statistics_scalar_name(scalar);
+    for (size_t s = 0; s < out->scalar_count; s++)
+        if (strcmp(out->scalars[s].name, name) == 0)
+            out->scalars[s].grid = value;
+}
+
+static void set_summits(const struct statistics_case *one_case,
+                        const struct sampled_summits *summits, struct case_result *out) {
+    const struct surface_case *surface = &one_case->surface;
+    bool profile = surface->dimension == 1;
+    double ratio = surface->wavelength_ratio;
+    double cell = surface->grid.lx * (profile ? 1 : surface->grid.ly);
+    set_scalar(out, SCALAR_SUMMITS, summits->density * cell);
+    set_scalar(out, SCALAR_SUMMIT_DENSITY, summits->density);
+    set_scalar(out, SCALAR_SUMMIT_DENSITY_PER_AREA,
+               summits->density * (profile ? ratio : ratio * ratio));
+    set_scalar(out, SCALAR_SUMMIT_HEIGHT_MEAN, summits->height_mean);
+    set_scalar(out, SCALAR_SUMMIT_HEIGHT_VARIANCE, summits->height_variance);
+    set_scalar(out, SCALAR_SUMMIT_CURVATURE_MEAN, summits->curvature);
+}
+
+/* Moments by differences are those of the spectrum whatever the heights. */
+static void set_moments(const struct statistics_case *one_case, const struct modes *modes,
+                        struct case_result *out) {
+    struct sampled_moments moments;
+    sampled_moments(modes, &moments);
+    set_scalar(out, SCALAR_RMS_SLOPE, moments.rms_slope);
+    set_scalar(out, SCALAR_RMS_CURVATURE, moments.rms_curvature);
+    set_scalar(out, SCALAR_M2_DIFFERENCE, moments.m2);
+    set_scalar(out, SCALAR_M4_DIFFERENCE, moments.m4);
+    set_scalar(out, SCALAR_NAYAK_ALPHA_DIFFERENCE, moments.nayak_alpha);
+    if (is_gaussian(one_case) && one_case->surface.options.amplitudes == AMPLITUDES_FIXED)
+        set_scalar(out, SCALAR_KURTOSIS, moments.kurtosis);
+}
+
+int statistics_grid_theory(const struct statistics_case *one_case,
+                           const struct surface_basis *basis, struct case_result *out,
+                           struct error *err) {
+    struct sampled_summits summits;
+    set_moments(one_case, basis->modes, out);
+    if (!applies_to_summits(one_case))
+        return 0;
+    int status = add_curves(one_case, basis, &summits, out, err);
+    if (status == 0)
+        set_summits(one_case, &summits, out);
+    return status;
+}
+
+int statistics_grid_theory_joint(const struct statistics_case *one_case,
+                                 const struct surface_basis *basis, double *pdf,
+                                 struct error *err) {
+    const struct sampled_surface surface = surface_of(one_case, basis);
+    const struct sampled_bins bins = {
+        .height = &one_case->height, .t1 = &one_case->equivalent, .joint = pdf};
+    struct sampled_summits summits;
+    return sampled_summits(&surface, &summits, &bins, err);
+}
