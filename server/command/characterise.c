@@ -47,6 +47,7 @@ static int run(const void *values, const char *const *arguments) {
     }
     if (status == 0)
         status = print(options, &found, &err);
+    characterisation_clear(&found);
     height_map_clear(&map);
     return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
 }

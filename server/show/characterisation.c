@@ -2,9 +2,8 @@
 #include "core/statistics/local_wave.h"
 #include "core/statistics/open_roughness.h"
 #include "core/statistics/open_summits.h"
-#include "schema/json/json.h"
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
 void characterisation_add(struct characterisation *out, const char *group, const char *name,
                           double value) {
@@ -16,6 +15,23 @@ void characterisation_add_text(struct characterisation *out, const char *group, 
                                const char *text) {
     if (out->count < CHARACTERISTICS_MOST)
         out->list[out->count++] = (struct characteristic){group, name, (double)NAN, text};
+}
+
+double *characterisation_column(struct characterisation *out, const char *group, const char *name,
+                                size_t count) {
+    double *values = out->column_count < CHARACTERISTIC_COLUMNS_MOST
+                         ? array_create(count > 0 ? count : 1, sizeof *values)
+                         : NULL;
+    if (values != NULL)
+        out->columns[out->column_count++] =
+            (struct characteristic_column){group, name, values, count};
+    return values;
+}
+
+void characterisation_clear(struct characterisation *characterisation) {
+    for (size_t c = 0; c < characterisation->column_count; c++)
+        free(characterisation->columns[c].values);
+    *characterisation = (struct characterisation){0};
 }
 
 static void add_grid(struct characterisation *out, const struct grid *grid) {
@@ -148,47 +164,4 @@ int characterise_open(struct characterisation *out, const struct measured_map *m
     add_differences(out, &roughness);
     add_moments(out, "interpolated", &moments);
     return find_open_summits(out, map, err);
-}
-
-/* Returns whether entry n is the first one of its group. */
-static bool begins_group(const struct characterisation *characterisation, size_t n) {
-    const struct characteristic *list = characterisation->list;
-    return n == 0 || strcmp(list[n].group, list[n - 1].group) != 0;
-}
-
-void characterisation_print(FILE *file, const struct characterisation *characterisation) {
-    for (size_t n = 0; n < characterisation->count; n++) {
-        const struct characteristic *entry = &characterisation->list[n];
-        if (begins_group(characterisation, n))
-            fprintf(file, "%s\n", entry->group);
-        if (entry->text != NULL)
-            fprintf(file, "  %-18s %s\n", entry->name, entry->text);
-        else if (isfinite(entry->value))
-            fprintf(file, "  %-18s %.10g\n", entry->name, entry->value);
-        else
-            fprintf(file, "  %-18s -\n", entry->name);
-    }
-}
-
-bool characterisation_print_json(FILE *file, const struct characterisation *characterisation) {
-    bool done = true;
-    fputc('{', file);
-    for (size_t n = 0; n < characterisation->count && done; n++) {
-        const struct characteristic *entry = &characterisation->list[n];
-        bool begins = begins_group(characterisation, n);
-        if (begins) {
-            fputs(n > 0 ? "}," : "", file);
-            done = json_print_text(file, entry->group);
-            fputs(":{", file);
-        }
-        fputs(begins ? "" : ",", file);
-        done = done && json_print_text(file, entry->name);
-        fputc(':', file);
-        if (entry->text == NULL)
-            json_print_number(file, entry->value);
-        else
-            done = done && json_print_text(file, entry->text);
-    }
-    fputs(characterisation->count > 0 ? "}}" : "}", file);
-    return done;
 }

@@ -1,6 +1,10 @@
 #include "server/show/map_characterisation.h"
 #include "core/map/detrend.h"
+#include "core/statistics/areal.h"
+#include "core/statistics/roughness.h"
+#include "core/statistics/scales.h"
 #include "core/statistics/seam.h"
+#include "core/statistics/windowed_psd.h"
 #include <math.h>
 
 enum { BOUNDARY_AUTO, BOUNDARY_AS_OPEN, BOUNDARY_AS_PERIODIC };
@@ -67,6 +71,8 @@ static void add_decision(struct characterisation *out, const struct decision *de
     characterisation_add(out, GROUP, "seam_x", decision->seam.x);
     characterisation_add(out, GROUP, "seam_y", profile ? (double)NAN : decision->seam.y);
     characterisation_add(out, GROUP, "holes", decision->holes);
+    characterisation_add_text(out, GROUP, "psd_window",
+                              decision->boundary == BOUNDARY_OPEN ? "hann" : "none");
     characterisation_add_text(out, GROUP, "detrend", DETRENDS[decision->detrend]);
     if (decision->detrend != DETREND_NONE)
         characterisation_add(out, GROUP, "trend_height", trend->height);
@@ -81,6 +87,86 @@ static void add_decision(struct characterisation *out, const struct decision *de
     }
 }
 
+static int add_scales(struct characterisation *out, const struct measured_map *map,
+                      struct error *err) {
+    static const char GROUP[] = "scales";
+    struct scale scales[SCALES_MOST];
+    size_t count = scales_measure(map, scales);
+    double *length = characterisation_column(out, GROUP, "length", count);
+    double *height = characterisation_column(out, GROUP, "rms_height", count);
+    double *slope = characterisation_column(out, GROUP, "rms_slope", count);
+    double *curvature = characterisation_column(out, GROUP, "rms_curvature", count);
+    if (length == NULL || height == NULL || slope == NULL || curvature == NULL)
+        return error_memory(err, count * sizeof *length, "a table of scales");
+    for (size_t n = 0; n < count; n++) {
+        length[n] = scales[n].length;
+        height[n] = scales[n].height;
+        slope[n] = scales[n].slope;
+        curvature[n] = scales[n].curvature;
+    }
+    return 0;
+}
+
+static int add_psd(struct characterisation *out, const struct measured_map *map,
+                   struct error *err) {
+    static const char GROUP[] = "psd";
+    size_t bins = radial_bins(map->grid);
+    double *wave_number = characterisation_column(out, GROUP, "wave_number", bins);
+    double *density = characterisation_column(out, GROUP, "density", bins);
+    if (wave_number == NULL || density == NULL)
+        return error_memory(err, bins * sizeof *density, "a spectral density");
+    return map->boundary == BOUNDARY_OPEN
+               ? windowed_psd_measure(map, wave_number, density, err)
+               : psd_measure(map->grid, map->z, wave_number, density, err);
+}
+
+static int add_acf(struct characterisation *out, const struct correlation *correlation,
+                   struct error *err) {
+    static const char GROUP[] = "acf";
+    size_t rings = correlation_rings(correlation);
+    double *lag = characterisation_column(out, GROUP, "lag", rings);
+    double *mean = characterisation_column(out, GROUP, "correlation", rings);
+    if (lag == NULL || mean == NULL)
+        return error_memory(err, rings * sizeof *mean, "an autocorrelation");
+    correlation_radial(correlation, lag, mean);
+    return 0;
+}
+
+static int add_areal(struct characterisation *out, const struct measured_map *map,
+                     const struct correlation *correlation, struct error *err) {
+    static const char GROUP[] = "areal";
+    struct areal areal;
+    int status = areal_measure(map, correlation, &areal, err);
+    if (status != 0)
+        return status;
+    const struct {
+        const char *name;
+        double value;
+    } rows[] = {{"Sa", areal.sa},   {"Sq", areal.sq},   {"Ssk", areal.ssk}, {"Sku", areal.sku},
+                {"Sp", areal.sp},   {"Sv", areal.sv},   {"Sz", areal.sz},   {"Sdq", areal.sdq},
+                {"Sdr", areal.sdr}, {"Sal", areal.sal}, {"Str", areal.str}, {"Spd", areal.spd},
+                {"Spc", areal.spc}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        characterisation_add(out, GROUP, rows[r].name, rows[r].value);
+    return 0;
+}
+
+static int add_correlated(struct characterisation *out, const struct measured_map *map,
+                          struct error *err) {
+    struct correlation *correlation = NULL;
+    int status = correlation_create(&correlation, map, err);
+    if (status == 0 && !grid_is_profile(map->grid))
+        status = add_areal(out, map, correlation, err);
+    if (status == 0)
+        status = add_scales(out, map, err);
+    if (status == 0)
+        status = add_psd(out, map, err);
+    if (status == 0)
+        status = add_acf(out, correlation, err);
+    correlation_destroy(&correlation);
+    return status;
+}
+
 int map_characterise(struct characterisation *out, struct height_map *map,
                      const struct map_request *request, struct error *err) {
     struct decision decision;
@@ -89,9 +175,10 @@ int map_characterise(struct characterisation *out, struct height_map *map,
     if (status != 0)
         return status;
     const struct measured_map measured = {grid, map->z, decision.boundary};
-    *out = (struct characterisation){0};
     add_decision(out, &decision, grid_is_profile(grid));
     if (decision.boundary == BOUNDARY_OPEN)
-        return characterise_open(out, &measured, err);
-    return characterise_heights(out, grid, map->z, grid->nx / 2, grid->ny / 2, err);
+        status = characterise_open(out, &measured, err);
+    else
+        status = characterise_heights(out, grid, map->z, grid->nx / 2, grid->ny / 2, err);
+    return status == 0 ? add_correlated(out, &measured, err) : status;
 }

@@ -16,7 +16,8 @@ struct map_request {
     int boundary, detrend;
 };
 
-/* Takes the trend out of the map and fills *out. ERROR_INPUT where the map has no heights, is to be
+/* Takes the trend out of the map and fills *out, {0} at first, which the caller clears either way.
+ * ERROR_INPUT where the map has no heights, is to be
  * periodic with holes, or has too few heights for its trend. */
 int map_characterise(struct characterisation *out, struct height_map *map,
                      const struct map_request *request, struct error *err);

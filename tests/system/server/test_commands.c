@@ -293,6 +293,41 @@ static void a_map_in_a_file_is_pressed(void **state) {
     free(text);
 }
 
+/* A tilted map with a hole is open, loses a plane and has no seam to be pressed over. */
+static void a_measured_map_does_not_repeat(void **state) {
+    (void)state;
+    char line[400];
+    for (int hole = 0; hole < 2; hole++) {
+        snprintf(
+            line, sizeof line,
+            "awk -v HOLE=%d 'BEGIN { for (j = 0; j < 40; j++) for (i = 0; i < 50; i++) printf "
+            "\"%%s%%c\", HOLE && i == 20 && j == 10 ? \"nan\" : 3 * i + cos(i * 0.7) * cos(j * "
+            "0.6), i < 49 ? 44 : 10 }' > map%d.csv",
+            hole, hole);
+        assert_int_equal(shell(line), 0);
+    }
+    assert_int_equal(shell("$RUGO characterise map0.csv --format json > map0.json"), 0);
+    assert_true(contains("map0.json", "\"boundary\":\"open\",\"boundary_by\":\"seam\""));
+    assert_true(contains("map0.json", "\"detrend\":\"plane\",\"trend_height\":73."));
+    assert_true(contains("map0.json", "\"acf\":{\"lag\":[0,1,2,"));
+    assert_int_equal(
+        shell("$RUGO characterise map1.csv && grep -q 'holes *0.0005' shell.out && grep -q "
+              "'boundary_by *holes' shell.out"),
+        0);
+    assert_int_equal(
+        shell("$RUGO characterise map0.csv --boundary periodic --detrend mean && grep -q "
+              "'^spectral' shell.out"),
+        0);
+    assert_int_equal(shell("$RUGO characterise map1.csv --boundary periodic"), 2);
+    assert_true(contains("shell.err",
+                         "1 of 2000 heights are holes (NaN), the first in row 11, column "
+                         "21"));
+    assert_int_equal(shell("$RUGO press map1.csv"), 2);
+    assert_true(contains("shell.err", "map1.csv: 1 of 2000 heights are holes"));
+    assert_int_equal(shell("$RUGO press map0.csv --loads 0.01"), 0);
+    assert_true(contains("shell.err", "warning: map0.csv: contact takes the map as periodic"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wrong_usage_and_input),
@@ -305,6 +340,7 @@ int main(void) {
         cmocka_unit_test(a_full_disk_loses_nothing),
         cmocka_unit_test(a_surface_goes_out_and_in),
         cmocka_unit_test(a_map_in_a_file_is_pressed),
+        cmocka_unit_test(a_measured_map_does_not_repeat),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }

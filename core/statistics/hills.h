@@ -1,0 +1,19 @@
+/* Hills of a surface that stand out: each has one peak, and is told by how far one must go down
+ * from it to reach a higher one. */
+#ifndef RUGO_CORE_STATISTICS_HILLS_H
+#define RUGO_CORE_STATISTICS_HILLS_H
+
+#include "core/statistics/measured_map.h"
+
+struct hills {
+    size_t count;
+    double density;   /* per area of the points all of whose 8 neighbours are there */
+    double curvature; /* mean of -(z_xx + z_yy)/2 at the peaks, central differences; NaN: no hill */
+};
+/* Finds the peaks whose hills are `least` or more above their highest saddle to a higher peak,
+ * after Wolf's pruning of the change tree (FORMULAS.md, F18.10). A point has 8 neighbours. Points
+ * at the side of an open map and beside holes prune others, but do not count: they may be the slope
+ * of a higher one. Surfaces alone. ERROR_MEMORY. */
+int hills_find(const struct measured_map *map, double least, struct hills *out, struct error *err);
+
+#endif
