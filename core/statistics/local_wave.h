@@ -1,7 +1,8 @@
 /* A map between its points, and its derivatives, from the points nearby alone: Lagrange's
  * polynomials through LOCAL_POINTS points along each axis. Unlike Fourier's interpolation it needs
  * no periodic map. Waves of 4, 5, 6 and 8 points have heights within 1e-3, 5e-5, 3e-6 and 4e-8 of
- * their amplitude, curvatures within 4e-3, 3e-4, 3e-5 and 7e-7; of 3 points, 3 and 8 %. */
+ * their amplitude, curvatures within 4e-3, 3e-4, 3e-5 and 7e-7; of 3 points, 3 and 8 %. So a
+ * surface with 4 points or more a shortest wave has its summits; with 3 or fewer, 3 % too many. */
 #ifndef RUGO_CORE_STATISTICS_LOCAL_WAVE_H
 #define RUGO_CORE_STATISTICS_LOCAL_WAVE_H
 

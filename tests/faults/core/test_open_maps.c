@@ -68,7 +68,9 @@ static int measure(void *context, struct error *err) {
 
 static void measures(void **state) {
     (void)state;
-    each_allocation(&(struct failing_call){.name = "measures of an open map", measure, NULL});
+    /* qsort sorts in place where it has no memory. */
+    each_allocation(
+        &(struct failing_call){.name = "measures of an open map", measure, NULL, .may_succeed = 1});
 }
 
 int main(void) {
