@@ -44,8 +44,8 @@ struct realisation {
     struct random_key key; /* its number among others */
     const double *z;       /* heights on the own grid of the case */
     struct surface_report report;
-    struct roughness roughness;
-    struct moments moments; /* of its own spectrum: the prescribed one where that is exact */
+    struct roughness roughness; /* empty where the kind measures it itself */
+    struct moments moments;     /* of its own spectrum: the prescribed one where that is exact */
     /* To be asked again and again within one that may take long: non-zero stops it with
      * ERROR_STOPPED. */
     int (*stop)(void *context);
@@ -76,6 +76,7 @@ struct job_kind {
     void (*estimate)(const void *study, struct study_cost *out);
     /* Gives the surface that each realisation is given; NULL for kinds without surfaces. */
     const struct surface_case *(*surface)(const void *study);
+    bool measures_roughness; /* itself, of each surface: realisations come without it */
 
     /* --- what all runners of a case can share, such as a factorised matrix; 0 and NULL: nothing.
      * Immutable once made, read by many threads. --- */

@@ -166,7 +166,7 @@ static int surface_generate(struct job_runner *runner, struct realisation *reali
         generator_run(runner->generator, runner->key, runner->z, &realisation->report, err);
     if (status == 0 && !surface_case_exact(surface))
         status = roughness_spectral(&surface->grid, runner->z, &realisation->moments, err);
-    if (status == 0)
+    if (status == 0 && !runner->kind->measures_roughness)
         roughness_measure(&surface->grid, runner->z, &realisation->roughness);
     return status;
 }

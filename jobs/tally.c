@@ -187,11 +187,10 @@ static double neighbours_dispersion(const struct tally *tally, size_t cell,
 }
 
 /* The error of a count of clusters as large as the dispersion: a Poisson mean of which n were seen
- * has the variance n + 1 (its posterior, Gelman et al. 2013, section 2.6), and where none was seen
- * it is below 1.841 at the confidence of one standard deviation (Gehrels 1986, table 1). */
+ * has the variance n + 1 (its posterior, Gelman et al. 2013, section 2.6), and one
+ * of which none was seen its bound. */
 static double rare_error(double dispersion, double count) {
-    static const double NONE_SEEN = 1.841;
-    return count > 0 ? dispersion * sqrt(count / dispersion + 1) : dispersion * NONE_SEEN;
+    return count > 0 ? dispersion * sqrt(count / dispersion + 1) : dispersion * TALLY_NONE_SEEN;
 }
 
 struct estimate tally_share(const struct tally *tally, size_t cell,

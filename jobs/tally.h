@@ -63,6 +63,9 @@ void tally_get_weighed(struct byte_reader *reader, struct tally *tally);
 
 /* Cells with things of fewer realisations than this, and than all, are rare. */
 enum { TALLY_RARE = 10 };
+/* A count of which none was seen is below this at the confidence of one standard deviation, 84.1 %
+ * (Gehrels 1986, table 1). */
+#define TALLY_NONE_SEEN 1.841
 /* Estimates the share of a cell and its error; of an empty cell and of one with all things that is
  * the bound which its share is within at the confidence of one standard deviation. */
 struct estimate tally_share(const struct tally *tally, size_t cell,

@@ -76,3 +76,83 @@ size_t row_pits(const double *up, const double *middle, const double *down, size
                 size_t *columns) {
     return search(up, middle, down, nx, corners, true, columns);
 }
+
+/* Highest and lowest of a point's neighbours beside, above and below. */
+struct near {
+    double high, low;
+};
+static inline double greater(double a, double b) {
+    return a > b ? a : b;
+}
+static inline double lesser(double a, double b) {
+    return a < b ? a : b;
+}
+static inline struct near near_cross(const double *u, const double *m, const double *d, size_t i) {
+    return (struct near){greater(greater(m[i - 1], m[i + 1]), greater(u[i], d[i])),
+                         lesser(lesser(m[i - 1], m[i + 1]), lesser(u[i], d[i]))};
+}
+static inline struct near near_beside(const double *m, size_t i) {
+    return (struct near){greater(m[i - 1], m[i + 1]), lesser(m[i - 1], m[i + 1])};
+}
+static inline int64_t is_beyond(double z, struct near near) {
+    return beats(z, near.high, false) | beats(z, near.low, true);
+}
+
+/* Returns non-zero where any point is above or below all its neighbours but those across. */
+WIDE_VECTORS static int64_t any_beyond(const double *u, const double *m, const double *d,
+                                       size_t n) {
+    int64_t any = 0;
+    if (u == NULL || d == NULL)
+        for (size_t i = 0; i < n; i++)
+            any |= is_beyond(m[i], near_beside(m, i));
+    else
+        for (size_t i = 0; i < n; i++)
+            any |= is_beyond(m[i], near_cross(u, m, d, i));
+    return any;
+}
+
+/* beyond[i] = all ones where m[i] is above or below all its neighbours. */
+WIDE_VECTORS static void find_beyond(const double *u, const double *m, const double *d,
+                                     bool corners, size_t n, int64_t *beyond) {
+    if (u == NULL || d == NULL)
+        for (size_t i = 0; i < n; i++)
+            beyond[i] = is_beyond(m[i], near_beside(m, i));
+    else if (!corners)
+        for (size_t i = 0; i < n; i++)
+            beyond[i] = is_beyond(m[i], near_cross(u, m, d, i));
+    else
+        for (size_t i = 0; i < n; i++) {
+            struct near near = near_cross(u, m, d, i), up = near_beside(u, i),
+                        down = near_beside(d, i);
+            beyond[i] =
+                is_beyond(m[i], (struct near){greater(near.high, greater(up.high, down.high)),
+                                              lesser(near.low, lesser(up.low, down.low))});
+        }
+}
+
+static bool is_extreme(const double *u, const double *m, const double *d, size_t nx, bool corners,
+                       size_t i) {
+    return is_summit(u, m, d, nx, corners, false, i) || is_summit(u, m, d, nx, corners, true, i);
+}
+
+size_t row_extremes(const double *up, const double *middle, const double *down, size_t nx,
+                    bool corners, size_t *columns) {
+    enum { NEAR = 32 };
+    size_t found = 0;
+    int64_t beyond[NEAR];
+    if (is_extreme(up, middle, down, nx, corners, 0))
+        columns[found++] = 0;
+    for (size_t i = 1; i + 1 < nx; i += NEAR) {
+        const double *u = up != NULL ? up + i : NULL, *d = down != NULL ? down + i : NULL;
+        size_t n = nx - 1 - i < NEAR ? nx - 1 - i : NEAR;
+        if (any_beyond(u, middle + i, d, n) == 0)
+            continue;
+        find_beyond(u, middle + i, d, corners, n, beyond);
+        for (size_t k = 0; k < n; k++)
+            if (beyond[k] != 0)
+                columns[found++] = i + k;
+    }
+    if (is_extreme(up, middle, down, nx, corners, nx - 1))
+        columns[found++] = nx - 1;
+    return found;
+}

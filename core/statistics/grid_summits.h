@@ -14,5 +14,8 @@ size_t row_summits(const double *up, const double *middle, const double *down, s
 /* Does the same with the columns that are below their neighbours. */
 size_t row_pits(const double *up, const double *middle, const double *down, size_t nx, bool corners,
                 size_t *columns);
+/* Does the same with both, in about the time of either: at most nx columns. */
+size_t row_extremes(const double *up, const double *middle, const double *down, size_t nx,
+                    bool corners, size_t *columns);
 
 #endif

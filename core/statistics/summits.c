@@ -106,24 +106,30 @@ static double difference_curvature(const struct grid *grid, const double *z, siz
     return -(xx + yy) / 2;
 }
 
-static int row_add(struct summit_finder *f, const double *z, size_t j, size_t found, bool mirrored,
-                   struct summit_list *list, struct error *err) {
+static int point_add(struct summit_finder *f, const double *z, size_t i, size_t j, bool mirrored,
+                     struct summit_list *list, struct error *err) {
     const struct grid *grid = &f->grid;
     const double sign = mirrored ? -1 : 1;
-    for (size_t s = 0; s < found; s++) {
-        size_t i = f->columns[s], point = j * grid->nx + i;
-        struct summit summit = {
-            .x = (double)i * grid_dx(grid),
-            .y = grid_is_profile(grid) ? 0 : (double)j * grid_dy(grid),
-            .height = sign * z[point],
-            .curvature = sign * (f->curvature != NULL ? f->curvature[point]
-                                                      : difference_curvature(grid, z, i, j)),
-        };
-        int status = summit_list_add(list, &summit, err);
-        if (status != 0)
-            return status;
-    }
-    return 0;
+    size_t point = j * grid->nx + i;
+    double curvature =
+        f->curvature != NULL ? f->curvature[point] : difference_curvature(grid, z, i, j);
+    struct summit summit = {.x = (double)i * grid_dx(grid),
+                            .y = grid_is_profile(grid) ? 0 : (double)j * grid_dy(grid),
+                            .height = sign * z[point],
+                            .curvature = sign * curvature};
+    return summit_list_add(list, &summit, err);
+}
+
+/* Rows above and below are NULL for a profile. */
+struct three_rows {
+    const double *up, *middle, *down;
+};
+static struct three_rows rows_at(const struct grid *grid, const double *z, size_t j) {
+    size_t nx = grid->nx, ny = grid->ny;
+    if (grid_is_profile(grid))
+        return (struct three_rows){NULL, z, NULL};
+    return (struct three_rows){z + (j != 0 ? j - 1 : ny - 1) * nx, z + j * nx,
+                               z + (j + 1 < ny ? j + 1 : 0) * nx};
 }
 
 static int find(struct summit_finder *f, const double *z, bool mirrored, struct summit_list *list,
@@ -134,18 +140,16 @@ static int find(struct summit_finder *f, const double *z, bool mirrored, struct 
                         : refined_find(f->refined, z, list, err);
     if (f->curvature != NULL)
         curvature_fill(f, z);
-    size_t nx = f->grid.nx, ny = f->grid.ny;
-    bool corners = f->stencil == SUMMITS_NINE_POINT, profile = grid_is_profile(&f->grid);
-    for (size_t j = 0; j < ny; j++) {
-        const double *up = profile ? NULL : z + (j != 0 ? j - 1 : ny - 1) * nx;
-        const double *down = profile ? NULL : z + (j + 1 < ny ? j + 1 : 0) * nx;
-        size_t found = mirrored ? row_pits(up, z + j * nx, down, nx, corners, f->columns)
-                                : row_summits(up, z + j * nx, down, nx, corners, f->columns);
-        int status = row_add(f, z, j, found, mirrored, list, err);
-        if (status != 0)
-            return status;
+    const bool corners = f->stencil == SUMMITS_NINE_POINT;
+    int status = 0;
+    for (size_t j = 0; j < f->grid.ny && status == 0; j++) {
+        struct three_rows rows = rows_at(&f->grid, z, j);
+        size_t found = (mirrored ? row_pits : row_summits)(rows.up, rows.middle, rows.down,
+                                                           f->grid.nx, corners, f->columns);
+        for (size_t s = 0; s < found && status == 0; s++)
+            status = point_add(f, z, f->columns[s], j, mirrored, list, err);
     }
-    return 0;
+    return status;
 }
 
 int summits_find(struct summit_finder *f, const double *z, struct summit_list *list,
@@ -156,4 +160,27 @@ int summits_find(struct summit_finder *f, const double *z, struct summit_list *l
 int pits_find(struct summit_finder *f, const double *z, struct summit_list *list,
               struct error *err) {
     return find(f, z, true, list, err);
+}
+
+int extremes_find(struct summit_finder *f, const double *z, size_t first, size_t count,
+                  struct summit_list *summits, struct summit_list *pits, struct error *err) {
+    const bool corners = f->stencil == SUMMITS_NINE_POINT;
+    int status = 0;
+    if (f->stencil == SUMMITS_REFINED) {
+        status = first == 0 ? refined_find(f->refined, z, summits, err) : 0;
+        return status != 0 || first > 0 ? status : refined_find_pits(f->refined, z, pits, err);
+    }
+    if (f->curvature != NULL && first == 0)
+        curvature_fill(f, z);
+    for (size_t j = first; j < first + count && status == 0; j++) {
+        struct three_rows rows = rows_at(&f->grid, z, j);
+        size_t found =
+            row_extremes(rows.up, rows.middle, rows.down, f->grid.nx, corners, f->columns);
+        for (size_t s = 0; s < found && status == 0; s++) {
+            size_t i = f->columns[s];
+            bool pit = rows.middle[i] < rows.middle[i + 1 < f->grid.nx ? i + 1 : 0];
+            status = point_add(f, z, i, j, pit, pit ? pits : summits, err);
+        }
+    }
+    return status;
 }

@@ -29,5 +29,10 @@ int summits_find(struct summit_finder *finder, const double *z, struct summit_li
 /* Does the same with the pits of z, as the summits of the mirrored surface -z that they are. */
 int pits_find(struct summit_finder *finder, const double *z, struct summit_list *list,
               struct error *err);
+/* Appends the summits and the pits of rows first .. first + count - 1, those of the two above in
+ * one look at each point. Lists are empty for row 0, with which refined ones are all found; rows
+ * rise from call to call. */
+int extremes_find(struct summit_finder *finder, const double *z, size_t first, size_t count,
+                  struct summit_list *summits, struct summit_list *pits, struct error *err);
 
 #endif

@@ -1,4 +1,5 @@
 /* The kind "statistics": summit statistics, spectra and roughness of random surfaces. */
+#include "core/statistics/surface_pass.h"
 #include "jobs/statistics/statistics_curves.h"
 #include "jobs/statistics/statistics_grid_theory.h"
 #include "jobs/statistics/statistics_scalars.h"
@@ -29,6 +30,7 @@ static const struct surface_case *surface_of(const void *one_case) {
 struct statistics_workspace {
     const struct statistics_case *one_case; /* borrowed */
     struct moments moments;                 /* of the prescribed spectrum */
+    struct roughness constants;             /* of all surfaces, where the spectrum is exact */
     struct summit_finder *finder;
     struct spectra spectra;
     struct summit_list summits[SIDES]; /* of a symmetric case the first has all of them */
@@ -46,6 +48,7 @@ static int workspace_create(void *workspace, const void *one_case,
     (void)shared;
     work->one_case = statistics;
     work->moments = basis->moments;
+    statistics_constants(modes, &basis->moments, &work->constants);
     int status = summit_finder_create(&work->finder, grid, statistics->stencil,
                                       statistics->curvature, limited ? modes->mode_x : grid->nx / 2,
                                       limited ? modes->mode_y : grid->ny / 2, err);
@@ -60,12 +63,42 @@ static void workspace_clear(void *workspace) {
         summit_list_clear(&work->summits[side]);
 }
 
-static int find_summits(struct statistics_workspace *work, const double *z, struct error *err) {
-    int status = summits_find(work->finder, z, &work->summits[SIDE_SUMMITS], err);
-    if (status == 0)
-        status = pits_find(work->finder, z, &work->summits[SIDE_PITS], err);
-    if (status != 0 || !statistics_case_symmetric(work->one_case))
+/* The roughness of a surface whose spectrum is exact: what the spectrum does not tell of it. */
+static struct roughness roughness_of(const struct roughness *constants,
+                                     const struct height_sums *sums) {
+    struct roughness out = *constants;
+    double variance = out.rms_height * out.rms_height;
+    out.skewness = sums->third / (variance * out.rms_height);
+    out.kurtosis = sums->fourth / (variance * variance);
+    out.lowest = sums->lowest;
+    out.highest = sums->highest;
+    return out;
+}
+
+/* Counts the heights into the tally's scratch, and finds summits and pits. */
+static int measure_surface(struct statistics_workspace *work, const double *z,
+                           struct statistics_tally *tally, struct roughness *roughness,
+                           struct error *err) {
+    const struct statistics_case *one_case = work->one_case;
+    const struct grid *grid = &one_case->surface.grid;
+    struct height_sums sums;
+    bool exact = surface_case_exact(&one_case->surface);
+    const struct surface_pass pass = {.finder = work->finder,
+                                      .bins = &one_case->height,
+                                      .scale = tally->scales.height,
+                                      .counts = tally->counts.height,
+                                      .sums = exact ? &sums : NULL,
+                                      .summits = &work->summits[SIDE_SUMMITS],
+                                      .pits = &work->summits[SIDE_PITS]};
+    int status = surface_pass_run(&pass, grid, z, err);
+    if (status != 0)
         return status;
+    if (exact)
+        *roughness = roughness_of(&work->constants, &sums);
+    else
+        roughness_measure(grid, z, roughness);
+    if (!statistics_case_symmetric(one_case))
+        return 0;
     return summit_list_append(&work->summits[SIDE_SUMMITS], &work->summits[SIDE_PITS], err);
 }
 
@@ -73,19 +106,18 @@ static int realise(void *workspace, const struct realisation *realisation, void 
                    double *scalars, struct error *err) {
     struct statistics_workspace *work = workspace;
     const struct grid *grid = &work->one_case->surface.grid;
-    int status = find_summits(work, realisation->z, err);
+    struct roughness roughness;
+    int status = measure_surface(work, realisation->z, tally, &roughness, err);
     if (status == 0)
         status = spectra_measure(&work->spectra, grid, realisation->z, tally, err);
     if (status != 0)
         return status;
-    statistics_tally_add(tally, realisation->key.realisation, grid_points(grid), realisation->z,
-                         work->summits);
-    statistics_scalars_measure(work->one_case, &work->moments,
-                               &(struct realisation_measures){.roughness = &realisation->roughness,
-                                                              .moments = &realisation->moments,
-                                                              .summits = work->summits,
-                                                              .report = &realisation->report},
-                               scalars);
+    statistics_tally_add(tally, realisation->key.realisation, grid_points(grid), work->summits);
+    const struct realisation_measures measures = {.roughness = &roughness,
+                                                  .moments = &realisation->moments,
+                                                  .summits = work->summits,
+                                                  .report = &realisation->report};
+    statistics_scalars_measure(work->one_case, &work->moments, &measures, scalars);
     return 0;
 }
 
@@ -136,7 +168,7 @@ static bool belongs(const void *tally, const struct block_result *result) {
 static int result(const void *one_case, const struct surface_basis *basis, const void *tally,
                   const struct realisations *realisations, struct case_result *out,
                   struct error *err) {
-    int status = statistics_scalars(one_case, &basis->moments, realisations, out, err);
+    int status = statistics_scalars(one_case, basis, realisations, out, err);
     if (status == 0)
         status = statistics_curves(one_case, basis->modes, &basis->moments, tally, out, err);
     if (status == 0)
@@ -171,6 +203,7 @@ const struct job_kind STATISTICS_KIND = {
     .clear = clear_case,
     .estimate = estimate,
     .surface = surface_of,
+    .measures_roughness = true,
     .workspace_size = sizeof(struct statistics_workspace),
     .workspace_create = workspace_create,
     .workspace_clear = workspace_clear,

@@ -1,6 +1,7 @@
 #include "jobs/statistics/statistics_scalars.h"
 #include "core/sum.h"
 #include "core/theory/nayak.h"
+#include "core/theory/sampled_field.h"
 #include "jobs/estimate.h"
 #include "jobs/statistics/statistics_theory.h"
 #include <math.h>
@@ -109,6 +110,23 @@ void statistics_scalars_measure(const struct statistics_case *one_case,
     out[SCALAR_EPS_S0] = iterated ? report->eps_s0 : NAN;
     out[SCALAR_EPS_S_AMPLITUDE] = iterated ? report->eps_s_amplitude : NAN;
     out[SCALAR_EPS_S0_AMPLITUDE] = iterated ? report->eps_s0_amplitude : NAN;
+}
+
+void statistics_constants(const struct modes *modes, const struct moments *moments,
+                          struct roughness *out) {
+    struct sampled_moments sampled;
+    sampled_moments(modes, &sampled);
+    *out = (struct roughness){.mean = 0,
+                              .rms_height = moments->rms_height,
+                              .rms_slope = sampled.rms_slope,
+                              .rms_curvature = sampled.rms_curvature,
+                              .skewness = NAN,
+                              .kurtosis = NAN,
+                              .m2 = sampled.m2,
+                              .m4 = sampled.m4,
+                              .nayak_alpha = sampled.nayak_alpha,
+                              .lowest = NAN,
+                              .highest = NAN};
 }
 
 /* Columns of the scalars, n values each, and the estimates made of them. */
@@ -224,22 +242,56 @@ static int add_scalar(struct case_result *out, const char *name, struct estimate
     return result_add_scalar(out, &scalar, err);
 }
 
+/* Fills in what is the same on every surface by its making, NaN where that is a matter of chance.
+ */
+static void constants_of_scalars(const struct statistics_case *one_case,
+                                 const struct surface_basis *basis, double out[SCALAR_COUNT]) {
+    const struct moments *moments = &basis->moments;
+    struct roughness roughness;
+    for (size_t a = 0; a < SCALAR_COUNT; a++)
+        out[a] = NAN;
+    if (one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN)
+        out[SCALAR_GENERATOR_ITERATIONS] = 0;
+    if (!surface_case_exact(&one_case->surface))
+        return;
+    statistics_constants(basis->modes, moments, &roughness);
+    out[SCALAR_RMS_HEIGHT] = roughness.rms_height;
+    out[SCALAR_RMS_SLOPE] = roughness.rms_slope;
+    out[SCALAR_RMS_CURVATURE] = roughness.rms_curvature;
+    out[SCALAR_M0] = moments->m0;
+    out[SCALAR_M2] = moments->m2;
+    out[SCALAR_M4] = moments->m4;
+    out[SCALAR_NAYAK_ALPHA] = moments->nayak_alpha;
+    out[SCALAR_M2_DIFFERENCE] = roughness.m2;
+    out[SCALAR_M4_DIFFERENCE] = roughness.m4;
+    out[SCALAR_NAYAK_ALPHA_DIFFERENCE] = roughness.nayak_alpha;
+}
+
+/* Values that chance made the same show no scatter, but are no constants: their error is not known.
+ * A share of realisations has the bound of a count not seen (F15.8). */
+static struct estimate chance_estimate(struct scalar_columns *columns,
+                                       enum statistics_scalar scalar) {
+    struct estimate out = number_behind(scalar) < SCALAR_COUNT
+                              ? summit_estimate(columns, scalar)
+                              : estimate_mean(columns->n, column(columns, scalar));
+    if (out.standard_error == 0)
+        out.standard_error = scalar == SCALAR_GENERATOR_CONVERGED
+                                 ? fmin(1, TALLY_NONE_SEEN / (double)columns->n)
+                                 : NAN;
+    return out;
+}
+
 static int add_scalars(struct case_result *out, const struct statistics_case *one_case,
-                       const struct moments *moments, struct scalar_columns *columns,
+                       const struct surface_basis *basis, struct scalar_columns *columns,
                        struct error *err) {
-    double theory[SCALAR_COUNT];
-    theory_of_scalars(one_case, moments, theory);
-    bool exact = surface_case_exact(&one_case->surface);
-    const double prescribed[] = {moments->m0, moments->m2, moments->m4, moments->nayak_alpha};
+    double theory[SCALAR_COUNT], constants[SCALAR_COUNT];
+    theory_of_scalars(one_case, &basis->moments, theory);
+    constants_of_scalars(one_case, basis, constants);
     int status = 0;
     for (enum statistics_scalar a = 0; a < SCALAR_COUNT && status == 0; a++) {
-        struct estimate estimate;
-        if (exact && a >= SCALAR_M0 && a <= SCALAR_NAYAK_ALPHA)
-            estimate = (struct estimate){prescribed[a - SCALAR_M0], 0};
-        else if (number_behind(a) < SCALAR_COUNT)
-            estimate = summit_estimate(columns, a);
-        else
-            estimate = estimate_mean(columns->n, column(columns, a));
+        struct estimate estimate = {constants[a], 0};
+        if (isnan(constants[a]))
+            estimate = chance_estimate(columns, a);
         status = add_scalar(out, NAMES[a], estimate, theory[a], err);
     }
     if (status != 0)
@@ -249,7 +301,7 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
                       (struct estimate){one_case->surface.wavelength_ratio, 0}, NAN, err);
 }
 
-int statistics_scalars(const struct statistics_case *one_case, const struct moments *moments,
+int statistics_scalars(const struct statistics_case *one_case, const struct surface_basis *basis,
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err) {
     struct scalar_columns columns = {.n = (size_t)realisations->count};
@@ -258,7 +310,7 @@ int statistics_scalars(const struct statistics_case *one_case, const struct mome
         return error_memory(err, columns.n * SCALAR_COUNT * sizeof(double), "scalars");
     for (size_t a = 0; a < SCALAR_COUNT; a++)
         realisations_column(realisations, a, columns.values + a * columns.n);
-    int status = add_scalars(out, one_case, moments, &columns, err);
+    int status = add_scalars(out, one_case, basis, &columns, err);
     free(columns.values);
     return status;
 }

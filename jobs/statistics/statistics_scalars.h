@@ -3,6 +3,7 @@
 #define RUGO_JOBS_STATISTICS_STATISTICS_SCALARS_H
 
 #include "core/statistics/roughness.h"
+#include "jobs/kind.h"
 #include "jobs/realisations.h"
 #include "jobs/statistics/statistics_tally.h"
 #include "schema/result/result.h"
@@ -59,8 +60,15 @@ void statistics_scalars_measure(const struct statistics_case *one_case,
                                 const struct realisation_measures *measures,
                                 double out[SCALAR_COUNT]);
 
-/* Appends the scalars over the realisations to the result. */
-int statistics_scalars(const struct statistics_case *one_case, const struct moments *moments,
+/* Computes what finite differences find on every surface with exactly this spectrum; the rest is
+ * NaN. */
+void statistics_constants(const struct modes *modes, const struct moments *moments,
+                          struct roughness *out);
+
+/* Appends the scalars over the realisations to the result. Constants of the case, which all
+ * surfaces of the exact spectrum share, are told as the spectrum has them, with a standard error of
+ * 0: no other scalar has that. */
+int statistics_scalars(const struct statistics_case *one_case, const struct surface_basis *basis,
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err);
 

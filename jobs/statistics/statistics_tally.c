@@ -62,14 +62,13 @@ double statistics_tally_bytes(const struct statistics_case *one_case) {
 }
 
 void statistics_tally_add(struct statistics_tally *tally, uint64_t realisation, size_t n,
-                          const double *z, const struct summit_list summits[]) {
+                          const struct summit_list summits[]) {
     const struct statistics_case *one_case = tally->one_case;
     struct group_place place = statistics_group_place(one_case);
     struct summit_counts *counts = &tally->counts;
     size_t heights = tally->height.size, group = group_of(realisation);
     tally_total_add(&tally->points, n);
     tally->groups.realisations[group]++;
-    histogram_add(&one_case->height, n, z, tally->scales.height, counts->height);
     histogram_tally_add(&tally->height, &tally->height_below, counts->height, n);
     statistics_groups_count(&tally->groups, group, place.height, heights, counts->height);
     memset(counts->height, 0, heights * sizeof *counts->height);

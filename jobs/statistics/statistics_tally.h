@@ -29,9 +29,10 @@ int statistics_tally_create(struct statistics_tally *out, const struct statistic
 void statistics_tally_clear(struct statistics_tally *tally);
 double statistics_tally_bytes(const struct statistics_case *one_case);
 
-/* Adds a realisation: its heights, and of each side its summits. */
+/* Adds a realisation: its n heights, which have been counted in counts.height of the tally, and of
+ * each side its summits. */
 void statistics_tally_add(struct statistics_tally *tally, uint64_t realisation, size_t n,
-                          const double *z, const struct summit_list summits[]);
+                          const struct summit_list summits[]);
 
 /* Where the counts (of curvature: the sums) of a histogram stand in a group. */
 struct group_place {

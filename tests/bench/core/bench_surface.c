@@ -1,14 +1,16 @@
-/* Gaussian surfaces with their nine-point summits: CPU time of each step, one core, medians, and
- * beside them the error of the RMS height and what the surface costs in memory. */
+/* Gaussian surfaces with their nine-point summits: CPU time of each step, one core, medians. Beside
+ * generation and summits alone stands the one pass that a study makes: histogram, powers of
+ * heights, summits and pits. Then the error of the RMS height and what the surface costs in memory.
+ */
 #include "core/statistics/roughness.h"
-#include "core/statistics/summits.h"
+#include "core/statistics/surface_pass.h"
 #include "core/surface/surface.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
-enum { REPEATS = 9, STEPS = 3 };
+enum { REPEATS = 9, STEPS = 4, BINS = 240 };
 
 static double cpu_ms(void) {
     struct timespec now;
@@ -31,7 +33,7 @@ static int bench(size_t n, struct error *err) {
                                 .wavelength_short = 1};
     struct generator *generator = NULL;
     struct summit_finder *finder = NULL;
-    struct summit_list list = {0};
+    struct summit_list list = {0}, pits = {0};
     struct roughness roughness = {0};
     double times[STEPS][REPEATS], worst = 0, *z = array_create(n * n, sizeof *z);
     int status = z ? 0 : error_memory(err, n * n * sizeof *z, "heights");
@@ -49,6 +51,20 @@ static int bench(size_t n, struct error *err) {
         times[1][r] = cpu_ms() - start - times[0][r];
         roughness_measure(&grid, z, &roughness);
         times[2][r] = cpu_ms() - start - times[0][r] - times[1][r];
+        struct height_sums sums;
+        uint64_t counts[BINS + 2] = {0};
+        const struct bins bins = {-4, 8, BINS};
+        const struct surface_pass pass = {.finder = finder,
+                                          .bins = &bins,
+                                          .scale = 1,
+                                          .counts = counts,
+                                          .sums = &sums,
+                                          .summits = &list,
+                                          .pits = &pits};
+        start = cpu_ms();
+        if (!status)
+            status = surface_pass_run(&pass, &grid, z, err);
+        times[3][r] = cpu_ms() - start;
         worst = fmax(worst, fabs(roughness.rms_height - 1));
     }
     if (!status) {
@@ -66,13 +82,15 @@ static int bench(size_t n, struct error *err) {
     generator_destroy(&generator);
     summit_finder_destroy(&finder);
     summit_list_clear(&list);
+    summit_list_clear(&pits);
     return status;
 }
 
 int main(void) {
     struct error err = {0};
-    printf("%6s  %s  %s  %s  %s  %s\n", "N", "generation ms (spread)", "summits ms (spread)",
-           "roughness ms (spread)", "error of RMS height", "memory/surface");
+    printf("%6s  %s  %s  %s  %s  %s  %s\n", "N", "generation ms (spread)", "summits ms (spread)",
+           "roughness ms (spread)", "one pass ms (spread)", "error of RMS height",
+           "memory/surface");
     for (size_t n = 256; n <= 4096; n *= 2)
         if (bench(n, &err)) {
             fprintf(stderr, "bench_surface: %s\n", err.text);
