@@ -179,3 +179,11 @@ int spectra_curves(const struct statistics_case *one_case, const struct modes *m
     int status = density_curve(one_case, modes, tally, result, err);
     return status != 0 ? status : correlation_curve(one_case, modes, tally, result, err);
 }
+
+int spectra_prescribed(const struct statistics_case *one_case, const struct modes *modes,
+                       struct case_result *result, struct error *err) {
+    struct statistics_case exact = *one_case; /* borrows what it points to */
+    exact.surface.options.keep = KEEP_SPECTRUM;
+    exact.surface.options.amplitudes = AMPLITUDES_FIXED;
+    return spectra_curves(&exact, modes, NULL, result, err);
+}

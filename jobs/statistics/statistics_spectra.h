@@ -26,5 +26,8 @@ int spectra_measure(struct spectra *spectra, const struct grid *grid, const doub
 int spectra_curves(const struct statistics_case *one_case, const struct modes *modes,
                    const struct statistics_tally *tally, struct case_result *result,
                    struct error *err);
+/* The same of what is prescribed, whatever surfaces are made of it. */
+int spectra_prescribed(const struct statistics_case *one_case, const struct modes *modes,
+                       struct case_result *result, struct error *err);
 
 #endif

@@ -4,5 +4,6 @@
 
 static const char *const HEADLINES[] = {"nayak_alpha", "summit_density", "summit_height_mean",
                                         "summit_curvature_mean", NULL};
-static const struct logarithmic_picture LOGARITHMIC[] = {{"psd", NULL}, {NULL, NULL}};
+static const struct logarithmic_picture LOGARITHMIC[] = {
+    {"psd", NULL}, {"nayak_alpha_by_ratio", NULL}, {NULL, NULL}};
 const struct result_view STATISTICS_VIEW = {.headlines = HEADLINES, .logarithmic = LOGARITHMIC};

@@ -117,7 +117,10 @@ int file_read(const char *path, size_t limit, char **text, size_t *size, struct 
 int study_file_read(struct study **out, const char *path, const char *const *overrides,
                     struct fault_list *faults, struct error *err) {
     char *text = NULL;
+    static const char EMPTY[] = "{\"name\": \"theory\", \"kind\": \"statistics\"}";
     size_t size;
+    if (path == NULL)
+        return kind_read_study(out, EMPTY, sizeof EMPTY - 1, overrides, faults, err);
     int status = file_read(path, JSON_LIMITS.bytes, &text, &size, err);
     if (status != 0)
         return status;

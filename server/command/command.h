@@ -29,7 +29,8 @@ struct command {
 extern const struct command *const COMMANDS[]; /* all, ended by NULL */
 extern const struct command COMMAND_RUN, COMMAND_CHECK, COMMAND_SUBMIT, COMMAND_STATUS,
     COMMAND_CURVES, COMMAND_REPORT, COMMAND_SNAPSHOT, COMMAND_CANCEL, COMMAND_RETRY, COMMAND_SERVE,
-    COMMAND_WORK, COMMAND_GENERATE, COMMAND_CHARACTERISE, COMMAND_PRESS, COMMAND_HELP;
+    COMMAND_WORK, COMMAND_GENERATE, COMMAND_CHARACTERISE, COMMAND_PRESS, COMMAND_THEORY,
+    COMMAND_HELP;
 
 /* Set by SIGINT and SIGTERM once signals_catch was called; the second SIGINT ends at once. */
 extern atomic_int stop_requested;
@@ -48,7 +49,8 @@ int output_flush(struct error *err);
 int output_document(const cJSON *document, struct error *err);
 /* Reads the file's bytes and puts a NUL behind them; "-" is standard input. The caller frees. */
 int file_read(const char *path, size_t limit, char **text, size_t *size, struct error *err);
-/* The study in a file, read and checked with these changes (--set); errors name the file. */
+/* The study in a file, read and checked with these changes (--set); errors name the file. path
+ * NULL: a study of statistics that has nothing but the changes. */
 int study_file_read(struct study **out, const char *path, const char *const *overrides,
                     struct fault_list *faults, struct error *err);
 /* The token of --token-file (its first line) or of RUGO_TOKEN; *token NULL where neither. Caller

@@ -21,6 +21,9 @@ void summary_of_quantity(const struct quantity_table *words, const struct shown_
 /* One case less another: for each curve a table of both, the difference and its errors, and one of
  * the scalars. Differences that are not those of pairs are marked. */
 void summary_of_difference(const struct study_result *study, FILE *file);
+/* What theory expects (jobs/statistics/statistics_expectation.h): for a few cases a table of all
+ * scalars each, for many a row each. */
+void summary_of_theory(const struct study_result *study, FILE *file);
 /* Speed against error: a row a case, and, where there are models and levels, what each of them and
  * each estimator cost and err: by case for a few cases, over all of them for many. */
 void summary_of_report(const struct study_report *report, FILE *file);

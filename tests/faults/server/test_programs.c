@@ -156,6 +156,7 @@ static void commands_that_show(void **state) {
         {"generate", {"generate", "study.json", "-o", "map.csv", NULL}, "", NULL},
         {"characterise", {"characterise", "map.csv", NULL}, "", NULL},
         {"press", {"press", "map.csv", "--loads", "0.05", NULL}, "", NULL},
+        {"theory", {"theory", "study.json", NULL}, "", NULL},
         {"help", {"help", "run", NULL}, "", NULL},
     };
     for (size_t p = 0; p < sizeof programs / sizeof *programs; p++)

@@ -102,9 +102,9 @@ static void wrong_usage_and_input(void **state) {
 
 static void every_command_has_help(void **state) {
     (void)state;
-    static const char *const COMMANDS[] = {"run",    "check",    "submit",       "status", "curves",
-                                           "report", "snapshot", "cancel",       "retry",  "serve",
-                                           "work",   "generate", "characterise", "press",  "help"};
+    static const char *const COMMANDS[] = {
+        "run",   "check", "submit", "status",   "curves",       "report", "snapshot", "cancel",
+        "retry", "serve", "work",   "generate", "characterise", "press",  "theory",   "help"};
     for (size_t c = 0; c < sizeof COMMANDS / sizeof *COMMANDS; c++) {
         char line[120], usage[80];
         snprintf(line, sizeof line, "$RUGO %s --help && $RUGO help %s | cmp - shell.out",
@@ -328,11 +328,33 @@ static void a_measured_map_does_not_repeat(void **state) {
     assert_true(contains("shell.err", "warning: map0.csv: contact takes the map as periodic"));
 }
 
+/* What theory expects needs no study: alpha of the discrete sums (F2.6), a picture, and faults. */
+static void theory_needs_no_surface(void **state) {
+    (void)state;
+    assert_int_equal(shell("$RUGO theory --set surface/hurst=0.8 --set surface/wavelength_ratio=8"),
+                     0);
+    assert_true(contains("shell.out", "5.3368") && contains("shell.out", "summit_density"));
+    assert_int_equal(shell("$RUGO theory one.json --format json > theory.json && "
+                           "$RUGO theory one.json --format csv > theory.csv && "
+                           "$RUGO theory one.json --format svg > theory.svg && "
+                           "$RUGO theory one.json --out expected"),
+                     0);
+    assert_true(contains("theory.json", "\"series\":\"grid\""));
+    assert_true(contains("theory.csv", "nayak_alpha_by_hurst"));
+    assert_true(contains("theory.svg", "</svg>"));
+    assert_true(contains("expected/summit_mean_curvature.svg", "</svg>"));
+    assert_int_equal(shell("$RUGO theory --set surface/hurst=2 --set surface/wavelength_ratio=8"),
+                     2);
+    assert_true(contains("shell.err", "/surface/hurst"));
+    assert_int_equal(shell("$RUGO theory one.json --format svg --quantity none"), 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wrong_usage_and_input),
         cmocka_unit_test(every_command_has_help),
         cmocka_unit_test(help_tells_of_a_parameter),
+        cmocka_unit_test(theory_needs_no_surface),
         cmocka_unit_test(the_manual_page_is_sound),
         cmocka_unit_test(a_run_goes_on_where_it_was),
         cmocka_unit_test(a_finished_run_only_prints),

@@ -1,0 +1,149 @@
+/* Protects: what theory expects of a study's surfaces, against the project's own table of alpha and
+ * against the theories of a result of the same case. */
+#include "jobs/kind.h"
+#include "jobs/merger.h"
+#include "jobs/runner.h"
+#include "jobs/statistics/statistics_expectation.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const char SURFACE[] =
+    "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 8, \"points_per_wavelength\": 4}}";
+static const char PROFILE[] =
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 8}}";
+static const char WEIBULL[] =
+    "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2, \"heights\":"
+    " {\"distribution\": \"weibull_max\", \"shape\": 1}}}";
+static const char CONTACT[] = "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 8},"
+                              " \"contact\": {\"model\": \"halfspace\"}}";
+static const char REFINED[] =
+    "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 8}, \"statistics\": {\"summits\":"
+    " \"refined\"}}";
+
+static struct case_result expect(const char *text, bool joint) {
+    struct case_result out = {0};
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse(text);
+    assert_non_null(parameters);
+    if (statistics_expectation(parameters, joint, &out, &err) != 0)
+        fail_msg("%s", err.text);
+    cJSON_Delete(parameters);
+    return out;
+}
+
+static const struct scalar *scalar(const struct case_result *result, const char *name) {
+    const struct scalar *found = result_scalar(result, name);
+    assert_non_null(found);
+    return found;
+}
+
+static const struct curve *series(const struct case_result *result, const char *quantity,
+                                  const char *name) {
+    for (size_t a = 0; a < result->curve_count; a++)
+        if (strcmp(result->curves[a].quantity, quantity) == 0 &&
+            same_text(result->curves[a].series, name))
+            return &result->curves[a];
+    return NULL;
+}
+
+/* F2.6, to its digits. */
+static void alpha_is_that_of_the_table(void **state) {
+    (void)state;
+    struct case_result surface = expect(SURFACE, false), contact = expect(CONTACT, false);
+    check_close(scalar(&surface, "nayak_alpha")->value, 5.3368, 5e-5);
+    check_close(scalar(&surface, "nayak_alpha_continuous")->value, 5.2277, 5e-5);
+    check_close(scalar(&contact, "nayak_alpha")->value, 5.3368, 5e-5);
+    const struct curve *by_ratio = result_curve(&surface, "nayak_alpha_by_ratio");
+    check_close(by_ratio->x[0], 1, 1e-12);
+    check_close(by_ratio->y[0], 1.5, 1e-9);
+    check_close(by_ratio->y[40], 200.3832, 5e-5);
+    const struct curve *by_hurst = result_curve(&surface, "nayak_alpha_by_hurst");
+    check_close(by_hurst->x[16], 0.8, 1e-12);
+    check_close(by_hurst->y[16], 5.2277, 5e-5);
+    result_clear(&contact);
+    result_clear(&surface);
+}
+
+static void check_same(size_t n, const double *a, const double *b) {
+    for (size_t k = 0; k < n; k++)
+        assert_true(a[k] == b[k] || (isnan(a[k]) && isnan(b[k])));
+}
+
+/* The theories beside a result are the expectations, to the bit. */
+static void results_have_the_same_theories(void **state) {
+    (void)state;
+    static const char *const TEXTS[] = {SURFACE, PROFILE};
+    for (size_t t = 0; t < 2; t++) {
+        struct case_result expected = expect(TEXTS[t], false), result = {0};
+        struct error err = {0};
+        struct job_merger *merger = NULL;
+        cJSON *parameters = cJSON_Parse(TEXTS[t]);
+        assert_int_equal(merger_create(&merger, kind_find("statistics"), parameters, &err), 0);
+        assert_int_equal(merger_result(merger, &result, &err), 0);
+        size_t compared = 0;
+        for (size_t a = 0; a < result.curve_count; a++) {
+            const struct curve *curve = &result.curves[a];
+            for (size_t n = 0; n < curve->theory_count; n++) {
+                const struct theory *theory = &curve->theories[n];
+                const struct curve *other = series(&expected, curve->quantity, theory->name);
+                if (theory->y == NULL || other == NULL)
+                    continue;
+                check_same(curve->n, theory->y, other->y);
+                check_same(curve->n, curve->x, other->x);
+                compared++;
+            }
+        }
+        assert_true(compared >= 10);
+        const struct scalar *density = scalar(&result, "summit_density");
+        assert_true(density->theory == scalar(&expected, "summit_density")->value);
+        assert_true(density->grid == scalar(&expected, "summit_density")->grid);
+        cJSON_Delete(parameters);
+        merger_destroy(&merger);
+        result_clear(&result);
+        result_clear(&expected);
+    }
+}
+
+static void only_what_theory_tells(void **state) {
+    (void)state;
+    struct case_result weibull = expect(WEIBULL, false), refined = expect(REFINED, true);
+    assert_null(result_scalar(&weibull, "summit_density"));
+    assert_null(result_curve(&weibull, "summit_height_pdf"));
+    check_close(scalar(&weibull, "skewness")->value, -2, 1e-9);
+    assert_true(isnan(scalar(&weibull, "kurtosis")->grid));
+    assert_non_null(series(&weibull, "height_pdf", "weibull"));
+    assert_non_null(series(&refined, "summit_height_pdf", "nayak"));
+    assert_null(series(&refined, "summit_height_pdf", "grid"));
+    assert_true(isnan(scalar(&refined, "summit_density")->grid));
+    const struct curve *joint = series(&refined, "summit_joint_pdf", "nayak");
+    assert_non_null(joint);
+    assert_int_equal(joint->cell_count, joint->n * joint->columns);
+    double sum = 0, cell = (joint->x[1] - joint->x[0]) * (joint->x2[1] - joint->x2[0]);
+    for (size_t a = 0; a < joint->cell_count; a++)
+        sum += joint->y[a] * cell;
+    check_close(sum, 1, 1e-4);
+    result_clear(&refined);
+    result_clear(&weibull);
+}
+
+static void faults_are_told(void **state) {
+    (void)state;
+    struct case_result out = {0};
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse("{\"surface\": {\"hurst\": 3, \"wavelength_ratio\": 8}}");
+    assert_int_equal(statistics_expectation(parameters, false, &out, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "hurst"));
+    assert_true(out.curve_count == 0 && out.arena == NULL);
+    cJSON_Delete(parameters);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(alpha_is_that_of_the_table),
+        cmocka_unit_test(results_have_the_same_theories),
+        cmocka_unit_test(only_what_theory_tells),
+        cmocka_unit_test(faults_are_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
