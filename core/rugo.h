@@ -210,6 +210,43 @@ RUGO_API int rugo_summits_find(struct rugo_summits *out, const struct rugo_grid 
                                const double *z, enum rugo_summit_rule rule, struct rugo_error *err);
 RUGO_API void rugo_summits_clear(struct rugo_summits *summits);
 
+/* --- statistics of a map that does not repeat, or has holes --- */
+
+/* Here a map ends at its sides, NaN is a height that was not measured, and sums run over what is
+ * there; lx is nx times the spacing, as for maps that repeat. */
+
+enum rugo_trend { RUGO_MEAN, RUGO_PLANE, RUGO_QUADRATIC };
+/* Takes the trend of least squares out of z in place. INPUT where too few heights are there, z is
+ * as it was then. */
+RUGO_API int rugo_detrend(const struct rugo_grid *grid, double *z, enum rugo_trend trend,
+                          struct rugo_error *err);
+/* How rough the seam would be, did the map repeat, over the roughest place inside, the larger one
+ * of both axes: above 1 it does not repeat. Infinite where nothing can be compared. */
+RUGO_API int rugo_seam(const struct rugo_grid *grid, const double *z, double *seam,
+                       struct rugo_error *err);
+/* As rugo_roughness; NaN where the map does not tell. */
+RUGO_API int rugo_open_roughness(const struct rugo_grid *grid, const double *z,
+                                 struct rugo_roughness *out, struct rugo_error *err);
+/* As rugo_moments, by derivatives of polynomials through the points nearby. */
+RUGO_API int rugo_open_moments(const struct rugo_grid *grid, const double *z,
+                               struct rugo_moments *out, struct rugo_error *err);
+/* As rugo_psd, under Hann's window. */
+RUGO_API int rugo_open_psd(const struct rugo_grid *grid, const double *z, double *wave_number,
+                           double *density, struct rugo_error *err);
+/* As rugo_summits_find; *searched is the area (of a profile: the length) that they were found in.
+ */
+RUGO_API int rugo_open_summits_find(struct rugo_summits *out, double *searched,
+                                    const struct rugo_grid *grid, const double *z,
+                                    enum rugo_summit_rule rule, struct rugo_error *err);
+/* Areal parameters of ISO 25178-2, of a surface that repeats (open 0) or not (1), as
+ * core/theory/GLOSSARY.md has them; NaN where the map does not tell. INPUT for profiles, and for a
+ * map that repeats with holes. */
+struct rugo_areal {
+    double sa, sq, ssk, sku, sp, sv, sz, sdq, sdr, sal, str, spd, spc;
+};
+RUGO_API int rugo_areal(const struct rugo_grid *grid, const double *z, int open,
+                        struct rugo_areal *out, struct rugo_error *err);
+
 /* --- theory of Gaussian isotropic surfaces (Nayak 1971), alpha > 3/2 --- */
 
 /* These return the density of the summits' heights z, in units of sqrt(m0), and its integral from

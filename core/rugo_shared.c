@@ -45,3 +45,36 @@ void moments_give(const struct moments *from, struct rugo_moments *to) {
                                 .rms_slope = from->rms_slope,
                                 .rms_curvature = from->rms_curvature};
 }
+
+void roughness_give(const struct roughness *from, struct rugo_roughness *to) {
+    *to = (struct rugo_roughness){.mean = from->mean,
+                                  .rms_height = from->rms_height,
+                                  .rms_slope = from->rms_slope,
+                                  .rms_curvature = from->rms_curvature,
+                                  .skewness = from->skewness,
+                                  .kurtosis = from->kurtosis,
+                                  .lowest = from->lowest,
+                                  .highest = from->highest};
+}
+
+int stencil_take(enum summit_stencil *out, enum rugo_summit_rule rule, struct error *err) {
+    static const enum summit_stencil STENCILS[] = {[RUGO_NINE_POINT] = SUMMITS_NINE_POINT,
+                                                   [RUGO_FIVE_POINT] = SUMMITS_FIVE_POINT,
+                                                   [RUGO_REFINED] = SUMMITS_REFINED};
+    if ((unsigned)rule > RUGO_REFINED)
+        return error_set(err, ERROR_INPUT, "there is no rule %d for summits", (int)rule);
+    *out = STENCILS[rule];
+    return 0;
+}
+
+int summits_give(const struct summit_list *list, struct rugo_summits *out, struct error *err) {
+    struct rugo_summit *summits = array_create(list->count, sizeof *summits);
+    if (summits == NULL)
+        return error_memory(err, list->count * sizeof *summits, "summits");
+    for (size_t s = 0; s < list->count; s++) {
+        const struct summit *from = &list->summits[s];
+        summits[s] = (struct rugo_summit){from->x, from->y, from->height, from->curvature};
+    }
+    *out = (struct rugo_summits){summits, list->count};
+    return 0;
+}

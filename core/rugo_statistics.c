@@ -13,14 +13,7 @@ int rugo_roughness(const struct rugo_grid *grid, const double *z, struct rugo_ro
     if (status != 0)
         return error_give(status, &why, err);
     roughness_measure(&cell, z, &r);
-    *out = (struct rugo_roughness){.mean = r.mean,
-                                   .rms_height = r.rms_height,
-                                   .rms_slope = r.rms_slope,
-                                   .rms_curvature = r.rms_curvature,
-                                   .skewness = r.skewness,
-                                   .kurtosis = r.kurtosis,
-                                   .lowest = r.lowest,
-                                   .highest = r.highest};
+    roughness_give(&r, out);
     return 0;
 }
 
@@ -52,33 +45,18 @@ int rugo_psd(const struct rugo_grid *grid, const double *z, double *wave_number,
     return error_give(status, &why, err);
 }
 
-static int summits_give(const struct summit_list *list, struct rugo_summits *out,
-                        struct error *err) {
-    struct rugo_summit *summits = array_create(list->count, sizeof *summits);
-    if (summits == NULL)
-        return error_memory(err, list->count * sizeof *summits, "summits");
-    for (size_t s = 0; s < list->count; s++) {
-        const struct summit *from = &list->summits[s];
-        summits[s] = (struct rugo_summit){from->x, from->y, from->height, from->curvature};
-    }
-    *out = (struct rugo_summits){summits, list->count};
-    return 0;
-}
-
 int rugo_summits_find(struct rugo_summits *out, const struct rugo_grid *grid, const double *z,
                       enum rugo_summit_rule rule, struct rugo_error *err) {
-    static const enum summit_stencil STENCILS[] = {[RUGO_NINE_POINT] = SUMMITS_NINE_POINT,
-                                                   [RUGO_FIVE_POINT] = SUMMITS_FIVE_POINT,
-                                                   [RUGO_REFINED] = SUMMITS_REFINED};
     struct error why = {0};
     struct grid cell;
     struct summit_finder *finder = NULL;
     struct summit_list list = {0};
     int status = grid_take(&cell, grid, &why);
-    if (status == 0 && (unsigned)rule > RUGO_REFINED)
-        status = error_set(&why, ERROR_INPUT, "there is no rule %d for summits", (int)rule);
+    enum summit_stencil stencil = SUMMITS_NINE_POINT;
     if (status == 0)
-        status = summit_finder_create(&finder, &cell, STENCILS[rule], CURVATURE_FINITE_DIFFERENCE,
+        status = stencil_take(&stencil, rule, &why);
+    if (status == 0)
+        status = summit_finder_create(&finder, &cell, stencil, CURVATURE_FINITE_DIFFERENCE,
                                       cell.nx / 2, cell.ny / 2, &why);
     if (status == 0)
         status = summits_find(finder, z, &list, &why);
