@@ -1,9 +1,12 @@
-/* Non-Gaussian surfaces: what an iteration costs, and what relaxed reflections buy. CPU time, one
- * core.
+/* Non-Gaussian surfaces: what an iteration costs, and what surfaces each kind of iteration finds.
+ * CPU time, one core.
  *
  *   bench_nongaussian            N = 1024, C = 1 maximum (ratio 16, 8 points a shortest wave)
- *   bench_nongaussian long [n]   n (200) small surfaces: default against 1500 plain iterations, in
- * standard errors of the paired differences */
+ *   bench_nongaussian paths [n]  n (8) surfaces of 256 x 256 a case: Weibull minimum and maximum, H
+ *                                0.2 and 0.8, ratio 4 and 8, C = 1 and 2; in percent against 1500
+ *                                plain iterations, in pairs
+ *   bench_nongaussian drift [n]  n (16) surfaces: C = 1, H = 0.8, ratio 4, more iterations, against
+ *                                6000 plain ones */
 #include "core/statistics/summits.h"
 #include "core/surface/rank.h"
 #include "core/surface/surface.h"
@@ -29,9 +32,9 @@ static double median(double *values, size_t n) {
     return values[n / 2];
 }
 
-static struct spectrum self_affine(double ratio) {
+static struct spectrum self_affine(double hurst, double ratio) {
     return (struct spectrum){.type = SPECTRUM_SELF_AFFINE,
-                             .hurst = 0.8,
+                             .hurst = hurst,
                              .wavelength_long = ratio,
                              .wavelength_rolloff = ratio,
                              .wavelength_short = 1};
@@ -52,16 +55,17 @@ struct nongaussian_bench {
     struct surface_report report;
 };
 
-static int bench_create(struct nongaussian_bench *bench, double ratio, double points,
+/* Cells of `length` longest waves, 8 points a shortest wave. */
+static int bench_create(struct nongaussian_bench *bench, double hurst, double ratio, double length,
                         const struct surface_options *options, struct error *err) {
-    size_t n = (size_t)(8 * ratio * points);
-    struct spectrum spectrum = self_affine(ratio);
-    *bench = (struct nongaussian_bench){.grid = {n, n, 8 * ratio, 8 * ratio}};
+    size_t n = (size_t)(8 * ratio * length);
+    struct spectrum spectrum = self_affine(hurst, ratio);
+    *bench = (struct nongaussian_bench){.grid = {n, n, length * ratio, length * ratio}};
     bench->z = array_create(n * n, sizeof *bench->z);
-    int status = bench->z ? 0 : error_memory(err, n * n * sizeof *bench->z, "heights");
-    if (!status)
+    int status = bench->z != NULL ? 0 : error_memory(err, n * n * sizeof *bench->z, "heights");
+    if (status == 0)
         status = generator_create(&bench->generator, &spectrum, &bench->grid, options, err);
-    if (!status)
+    if (status == 0)
         status = summit_finder_create(&bench->finder, &bench->grid, SUMMITS_NINE_POINT,
                                       CURVATURE_FINITE_DIFFERENCE, n / 2, n / 2, err);
     return status;
@@ -80,9 +84,9 @@ static int bench_surface(struct nongaussian_bench *bench, uint64_t realisation, 
     double start = cpu_ms();
     int status = generator_run(bench->generator, key, bench->z, &bench->report, err);
     bench->ms = cpu_ms() - start;
-    if (!status)
+    if (status == 0)
         status = summits_find(bench->finder, bench->z, &bench->summits, err);
-    if (status)
+    if (status != 0)
         return status;
     double n = (double)bench->summits.count, sums[FIGURES] = {0};
     for (size_t s = 0; s < bench->summits.count; s++) {
@@ -98,18 +102,16 @@ static int bench_surface(struct nongaussian_bench *bench, uint64_t realisation, 
     return 0;
 }
 
-static struct surface_options maximum(void) {
+/* iterations: 0: as many as it takes by default; else so many. */
+static struct surface_options iterated(enum surface_iteration iteration, size_t iterations) {
     struct surface_options options = SURFACE_DEFAULTS;
     options.heights = (struct heights){.type = HEIGHTS_WEIBULL_MAX, .shape = 1};
-    return options;
-}
-
-static struct surface_options plain(size_t iterations) {
-    struct surface_options options = maximum();
-    options.iteration = ITERATION_PLAIN;
-    options.max_iterations = iterations;
-    options.tolerance = 0;
-    options.stall_iterations = iterations; /* never stuck before the limit */
+    options.iteration = iteration;
+    if (iterations > 0) {
+        options.max_iterations = iterations;
+        options.tolerance = 0;
+        options.stall_iterations = iterations; /* never stuck before the limit */
+    }
     return options;
 }
 
@@ -129,12 +131,12 @@ static int time_rank(struct error *err) {
         free(placed);
         return error_memory(err, 2 * n * sizeof *sorted, "heights");
     }
-    int status = bench_create(&bench, 16, 8, &options, err);
-    if (!status)
+    int status = bench_create(&bench, 0.8, 16, 8, &options, err);
+    if (status == 0)
         status = bench_surface(&bench, 0, figures, err);
-    if (!status)
+    if (status == 0)
         status = ranker_create(&ranker, n, err);
-    if (!status) {
+    if (status == 0) {
         memcpy(sorted, bench.z, n * sizeof *sorted);
         status = rank_sort(ranker, sorted, err);
     }
@@ -143,7 +145,7 @@ static int time_rank(struct error *err) {
         status = rank_place(ranker, bench.z, sorted, placed, err);
         times[r] = cpu_ms() - start;
     }
-    if (!status) {
+    if (status == 0) {
         size_t wrong = 0; /* the ranking of a surface's own heights gives the surface back */
         for (size_t i = 0; i < n; i++)
             wrong += placed[i] != bench.z[i];
@@ -161,7 +163,7 @@ static int time_variant(const char *name, const struct surface_options *options,
                         struct error *err) {
     struct nongaussian_bench bench;
     double figures[FIGURES] = {0}, times[REPEATS], counts = 0;
-    int status = bench_create(&bench, 16, 8, options, err);
+    int status = bench_create(&bench, 0.8, 16, 8, options, err);
     int repeats =
         options->max_iterations > 100 && options->iteration == ITERATION_PLAIN ? 1 : REPEATS;
     for (int r = 0; !status && r < repeats; r++) {
@@ -169,7 +171,7 @@ static int time_variant(const char *name, const struct surface_options *options,
         times[r] = bench.ms;
         counts += figures[COUNT] / repeats;
     }
-    if (!status) {
+    if (status == 0) {
         double ms = median(times, (size_t)repeats);
         const struct surface_report *report = &bench.report;
         printf("%-24s %4zu %9.1f %9.2f %9.0f   %.1e %.1e %.1e\n", name, report->iterations, ms,
@@ -180,90 +182,159 @@ static int time_variant(const char *name, const struct surface_options *options,
     return status;
 }
 
+struct variant {
+    const char *name;
+    enum surface_iteration iteration;
+    size_t iterations;
+};
+
 static int short_bench(struct error *err) {
-    struct surface_options relaxed = maximum(), twice = maximum(), stalled = maximum();
-    struct surface_options ten = plain(10), hundred = plain(120);
-    twice.relaxed_iterations *= 2;
-    stalled.iteration = ITERATION_PLAIN;
+    static const struct variant VARIANTS[] = {{"relaxed", ITERATION_RELAXED, 0},
+                                              {"reflections", ITERATION_REFLECTIONS, 0},
+                                              {"reflections, 63", ITERATION_REFLECTIONS, 63},
+                                              {"momentum", ITERATION_MOMENTUM, 0},
+                                              {"plain, 10", ITERATION_PLAIN, 10},
+                                              {"plain, 120", ITERATION_PLAIN, 120},
+                                              {"plain, stall rule", ITERATION_PLAIN, 0}};
     int status = time_rank(err);
     printf("%-24s %4s %9s %9s %9s   %s\n", "C = 1 maximum, N = 1024", "its", "ms", "ms/it",
            "summits", "eps_h eps_s eps_s0 (of the last surface)");
-    if (!status)
-        status = time_variant("relaxed (default)", &relaxed, err);
-    if (!status)
-        status = time_variant("relaxed, doubled", &twice, err);
-    if (!status)
-        status = time_variant("plain, 10", &ten, err);
-    if (!status)
-        status = time_variant("plain, 120", &hundred, err);
-    if (!status)
-        status = time_variant("plain, stall rule", &stalled, err);
+    for (size_t v = 0; status == 0 && v < sizeof VARIANTS / sizeof *VARIANTS; v++) {
+        struct surface_options options = iterated(VARIANTS[v].iteration, VARIANTS[v].iterations);
+        status = time_variant(VARIANTS[v].name, &options, err);
+    }
     return status;
 }
 
-/* --- the long bench --- */
+/* --- the long benches --- */
 
-static int compare(const char *name, const struct surface_options *options, const double *limit,
-                   size_t surfaces, struct error *err) {
+/* One kind of surfaces, and the figures of those that others are compared with. */
+struct path_case {
+    enum heights_type type;
+    double hurst, ratio, length, shape;
+    size_t surfaces;
+    double *limit; /* surfaces x FIGURES */
+};
+
+static struct surface_options case_options(const struct path_case *one_case,
+                                           const struct variant *variant) {
+    struct surface_options options = iterated(variant->iteration, variant->iterations);
+    options.heights = (struct heights){.type = one_case->type, .shape = one_case->shape};
+    return options;
+}
+
+/* Runs the surfaces of a variant into the limit, or prints what they differ from it. */
+static int path_run(struct path_case *one_case, const struct variant *variant, bool into_limit,
+                    struct error *err) {
     struct nongaussian_bench bench;
-    double sum[FIGURES] = {0}, square[FIGURES] = {0}, mean[FIGURES] = {0}, ms = 0;
-    int status = bench_create(&bench, 4, 8, options, err);
-    for (size_t r = 0; !status && r < surfaces; r++) {
-        double figures[FIGURES];
+    struct surface_options options = case_options(one_case, variant);
+    double sum[FIGURES] = {0}, square[FIGURES] = {0}, eps_h = 0, ms = 0, iterations = 0;
+    double n = (double)one_case->surfaces;
+    int status =
+        bench_create(&bench, one_case->hurst, one_case->ratio, one_case->length, &options, err);
+    for (size_t r = 0; status == 0 && r < one_case->surfaces; r++) {
+        double figures[FIGURES], *limit = one_case->limit + r * FIGURES;
         status = bench_surface(&bench, r, figures, err);
-        ms += bench.ms;
+        eps_h += bench.report.eps_h / n;
+        iterations += (double)bench.report.iterations / n;
+        ms += bench.ms / n;
         for (int f = 0; f < FIGURES; f++) {
-            double difference = figures[f] - limit[r * FIGURES + (size_t)f];
-            sum[f] += difference;
-            square[f] += difference * difference;
-            mean[f] += limit[r * FIGURES + (size_t)f];
+            double percent = 100 * (figures[f] / limit[f] - 1);
+            sum[f] += percent / n;
+            square[f] += percent * percent / n;
+            if (into_limit)
+                limit[f] = figures[f];
         }
     }
-    double n = (double)surfaces;
-    for (int f = 0; !status && f < FIGURES; f++) {
-        double difference = sum[f] / n;
-        double error = sqrt((square[f] / n - difference * difference) / (n - 1));
-        printf("%-20s %-20s %+8.3f %% +- %.3f %%   %+5.1f standard errors   %7.1f ms\n", name,
-               NAMES[f], 100 * difference / (mean[f] / n), 100 * error / (mean[f] / n),
-               difference / error, ms / n);
-    }
+    printf("%-16s %-16s %4g %4g %3g %5.0f %8.1f %8.4f", variant->name,
+           one_case->type == HEIGHTS_WEIBULL_MAX ? "maximum" : "minimum", one_case->hurst,
+           one_case->ratio, one_case->shape, iterations, ms, eps_h);
+    for (int f = 0; f < FIGURES && !into_limit; f++)
+        printf("  %+5.1f (%.1f)", sum[f], sqrt((square[f] - sum[f] * sum[f]) / (n - 1)));
+    printf("\n");
+    fflush(stdout);
     bench_destroy(&bench);
     return status;
 }
 
-static int long_bench(size_t surfaces, struct error *err) {
-    struct nongaussian_bench bench;
-    struct surface_options limit_options = plain(1500), relaxed = maximum(), twice = maximum();
-    struct surface_options stalled = maximum(), plain_400 = plain(400);
-    double *limit = array_create(surfaces * FIGURES, sizeof *limit);
-    if (!limit)
-        return error_memory(err, surfaces * FIGURES * sizeof *limit, "figures");
-    int status = bench_create(&bench, 4, 8, &limit_options, err);
-    for (size_t r = 0; !status && r < surfaces; r++)
-        status = bench_surface(&bench, r, limit + r * FIGURES, err);
-    twice.relaxed_iterations *= 4;
-    stalled.iteration = ITERATION_PLAIN;
-    printf("%zu surfaces of 256 x 256 (ratio 4), C = 1 maximum, against 1500 plain iterations\n",
-           surfaces);
-    if (!status)
-        status = compare("relaxed (default)", &relaxed, limit, surfaces, err);
-    if (!status)
-        status = compare("relaxed, 4 times", &twice, limit, surfaces, err);
-    if (!status)
-        status = compare("plain, stall rule", &stalled, limit, surfaces, err);
-    if (!status)
-        status = compare("plain, 400", &plain_400, limit, surfaces, err);
-    bench_destroy(&bench);
-    free(limit);
+static int path_case_run(struct path_case *one_case, size_t count, const struct variant *variants,
+                         struct error *err) {
+    one_case->limit = array_create(one_case->surfaces * FIGURES, sizeof *one_case->limit);
+    if (one_case->limit == NULL)
+        return error_memory(err, one_case->surfaces * FIGURES * sizeof(double), "figures");
+    int status = path_run(one_case, &variants[0], true, err);
+    for (size_t v = 1; status == 0 && v < count; v++)
+        status = path_run(one_case, &variants[v], false, err);
+    free(one_case->limit);
+    return status;
+}
+
+static void print_head(size_t surfaces) {
+    printf("%zu surfaces of 256 x 256 each, percent against the first row of a case (standard "
+           "error)\n%-16s %-16s %4s %4s %3s %5s %8s %8s",
+           surfaces, "path", "distribution", "H", "rat.", "C", "its", "ms", "eps_h");
+    for (int f = 0; f < FIGURES; f++)
+        printf("  %s", NAMES[f]);
+    printf("\n");
+}
+
+static int paths_bench(size_t surfaces, struct error *err) {
+    static const struct variant VARIANTS[] = {{"plain, 1500", ITERATION_PLAIN, 1500},
+                                              {"relaxed", ITERATION_RELAXED, 0},
+                                              {"reflections", ITERATION_REFLECTIONS, 0},
+                                              {"momentum", ITERATION_MOMENTUM, 0}};
+    int status = 0;
+    print_head(surfaces);
+    for (int c = 0; status == 0 && c < 16; c++) {
+        double ratio = c & 4 ? 8 : 4;
+        struct path_case one_case = {.type = c & 1 ? HEIGHTS_WEIBULL_MIN : HEIGHTS_WEIBULL_MAX,
+                                     .hurst = c & 2 ? 0.2 : 0.8,
+                                     .ratio = ratio,
+                                     .length = 32 / ratio,
+                                     .shape = c & 8 ? 2 : 1,
+                                     .surfaces = surfaces};
+        status = path_case_run(&one_case, sizeof VARIANTS / sizeof *VARIANTS, VARIANTS, err);
+    }
+    return status;
+}
+
+static int drift_bench(size_t surfaces, struct error *err) {
+    static const struct variant VARIANTS[] = {{"plain, 6000", ITERATION_PLAIN, 6000},
+                                              {"plain, 1500", ITERATION_PLAIN, 1500},
+                                              {"plain, stall", ITERATION_PLAIN, 0},
+                                              {"relaxed", ITERATION_RELAXED, 0},
+                                              {"reflections", ITERATION_REFLECTIONS, 0},
+                                              {"reflections, 140", ITERATION_REFLECTIONS, 140},
+                                              {"reflections, 500", ITERATION_REFLECTIONS, 500},
+                                              {"momentum", ITERATION_MOMENTUM, 0},
+                                              {"momentum, 140", ITERATION_MOMENTUM, 140},
+                                              {"momentum, 500", ITERATION_MOMENTUM, 500}};
+    int status = 0;
+    print_head(surfaces);
+    for (int c = 0; status == 0 && c < 2; c++) {
+        struct path_case one_case = {.type = c == 1 ? HEIGHTS_WEIBULL_MIN : HEIGHTS_WEIBULL_MAX,
+                                     .hurst = 0.8,
+                                     .ratio = 4,
+                                     .length = 8,
+                                     .shape = 1,
+                                     .surfaces = surfaces};
+        status = path_case_run(&one_case, sizeof VARIANTS / sizeof *VARIANTS, VARIANTS, err);
+    }
     return status;
 }
 
 int main(int argc, char **argv) {
     struct error err = {0};
-    bool is_long = argc > 1 && strcmp(argv[1], "long") == 0;
-    int status =
-        is_long ? long_bench(argc > 2 ? strtoul(argv[2], NULL, 10) : 200, &err) : short_bench(&err);
-    if (status)
+    const char *which = argc > 1 ? argv[1] : "";
+    size_t surfaces = argc > 2 ? strtoul(argv[2], NULL, 10) : 0;
+    int status;
+    if (strcmp(which, "paths") == 0)
+        status = paths_bench(surfaces > 1 ? surfaces : 8, &err);
+    else if (strcmp(which, "drift") == 0)
+        status = drift_bench(surfaces > 1 ? surfaces : 16, &err);
+    else
+        status = short_bench(&err);
+    if (status != 0)
         fprintf(stderr, "bench_nongaussian: %s\n", err.text);
-    return status ? 1 : 0;
+    return status != 0 ? 1 : 0;
 }
