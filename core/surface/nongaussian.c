@@ -313,6 +313,13 @@ static int iterate(struct nongaussian *g, struct transform *transform, double *z
     return status != 0 ? status : plain_phase(g, transform, z, plain, report, err);
 }
 
+void nongaussian_aim(struct nongaussian *g, const struct surface_aim *aim) {
+    g->options.iteration = aim->iteration;
+    g->options.tolerance = aim->tolerance;
+    g->options.stall_iterations = aim->stall_iterations;
+    g->options.max_iterations = aim->max_iterations;
+}
+
 int nongaussian_run(struct nongaussian *g, struct transform *transform, struct random_key key,
                     double *z, struct surface_report *report, struct error *err) {
     const struct surface_options *options = &g->options;

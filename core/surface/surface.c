@@ -216,6 +216,11 @@ static void drawn_measure(struct generator *g) {
         }
 }
 
+void generator_aim(struct generator *g, const struct surface_aim *aim) {
+    if (g->nongaussian != NULL)
+        nongaussian_aim(g->nongaussian, aim);
+}
+
 int generator_run(struct generator *g, struct random_key key, double *z,
                   struct surface_report *report, struct error *err) {
     spectrum_draw(g, key);

@@ -32,6 +32,9 @@ double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
 int generator_run(struct generator *generator, struct random_key key, double *z,
                   struct surface_report *report, struct error *err);
 
+/* Changes what the next runs work down to; nothing where heights are Gaussian. */
+void generator_aim(struct generator *generator, const struct surface_aim *aim);
+
 /* Samples the band-limited surface z on grid `from` exactly on grid `to` (same cell, any grid that
  * resolves the band mode_x, mode_y), by zero padding. */
 int surface_resample(const struct grid *from, const double *z, const struct grid *to, double *out,

@@ -37,6 +37,14 @@ struct surface_options {
 };
 extern const struct surface_options SURFACE_DEFAULTS; /* Gaussian, and the defaults above */
 
+/* What the next runs of a generator work down to, in place of what its options say: iteration is
+ * ITERATION_REFLECTIONS or ITERATION_MOMENTUM, as that of the options must be. */
+struct surface_aim {
+    enum surface_iteration iteration;
+    double tolerance;
+    size_t stall_iterations, max_iterations; /* at least 1 each */
+};
+
 /* END_DIRECT: Gaussian. END_CONVERGED: all errors are within the tolerance. END_LIMIT: the schedule
  * of ITERATION_RELAXED, or max_iterations, ended it; the errors say how near it came. */
 enum surface_end { END_DIRECT, END_CONVERGED, END_STALLED, END_LIMIT };

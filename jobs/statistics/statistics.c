@@ -1,6 +1,7 @@
 /* The kind "statistics": summit statistics, spectra and roughness of random surfaces. */
 #include "core/statistics/surface_pass.h"
 #include "jobs/statistics/statistics_curves.h"
+#include "jobs/statistics/statistics_generation.h"
 #include "jobs/statistics/statistics_grid_theory.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
@@ -33,7 +34,8 @@ struct statistics_workspace {
     struct roughness constants;             /* of all surfaces, where the spectrum is exact */
     struct summit_finder *finder;
     struct spectra spectra;
-    struct summit_list summits[SIDES]; /* of a symmetric case the first has all of them */
+    struct statistics_generation *generation; /* NULL for Gaussian heights */
+    struct summit_list summits[SIDES];        /* of a symmetric case the first has all of them */
 };
 
 static int workspace_create(void *workspace, const void *one_case,
@@ -52,11 +54,17 @@ static int workspace_create(void *workspace, const void *one_case,
     int status = summit_finder_create(&work->finder, grid, statistics->stencil,
                                       statistics->curvature, limited ? modes->mode_x : grid->nx / 2,
                                       limited ? modes->mode_y : grid->ny / 2, err);
-    return status != 0 ? status : spectra_create(&work->spectra, statistics, modes, err);
+    if (status == 0)
+        status = spectra_create(&work->spectra, statistics, modes, err);
+    if (status != 0)
+        return status;
+    return statistics_generation_create(&work->generation, statistics, &work->moments, work->finder,
+                                        err);
 }
 
 static void workspace_clear(void *workspace) {
     struct statistics_workspace *work = workspace;
+    statistics_generation_destroy(&work->generation);
     summit_finder_destroy(&work->finder);
     spectra_clear(&work->spectra);
     for (size_t side = 0; side < SIDES; side++)
@@ -118,7 +126,7 @@ static int realise(void *workspace, const struct realisation *realisation, void 
                                                   .summits = work->summits,
                                                   .report = &realisation->report};
     statistics_scalars_measure(work->one_case, &work->moments, &measures, scalars);
-    return 0;
+    return statistics_generation_measure(work->generation, realisation->key, scalars, err);
 }
 
 /* --- the tally --- */
@@ -173,6 +181,8 @@ static int result(const void *one_case, const struct surface_basis *basis, const
         status = statistics_curves(one_case, basis->modes, &basis->moments, tally, out, err);
     if (status == 0)
         status = statistics_grid_theory(one_case, basis, out, err);
+    if (status == 0)
+        status = statistics_generation_errors(one_case, realisations, out, err);
     /* All are of a surface sampled on a grid, and what that changes is not known. */
     for (size_t a = 0; a < out->curve_count && status == 0; a++)
         out->curves[a].errors[ERROR_DISCRETISATION].applies = true;
@@ -213,7 +223,7 @@ const struct job_kind STATISTICS_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x5354, /* "ST" */
-    .format_version = 2,
+    .format_version = 3,
     .put = put,
     .get = get,
     .adds_up = adds_up,

@@ -3,6 +3,7 @@
 #include "core/surface/spectrum_estimate.h"
 #include "jobs/publishing_cost.h"
 #include "jobs/statistics/statistics_case.h"
+#include "jobs/statistics/statistics_generation.h"
 #include "jobs/statistics/statistics_tally.h"
 #include <math.h>
 
@@ -13,7 +14,8 @@ static double expected_seconds(const struct statistics_case *one_case) {
     nanoseconds += 2 * cost_summits(one_case->stencil, one_case->curvature); /* and pits */
     if (!surface_case_exact(&one_case->surface))
         nanoseconds += cost_spectra();
-    return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points);
+    return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points) +
+           statistics_generation_seconds(one_case);
 }
 
 /* The theories of a bin of summit heights take so many CPU seconds, as in publishing_cost.h. */
@@ -54,6 +56,7 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
     /* a list of summits doubles as it grows; spectra of height maps take a transform of the grid */
     out->memory_bytes =
         generator_bytes(grid, mode_x, mode_y, &surface->options) +
+        statistics_generation_bytes(one_case) +
         (limited ? summit_finder_bytes(grid, one_case->stencil, one_case->curvature, mode_x, mode_y)
                  : summit_finder_bytes(grid, one_case->stencil, one_case->curvature, grid->nx / 2,
                                        grid->ny / 2)) +

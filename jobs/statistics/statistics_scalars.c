@@ -41,7 +41,12 @@ static const char *const NAMES[SCALAR_COUNT] = {
     [SCALAR_EPS_S0] = "eps_s0",
     [SCALAR_EPS_S_AMPLITUDE] = "eps_s_amplitude",
     [SCALAR_EPS_S0_AMPLITUDE] = "eps_s0_amplitude",
-};
+#define OTHER_NAME(scalar, name) [SCALAR_OTHER_##scalar] = "other_" name,
+#define LONGER_NAME(scalar, name) [SCALAR_LONGER_##scalar] = "longer_" name,
+    GENERATION_SCALARS(OTHER_NAME) GENERATION_SCALARS(LONGER_NAME)};
+
+#define OWN_SCALAR(scalar, name) SCALAR_##scalar,
+const unsigned char GENERATION_OWN[GENERATION_COUNT] = {GENERATION_SCALARS(OWN_SCALAR)};
 
 const char *statistics_scalar_name(size_t at) {
     return at < SCALAR_COUNT ? NAMES[at] : NULL;
@@ -110,6 +115,8 @@ void statistics_scalars_measure(const struct statistics_case *one_case,
     out[SCALAR_EPS_S0] = iterated ? report->eps_s0 : NAN;
     out[SCALAR_EPS_S_AMPLITUDE] = iterated ? report->eps_s_amplitude : NAN;
     out[SCALAR_EPS_S0_AMPLITUDE] = iterated ? report->eps_s0_amplitude : NAN;
+    for (size_t a = SCALAR_OWN; a < SCALAR_COUNT; a++)
+        out[a] = NAN;
 }
 
 void statistics_constants(const struct modes *modes, const struct moments *moments,
@@ -288,7 +295,7 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
     theory_of_scalars(one_case, &basis->moments, theory);
     constants_of_scalars(one_case, basis, constants);
     int status = 0;
-    for (enum statistics_scalar a = 0; a < SCALAR_COUNT && status == 0; a++) {
+    for (enum statistics_scalar a = 0; a < SCALAR_OWN && status == 0; a++) {
         struct estimate estimate = {constants[a], 0};
         if (isnan(constants[a]))
             estimate = chance_estimate(columns, a);

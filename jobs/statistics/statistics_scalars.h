@@ -8,6 +8,28 @@
 #include "jobs/statistics/statistics_tally.h"
 #include "schema/result/result.h"
 
+/* Scalars that are measured again on some realisations, of a surface that another iteration found
+ * ("other_...") and of one that was iterated for longer ("longer_..."); NaN on all others
+ * (statistics_generation.h): ENTRY(scalar, name). */
+#define GENERATION_SCALARS(ENTRY)                                                                  \
+    ENTRY(SKEWNESS, "skewness")                                                                    \
+    ENTRY(KURTOSIS, "kurtosis")                                                                    \
+    ENTRY(LOWEST, "lowest")                                                                        \
+    ENTRY(HIGHEST, "highest")                                                                      \
+    ENTRY(SUMMITS, "summits")                                                                      \
+    ENTRY(SUMMIT_HEIGHT_MEAN, "summit_height_mean")                                                \
+    ENTRY(SUMMIT_HEIGHT_VARIANCE, "summit_height_variance")                                        \
+    ENTRY(SUMMIT_CURVATURE_MEAN, "summit_curvature_mean")                                          \
+    ENTRY(PITS, "pits")                                                                            \
+    ENTRY(PIT_HEIGHT_MEAN, "pit_height_mean")                                                      \
+    ENTRY(PIT_HEIGHT_VARIANCE, "pit_height_variance")                                              \
+    ENTRY(PIT_CURVATURE_MEAN, "pit_curvature_mean")                                                \
+    ENTRY(EPS_H, "eps_h")
+#define GENERATION_NUMBER(scalar, name) GENERATION_##scalar,
+enum { GENERATION_SCALARS(GENERATION_NUMBER) GENERATION_COUNT };
+#define GENERATION_OTHER(scalar, name) SCALAR_OTHER_##scalar,
+#define GENERATION_LONGER(scalar, name) SCALAR_LONGER_##scalar,
+
 /* Lengths in lambda_s. Finite-difference values say so; m0 to nayak_alpha are spectral. */
 enum statistics_scalar {
     SCALAR_RMS_HEIGHT, /* the three by finite differences (2.35) */
@@ -43,9 +65,14 @@ enum statistics_scalar {
     SCALAR_EPS_S0,
     SCALAR_EPS_S_AMPLITUDE,
     SCALAR_EPS_S0_AMPLITUDE,
-    SCALAR_COUNT
+    SCALAR_OWN, /* so many are of the surface itself */
+    SCALAR_BEFORE_OTHER = SCALAR_OWN - 1,
+    GENERATION_SCALARS(GENERATION_OTHER) GENERATION_SCALARS(GENERATION_LONGER) SCALAR_COUNT
 };
+enum { SCALAR_OTHER = SCALAR_OWN, SCALAR_LONGER = SCALAR_OTHER + GENERATION_COUNT };
 const char *statistics_scalar_name(size_t at); /* NULL behind the last */
+/* The own scalar of each of GENERATION_SCALARS. */
+extern const unsigned char GENERATION_OWN[GENERATION_COUNT];
 
 /* What is known of one realisation. */
 struct realisation_measures {
@@ -54,7 +81,8 @@ struct realisation_measures {
     const struct summit_list *summits; /* of each side (statistics_tally.h) */
     const struct surface_report *report;
 };
-/* moments: of the prescribed spectrum, which sets the scale. NaN: none. */
+/* Fills all that are of the surface itself, the others with NaN. moments: of the prescribed
+ * spectrum, which sets the scale. NaN: none. */
 void statistics_scalars_measure(const struct statistics_case *one_case,
                                 const struct moments *moments,
                                 const struct realisation_measures *measures,

@@ -17,6 +17,7 @@ const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES] = {
                      .bound_key = "model_bound",
                      .standard_error_key = "model_error_standard_error"},
     [ERROR_SOLVER] = {SOURCE_KEYS("solver")},
+    [ERROR_GENERATION] = {SOURCE_KEYS("generation")},
     [ERROR_MISSING] = {SOURCE_KEYS("missing")},
 };
 

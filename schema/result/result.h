@@ -23,7 +23,8 @@ enum error_source {
     ERROR_BLOCK,          /* this block less an infinitely high one */
     ERROR_MODEL,          /* this model less the most complete one */
     ERROR_SOLVER,         /* an answer to a tolerance less the exact one */
-    ERROR_MISSING,        /* a mean over the realisations that have a value less one over all */
+    ERROR_GENERATION, /* surfaces of these heights found in this way less those found in others */
+    ERROR_MISSING,    /* a mean over the realisations that have a value less one over all */
     ERROR_SOURCES
 };
 struct error_source_row {

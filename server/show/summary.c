@@ -13,14 +13,29 @@ static double expected(const struct scalar *scalar, enum comparison with) {
     return scalar == NULL ? (double)NAN : with == WITH_GRID ? scalar->grid : scalar->theory;
 }
 
-/* Returns whether some case has this scalar, with what stands beside it. */
+/* Returns whether some case has a value of this scalar, with what stands beside it. */
 static bool has_scalar(const struct shown_cases *shown, const char *name, enum comparison with) {
     for (size_t c = 0; c < shown->count; c++) {
         const struct scalar *scalar = result_scalar(shown->list[c], name);
-        if (scalar != NULL && (with == ALONE || isfinite(expected(scalar, with))))
+        if (scalar != NULL && !isnan(scalar->value) &&
+            (with == ALONE || isfinite(expected(scalar, with))))
             return true;
     }
     return false;
+}
+
+/* The largest error of a source, over its scalar, of those that are shown; NaN where none has one.
+ */
+static double largest_error(const struct case_result *one, size_t count, const char *const *names,
+                            enum error_source source) {
+    double largest = NAN;
+    for (size_t s = 0; s < count; s++) {
+        const struct scalar *scalar = result_scalar(one, names[s]);
+        const struct scalar_error *error = scalar != NULL ? &scalar->errors[source] : NULL;
+        if (error != NULL && error->applies && error->known)
+            largest = fmax(largest, (fabs(error->value) + error->bound) / fabs(scalar->value));
+    }
+    return largest;
 }
 
 /* The view's headlines; where these cases have none, all scalars with a theory. */
@@ -65,6 +80,7 @@ struct scalar_table {
     size_t scalar_count;
     const char *scalars[COLUMNS_MOST];
     bool compared[COLUMNS_MOST][WITH_GRID + 1]; /* with what beside it */
+    bool sources[ERROR_SOURCES];                /* of which errors of these are known */
     bool uneven;                                /* not all cases have as many realisations */
 };
 
@@ -79,6 +95,8 @@ static size_t column_count(const struct scalar_table *plan) {
     size_t columns = 1 + plan->shown->varied_count + plan->uneven + (plan->report != NULL);
     for (size_t s = 0; s < plan->scalar_count; s++)
         columns += 1 + 2u * plan->compared[s][WITH_THEORY] + 2u * plan->compared[s][WITH_GRID];
+    for (enum error_source e = 0; e < ERROR_SOURCES; e++)
+        columns += plan->sources[e];
     return columns;
 }
 
@@ -97,6 +115,9 @@ static void put_heading(const struct scalar_table *plan, struct text_table *tabl
                 table_cell(table, "ratio");
             }
     }
+    for (enum error_source e = 0; e < ERROR_SOURCES; e++)
+        if (plan->sources[e])
+            table_cell(table, "%s %%", ERROR_SOURCE_ROWS[e].name);
     if (plan->report != NULL) {
         table_fold(table);
         table_cell(table, "CPU time");
@@ -111,10 +132,20 @@ static void put_row(const struct scalar_table *plan, size_t c, struct text_table
         table_number(table, (double)one->realisations);
     for (size_t s = 0; s < plan->scalar_count; s++)
         scalar_cells(table, result_scalar(one, plan->scalars[s]), plan->compared[s]);
+    for (enum error_source e = 0; e < ERROR_SOURCES; e++)
+        if (plan->sources[e])
+            percent_cell(table, largest_error(one, plan->scalar_count, plan->scalars, e));
     if (plan->report != NULL) {
         const struct case_report *cost = report_of(plan->report, one);
         duration_cell(table, cost != NULL ? cost->time.cpu_seconds : (double)NAN);
     }
+}
+
+static void find_sources(struct scalar_table *plan) {
+    for (enum error_source e = 0; e < ERROR_SOURCES; e++)
+        for (size_t c = 0; c < plan->shown->count && !plan->sources[e]; c++)
+            plan->sources[e] =
+                !isnan(largest_error(plan->shown->list[c], plan->scalar_count, plan->scalars, e));
 }
 
 static void print_scalars(const struct scalar_table *plan, FILE *file) {
@@ -167,6 +198,7 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
         for (size_t s = 0; s < plan.scalar_count; s++)
             for (enum comparison with = WITH_THEORY; with <= WITH_GRID; with++)
                 plan.compared[s][with] = has_scalar(&shown, plan.scalars[s], with);
+        find_sources(&plan);
         print_scalars(&plan, file);
         for (size_t c = 0; c < shown.count && c < TARGETS_SHOWN; c++)
             summary_of_target(shown.list[c], file);

@@ -65,10 +65,11 @@ static void every_curve_has_a_file(void **state) {
     check_text(FILES[0], "case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
                          "standard_error,discretisation_error,discretisation_bound,cell_error,"
                          "cell_bound,block_error,block_bound,model_error,model_bound,"
-                         "solver_error,solver_bound,missing_error,missing_bound,valueless,"
+                         "solver_error,solver_bound,generation_error,generation_bound,"
+                         "missing_error,missing_bound,valueless,"
                          "theory_line\n"
-                         "1,contact_area,edges,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,0.25\n"
-                         "1,contact_area,edges,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,0.5\n");
+                         "1,contact_area,edges,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
+                         "1,contact_area,edges,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n");
     char *text = slurp("out/curves.json");
     struct study_result read = {0};
     cJSON *document = NULL;

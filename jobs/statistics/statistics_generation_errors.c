@@ -1,0 +1,223 @@
+/* From pairs of surfaces to the errors of scalars and curves. */
+#include "jobs/statistics/statistics_generation.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A change that was seen while eps_h fell is taken to go on with its logarithm until half of it,
+ * but by no more than this. */
+static const double FACTOR_MOST = 4;
+
+/* Bound and chance of a change; NaN: not known. */
+struct change {
+    double bound, standard_error;
+};
+
+/* Of the own scalars that are measured again; else NaN. */
+struct changes {
+    struct change of[SCALAR_OWN];
+};
+
+/* --- pairs of surfaces --- */
+
+/* The mean of what scalar `from` is more than scalar `own`, over the pairs. */
+static struct estimate pair_difference(const struct realisations *realisations, size_t own,
+                                       size_t from, double *scratch) {
+    size_t n = (size_t)realisations->count;
+    realisations_column(realisations, from, scratch);
+    realisations_column(realisations, own, scratch + n);
+    for (size_t r = 0; r < n; r++)
+        scratch[r] -= scratch[n + r];
+    return estimate_mean(n, scratch);
+}
+
+/* How many times the change that iterations left is that to half of eps_h. */
+static double drift_factor(const struct realisations *realisations, double *scratch) {
+    size_t n = (size_t)realisations->count;
+    realisations_column(realisations, SCALAR_LONGER_EPS_H, scratch);
+    realisations_column(realisations, SCALAR_EPS_H, scratch + n);
+    for (size_t r = 0; r < n; r++)
+        scratch[r] = log2(scratch[n + r] / scratch[r]);
+    double halvings = estimate_mean(n, scratch).value;
+    return halvings > 1 / FACTOR_MOST ? 1 / halvings : FACTOR_MOST;
+}
+
+static int changes_measure(const struct realisations *realisations, struct changes *out,
+                           struct error *err) {
+    size_t n = (size_t)realisations->count;
+    double *scratch = array_create(2 * n, sizeof *scratch);
+    if (scratch == NULL)
+        return error_memory(err, 2 * n * sizeof *scratch, "scalars");
+    double factor = drift_factor(realisations, scratch);
+    for (size_t a = 0; a < SCALAR_OWN; a++)
+        out->of[a] = (struct change){NAN, NAN};
+    for (size_t a = 0; a < GENERATION_COUNT; a++) {
+        size_t own = GENERATION_OWN[a];
+        struct estimate other = pair_difference(realisations, own, SCALAR_OTHER + a, scratch);
+        struct estimate longer = pair_difference(realisations, own, SCALAR_LONGER + a, scratch);
+        out->of[own] = (struct change){fabs(other.value) + factor * fabs(longer.value),
+                                       hypot(other.standard_error, factor * longer.standard_error)};
+    }
+    free(scratch);
+    return 0;
+}
+
+/* --- scalars --- */
+
+static void scalar_put(struct case_result *out, size_t at, struct change change, double scale) {
+    struct scalar *scalar = NULL;
+    for (size_t a = 0; a < out->scalar_count; a++)
+        if (strcmp(out->scalars[a].name, statistics_scalar_name(at)) == 0)
+            scalar = &out->scalars[a];
+    if (scalar == NULL || isnan(scalar->value))
+        return;
+    scalar->errors[ERROR_GENERATION] =
+        (struct scalar_error){.applies = true,
+                              .known = !isnan(change.standard_error),
+                              .bound = change.bound * scale,
+                              .standard_error = change.standard_error * scale};
+}
+
+static double scalar_value(const struct case_result *result, size_t at) {
+    const struct scalar *scalar = result_scalar(result, statistics_scalar_name(at));
+    return scalar != NULL ? scalar->value : (double)NAN;
+}
+
+/* Densities follow the numbers of summits and pits. What the spectrum sets has no such error where
+ * it is exact. */
+static void scalars_put(const struct statistics_case *one_case, const struct changes *changes,
+                        struct case_result *out) {
+    static const size_t NUMBERS[] = {SCALAR_SUMMITS, SCALAR_PITS};
+    for (size_t a = 0; a < GENERATION_COUNT; a++)
+        if (GENERATION_OWN[a] != SCALAR_EPS_H)
+            scalar_put(out, GENERATION_OWN[a], changes->of[GENERATION_OWN[a]], 1);
+    for (size_t side = 0; side < SIDES; side++)
+        for (size_t density = 1; density <= 2; density++)
+            scalar_put(out, NUMBERS[side] + density, changes->of[NUMBERS[side]],
+                       scalar_value(out, NUMBERS[side] + density) /
+                           scalar_value(out, NUMBERS[side]));
+    for (size_t a = SCALAR_RMS_HEIGHT; a <= SCALAR_NAYAK_ALPHA_DIFFERENCE; a++)
+        if (!surface_case_band_limited(&one_case->surface) && isnan(changes->of[a].bound))
+            scalar_put(out, a, changes->of[a], 1);
+}
+
+/* --- curves --- */
+
+/* What the summits or pits of a curve change: relative to the deviation of their heights and to
+ * their mean curvature, but for the mean height. */
+struct side_changes {
+    double mean;
+    struct change shift, stretch, curvature;
+};
+
+static struct change relative(struct change change, double value) {
+    return (struct change){change.bound / fabs(value), change.standard_error / fabs(value)};
+}
+
+static struct side_changes side_changes(const struct changes *changes,
+                                        const struct case_result *result, bool pits) {
+    size_t first = pits ? SCALAR_PIT_HEIGHT_MEAN : SCALAR_SUMMIT_HEIGHT_MEAN;
+    return (struct side_changes){
+        .mean = scalar_value(result, first),
+        .shift = changes->of[first],
+        .stretch = relative(changes->of[first + 1], 2 * scalar_value(result, first + 1)),
+        .curvature = relative(changes->of[first + 2], scalar_value(result, first + 2))};
+}
+
+/* The derivative by x of f(x) = (x - origin)^power y. */
+static double slope(const struct curve *curve, size_t k, double origin, int power) {
+    size_t left = k > 0 ? k - 1 : k, right = k + 1 < curve->n ? k + 1 : k;
+    double below = curve->y[left], above = curve->y[right];
+    if (power == 1) {
+        below *= curve->x[left] - origin;
+        above *= curve->x[right] - origin;
+    }
+    return right > left ? (above - below) / (curve->x[right] - curve->x[left]) : 0;
+}
+
+/* What point k of a curve changes with a shift of its heights and with a stretch: of heights about
+ * their mean, of curvatures about 0. */
+struct sensitivity {
+    double shift, stretch, curvature;
+};
+
+static bool sensitivity_of(const struct curve *curve, double mean, size_t k,
+                           struct sensitivity *out) {
+    *out = (struct sensitivity){0};
+    if (strcmp(curve->quantity, "summit_height_pdf") == 0) {
+        out->shift = fabs(slope(curve, k, 0, 0));
+        out->stretch = fabs(slope(curve, k, mean, 1));
+    } else if (strcmp(curve->quantity, "summit_height_cdf") == 0) {
+        out->shift = fabs(slope(curve, k, 0, 0));
+        out->stretch = fabs(curve->x[k] - mean) * out->shift;
+    } else if (strcmp(curve->quantity, "summit_curvature_pdf") == 0) {
+        out->curvature = fabs(slope(curve, k, 0, 1));
+    } else if (strcmp(curve->quantity, "summit_mean_curvature") == 0) {
+        out->curvature = fabs(curve->y[k]);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+static void side_curve_put(const struct curve *curve, const struct side_changes *side,
+                           double *bound, double *standard_error) {
+    struct sensitivity at;
+    for (size_t k = 0; k < curve->n && sensitivity_of(curve, side->mean, k, &at); k++) {
+        bound[k] = at.shift * side->shift.bound + at.stretch * side->stretch.bound +
+                   at.curvature * side->curvature.bound;
+        standard_error[k] = hypot(
+            hypot(at.shift * side->shift.standard_error, at.stretch * side->stretch.standard_error),
+            at.curvature * side->curvature.standard_error);
+    }
+}
+
+/* Heights of all points are to be those prescribed: what they are not is known. */
+static void height_curve_put(const struct curve *curve, double *bound, double *standard_error) {
+    for (size_t k = 0; k < curve->n; k++) {
+        bound[k] = fabs(curve->y[k] - curve->theories[0].y[k]);
+        standard_error[k] = curve->standard_error[k];
+    }
+}
+
+static int curve_put(const struct statistics_case *one_case, const struct changes *changes,
+                     struct case_result *out, struct curve *curve, struct error *err) {
+    struct curve_error *error = &curve->errors[ERROR_GENERATION];
+    struct sensitivity unused;
+    bool heights = strncmp(curve->quantity, "height_", 7) == 0;
+    bool sided = curve->n > 0 && sensitivity_of(curve, 0, 0, &unused);
+    bool spectrum = strcmp(curve->quantity, "psd") == 0 || strcmp(curve->quantity, "acf") == 0;
+    error->applies = !spectrum || !surface_case_band_limited(&one_case->surface);
+    if ((!heights && !sided) || (heights && curve->theory_count == 0) ||
+        (sided && isnan(changes->of[SCALAR_SUMMIT_HEIGHT_MEAN].standard_error)))
+        return 0;
+    double *value = result_numbers(out, 3 * curve->n);
+    if (value == NULL)
+        return error_memory(err, 3 * curve->n * sizeof *value, "errors of a curve");
+    bool pits = curve->series != NULL && strcmp(curve->series, "pits") == 0;
+    const struct side_changes side = side_changes(changes, out, pits);
+    memset(value, 0, curve->n * sizeof *value);
+    if (heights)
+        height_curve_put(curve, value + curve->n, value + 2 * curve->n);
+    else
+        side_curve_put(curve, &side, value + curve->n, value + 2 * curve->n);
+    error->value = value;
+    error->bound = value + curve->n;
+    error->standard_error = value + 2 * curve->n;
+    return 0;
+}
+
+int statistics_generation_errors(const struct statistics_case *one_case,
+                                 const struct realisations *realisations, struct case_result *out,
+                                 struct error *err) {
+    struct changes changes;
+    if (!statistics_generation_applies(one_case))
+        return 0;
+    int status = changes_measure(realisations, &changes, err);
+    if (status != 0)
+        return status;
+    scalars_put(one_case, &changes, out);
+    for (size_t a = 0; a < out->curve_count && status == 0; a++)
+        status = curve_put(one_case, &changes, out, &out->curves[a], err);
+    return status;
+}
