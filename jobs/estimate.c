@@ -93,3 +93,42 @@ struct pair_estimate estimate_pairs(size_t n, const struct estimate_column *minu
     out.standard_error = out.deviation / sqrt(m);
     return out;
 }
+
+/* Of n groups; the mean number of things is over those that have any in either case. */
+static struct column_mean ratio_of(size_t n, size_t used, const struct estimate_groups *groups) {
+    struct sum counted = {0, 0}, things = {0, 0};
+    for (size_t g = 0; g < n; g++) {
+        sum_add(&counted, groups->counted[g]);
+        sum_add(&things, groups->things[g]);
+    }
+    double total = sum_value(&things);
+    return (struct column_mean){sum_value(&counted) / total, total / (double)used};
+}
+
+static double residual_of(const struct estimate_groups *groups, const struct column_mean *ratio,
+                          size_t g) {
+    return (groups->counted[g] - ratio->mean * groups->things[g]) / ratio->weight;
+}
+
+struct pair_estimate estimate_group_pairs(size_t n, const struct estimate_groups *minuend,
+                                          const struct estimate_groups *subtrahend) {
+    struct pair_estimate out = {NAN, NAN, NAN, 0};
+    struct sum squares = {0, 0};
+    for (size_t g = 0; g < n; g++)
+        out.pairs += minuend->things[g] > 0 || subtrahend->things[g] > 0;
+    if (out.pairs == 0)
+        return out;
+    struct column_mean a = ratio_of(n, out.pairs, minuend);
+    struct column_mean b = ratio_of(n, out.pairs, subtrahend);
+    double m = (double)out.pairs;
+    out.value = a.mean - b.mean;
+    for (size_t g = 0; g < n && out.pairs > 1; g++) {
+        double d = residual_of(minuend, &a, g) - residual_of(subtrahend, &b, g);
+        sum_add(&squares, d * d);
+    }
+    if (out.pairs > 1) {
+        out.deviation = sqrt(sum_value(&squares) / (m - 1));
+        out.standard_error = out.deviation / sqrt(m);
+    }
+    return out;
+}

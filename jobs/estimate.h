@@ -29,4 +29,14 @@ struct pair_estimate {
 struct pair_estimate estimate_pairs(size_t n, const struct estimate_column *minuend,
                                     const struct estimate_column *subtrahend);
 
+/* The sums of a ratio by groups of realisations: of each what is counted and of how many things. */
+struct estimate_groups {
+    const double *counted, *things;
+};
+/* The ratio of one case less that of the other over groups that are pairs, with the error of the
+ * differences of the groups (Wolter 2007, chapter 2); groups without things in either are left out.
+ */
+struct pair_estimate estimate_group_pairs(size_t n, const struct estimate_groups *minuend,
+                                          const struct estimate_groups *subtrahend);
+
 #endif

@@ -27,6 +27,14 @@ struct point_values {
     size_t stride;
 };
 
+/* Of a point of a curve that is a ratio: its sums by groups of realisations, realisation r in group
+ * r mod POINT_GROUPS. */
+enum { POINT_GROUPS = 32 };
+struct point_groups {
+    double counted[POINT_GROUPS], things[POINT_GROUPS];
+    size_t telling; /* groups that show a scatter: with something counted, of shares not all */
+};
+
 struct job_merger;   /* merger.h */
 struct realisations; /* realisations.h */
 struct result_view;  /* schema/result/view.h */
@@ -124,6 +132,10 @@ struct job_kind {
      * NULL: of no curve. */
     bool (*point_values)(const void *tally, const struct curve *curve, size_t at,
                          struct point_values *out);
+    /* Finds the sums by groups of a point, where no values of single realisations are kept; false
+     * where neither are. NULL: of no curve. */
+    bool (*point_groups)(const void *tally, const struct curve *curve, size_t at,
+                         struct point_groups *out);
     /* Fills, of each realisation in their order, the value and weight (1 before the call) whose
      * weighed mean a scalar is. NULL: plain means of the scalars of realisations. */
     int (*scalar_values)(const void *tally, const struct realisations *realisations, size_t scalar,

@@ -144,6 +144,12 @@ bool merger_point(const struct job_merger *merger, const struct curve *curve, si
            merger->kind->point_values(merger->tally, curve, at, out);
 }
 
+bool merger_groups(const struct job_merger *merger, const struct curve *curve, size_t at,
+                   struct point_groups *out) {
+    return merger->kind->point_groups != NULL &&
+           merger->kind->point_groups(merger->tally, curve, at, out);
+}
+
 int merger_scalar(const struct job_merger *merger, size_t scalar, double *values, double *weights,
                   struct error *err) {
     const struct realisations *set = &merger->realisations;

@@ -24,10 +24,13 @@ int merger_result(const struct job_merger *merger, struct case_result *out, stru
 const void *merger_case(const struct job_merger *merger);
 const void *merger_tally(const struct job_merger *merger, uint64_t *realisations);
 /* What pairs.h needs: the realisations that were added, in their order, and, as job_kind tells
- * them, the values of a point of a curve and of a scalar (of each realisation, with its weight). */
+ * them, the values of a point of a curve, or its sums by groups, and those of a scalar (of each
+ * realisation, with its weight). */
 const struct realisations *merger_realisations(const struct job_merger *merger);
 bool merger_point(const struct job_merger *merger, const struct curve *curve, size_t at,
                   struct point_values *out);
+bool merger_groups(const struct job_merger *merger, const struct curve *curve, size_t at,
+                   struct point_groups *out);
 int merger_scalar(const struct job_merger *merger, size_t scalar, double *values, double *weights,
                   struct error *err);
 /* Returns the number of a scalar of a realisation; false for another name. */

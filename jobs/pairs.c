@@ -1,7 +1,9 @@
 #include "jobs/pairs.h"
 #include "jobs/estimate.h"
 #include "jobs/realisations.h"
+#include "jobs/tally.h"
 #include "schema/result/difference.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -102,11 +104,33 @@ static bool take_point(const struct pairs *pairs, struct side *side, const struc
     return true;
 }
 
+/* Groups are pairs where both cases have the same realisations. Points that too few of them tell of
+ * have the error of two cases that do not go together, which is known even where nothing is seen.
+ */
+static bool tell_groups(const struct pairs *pairs, const struct curve *minuend, size_t a,
+                        const struct curve *subtrahend, size_t b, struct paired_value *out) {
+    struct point_groups one, other;
+    if (pairs->count != pairs->a.all || pairs->count != pairs->b.all ||
+        !merger_groups(pairs->a.merger, minuend, a, &one) ||
+        !merger_groups(pairs->b.merger, subtrahend, b, &other))
+        return false;
+    const struct estimate_groups left = {one.counted, one.things};
+    const struct estimate_groups right = {other.counted, other.things};
+    struct pair_estimate estimate = estimate_group_pairs(POINT_GROUPS, &left, &right);
+    *out = (struct paired_value){.value = estimate.value,
+                                 .standard_error = estimate.standard_error,
+                                 .deviation = estimate.deviation,
+                                 .pairs = pairs->count};
+    if (one.telling < TALLY_RARE || other.telling < TALLY_RARE)
+        out->standard_error = hypot(minuend->standard_error[a], subtrahend->standard_error[b]);
+    return true;
+}
+
 static bool point(void *context, const struct curve *minuend, size_t a,
                   const struct curve *subtrahend, size_t b, struct paired_value *out) {
     struct pairs *pairs = context;
     if (!take_point(pairs, &pairs->a, minuend, a) || !take_point(pairs, &pairs->b, subtrahend, b))
-        return false;
+        return tell_groups(pairs, minuend, a, subtrahend, b, out);
     tell(pairs, false, out);
     return true;
 }

@@ -3,6 +3,7 @@
 #include "jobs/statistics/statistics_curves.h"
 #include "jobs/statistics/statistics_generation.h"
 #include "jobs/statistics/statistics_grid_theory.h"
+#include "jobs/statistics/statistics_pairs.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
 #include "jobs/statistics/statistics_target.h"
@@ -189,6 +190,11 @@ static int result(const void *one_case, const struct surface_basis *basis, const
     return status;
 }
 
+static bool point_groups(const void *tally, const struct curve *curve, size_t at,
+                         struct point_groups *out) {
+    return statistics_point_groups(tally, curve, at, out);
+}
+
 static int scalar_values(const void *tally, const struct realisations *realisations, size_t scalar,
                          double *values, double *weights, struct error *err) {
     (void)tally;
@@ -230,6 +236,7 @@ const struct job_kind STATISTICS_KIND = {
     .belongs = belongs,
     .result = result,
     .answer = statistics_target_answer,
+    .point_groups = point_groups,
     .scalar_values = scalar_values,
     .complete = complete,
 };

@@ -9,9 +9,10 @@
 #define RUGO_JOBS_STATISTICS_STATISTICS_GROUPS_H
 
 #include "core/statistics/histogram.h"
+#include "jobs/kind.h"
 #include "jobs/tally.h"
 
-enum { GROUPS = 32 };
+enum { GROUPS = POINT_GROUPS };
 struct statistics_groups {
     size_t counts; /* numbers of a group, as many as the caller makes use of */
     size_t sums;

@@ -36,6 +36,22 @@ static void weighed_pairs(void **state) {
     check_close(estimate.standard_error, 0.25, 1e-15);
 }
 
+/* Ratios 8/4 and 6/8, mean things 4/3 and 8/3: residuals (-1, 2, -1)/(4/3) and (3/2, -3/4,
+ * -3/4)/(8/3) differ by -21/16, 57/32 and -15/32. The group without things in either case is none.
+ */
+static void pairs_of_groups(void **state) {
+    (void)state;
+    static const double a[] = {1, 0, 4, 3}, a_things[] = {1, 0, 1, 2};
+    static const double b[] = {3, 0, 3, 0}, b_things[] = {2, 0, 5, 1};
+    const struct estimate_groups one = {a, a_things}, other = {b, b_things};
+    struct pair_estimate estimate = estimate_group_pairs(4, &one, &other);
+    assert_int_equal(estimate.pairs, 3);
+    check_close(estimate.value, 2 - 0.75, 1e-15);
+    double squares = pow(21.0 / 16, 2) + pow(57.0 / 32, 2) + pow(15.0 / 32, 2);
+    check_close(estimate.standard_error, sqrt(squares / 2 / 3), 1e-14);
+    assert_true(isnan(estimate_group_pairs(2, &one, &other).standard_error));
+}
+
 /* --- by realisations --- */
 
 enum { REALISATIONS = 9, SEED = 5 };
@@ -46,7 +62,7 @@ enum { REALISATIONS = 9, SEED = 5 };
     " \"pressure_pdf\": {\"at\": [0.1], \"bins\": [0, 1, 4]}}}"
 #define STATISTICS(hurst)                                                                          \
     "{\"surface\": {\"dimension\": 1, \"hurst\": " hurst ", \"wavelength_ratio\": 4,"              \
-    " \"length_ratio\": 4}}"
+    " \"length_ratio\": 4}, \"statistics\": {\"bins\": {\"height\": [-4, 8, 12]}}}"
 
 struct side {
     struct job_merger *merger;
@@ -207,6 +223,61 @@ static void scalars_are_those_told(void **state) {
     }
 }
 
+/* Up to 32 realisations are groups of their own: a density's error is that of the differences of
+ * what realisations tell alone, less than that of the two cases apart. Bins that fewer than ten of
+ * them tell of have the latter. */
+static void densities_by_groups(void **state) {
+    (void)state;
+    enum { ALL = 30 };
+    static const char one[] = STATISTICS("0.8"), other[] = STATISTICS("0.7");
+    struct error err = {0};
+    struct side a = {.merger = merger_of("statistics", one)};
+    struct side b = {.merger = merger_of("statistics", other)};
+    struct case_result singles[2][ALL];
+    add_block(a.merger, "statistics", one, 0, ALL);
+    add_block(b.merger, "statistics", other, 7, ALL - 7);
+    add_block(b.merger, "statistics", other, 0, 7);
+    assert_int_equal(merger_result(a.merger, &a.result, &err), 0);
+    assert_int_equal(merger_result(b.merger, &b.result, &err), 0);
+    struct case_result out = subtract(&a, &b, true);
+    for (uint64_t r = 0; r < ALL; r++) {
+        singles[0][r] = single("statistics", one, r);
+        singles[1][r] = single("statistics", other, r);
+    }
+    const char *name = "summit_height_pdf";
+    const struct curve *curve = result_curve(&out, name);
+    const struct curve *told = result_curve(&a.result, name), *less = result_curve(&b.result, name);
+    size_t by_pairs = 0, apart = 0;
+    assert_true(curve != NULL && curve->paired && curve->n == 12);
+    for (size_t k = 0; k < curve->n; k++) {
+        double counts[2][ALL], things[2][ALL];
+        size_t telling[2] = {0, 0};
+        for (size_t c = 0; c < 2; c++)
+            for (size_t r = 0; r < ALL; r++) {
+                things[c][r] = 2 * scalar_of(&singles[c][r], "summits")->value;
+                counts[c][r] = result_curve(&singles[c][r], name)->y[k] * things[c][r];
+                telling[c] += counts[c][r] > 0;
+            }
+        const struct estimate_groups left = {counts[0], things[0]}, right = {counts[1], things[1]};
+        double expected = estimate_group_pairs(ALL, &left, &right).standard_error;
+        double both = hypot(told->standard_error[k], less->standard_error[k]);
+        bool few = telling[0] < 10 || telling[1] < 10;
+        check_close(curve->y[k], told->y[k] - less->y[k], 1e-12);
+        check_close(curve->standard_error[k], few ? both : expected, 1e-12);
+        assert_true(curve->standard_error[k] > 0);
+        by_pairs += !few && expected < both;
+        apart += few;
+    }
+    assert_true(by_pairs >= 3 && apart >= 3);
+    for (size_t r = 0; r < ALL; r++) {
+        result_clear(&singles[0][r]);
+        result_clear(&singles[1][r]);
+    }
+    result_clear(&out);
+    side_clear(&a);
+    side_clear(&b);
+}
+
 static void cases_without_a_pair_are_refused(void **state) {
     (void)state;
     struct error err = {0};
@@ -223,7 +294,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plain_pairs),
         cmocka_unit_test(weighed_pairs),
+        cmocka_unit_test(pairs_of_groups),
         cmocka_unit_test(contact_by_its_realisations),
+        cmocka_unit_test(densities_by_groups),
         cmocka_unit_test(scalars_are_those_told),
         cmocka_unit_test(cases_without_a_pair_are_refused),
     };

@@ -338,6 +338,92 @@ static void bins_that_miss(void **state) {
     runner_destroy(&runner);
 }
 
+/* How many points of a curve of ratios are empty, had by one realisation, and had by more. */
+struct points_seen {
+    int empty, one, more;
+};
+
+/* No error is 0: of a mean that nothing or one realisation alone has there is none; all other
+ * points have one. valueless tells how many realisations have nothing. */
+static void check_errors(const cJSON *curve, struct points_seen *seen) {
+    bool ratio = strcmp(json_at(curve, "/quantity")->valuestring, "summit_mean_curvature") == 0;
+    for (int b = 0; b < cJSON_GetArraySize(json_at(curve, "/x")); b++) {
+        double y = at(curve, "/y", b), error = at(curve, "/standard_error", b);
+        double had = REALISATIONS - at(curve, "/valueless", b);
+        assert_true(had >= 0 && had <= REALISATIONS);
+        if (ratio)
+            assert_true(isnan(y) == (had == 0) && isnan(error) == (had < 2));
+        else
+            assert_true((y > 0) == (had > 0));
+        assert_true((ratio && isnan(error)) || error > 0);
+        seen->empty += had == 0;
+        seen->one += had == 1;
+        seen->more += had > 1;
+    }
+}
+
+static void no_error_is_zero(void **state) {
+    (void)state;
+    static const char *const ratios[] = {"height_pdf", "summit_height_pdf", "summit_curvature_pdf",
+                                         "summit_mean_curvature"};
+    for (int s = 0; s < STUDY_COUNT; s++) {
+        struct job_runner *runner = runner_of(STUDIES[s]);
+        struct job_merger *merger = merger_of(STUDIES[s]);
+        struct block_result result = run(runner, 0, REALISATIONS);
+        struct points_seen seen = {0};
+        const cJSON *curve;
+        merge(merger, &result);
+        cJSON *document = curves_of(merger);
+        cJSON_ArrayForEach(curve, json_at(document, "/curves")) {
+            const char *quantity = json_at(curve, "/quantity")->valuestring;
+            for (size_t a = 0; a < 4; a++)
+                if (strcmp(quantity, ratios[a]) == 0)
+                    check_errors(curve, &seen);
+            for (int b = 0;
+                 strstr(quantity, "_cdf") != NULL && b < cJSON_GetArraySize(json_at(curve, "/x"));
+                 b++)
+                assert_true(at(curve, "/standard_error", b) > 0);
+        }
+        assert_true(seen.one > 0 && seen.more > 10 && (s == 0 || seen.empty > 10));
+        cJSON_Delete(document);
+        block_result_clear(&result);
+        merger_destroy(&merger);
+        runner_destroy(&runner);
+    }
+}
+
+/* Scalars by what the spectrum fixes are exact: their error is 0, that of no other is. Pits are
+ * told of surfaces that are not as their mirror images. */
+static void constants_and_pits(void **state) {
+    (void)state;
+    static const char *const constants[] = {"rms_height", "rms_slope", "rms_curvature", "m0",
+                                            "nayak_alpha_finite_difference"};
+    for (int s = 0; s < 2; s++) {
+        struct job_runner *runner = runner_of(STUDIES[s]);
+        struct job_merger *merger = merger_of(STUDIES[s]);
+        struct block_result result = run(runner, 0, REALISATIONS);
+        merge(merger, &result);
+        cJSON *document = curves_of(merger);
+        for (size_t a = 0; a < 5; a++) {
+            double error = scalar(document, constants[a], "standard_error");
+            double value = scalar(document, constants[a], "value");
+            double theory = scalar(document, constants[a], "theory");
+            assert_true(s == 0 ? error == 0 : error > 0);
+            assert_true(value > 0 && (isnan(theory) || fabs(value / theory - 1) < 0.5));
+        }
+        double pits = scalar(document, "pits", "value"),
+               summits = scalar(document, "summits", "value");
+        double low = scalar(document, "pit_height_mean", "value");
+        double high = scalar(document, "summit_height_mean", "value");
+        assert_true(summits > 0 && scalar(document, "summits", "standard_error") > 0);
+        assert_true(s == 0 ? isnan(pits) && isnan(low) : pits > 0 && low > high);
+        cJSON_Delete(document);
+        block_result_clear(&result);
+        merger_destroy(&merger);
+        runner_destroy(&runner);
+    }
+}
+
 /* Before any result there are curves too, all of them empty of values. */
 static void no_realisation_yet(void **state) {
     (void)state;
@@ -438,6 +524,8 @@ int main(void) {
         cmocka_unit_test(curves_against_brute_force),
         cmocka_unit_test(normalisation),
         cmocka_unit_test(bins_that_miss),
+        cmocka_unit_test(no_error_is_zero),
+        cmocka_unit_test(constants_and_pits),
         cmocka_unit_test(no_realisation_yet),
         cmocka_unit_test(theory_of_the_grid),
         cmocka_unit_test(stopping),
