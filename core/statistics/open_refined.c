@@ -2,6 +2,7 @@
 #include "core/statistics/grid_summits.h"
 #include "core/statistics/local_wave.h"
 #include "core/statistics/summit_climb.h"
+#include "core/vectors.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,6 +19,7 @@ struct search {
     size_t cells_x, cells_y;   /* that can be interpolated, from point FIRST on */
     struct local_basis *bases; /* owned, of the fine points of a cell along x, then along y */
     double *across;            /* owned, nx: one row of points moved to a fine row */
+    double *phase;             /* owned, cells_x: one fine point of each cell of a row */
     double *memory;            /* owned: three fine rows, ... */
     double *rows[3];           /* ... those before, at and behind the present one */
     size_t *columns;           /* owned, a fine row */
@@ -30,6 +32,7 @@ static size_t fine_columns(const struct search *s) {
 static void search_clear(struct search *s) {
     free(s->bases);
     free(s->across);
+    free(s->phase);
     free(s->memory);
     free(s->columns);
 }
@@ -46,9 +49,11 @@ static int search_create(struct search *s, const struct measured_map *map,
     size_t row = fine_columns(s);
     s->bases = array_create(2 * s->fine, sizeof *s->bases);
     s->across = array_create(grid->nx, sizeof *s->across);
+    s->phase = array_create(s->cells_x, sizeof *s->phase);
     s->memory = array_create(row, 3 * sizeof *s->memory);
     s->columns = array_create(row, sizeof *s->columns);
-    if (s->bases == NULL || s->across == NULL || s->memory == NULL || s->columns == NULL) {
+    if (s->bases == NULL || s->across == NULL || s->phase == NULL || s->memory == NULL ||
+        s->columns == NULL) {
         search_clear(s);
         return error_memory(err, row * 4 * sizeof *s->memory, "a summit search");
     }
@@ -59,6 +64,22 @@ static int search_create(struct search *s, const struct measured_map *map,
         local_basis_at(((double)phase + SHIFT_Y) / (double)s->fine, &s->bases[s->fine + phase]);
     }
     return 0;
+}
+
+/* Fills every `step`-th value of out with the fine points of one place in each cell. Plain loops
+ * over cells, so that the compiler makes vectors of them. */
+WIDE_VECTORS static void phase_fill(const double *weight, const double *points, size_t cells,
+                                    double *sums, double *out, size_t step) {
+    for (size_t cell = 0; cell < cells; cell++)
+        sums[cell] = 0;
+    for (size_t a = 0; a < LOCAL_POINTS; a += 4) {
+        const double *w = weight + a, *from = points + a;
+        for (size_t cell = 0; cell < cells; cell++)
+            sums[cell] += (w[0] * from[cell] + w[1] * from[cell + 1]) +
+                          (w[2] * from[cell + 2] + w[3] * from[cell + 3]);
+    }
+    for (size_t cell = 0; cell < cells; cell++)
+        out[cell * step] = sums[cell];
 }
 
 /* Fills a fine row. */
@@ -74,14 +95,8 @@ static void row_fill(const struct search *s, size_t fine_row, double *out) {
             for (size_t i = 0; i < nx; i++)
                 s->across[i] += weight[a] * z[(first + a) * nx + i];
     }
-    for (size_t cell = 0; cell < s->cells_x; cell++)
-        for (size_t phase = 0; phase < s->fine; phase++) {
-            const double *weight = s->bases[phase].value, *from = s->across + cell;
-            double height = 0;
-            for (size_t a = 0; a < LOCAL_POINTS; a++)
-                height += weight[a] * from[a];
-            out[cell * s->fine + phase] = height;
-        }
+    for (size_t phase = 0; phase < s->fine; phase++)
+        phase_fill(s->bases[phase].value, s->across, s->cells_x, s->phase, out + phase, s->fine);
 }
 
 /* Interpolates at a place in fine cells; NaN outside of the cells that can be interpolated. */
