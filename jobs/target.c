@@ -3,14 +3,18 @@
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 
-static const double GROWTH_MOST = 4;     /* of a component in one round: variances are estimates */
+/* Of a component in one round, since variances are estimates: of few realisations, and of others.
+ */
+static const double GROWTH_FEW = 2, GROWTH_MOST = 4;
+enum { FEW = 24 };
 static const double GROWTH_LEAST = 1.25; /* so that rounds are few */
 static const double MARGIN = 1.05;       /* above what is needed, for the same reason */
 static const double REALISATIONS_MOST = 1e7;
 
 static const double CONFIDENCE = 0.95;  /* unless given */
 static const double CHANCE_USUAL = 0.5; /* of the error asked for */
-enum { ROUNDS_MOST = 40 };
+enum { ROUNDS_MOST = 40, STEPS = 60, BISECTIONS = 50 };
+static const double SCALE_MOST = 1e30;
 
 static const struct choice QUANTITIES[] = {{"contact_area", TARGET_CONTACT_AREA},
                                            {"mean_gap", TARGET_MEAN_GAP},
@@ -104,16 +108,74 @@ double target_quantile(const struct target *target, size_t count, const struct t
     return gsl_cdf_tdist_Pinv((1 + target->confidence) / 2, variance * variance / square);
 }
 
-/* The largest variance of a part over what is allowed at a point, at one normal quantile. */
-static double relative_variance(const struct target_plan *plan, const struct target_part *part) {
-    double quantile = gsl_cdf_ugaussian_Pinv((1 + plan->target->confidence) / 2), most = 0;
-    for (size_t k = 0; k < plan->points; k++) {
-        double ratio = quantile / plan->allowed[k];
-        double variance = part->variance[k] * ratio * ratio;
-        if (isfinite(variance) && variance > most)
-            most = variance;
+/* Variance of one realisation of a part over what is allowed at a point; 0 where it is left out. */
+static double relative_variance(const struct target_plan *plan, const struct target_part *part,
+                                size_t point) {
+    double quantile = gsl_cdf_ugaussian_Pinv((1 + plan->target->confidence) / 2);
+    double ratio = quantile / plan->allowed[point];
+    double relative = part->variance[point] * ratio * ratio;
+    return isfinite(relative) ? relative : 0;
+}
+
+/* The sum of V/N over what is allowed at a point; N of a part is `scale` times its number, at least
+ * what is done. */
+static double sum_at(const struct target_plan *plan, size_t count, const struct target_part *parts,
+                     const double *numbers, double scale, size_t point) {
+    double sum = 0;
+    for (size_t a = 0; a < count; a++) {
+        double variance = relative_variance(plan, &parts[a], point);
+        if (variance > 0)
+            sum += variance / fmax((double)parts[a].done, scale * numbers[a]);
     }
-    return most;
+    return sum;
+}
+
+static bool suffices(const struct target_plan *plan, size_t count, const struct target_part *parts,
+                     const double *numbers, double scale) {
+    for (size_t k = 0; k < plan->points; k++)
+        if (sum_at(plan, count, parts, numbers, scale, k) > 1)
+            return false;
+    return true;
+}
+
+/* The least scale of the numbers that suffices; they suffice from some scale on. */
+static double least_scale(const struct target_plan *plan, size_t count,
+                          const struct target_part *parts, const double *numbers) {
+    double low = 0, high = 1;
+    if (suffices(plan, count, parts, numbers, 0))
+        return 0;
+    while (high < SCALE_MOST && !suffices(plan, count, parts, numbers, high))
+        high *= 2;
+    for (int step = 0; step < BISECTIONS; step++) {
+        double middle = (low + high) / 2;
+        *(suffices(plan, count, parts, numbers, middle) ? &high : &low) = middle;
+    }
+    return high;
+}
+
+/* Each step multiplies the multiplier of a point by its sum, which falls where more is done there
+ * than it needs; all numbers are scaled to what the hardest point needs. */
+double target_least_work(const struct target_plan *plan, size_t count,
+                         const struct target_part *parts, double *needed) {
+    double scale = 0, lacking = 0;
+    for (size_t k = 0; k < plan->points; k++)
+        plan->multipliers[k] = 1;
+    for (int step = 0; step < STEPS; step++) {
+        for (size_t a = 0; a < count; a++) {
+            double sum = 0;
+            for (size_t k = 0; k < plan->points; k++)
+                sum += plan->multipliers[k] * relative_variance(plan, &parts[a], k);
+            needed[a] = sqrt(sum / parts[a].work);
+        }
+        scale = least_scale(plan, count, parts, needed);
+        for (size_t k = 0; k < plan->points; k++)
+            plan->multipliers[k] *= sum_at(plan, count, parts, needed, scale, k);
+    }
+    for (size_t a = 0; a < count; a++) {
+        needed[a] = fmax((double)parts[a].done, scale * needed[a]);
+        lacking += parts[a].work * (needed[a] - (double)parts[a].done);
+    }
+    return lacking;
 }
 
 /* Whether the parts are as many as the plan needs at every point. */
@@ -132,7 +194,8 @@ static uint64_t grown(uint64_t done, double needed) {
     double n = (double)done;
     if (needed <= n)
         return done;
-    n = fmin(fmax(ceil(needed), ceil(GROWTH_LEAST * n)), GROWTH_MOST * fmax(n, 1));
+    n = fmin(fmax(ceil(MARGIN * needed), ceil(GROWTH_LEAST * n)),
+             (done < FEW ? GROWTH_FEW : GROWTH_MOST) * fmax(n, 1));
     return (uint64_t)fmin(n, REALISATIONS_MOST);
 }
 
@@ -153,13 +216,11 @@ void target_hold(const struct target *target, size_t count, const struct target_
 
 void target_allot(const struct target_plan *plan, size_t count, const struct target_part *parts,
                   uint64_t *wanted) {
-    double sum = 0;
+    double needed[TARGET_PARTS_MOST];
     bool enough = is_enough(plan, count, parts), grows = false;
-    for (size_t a = 0; a < count; a++)
-        sum += sqrt(relative_variance(plan, &parts[a]) * parts[a].work);
+    target_least_work(plan, count, parts, needed);
     for (size_t a = 0; a < count; a++) {
-        double needed = MARGIN * sum * sqrt(relative_variance(plan, &parts[a]) / parts[a].work);
-        wanted[a] = enough ? parts[a].done : grown(parts[a].done, needed);
+        wanted[a] = enough ? parts[a].done : grown(parts[a].done, needed[a]);
         grows = grows || wanted[a] > parts[a].done;
     }
     for (size_t a = 0; a < count && !enough && !grows; a++) /* Student's quantile asks for more */
@@ -196,7 +257,8 @@ double target_expect(const struct study_case *one, uint64_t *out) {
         .confidence = json_number_at(one->parameters, "/target/confidence", CONFIDENCE),
         .max_seconds = json_number_at(one->parameters, "/target/max_seconds", INFINITY)};
     const double allowed = CHANCE_USUAL * target.error;
-    const struct target_plan plan = {&target, 1, &allowed};
+    double multiplier;
+    const struct target_plan plan = {&target, 1, &allowed, &multiplier};
     struct target_part parts[TARGET_PARTS_MOST];
     double variance[TARGET_PARTS_MOST], seconds = 0;
     size_t begun[TARGET_PARTS_MOST], count = expected_parts(one, parts, variance, begun);

@@ -50,12 +50,19 @@ struct target_plan {
     const struct target *target;
     size_t points;
     const double *allowed; /* at each point: how far chance may go; NaN: the point is left out */
+    double *multipliers;   /* room for as many numbers as there are points */
 };
 /* By how many standard errors the sum errs at this confidence, at one point: Student's quantile,
  * its degrees of freedom by Welch and Satterthwaite (Welch 1947). standard_error: of the sum. NaN
  * where a part has no variance. */
 double target_quantile(const struct target *target, size_t count, const struct target_part *parts,
                        size_t point, double *standard_error);
+/* Numbers of realisations, needed[count], none below what is done, which take the least work of
+ * those whose chance is allowed at every point, at the normal quantile: N = sqrt(sum of m V/C over
+ * the points, each with a multiplier m). Returns the work that is lacking. At most
+ * TARGET_PARTS_MOST parts. */
+double target_least_work(const struct target_plan *plan, size_t count,
+                         const struct target_part *parts, double *needed);
 /* Realisations of each part in all, none below what is done: as many as there are where these are
  * enough, or where more would pass max_seconds. Depends on nothing else than its arguments. */
 void target_allot(const struct target_plan *plan, size_t count, const struct target_part *parts,

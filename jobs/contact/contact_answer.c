@@ -11,8 +11,10 @@
  * beside it; and the others. */
 static const char *const LENGTHS[CONTACT_LENGTHS_MOST] = {"cell", "base", "longer", "longest"};
 enum { LENGTH_COUNT = CONTACT_LENGTHS_MOST, LENGTH_BASE = 1 };
-static const char *const ROLE_NAMES[ROLES] = {
-    [ROLE_MESH] = "mesh", [ROLE_FINE] = "fine", [ROLE_MODEL] = "model"};
+static const char *const ROLE_NAMES[ROLES] = {[ROLE_MESH] = "mesh",
+                                              [ROLE_FINE] = "fine",
+                                              [ROLE_MODEL] = "model",
+                                              [ROLE_MODEL_MESH] = "model_mesh"};
 
 /* --- what is reached --- */
 
@@ -111,7 +113,7 @@ static double bias_rate(const struct contact_answer *answer, enum contact_measur
     return least;
 }
 
-/* Kurtosis of the differences between the two models on the finest level, the largest of the loads:
+/* Kurtosis of the differences between the two models on one level, the largest of the loads:
  * above about 100 the variance that the plan is made by is of too few realisations (Giles 2015,
  * section 3.4). NaN without a component "model". */
 static double kurtosis(const struct contact_answer *answer, enum contact_measure measure) {
@@ -146,8 +148,8 @@ static double kurtosis(const struct contact_answer *answer, enum contact_measure
 static double plain_work(const struct contact_answer *answer, const struct contact_sum *sum,
                          double error) {
     const struct target_component *base = answer->of[ROLE_BASE];
-    const struct target_component *from =
-        answer->of[ROLE_MODEL] != NULL ? answer->of[ROLE_MODEL] : base;
+    const struct target_component *model = contact_sum_finest_model(answer);
+    const struct target_component *from = model != NULL ? model : base;
     const struct contact_case *one_case = component_case(from);
     size_t first =
         contact_case_cell(one_case, one_case->model_count - 1, one_case->level_count - 1, 0);

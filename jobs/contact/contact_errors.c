@@ -113,35 +113,50 @@ static bool mesh_errors(const struct contact_tally *tally, enum contact_measure 
 
 /* --- the model --- */
 
-/* Of the difference between a model and the most complete one. */
-static struct estimate difference_change(const struct contact_tally *tally,
-                                         enum contact_measure measure, size_t model, size_t level,
-                                         size_t load) {
-    size_t complete = contact_case_complete(tally->one_case);
-    struct estimate own = contact_tally_level(tally, measure, model, level, load);
-    struct estimate other = contact_tally_level(tally, measure, complete, level, load);
-    return (struct estimate){own.value - other.value,
-                             hypot(own.standard_error, other.standard_error)};
+/* The limit of the levels for a difference of models which is `from` on the finest one. */
+static struct contact_error difference_limit(const struct contact_tally *tally,
+                                             enum contact_measure measure, size_t model,
+                                             size_t load, struct estimate from) {
+    struct level_changes changes =
+        changes_of(tally, measure, model, load, contact_tally_model_level);
+    struct mesh_error mesh = mesh_error(&changes.of, known_order(measure));
+    return (struct contact_error){
+        .value = isnan(mesh.bound) ? (double)NAN : from.value - mesh.error,
+        .bound = mesh.bound,
+        .standard_error = hypot(from.standard_error, mesh.weight * changes.standard_error),
+        .order = mesh.order};
+}
+
+static bool has_difference(const struct contact_tally *tally, size_t model) {
+    return model != contact_case_complete(tally->one_case) && tally->one_case->level_count > 1;
 }
 
 /* The difference in the limit of the levels: it holds none of the meshes' own errors, but a bound
  * of what these leave of it. */
 static bool model_errors(const struct contact_tally *tally, enum contact_measure measure,
                          size_t model, struct contact_error *out) {
+    if (!has_difference(tally, model))
+        return false;
+    for (size_t k = 0; k < tally->one_case->load_count; k++)
+        out[k] = difference_limit(tally, measure, model, k,
+                                  contact_tally_model(tally, measure, model, k));
+    spread_bounds(tally, measure, model, out);
+    return true;
+}
+
+bool contact_errors_model_change(const struct contact_tally *tally, enum contact_measure measure,
+                                 size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
-    size_t complete = contact_case_complete(one_case);
-    if (model == complete || one_case->level_count < 2)
+    if (!has_difference(tally, model))
         return false;
     for (size_t k = 0; k < one_case->load_count; k++) {
-        struct estimate difference = contact_tally_model(tally, measure, model, k);
-        struct level_changes changes = changes_of(tally, measure, model, k, difference_change);
-        struct mesh_error mesh = mesh_error(&changes.of, known_order(measure));
-        out[k] = (struct contact_error){
-            .value = isnan(mesh.bound) ? (double)NAN : difference.value - mesh.error,
-            .bound = mesh.bound,
-            .standard_error =
-                hypot(difference.standard_error, mesh.weight * changes.standard_error),
-            .order = mesh.order};
+        struct estimate all = {0};
+        for (size_t l = 1; l < one_case->level_count; l++) {
+            struct estimate change = contact_tally_model_level(tally, measure, model, l, k);
+            all.value += change.value;
+            all.standard_error += change.standard_error; /* they may go together */
+        }
+        out[k] = difference_limit(tally, measure, model, k, all);
     }
     spread_bounds(tally, measure, model, out);
     return true;

@@ -15,6 +15,12 @@ bool contact_errors(const struct contact_tally *tally, enum contact_measure meas
 bool contact_error_applies(const struct contact_tally *tally, enum contact_measure measure,
                            size_t model, size_t level, enum error_source source);
 
+/* What the difference of a model from the most complete one changes from the coarsest level to the
+ * limit of the levels, within value +- bound, at every load; false where there is no difference, or
+ * one level. */
+bool contact_errors_model_change(const struct contact_tally *tally, enum contact_measure measure,
+                                 size_t model, struct contact_error *out);
+
 /* The error of the mesh of the density of pressures at position `at` of pdf_loads, by bin: bounds
  * on both sides from the two finest levels, at least those of the two bins on either side, and
  * standard errors, as nodes fall into bins by chance. Both have room for all bins; false where

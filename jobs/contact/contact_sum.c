@@ -42,7 +42,8 @@ static void bound_added(const struct contact_answer *answer, enum role role, dou
                         double added, size_t load, struct contact_sum *sum) {
     const struct surface_case *own = &component_case(answer->of[role])->surface;
     if (own->length_ratio < component_case(answer->of[ROLE_BASE])->surface.length_ratio)
-        sum->cell[load] += fmin(1, share / pow(own->length_ratio, own->dimension)) * fabs(added);
+        sum->cell[load] =
+            hypot(sum->cell[load], fmin(1, share / pow(own->length_ratio, own->dimension)) * added);
 }
 
 /* The changes of the cheap model from a level on: to the next one, or with a limit to that; what
@@ -75,27 +76,46 @@ static void add_levels(const struct contact_answer *answer, enum contact_measure
     }
 }
 
-/* The model that is asked for less the cheap one, which is the first of the two. What is added on
- * cells of another length is a share of the value there, since values on short cells are higher. */
+/* The value at a load over that of the cheap model, the first of the two, on the finest level of a
+ * component: what is added on cells of another length, or on another mesh, is a share of the value
+ * there, since values on short cells are higher. */
+static double share_scale(const struct contact_sum *sum, const struct target_component *component,
+                          enum contact_measure measure, size_t load) {
+    const struct contact_case *one_case = component_case(component);
+    size_t cell = contact_case_cell(one_case, 0, one_case->level_count - 1, load);
+    return sum->value[load] / contact_tally_mean(component_tally(component), measure, cell).value;
+}
+
+/* Takes off what the cheap model errs by at a load. */
+static void take_off(const struct contact_answer *answer, enum role role, double cell_share,
+                     double scale, const struct contact_error *cheap, size_t load,
+                     struct contact_sum *sum) {
+    sum->value[load] -= scale * cheap->value;
+    sum->model[load] += fabs(scale) * cheap->bound;
+    bound_added(answer, role, cell_share, scale * cheap->value, load, sum);
+    sum->variance[role][load] = component_variance(answer->of[role], scale * cheap->standard_error);
+}
+
+/* The model that is asked for less the cheap one: on one mesh and from there to the limit, or in
+ * the limit at once. room: of the loads. */
 static void add_models(const struct contact_answer *answer, enum contact_measure measure,
-                       const struct contact_error *limit, struct contact_sum *sum) {
+                       struct contact_error *room, struct contact_sum *sum) {
     const struct target_component *model = answer->of[ROLE_MODEL];
-    const struct contact_case *one_case = component_case(model);
+    const struct target_component *mesh = answer->of[ROLE_MODEL_MESH];
+    bool limit = mesh == NULL && !answer->named_mesh &&
+                 contact_errors(component_tally(model), measure, 0, ERROR_MODEL, room);
     for (size_t k = 0; k < answer->loads; k++) {
+        double scale = share_scale(sum, model, measure, k);
         struct estimate cheap = contact_tally_model(component_tally(model), measure, 0, k);
-        double bound = 0;
-        if (!answer->named_mesh) {
-            bound = limit[k].bound;
-            cheap = (struct estimate){limit[k].value, limit[k].standard_error};
-        }
-        size_t cell = contact_case_cell(one_case, 0, one_case->level_count - 1, k);
-        double scale =
-            sum->value[k] / contact_tally_mean(component_tally(model), measure, cell).value;
-        sum->value[k] -= scale * cheap.value;
-        sum->model[k] = scale * bound;
-        bound_added(answer, ROLE_MODEL, MODELS_CELL, scale * cheap.value, k, sum);
-        sum->variance[ROLE_MODEL][k] = component_variance(model, scale * cheap.standard_error);
+        const struct contact_error on_mesh = {.value = cheap.value,
+                                              .standard_error = cheap.standard_error};
+        take_off(answer, ROLE_MODEL, MODELS_CELL, scale, limit ? &room[k] : &on_mesh, k, sum);
     }
+    if (mesh == NULL || !contact_errors_model_change(component_tally(mesh), measure, 0, room))
+        return;
+    for (size_t k = 0; k < answer->loads; k++)
+        take_off(answer, ROLE_MODEL_MESH, LEVELS_CELL, share_scale(sum, mesh, measure, k), &room[k],
+                 k, sum);
 }
 
 /* What the named mesh errs by in the model that is asked for, told beside the answer. */
@@ -110,7 +130,6 @@ static void tell_mesh(const struct contact_answer *answer, enum contact_measure 
 
 static int add_all(const struct contact_answer *answer, enum contact_measure measure,
                    struct contact_sum *sum, struct error *err) {
-    const struct target_component *model = answer->of[ROLE_MODEL];
     struct contact_error *error = array_create(answer->loads, sizeof *error);
     if (error == NULL)
         return error_memory(err, answer->loads * sizeof *error, "errors of a sum");
@@ -125,7 +144,7 @@ static int add_all(const struct contact_answer *answer, enum contact_measure mea
             add_levels(answer, measure, ROLE_MESH, 0, NULL, sum);
         add_levels(answer, measure, last, last == ROLE_FINE ? 1 : 0, error, sum);
     }
-    if (model != NULL && contact_errors(component_tally(model), measure, 0, ERROR_MODEL, error))
+    if (answer->of[ROLE_MODEL] != NULL)
         add_models(answer, measure, error, sum);
     if (answer->named_mesh)
         tell_mesh(answer, measure, error, sum);

@@ -11,8 +11,9 @@
 
 /* base: the coarsest level on the longest cell that has begun; cell: the same on the next shorter
  * one; mesh: from there to the next level; fine: from that one to the limit; model: from the cheap
- * model to the one that is asked for. */
-enum role { ROLE_BASE, ROLE_CELL, ROLE_MESH, ROLE_FINE, ROLE_MODEL, ROLES };
+ * model to the one that is asked for; model_mesh: what that changes to the limit of the levels,
+ * where it has a component of its own. */
+enum role { ROLE_BASE, ROLE_CELL, ROLE_MESH, ROLE_FINE, ROLE_MODEL, ROLE_MODEL_MESH, ROLES };
 
 enum { CONTACT_LENGTHS_MOST = 4 };
 
@@ -51,6 +52,13 @@ component_tally(const struct target_component *component) {
 /* The component whose levels tell the limit of the mesh. */
 static inline enum role contact_sum_mesh(const struct contact_answer *answer) {
     return answer->of[ROLE_FINE] != NULL ? ROLE_FINE : ROLE_MESH;
+}
+
+/* The component that solves the model that is asked for on the finest mesh; NULL: none. */
+static inline const struct target_component *
+contact_sum_finest_model(const struct contact_answer *answer) {
+    const struct target_component *mesh = answer->of[ROLE_MODEL_MESH];
+    return mesh != NULL ? mesh : answer->of[ROLE_MODEL];
 }
 
 /* Variance of one realisation behind the standard error of a mean. */

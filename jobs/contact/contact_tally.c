@@ -59,6 +59,18 @@ static size_t level_pair(const struct contact_case *one_case, size_t model, size
     return (model * (one_case->level_count - 1) + level - 1) * one_case->load_count + load;
 }
 
+/* Place of a model's difference from the most complete one, which has none, among those on the
+ * finest level (level 0) and their changes from level - 1 to level. */
+static size_t model_pair(const struct contact_case *one_case, size_t model, size_t level,
+                         size_t load) {
+    size_t other = model - (model > contact_case_complete(one_case));
+    return (other * one_case->level_count + level) * one_case->load_count + load;
+}
+
+static size_t model_pairs(const struct contact_case *one_case) {
+    return (one_case->model_count - 1) * one_case->level_count * one_case->load_count;
+}
+
 /* Differences of blocks, if any is probed. */
 static size_t block_pairs(const struct contact_case *one_case) {
     return one_case->low_blocks ? one_case->model_count * one_case->load_count : 0;
@@ -94,8 +106,7 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
         size_t pairs = level_pair(one_case, one_case->model_count, 1, 0);
         status = sums_create(&out->sums[SUMS_LEVELS + a], pairs, err);
         if (status == 0)
-            status = sums_create(&out->sums[SUMS_MODELS + a],
-                                 (one_case->model_count - 1) * one_case->load_count, err);
+            status = sums_create(&out->sums[SUMS_MODELS + a], model_pairs(one_case), err);
         if (status == 0)
             status = sums_create(&out->sums[SUMS_BLOCKS + a], block_pairs(one_case), err);
         if (status == 0)
@@ -123,7 +134,7 @@ void contact_tally_clear(struct contact_tally *tally) {
 
 double contact_tally_bytes(const struct contact_case *one_case) {
     size_t cells = contact_case_all_cells(one_case);
-    size_t pairs = (one_case->model_count * one_case->level_count - 1) * one_case->load_count +
+    size_t pairs = level_pair(one_case, one_case->model_count, 1, 0) + model_pairs(one_case) +
                    block_pairs(one_case) + probe_pairs(one_case);
     double a_cell = tally_sums_bytes(1) + tally_bytes(1);
     return MEASURE_COUNT * (double)cells * (a_cell + sizeof(double)) +
@@ -158,21 +169,22 @@ static void add_level_pairs(struct contact_tally *tally, enum contact_measure me
                              contact_tally_scale(one_case, measure, k));
 }
 
-/* Place of a model and load among the differences from the most complete model, which has none. */
-static size_t model_pair(const struct contact_case *one_case, size_t model, size_t load) {
-    return (model - (model > contact_case_complete(one_case))) * one_case->load_count + load;
-}
-
 static void add_model_pairs(struct contact_tally *tally, enum contact_measure measure) {
     const struct contact_case *one_case = tally->one_case;
     const double *values = contact_tally_values(tally, measure);
-    size_t finest = one_case->level_count - 1, complete = contact_case_complete(one_case);
+    struct contact_sums *sums = &tally->sums[SUMS_MODELS + measure];
+    size_t levels = one_case->level_count, complete = contact_case_complete(one_case);
     for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t k = 0; m != complete && k < one_case->load_count; k++)
-            sums_add(&tally->sums[SUMS_MODELS + measure], model_pair(one_case, m, k),
-                     (values[contact_case_cell(one_case, m, finest, k)] -
-                      values[contact_case_cell(one_case, complete, finest, k)]) *
-                         contact_tally_scale(one_case, measure, k));
+        for (size_t k = 0; m != complete && k < one_case->load_count; k++) {
+            double scale = contact_tally_scale(one_case, measure, k), before = 0, own = 0;
+            for (size_t l = 0; l < levels; l++, before = own) {
+                own = values[contact_case_cell(one_case, m, l, k)] -
+                      values[contact_case_cell(one_case, complete, l, k)];
+                if (l > 0)
+                    sums_add(sums, model_pair(one_case, m, l, k), (own - before) * scale);
+            }
+            sums_add(sums, model_pair(one_case, m, 0, k), before * scale);
+        }
 }
 
 static void add_block_pairs(struct contact_tally *tally, enum contact_measure measure) {
@@ -263,12 +275,24 @@ struct estimate contact_tally_level(const struct contact_tally *tally, enum cont
                      contact_tally_scale(tally->one_case, measure, load));
 }
 
-struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
-                                    size_t model, size_t load) {
+static struct estimate model_mean(const struct contact_tally *tally, enum contact_measure measure,
+                                  size_t model, size_t level, size_t load) {
     if (model == contact_case_complete(tally->one_case))
         return (struct estimate){NAN, NAN};
-    return sums_mean(&tally->sums[SUMS_MODELS + measure], model_pair(tally->one_case, model, load),
+    return sums_mean(&tally->sums[SUMS_MODELS + measure],
+                     model_pair(tally->one_case, model, level, load),
                      contact_tally_scale(tally->one_case, measure, load));
+}
+
+struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
+                                    size_t model, size_t load) {
+    return model_mean(tally, measure, model, 0, load);
+}
+
+struct estimate contact_tally_model_level(const struct contact_tally *tally,
+                                          enum contact_measure measure, size_t model, size_t level,
+                                          size_t load) {
+    return model_mean(tally, measure, model, level, load);
 }
 
 struct estimate contact_tally_block(const struct contact_tally *tally, enum contact_measure measure,

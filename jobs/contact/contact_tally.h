@@ -22,8 +22,9 @@ struct contact_sums {
 enum {
     SUMS_LEVELS = MEASURE_COUNT,                /* a level less the next coarser one; by model,
                                                    level but the coarsest, and load */
-    SUMS_MODELS = SUMS_LEVELS + MEASURE_PAIRED, /* finest level: a model less the most complete
-                                                   one; by model and load */
+    SUMS_MODELS = SUMS_LEVELS + MEASURE_PAIRED, /* a model less the most complete one: on the
+                                                   finest level, and its changes between levels; by
+                                                   model, these and load */
     SUMS_BLOCKS = SUMS_MODELS + MEASURE_PAIRED, /* probe: a model's block less the half-space; by
                                                    model and load */
     SUMS_PROBE = SUMS_BLOCKS + MEASURE_PAIRED,  /* coarsest level of the control: that less the
@@ -80,11 +81,15 @@ double contact_tally_total(const struct contact_tally *tally, enum contact_measu
 uint64_t contact_tally_valueless(const struct contact_tally *tally, enum contact_measure measure,
                                  size_t cell);
 /* Means of the paired differences: of a level, not the coarsest one, less the next coarser; of a
- * model less the most complete one, for which it is NaN. */
+ * model less the most complete one, for which it is NaN, on the finest level; and the change of
+ * that from the next coarser level to a level, not the coarsest. */
 struct estimate contact_tally_level(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t level, size_t load);
 struct estimate contact_tally_model(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load);
+struct estimate contact_tally_model_level(const struct contact_tally *tally,
+                                          enum contact_measure measure, size_t model, size_t level,
+                                          size_t load);
 /* Likewise of the block of a model less the half-space, by the realisations that were probed. */
 struct estimate contact_tally_block(const struct contact_tally *tally, enum contact_measure measure,
                                     size_t model, size_t load);

@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_target.h"
 #include "jobs/contact/contact_case.h"
+#include "jobs/contact/contact_sum.h"
 #include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
@@ -12,10 +13,15 @@ enum {
     MESH_FIRST = 16,
     FINE_FIRST = 16,
     MODEL_FIRST = 8,
-    COMPONENTS_MOST = 7
+    MODEL_MESH_FIRST = 6,
+    COMPONENTS_MOST = 8
 };
-enum { LADDER_MOST = 5, LADDER_LEAST = 3, MODEL_LEVELS_MOST = 4 };
+enum { LADDER_MOST = 5, LADDER_LEAST = 3, FINEST_MOST = 4 };
 static const double COARSEST = 4; /* points a shortest wave, of meshes that are chosen */
+
+/* The share of the error asked for that the heights of a profile may take, and an area of light
+ * loads. */
+static const double HEIGHTS_MOST = 0.65, LIGHT_AREA = 0.05;
 
 /* What the study leaves to be chosen. */
 struct choices {
@@ -26,7 +32,7 @@ struct choices {
     bool own_grid; /* the surface depends on the grid that it is made on, which stays */
     double ladder[LADDER_MOST];
     size_t levels;
-    double length_ratio, fine_length_ratio, model_length_ratio;
+    double length_ratio, mesh_length_ratio, fine_length_ratio, model_length_ratio;
     double wavelength_ratio; /* in place of nayak_alpha, which gives another on each cell; or NaN */
 };
 
@@ -76,10 +82,10 @@ static int put_height(cJSON *parameters, const struct choices *choices,
     return put(parameters, "contact", "block_height", value);
 }
 
-/* An answer is within about a hundred times this of the exact one (contact_errors.c): a hundredth
- * of the error asked for. */
+/* An answer is within about a hundred times this of the exact one (contact_errors.c): a tenth of
+ * the error asked for, a hundredth of it in squares. */
 static double tolerance_of(const struct choices *choices) {
-    return fmax(1e-8, fmin(1e-4, 1e-4 * choices->target.error));
+    return fmax(1e-8, fmin(1e-4, 1e-3 * choices->target.error));
 }
 
 static cJSON *variant_parameters(const struct study_case *one, const struct choices *choices,
@@ -167,6 +173,16 @@ static void read_ladder(struct choices *out, const cJSON *document, const cJSON 
             out->ladder[out->levels++] = ldexp(points, -halvings);
 }
 
+/* The power of two that is nearest to the length whose heights (HEIGHTS_CELL) take most of the
+ * error at light loads; 0 where heights do not. */
+static double length_of_heights(const struct choices *choices, const cJSON *parameters) {
+    double ratio = json_number_at(parameters, "/surface/wavelength_ratio", (double)NAN);
+    if (!choices->profile || !choices->own_grid || isnan(ratio))
+        return 0;
+    double waves = HEIGHTS_CELL / (HEIGHTS_MOST * choices->target.error * sqrt(LIGHT_AREA));
+    return exp2(round(log2(waves / ratio)));
+}
+
 /* Cells that are chosen begin with a length that is often enough; four times as long ones follow
  * where the change to them asks for it. What is added to the value on them changes less with the
  * length, and costs more: shorter cells do for it. */
@@ -174,10 +190,11 @@ static void read_length(struct choices *out, const cJSON *document, const cJSON 
     size_t steps = steps_of(out->target.error);
     double usual = ldexp(out->profile ? 32 : 8, (int)(out->profile ? steps : steps / 2));
     out->length = json_at(document, "/surface/length_ratio") == NULL;
-    out->length_ratio =
-        out->length ? usual : json_number_at(parameters, "/surface/length_ratio", 8);
+    out->length_ratio = out->length ? fmax(usual, length_of_heights(out, parameters))
+                                    : json_number_at(parameters, "/surface/length_ratio", 8);
+    out->mesh_length_ratio = out->length_ratio > usual ? out->length_ratio / 4 : out->length_ratio;
     out->fine_length_ratio = fmin(out->length_ratio, out->profile ? 16 : 4);
-    out->model_length_ratio = fmin(out->length_ratio, out->profile ? 4 : 1);
+    out->model_length_ratio = fmin(out->length_ratio, out->profile ? ldexp(4, (int)steps) : 1);
 }
 
 /* Solves nayak_alpha on the cell of the base. */
@@ -241,29 +258,44 @@ static bool is_halfspace(const struct choices *choices) {
     return strcmp(choices->model, "halfspace") == 0 || (layers && choices->mesh && choices->height);
 }
 
+/* The model that is asked for less the cheap one: on a coarse mesh, which takes little; and what
+ * that changes to the limit, which scatters little and needs few surfaces. Of a named mesh, that
+ * one and the next coarser, to tell its error, together. In 3D, elements of a third level would
+ * take the time of all else. */
+static int add_models(struct study_case *one, const struct choices *choices) {
+    const double length = choices->model_length_ratio;
+    const size_t levels = choices->levels, named = levels > 1 ? 2 : 1;
+    const size_t count = choices->profile ? 3 : 2;
+    const size_t finest = !choices->profile ? count : levels < FINEST_MOST ? levels : FINEST_MOST;
+    const struct variant whole = {"model", MODEL_FIRST, 0.05, true, levels - named, named, length};
+    const struct variant coarse = {"model", MODEL_FIRST, 0.05, true, finest - count, 1, length};
+    const struct variant mesh = {"model_mesh",
+                                 MODEL_MESH_FIRST,
+                                 0.01,
+                                 true,
+                                 finest - count,
+                                 count,
+                                 fmax(length / 2, fmin(4, length))};
+    if (!choices->mesh)
+        return add(one, choices, &whole);
+    int status = add(one, choices, &mesh);
+    return status == 0 ? add(one, choices, &coarse) : status;
+}
+
 /* The dearest first, so that none of its jobs is left to the end of a round. */
 static int add_all(struct study_case *one, const struct choices *choices) {
     const size_t levels = choices->levels, pair = levels > 1 ? 2 : 1;
-    struct variant model = {
-        "model", MODEL_FIRST, 0.05, true, 0, levels, choices->model_length_ratio};
-    if (!choices->mesh) { /* the named level, and the next to tell its error */
-        model.first = levels - pair;
-        model.count = pair;
-    } else if (!choices->profile) { /* elements of a third level would take the time of all else */
-        model.count = pair;
-    } else if (levels > MODEL_LEVELS_MOST) {
-        model.count = MODEL_LEVELS_MOST;
-    }
     const struct variant fine = {
         "fine", FINE_FIRST, 0.01, false, 0, levels, choices->fine_length_ratio};
-    const struct variant mesh = {"mesh", MESH_FIRST, 0.1, false, 0, pair, choices->length_ratio};
+    const struct variant mesh = {
+        "mesh", MESH_FIRST, 0.1, false, 0, pair, choices->mesh_length_ratio};
     const struct variant cell = {"cell", CELL_FIRST, 0.3, false, 0, 1, choices->length_ratio / 4};
     const struct variant base = {"base", BASE_FIRST, 1, false, 0, 1, choices->length_ratio};
     const struct variant longer = {"longer", 0, 1, false, 0, 1, 4 * choices->length_ratio};
     const struct variant longest = {"longest", 0, 1, false, 0, 1, 16 * choices->length_ratio};
     int status = 0;
     if (!is_halfspace(choices))
-        status = add(one, choices, &model);
+        status = add_models(one, choices);
     if (status == 0 && levels > 2)
         status = add(one, choices, &fine);
     if (status == 0 && levels > 1)

@@ -39,7 +39,8 @@ static void allots_by_variance_and_cost(void **state) {
     const double base = 1, mesh = 1e-2, model = 1e-3, allowed = 0.01;
     struct target_part parts[] = {
         {16, 1, 1e-3, &base}, {8, 10, 1e-2, &mesh}, {8, 400, 0.4, &model}};
-    const struct target_plan plan = {&TARGET, 1, &allowed};
+    double multiplier;
+    const struct target_plan plan = {&TARGET, 1, &allowed, &multiplier};
     assert_true(rounds(&plan, 3, parts) > 1);
     const double z = 1.959964;
     double sum = sqrt(1.0 * 1) + sqrt(1e-2 * 10) + sqrt(1e-3 * 400);
@@ -56,7 +57,8 @@ static void meets_every_point(void **state) {
     (void)state;
     const double base[] = {1, 4, 1}, mesh[] = {0.3, 0.01, 7}, allowed[] = {0.05, 0.2, NAN};
     struct target_part parts[] = {{32, 1, 1, base}, {8, 5, 5, mesh}};
-    const struct target_plan plan = {&TARGET, 3, allowed};
+    double multipliers[3];
+    const struct target_plan plan = {&TARGET, 3, allowed, multipliers};
     rounds(&plan, 2, parts);
     for (size_t k = 0; k < 2; k++)
         assert_true(reached(2, parts, k) <= allowed[k]);
@@ -66,11 +68,35 @@ static void meets_every_point(void **state) {
     assert_int_equal(wanted[1], parts[1].done);
 }
 
+/* Two parts that are hard at points of their own need no more than each at its point: the work is
+ * that of a search over all numbers, and less than where each point is met by its worst parts. */
+static void takes_the_least_work(void **state) {
+    (void)state;
+    const double base[] = {1, 0.1}, mesh[] = {0.02, 0.5}, allowed[] = {0.1, 0.1};
+    const struct target_part parts[] = {{10, 1, 1, base}, {10, 3, 3, mesh}};
+    double multipliers[2], needed[2];
+    const struct target_plan plan = {&TARGET, 2, allowed, multipliers};
+    double work = target_least_work(&plan, 2, parts, needed), best = INFINITY;
+    const double z = 1.959964, scale = z * z / (0.1 * 0.1);
+    for (double n = 10; n < 4000; n *= 1.0005) {
+        double left =
+            fmin((1 - scale * base[0] / n) / mesh[0], (1 - scale * base[1] / n) / mesh[1]);
+        if (left > 0)
+            best = fmin(best, n - 10 + 3 * (fmax(10, scale / left) - 10));
+    }
+    check_relative(work, best, 2e-3);
+    double separate = sqrt(1.0) + sqrt(0.5 * 3);
+    assert_true(work < 0.8 * scale * separate * separate);
+    for (size_t k = 0; k < 2; k++)
+        assert_true(scale * (base[k] / needed[0] + mesh[k] / needed[1]) < 1.001);
+}
+
 static void is_the_same_each_time(void **state) {
     (void)state;
     const double base = 1, mesh = 1e-2, allowed = 0.01;
     const struct target_part parts[] = {{100, 3, 1, &base}, {9, 17, 1, &mesh}};
-    const struct target_plan plan = {&TARGET, 1, &allowed};
+    double multiplier;
+    const struct target_plan plan = {&TARGET, 1, &allowed, &multiplier};
     uint64_t first[2], again[2];
     target_allot(&plan, 2, parts, first);
     target_allot(&plan, 2, parts, again);
@@ -96,7 +122,8 @@ static void keeps_within_the_time(void **state) {
     struct target target = TARGET;
     target.max_seconds = 500;
     struct target_part part = {100, 1, 2, &base};
-    const struct target_plan plan = {&target, 1, &allowed};
+    double multiplier;
+    const struct target_plan plan = {&target, 1, &allowed, &multiplier};
     rounds(&plan, 1, &part);
     assert_true(2 * (double)part.done <= 500 && part.done >= 240);
 }
@@ -138,12 +165,17 @@ static void chooses_what_is_left_out(void **state) {
     struct study *study = read_study("", "", "\"full\"", "", &faults);
     assert_non_null(study);
     assert_int_equal(study->realisations, 0);
-    assert_int_equal(study->cases[0].component_count, 7);
+    assert_int_equal(study->cases[0].component_count, 8);
     const struct study_case *base = component(study, "base"), *cell = component(study, "cell");
     double length = number_at(base, "/surface/length_ratio");
     assert_true(length >= 8);
     check_close(number_at(cell, "/surface/length_ratio"), length / 4, 0);
     check_close(number_at(component(study, "longer"), "/surface/length_ratio"), 4 * length, 0);
+    const cJSON *coarse = json_at(component(study, "model")->parameters, "/contact/levels");
+    const cJSON *mesh = json_at(component(study, "model_mesh")->parameters, "/contact/levels");
+    assert_int_equal(cJSON_GetArraySize(coarse), 1);
+    assert_int_equal(cJSON_GetArraySize(mesh), 3);
+    check_close(coarse->child->valuedouble, mesh->child->valuedouble, 0);
     assert_true(isnan(number_at(&study->cases[0], "/surface/length_ratio")));
     assert_int_equal(
         cJSON_GetArraySize(json_at(component(study, "model")->parameters, "/contact/model")), 2);
@@ -195,6 +227,7 @@ static void keeps_what_is_named(void **state) {
                    ",\"levels\":[8],\"tolerance\":1e-6,\"block_height\":{\"lengths\":2}", &faults);
     assert_non_null(study);
     assert_null(component(study, "cell"));
+    assert_null(component(study, "model_mesh"));
     const struct study_case *base = component(study, "base"), *model = component(study, "model");
     check_close(number_at(base, "/surface/length_ratio"), 6, 0);
     check_close(number_at(base, "/contact/tolerance"), 1e-6, 0);
@@ -244,6 +277,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(allots_by_variance_and_cost),
         cmocka_unit_test(meets_every_point),
+        cmocka_unit_test(takes_the_least_work),
         cmocka_unit_test(is_the_same_each_time),
         cmocka_unit_test(distrusts_few_realisations),
         cmocka_unit_test(keeps_within_the_time),
