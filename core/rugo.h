@@ -221,7 +221,7 @@ enum rugo_trend { RUGO_MEAN, RUGO_PLANE, RUGO_QUADRATIC };
 RUGO_API int rugo_detrend(const struct rugo_grid *grid, double *z, enum rugo_trend trend,
                           struct rugo_error *err);
 /* How rough the seam would be, did the map repeat, over the roughest place inside, the larger one
- * of both axes: above 1 it does not repeat. Infinite where nothing can be compared. */
+ * of both axes: above 1.2 it does not repeat. Infinite where nothing can be compared. */
 RUGO_API int rugo_seam(const struct rugo_grid *grid, const double *z, double *seam,
                        struct rugo_error *err);
 /* As rugo_roughness; NaN where the map does not tell. */

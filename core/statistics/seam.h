@@ -3,14 +3,19 @@
 #define RUGO_CORE_STATISTICS_SEAM_H
 
 #include "core/surface/grid.h"
+#include <stdbool.h>
 
 /* How rough the seams are, across x and across y, over the roughest place inside (FORMULAS.md,
- * F18.3): above 1 the map does not repeat. Infinite where nothing can be compared: fewer than
- * SEAM_POINTS points, holes along the seam, a flat inside with a step at the seam; 0 for a flat
- * map, and across y for a profile. */
+ * F18.3). Infinite where nothing can be compared: fewer than SEAM_POINTS points, holes along the
+ * seam, a flat inside with a step at the seam; 0 for a flat map, and across y for a profile. */
 struct seam {
     double x, y;
 };
+/* In maps that repeat the seam is the roughest place by chance, but hardly by as much as this. */
+#define SEAM_LIMIT 1.2
+static inline bool seam_is_rough(const struct seam *seam) {
+    return !(seam->x <= SEAM_LIMIT && seam->y <= SEAM_LIMIT);
+}
 enum { SEAM_POINTS = 9 };
 /* ERROR_MEMORY alone. */
 int seam_measure(const struct grid *grid, const double *z, struct seam *out, struct error *err);

@@ -213,7 +213,7 @@ static int prepare_map(struct height_map *map, const struct press_order *order, 
         status = seam_measure(&map->grid, map->z, &seam, err);
     if (status != 0)
         return error_context(err, "%s", order->path);
-    if (seam.x > 1 || seam.y > 1)
+    if (seam_is_rough(&seam))
         fprintf(
             stderr,
             "rugo press: warning: %s: contact takes the map as periodic, and its seam is rougher "

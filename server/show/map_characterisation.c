@@ -32,7 +32,7 @@ static int check_request(const struct height_map *map, const struct map_request 
 }
 
 static void choose_boundary(struct decision *decision, int request) {
-    bool rough = !(decision->seam.x <= 1 && decision->seam.y <= 1);
+    bool rough = seam_is_rough(&decision->seam);
     bool open =
         request == BOUNDARY_AS_OPEN || (request == BOUNDARY_AUTO && (rough || decision->holes > 0));
     decision->boundary = open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC;

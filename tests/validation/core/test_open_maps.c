@@ -149,7 +149,7 @@ static void piece_measure(double *piece, double *values) {
     struct seam seam;
     double searched;
     assert_int_equal(seam_measure(&PART, piece, &seam, NULL), 0);
-    assert_true(seam.x > 1 && seam.y > 1);
+    assert_true(seam.x > SEAM_LIMIT && seam.y > SEAM_LIMIT);
     assert_int_equal(detrend(&PART, piece, DETREND_PLANE, &trend, NULL), 0);
     assert_int_equal(local_moments_measure(&map, &moments, NULL), 0);
     assert_int_equal(open_summits_find(&map, SUMMITS_REFINED, &list, &searched, NULL), 0);
