@@ -216,12 +216,22 @@ static void ring_means(const struct grid *grid, const double *field, double *cou
     }
 }
 
+int ring_average(const struct grid *grid, const double *field, double *lag, double *mean,
+                 struct error *err) {
+    size_t lags = grid->nx / 2 + 1;
+    double *counts = array_create(lags, sizeof *counts);
+    if (counts == NULL)
+        return error_memory(err, lags * sizeof *counts, "rings of lags");
+    ring_means(grid, field, counts, lag, mean);
+    free(counts);
+    return 0;
+}
+
 int acf_of_modes(const struct modes *modes, double *lag, double *correlation, struct error *err) {
     const struct grid *grid = &modes->grid;
     struct transform *transform = NULL;
     double *field = array_create(grid_points(grid), sizeof *field);
-    double *counts = array_create(grid->nx / 2 + 1, sizeof *counts);
-    int status = field != NULL && counts != NULL
+    int status = field != NULL
                      ? 0
                      : error_memory(err, grid_points(grid) * sizeof *field, "an autocorrelation");
     if (status == 0)
@@ -234,11 +244,10 @@ int acf_of_modes(const struct modes *modes, double *lag, double *correlation, st
                 *mode = labs(my) <= (long)modes->mode_y ? modes_power(modes, mx, my) : 0;
             }
         transform_inverse(transform, field);
-        ring_means(grid, field, counts, lag, correlation);
+        status = ring_average(grid, field, lag, correlation, err);
     }
     transform_destroy(&transform);
     free(field);
-    free(counts);
     return status;
 }
 

@@ -34,6 +34,9 @@ void psd_of_modes(const struct modes *modes, double *wave_number, double *densit
  * for surfaces. */
 int acf_measure(const struct grid *grid, const double *z, double *lag, double *correlation,
                 struct error *err);
+/* Means of a field over the same rings, over its value at the origin, about which it is even. */
+int ring_average(const struct grid *grid, const double *field, double *lag, double *mean,
+                 struct error *err);
 int acf_of_modes(const struct modes *modes, double *lag, double *correlation, struct error *err);
 
 #endif

@@ -1,5 +1,6 @@
 #include "core/surface/spectrum.h"
 #include "core/sum.h"
+#include "core/surface/spectrum_exponential.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -77,13 +78,6 @@ static double self_affine_density(const struct spectrum *s, bool profile, double
     return pow(relative, profile ? -1 - 2 * s->hurst : -2 * (s->hurst + 1));
 }
 
-/* Returns the unscaled density of the exponential autocorrelation (F2.2). */
-static double exponential_density(const struct spectrum *s, bool profile, double kx, double ky) {
-    double x = kx * s->correlation_x, y = profile ? 0 : ky * s->correlation_y;
-    double base = 1 + x * x + y * y;
-    return profile ? 1 / base : 1 / (base * sqrt(base));
-}
-
 /* Interpolates between logarithms, or linearly where an end of the interval is zero. */
 static double table_density(const struct spectrum *s, double k) {
     const double *x = s->table_wave_number, *y = s->table_density;
@@ -109,7 +103,7 @@ static double density(const struct spectrum *s, bool profile, double kx, double 
     case SPECTRUM_SELF_AFFINE:
         return self_affine_density(s, profile, k / (2 * M_PI));
     case SPECTRUM_EXPONENTIAL_ACF:
-        return exponential_density(s, profile, kx, ky);
+        return 0; /* exponential_fill */
     case SPECTRUM_TABLE:
         return table_density(s, k);
     }
@@ -191,10 +185,12 @@ int modes_create(struct modes **out, const struct spectrum *spectrum, const stru
         if (modes->power == NULL)
             status = error_memory(err, count * sizeof *modes->power, "a discrete spectrum");
     }
-    if (status == 0) {
+    if (status == 0 && spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
+        status = exponential_fill(modes, spectrum, err);
+    else if (status == 0)
         modes_fill(modes, spectrum);
+    if (status == 0)
         status = modes_scale(modes, spectrum, err);
-    }
     if (status != 0) {
         modes_destroy(&modes);
         return status;
@@ -253,4 +249,11 @@ void modes_moments(const struct modes *modes, struct moments *out) {
     out->rms_height = sqrt(m[0]);
     out->rms_slope = sqrt(m[1] + m[2]);
     out->rms_curvature = profile ? sqrt(m[5]) : sqrt((m[5] + 2 * m[4] + m[6]) / 4);
+}
+
+bool moments_isotropic(const struct moments *moments) {
+    static const double MARGIN = 0.25;
+    return fabs(3 * moments->m22 / moments->m4 - 1) <= MARGIN &&
+           fabs(moments->m20 / moments->m02 - 1) <= MARGIN &&
+           fabs(moments->m40 / moments->m04 - 1) <= MARGIN;
 }

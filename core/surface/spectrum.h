@@ -20,8 +20,8 @@ struct spectrum {
      * <= |m| <= lx/short includes both edges, with a relative guard of 1e-9 against rounding */
     double hurst; /* [0, 1] */
     double wavelength_long, wavelength_rolloff, wavelength_short;
-    /* exponential autocorrelation exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (F2.2); it has no band limit
-     * and fills the grid */
+    /* exponential autocorrelation exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (F2.2), as it is at the points
+     * of the grid; it has no band limit and fills the grid */
     double correlation_x, correlation_y;
     /* table: isotropic density of any scale at rising |k|, interpolated in logarithms, 0 outside;
      * borrowed */
@@ -40,6 +40,7 @@ struct modes {
     size_t mode_x, mode_y; /* highest wave number present (mode_y = 0 for a profile) */
     double *power;         /* owned, (mode_x + 1) x (2 mode_y + 1) */
     size_t count;          /* non-null modes of the full plane */
+    double clipped; /* share of the power that was left out as negative: exponential_acf alone */
 };
 
 /* Samples the spectrum on the grid and scales it. ERROR_INPUT when the spectrum is out of range,
@@ -66,6 +67,10 @@ struct moments {
     double nayak_alpha;                          /* m0 m4 / m2^2 (F2.4) */
     double rms_height, rms_slope, rms_curvature; /* F1.2 */
 };
+/* Whether moments are those of an isotropic surface, which has m20 = m02 and 3 m22 = m40 = m04,
+ * within a quarter: a lattice of four or twelve modes has not, one of forty has. False for
+ * profiles. */
+bool moments_isotropic(const struct moments *moments);
 /* Sums pairwise or compensated, with a relative error of about 1e-15. */
 void modes_moments(const struct modes *modes, struct moments *out);
 

@@ -1,4 +1,5 @@
 #include "core/theory/summit_integrand.h"
+#include <float.h>
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <string.h>
@@ -100,7 +101,8 @@ static double between(double low, double high, double u, double *weight) {
         return 0;
     }
     *weight *= share;
-    double y = gsl_cdf_ugaussian_Pinv(below + u * share);
+    /* kept where the quantile is finite */
+    double y = gsl_cdf_ugaussian_Pinv(fmin(fmax(below + u * share, DBL_MIN), 1 - 0x1p-53));
     return upper ? -y : y;
 }
 

@@ -11,11 +11,10 @@ static bool is_one_wave(const struct contact_case *one_case, const struct modes 
 
 /* Returns whether theories of Gaussian isotropic asperities apply. */
 static bool has_asperities(const struct contact_case *one_case, const struct moments *moments) {
-    const struct spectrum *spectrum = &one_case->surface.spectrum;
     return one_case->surface.dimension == 2 && moments->nayak_alpha > 1.5 &&
            one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN &&
-           (spectrum->type != SPECTRUM_EXPONENTIAL_ACF ||
-            spectrum->correlation_x == spectrum->correlation_y);
+           one_case->surface.spectrum.type != SPECTRUM_EXPONENTIAL_ACF && /* no finite moments */
+           moments_isotropic(moments);
 }
 
 /* p/p* of the wave sqrt(2 m0) cos: its RMS slope is pi sqrt(2) amplitude/wavelength, and

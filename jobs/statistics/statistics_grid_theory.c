@@ -72,6 +72,28 @@ static void set_summits(const struct statistics_case *one_case,
     set_scalar(out, SCALAR_SUMMIT_CURVATURE_MEAN, summits->curvature);
 }
 
+static int add_scalar(struct case_result *out, const char *name, double value, double theory,
+                      double grid, struct error *err) {
+    struct scalar scalar = scalar_named(name, value, 0, theory);
+    scalar.grid = grid;
+    return result_add_scalar(out, &scalar, err);
+}
+
+/* What is known of the spectrum alone: how isotropic its moments are (1: isotropic), of an
+ * exponential autocorrelation what share of it no surface can have. */
+static int add_spectrum(const struct statistics_case *one_case, const struct surface_basis *basis,
+                        struct case_result *out, struct error *err) {
+    struct sampled_moments grid;
+    const struct moments *m = &basis->moments;
+    int status = 0;
+    sampled_moments(basis->modes, &grid);
+    if (one_case->surface.dimension == 2)
+        status = add_scalar(out, "isotropy", 3 * m->m22 / m->m4, 1, grid.isotropy, err);
+    if (status == 0 && one_case->surface.spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
+        status = add_scalar(out, "spectrum_clipped", basis->modes->clipped, NAN, NAN, err);
+    return status;
+}
+
 /* Moments by differences are those of the spectrum whatever the heights. */
 static void set_moments(const struct statistics_case *one_case, const struct modes *modes,
                         struct case_result *out) {
@@ -91,9 +113,10 @@ int statistics_grid_theory(const struct statistics_case *one_case,
                            struct error *err) {
     struct sampled_summits summits;
     set_moments(one_case, basis->modes, out);
-    if (!applies_to_summits(one_case))
-        return 0;
-    int status = add_curves(one_case, basis, &summits, out, err);
+    int status = add_spectrum(one_case, basis, out, err);
+    if (status != 0 || !applies_to_summits(one_case))
+        return status;
+    status = add_curves(one_case, basis, &summits, out, err);
     if (status == 0)
         set_summits(one_case, &summits, out);
     return status;

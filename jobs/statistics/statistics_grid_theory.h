@@ -1,6 +1,7 @@
 /* Theory of the grid in use (F8.4, F8.5) beside theory without a grid: the series "grid" of curves
- * of summits, and `grid` of scalars. Of summits it is of Gaussian heights alone; refined summits
- * need none. */
+ * of summits, and `grid` of scalars, among them `isotropy` (3 m22/m40) and `spectrum_clipped`,
+ * which are of the spectrum alone. Of summits it is of Gaussian heights alone; refined summits need
+ * none. */
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_GRID_THEORY_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_GRID_THEORY_H
 

@@ -1,4 +1,5 @@
 #include "jobs/statistics/statistics_spectra.h"
+#include "core/statistics/prescribed.h"
 #include "core/statistics/roughness.h"
 #include <math.h>
 #include <stdlib.h>
@@ -84,10 +85,9 @@ static int columns_create(struct case_result *result, struct spectrum_columns *o
     return 0;
 }
 
-static int add_curve(struct case_result *result, struct curve *curve, bool exact,
-                     const double *theory, struct error *err) {
-    if (!exact)
-        curve->theories[curve->theory_count++] = (struct theory){"prescribed", theory};
+static int add_curve(struct case_result *result, struct curve *curve, const double *theory,
+                     struct error *err) {
+    curve->theories[curve->theory_count++] = (struct theory){"prescribed", theory};
     return result_add_curve(result, curve, err);
 }
 
@@ -103,11 +103,14 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
         status = columns_create(result, &reference, n, err);
     if (status != 0)
         return status;
-    psd_of_modes(modes, columns.x, columns.theory);
+    psd_of_modes(modes, reference.x, reference.theory);
     psd_of_modes(modes, reference.x, reference.y);
     reference_of(n, reference.y);
+    status = psd_prescribed(&one_case->surface.spectrum, modes, columns.x, columns.theory, err);
+    if (status != 0)
+        return status;
     for (size_t a = 0; a < n; a++) {
-        struct estimate estimate = {columns.theory[a], 0};
+        struct estimate estimate = {reference.theory[a], 0};
         if (!exact) {
             estimate = tally_sums_mean(&tally->density, a, tally->points.realisations);
             estimate.value *= reference.y[a];
@@ -120,7 +123,7 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
         last--;
     /* ring 0 is the mean height */
     curve_set_points(&curve, last, columns.x + 1, columns.y + 1, columns.standard_error + 1);
-    return add_curve(result, &curve, exact, columns.theory + 1, err);
+    return add_curve(result, &curve, columns.theory + 1, err);
 }
 
 static size_t correlation_side(const struct statistics_case *one_case) {
@@ -130,7 +133,8 @@ static size_t correlation_side(const struct statistics_case *one_case) {
     return needed > ACF_GRID ? needed : ACF_GRID;
 }
 
-/* Computes the prescribed autocorrelation at *n lags. */
+/* Computes the autocorrelation at *n lags: y is that of the discrete spectrum, theory what it was
+ * made from. */
 static int prescribed_correlation(const struct statistics_case *one_case, const struct modes *modes,
                                   struct case_result *result, struct spectrum_columns *out,
                                   size_t *n, struct error *err) {
@@ -147,7 +151,9 @@ static int prescribed_correlation(const struct statistics_case *one_case, const 
     if (status == 0)
         status = columns_create(result, out, *n, err);
     if (status == 0)
-        status = acf_of_modes(modes, out->x, out->theory, err);
+        status = acf_of_modes(modes, out->x, out->y, err);
+    if (status == 0)
+        status = acf_prescribed(&one_case->surface.spectrum, modes, out->x, out->theory, err);
     modes_destroy(&coarse);
     return status;
 }
@@ -163,14 +169,14 @@ static int correlation_curve(const struct statistics_case *one_case, const struc
     if (status != 0)
         return status;
     for (size_t a = 0; a < n; a++) {
-        struct estimate estimate = {columns.theory[a], 0};
+        struct estimate estimate = {columns.y[a], 0};
         if (!exact)
             estimate = tally_sums_mean(&tally->correlation, a, tally->points.realisations);
         columns.y[a] = estimate.value;
         columns.standard_error[a] = estimate.standard_error;
     }
     curve_set_points(&curve, n, columns.x, columns.y, columns.standard_error);
-    return add_curve(result, &curve, exact, columns.theory, err);
+    return add_curve(result, &curve, columns.theory, err);
 }
 
 int spectra_curves(const struct statistics_case *one_case, const struct modes *modes,

@@ -4,8 +4,8 @@
 
 #include "jobs/statistics/statistics_case.h"
 
-/* Returns whether summit theory applies: an isotropic spectrum with alpha above 3/2 (profiles: 1).
- */
+/* Returns whether theory of summits without a grid applies: an isotropic spectrum of finite moments
+ * with alpha above 3/2 (profiles: 1). */
 bool statistics_theory_applies(const struct statistics_case *one_case,
                                const struct moments *moments);
 /* Returns its name: "nayak", and for profiles "longuet_higgins" (Cartwright & Longuet-Higgins

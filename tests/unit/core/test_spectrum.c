@@ -1,6 +1,7 @@
 /* Protects: discrete spectra and their moments, the Nayak parameter and its inverses, and the words
  * for input that is out of range. */
 #include "core/surface/spectrum.h"
+#include "core/surface/spectrum_exponential.h"
 #include "tests/support/check.h"
 #include <string.h>
 
@@ -86,10 +87,27 @@ static void alpha_out_of_reach(void **state) {
                      ERROR_NUMERIC);
 }
 
-/* The modes of an exponential autocorrelation fill the grid and have its anisotropy. */
+/* Autocorrelation of the modes at the lag (i dx, j dy), over that at 0. */
+static double correlation_of(const struct modes *modes, size_t i, size_t j) {
+    const struct grid *grid = &modes->grid;
+    double sum = 0, all = 0;
+    for (size_t mx = 0; mx <= modes->mode_x; mx++)
+        for (long my = -(long)modes->mode_y; my <= (long)modes->mode_y; my++) {
+            double power = modes_power(modes, mx, my) * modes_weight(grid, mx);
+            double phase =
+                2 * M_PI *
+                ((double)(mx * i) / (double)grid->nx + (double)my * (double)j / (double)grid->ny);
+            sum += power * cos(phase);
+            all += power;
+        }
+    return sum / all;
+}
+
+/* The modes of an exponential autocorrelation have it at every point of a coarse grid, less its
+ * mean over the cell, since heights have the mean 0. */
 static void exponential_spectrum(void **state) {
     (void)state;
-    struct grid grid = {128, 64, 40, 20};
+    struct grid grid = {64, 48, 40, 20};
     struct spectrum spectrum = {.type = SPECTRUM_EXPONENTIAL_ACF,
                                 .correlation_x = 2,
                                 .correlation_y = 0.5,
@@ -98,15 +116,40 @@ static void exponential_spectrum(void **state) {
     struct modes *modes = NULL;
     struct moments moments;
     assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
-    assert_int_equal(modes->mode_x, 64);
-    assert_int_equal(modes->count, 128 * 64 - 1);
-    double kx = 2 * M_PI * 3 / 40, ky = 2 * M_PI * 5 / 20;
-    double expected = pow((1 + 4 * kx * kx) / (1 + 4 * kx * kx + 0.25 * ky * ky), 1.5);
-    check_relative(modes_power(modes, 3, -5) / modes_power(modes, 3, 0), expected, 1e-13);
+    assert_int_equal(modes->mode_x, 32);
+    assert_true(modes->count <= 64 * 48 - 1 && modes->count > 64 * 47);
+    assert_true(modes->clipped >= 0 && modes->clipped < 1e-6);
+    double mean = 0;
+    for (size_t j = 0; j < 48; j++)
+        for (size_t i = 0; i < 64; i++)
+            mean += exponential_correlation(&spectrum, &grid, i, j) / (64 * 48);
+    for (size_t j = 0; j <= 24; j += 3)
+        for (size_t i = 0; i <= 32; i += 4) {
+            double x = (double)i * 0.625 / 2, y = (double)j * 20 / 48 / 0.5;
+            double expected = (exp(-hypot(x, y)) - mean) / (1 - mean);
+            check_close(correlation_of(modes, i, j), expected, 4 * modes->clipped + 1e-12);
+        }
     modes_moments(modes, &moments);
     check_relative(moments.rms_height, 3, 1e-14);
     assert_true(moments.m02 > moments.m20);
     modes_destroy(&modes);
+}
+
+/* Where the cell is short, no surface has the autocorrelation: what is left out is told. */
+static void short_cells_are_clipped(void **state) {
+    (void)state;
+    struct spectrum spectrum = {
+        .type = SPECTRUM_EXPONENTIAL_ACF, .correlation_x = 1, .correlation_y = 1};
+    double before = 0;
+    for (double side = 16; side >= 2; side /= 2) {
+        struct grid grid = {32, 32, side, side};
+        struct modes *modes = NULL;
+        assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
+        assert_true(modes->clipped >= before && modes->clipped < 0.1);
+        before = modes->clipped;
+        modes_destroy(&modes);
+    }
+    assert_true(before > 1e-4);
 }
 
 static void table_spectrum(void **state) {
@@ -189,9 +232,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(discrete_alpha),        cmocka_unit_test(continuous_alpha),
         cmocka_unit_test(ratios_of_given_alpha), cmocka_unit_test(alpha_out_of_reach),
-        cmocka_unit_test(exponential_spectrum),  cmocka_unit_test(table_spectrum),
-        cmocka_unit_test(scale_by_slope),        cmocka_unit_test(units_do_not_matter),
-        cmocka_unit_test(wrong_input_is_named),
+        cmocka_unit_test(exponential_spectrum),  cmocka_unit_test(short_cells_are_clipped),
+        cmocka_unit_test(table_spectrum),        cmocka_unit_test(scale_by_slope),
+        cmocka_unit_test(units_do_not_matter),   cmocka_unit_test(wrong_input_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

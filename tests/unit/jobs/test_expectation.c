@@ -17,6 +17,10 @@ static const char WEIBULL[] =
     " {\"distribution\": \"weibull_max\", \"shape\": 1}}}";
 static const char CONTACT[] = "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 8},"
                               " \"contact\": {\"model\": \"halfspace\"}}";
+static const char EXPONENTIAL[] =
+    "{\"surface\": {\"wavelength_ratio\": 4, \"points_per_wavelength\": 4, \"spectrum\":"
+    " {\"type\": \"exponential_acf\", \"length\": [2]}}}";
+static const char LATTICE[] = "{\"surface\": {\"hurst\": 0.5, \"wavelength_ratio\": 1}}";
 static const char REFINED[] =
     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 8}, \"statistics\": {\"summits\":"
     " \"refined\"}}";
@@ -127,6 +131,42 @@ static void only_what_theory_tells(void **state) {
     result_clear(&weibull);
 }
 
+/* An exponential autocorrelation is there at every lag, less the mean of the cell; its moments
+ * diverge, and a lattice of four modes is not isotropic: neither has Nayak's theory. */
+static void theory_knows_its_limits(void **state) {
+    (void)state;
+    struct case_result exponential = expect(EXPONENTIAL, false), lattice = expect(LATTICE, false);
+    const struct curve *acf = result_curve(&exponential, "acf");
+    assert_string_equal(acf->theories[0].name, "prescribed");
+    const double *prescribed = acf->theories[0].y;
+    assert_true(scalar(&exponential, "spectrum_clipped")->value < 1e-9);
+    double mean = (prescribed[1] - acf->y[1]) / (1 - acf->y[1]);
+    assert_true(mean > 0 && mean < 0.05);
+    for (size_t a = 0; a < acf->n; a++)
+        check_close(acf->y[a], (prescribed[a] - mean) / (1 - mean), 1e-9);
+    /* Rings are a point spacing wide: their mean is near the value at their middle. */
+    for (size_t a = 4; a < acf->n; a++)
+        check_close(prescribed[a], exp(-acf->x[a] / 2), 0.012);
+    const struct curve *psd = result_curve(&exponential, "psd");
+    check_relative(psd->y[0], psd->theories[0].y[0], 0.03); /* long waves: no alias there */
+    assert_true(psd->y[psd->n / 2] > 1.05 * psd->theories[0].y[psd->n / 2]);
+    assert_null(series(&exponential, "summit_height_pdf", "nayak"));
+    assert_non_null(series(&exponential, "summit_height_pdf", "grid"));
+    assert_null(series(&lattice, "summit_height_pdf", "nayak"));
+    assert_non_null(series(&lattice, "summit_height_pdf", "grid"));
+    check_close(scalar(&lattice, "isotropy")->value, 0, 1e-12);
+    result_clear(&lattice);
+    result_clear(&exponential);
+    struct case_result surface = expect(SURFACE, false);
+    check_close(scalar(&surface, "isotropy")->value, 1, 5e-3);
+    psd = result_curve(&surface, "psd");
+    size_t within = 0; /* of the self-affine law, all rings within the band are near it */
+    for (size_t a = 0; a + 4 < psd->n; a++)
+        within += fabs(psd->y[a] / psd->theories[0].y[a] - 1) < 0.1;
+    assert_true(within > psd->n / 2);
+    result_clear(&surface);
+}
+
 static void faults_are_told(void **state) {
     (void)state;
     struct case_result out = {0};
@@ -143,6 +183,7 @@ int main(void) {
         cmocka_unit_test(alpha_is_that_of_the_table),
         cmocka_unit_test(results_have_the_same_theories),
         cmocka_unit_test(only_what_theory_tells),
+        cmocka_unit_test(theory_knows_its_limits),
         cmocka_unit_test(faults_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
