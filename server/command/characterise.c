@@ -14,9 +14,9 @@ struct characterise_options {
 static const struct option_row OPTIONS[] = {
     {"dx", 0, OPTION_NUMBER, 0, 0, AT(dx), "D", NULL, MAP_SPACING_HELP},
     {"boundary", 0, OPTION_CHOICE, 0, 0, AT(request.boundary), MAP_BOUNDARIES, "auto",
-     "whether the map repeats (where its seam is no rougher than its inside)"},
+     "whether the map repeats; auto: where its seam is no rougher than its inside"},
     {"detrend", 0, OPTION_CHOICE, 0, 0, AT(request.detrend), MAP_DETRENDS, "auto",
-     "taken out first (a plane, of an open map)"},
+     "trend taken out first; auto: a plane, of an open map"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
     {0}};
 

@@ -39,7 +39,7 @@ static const struct option_row OPTIONS[] = {
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
      "height of the block in lengths of the map (infinite; layered 1.5)"},
     {"detrend", 0, OPTION_CHOICE, 0, 0, AT(detrend), DETRENDS, "none",
-     "taken out of the map first"},
+     "trend taken out of the map first"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
     {"output", 'o', OPTION_TEXT, 0, 0, AT(output), "FILE", NULL,
      "write the pressures p/(E* h') of the last load there, as a map"},

@@ -107,7 +107,7 @@ static const struct summit *nearest(const struct summit_list *list, double x, do
 
 /* Refined summits of a piece, against those of the whole in the places that are searched: each is
  * found, once, at the same place, with its height and curvature. Heights are about 1, curvatures
- * about 1, too, and the tolerances are ten times the bounds of local_wave.h and of refined.h. */
+ * about 6; measured: within 4e-8 and 5e-5. */
 static void refined_summits_are_those_of_the_whole(void **state) {
     (void)state;
     for (int profile = 0; profile < 2; profile++) {
@@ -138,8 +138,8 @@ static void refined_summits_are_those_of_the_whole(void **state) {
             assert_non_null(match);
             check_close(match->x, all.summits[s].x - x0, 1e-3 * dx);
             check_close(match->y, all.summits[s].y - y0, 1e-3 * dx);
-            check_close(match->height, all.summits[s].height, 1e-5);
-            check_close(match->curvature, all.summits[s].curvature, 1e-3);
+            check_close(match->height, all.summits[s].height, 1e-6);
+            check_close(match->curvature, all.summits[s].curvature, 5e-4);
         }
         assert_int_equal(found.count, expected);
         assert_true(expected > (profile == 1 ? 7 : 35));
