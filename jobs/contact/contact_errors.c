@@ -94,13 +94,11 @@ static void spread_bounds(const struct contact_tally *tally, enum contact_measur
     }
 }
 
-static bool mesh_errors(const struct contact_tally *tally, enum contact_measure measure,
-                        size_t model, struct contact_error *out) {
-    const struct contact_case *one_case = tally->one_case;
-    if (one_case->level_count < 2)
-        return false;
-    for (size_t k = 0; k < one_case->load_count; k++) {
-        struct level_changes changes = changes_of(tally, measure, model, k, contact_tally_level);
+/* What the finest level errs by, from its change and the one before, at every load. */
+static void limit_errors(const struct contact_tally *tally, enum contact_measure measure,
+                         size_t model, change_at *change, struct contact_error *out) {
+    for (size_t k = 0; k < tally->one_case->load_count; k++) {
+        struct level_changes changes = changes_of(tally, measure, model, k, change);
         struct mesh_error error = mesh_error(&changes.of, known_order(measure));
         out[k] = (struct contact_error){.value = isnan(error.bound) ? (double)NAN : error.error,
                                         .bound = error.bound,
@@ -108,27 +106,26 @@ static bool mesh_errors(const struct contact_tally *tally, enum contact_measure 
                                         .order = error.order};
     }
     spread_bounds(tally, measure, model, out);
+}
+
+static bool mesh_errors(const struct contact_tally *tally, enum contact_measure measure,
+                        size_t model, struct contact_error *out) {
+    if (tally->one_case->level_count < 2)
+        return false;
+    limit_errors(tally, measure, model, contact_tally_level, out);
     return true;
 }
 
 /* --- the model --- */
 
-/* The limit of the levels for a difference of models which is `from` on the finest one. */
-static struct contact_error difference_limit(const struct contact_tally *tally,
-                                             enum contact_measure measure, size_t model,
-                                             size_t load, struct estimate from) {
-    struct level_changes changes =
-        changes_of(tally, measure, model, load, contact_tally_model_level);
-    struct mesh_error mesh = mesh_error(&changes.of, known_order(measure));
-    return (struct contact_error){
-        .value = isnan(mesh.bound) ? (double)NAN : from.value - mesh.error,
-        .bound = mesh.bound,
-        .standard_error = hypot(from.standard_error, mesh.weight * changes.standard_error),
-        .order = mesh.order};
-}
-
 static bool has_difference(const struct contact_tally *tally, size_t model) {
     return model != contact_case_complete(tally->one_case) && tally->one_case->level_count > 1;
+}
+
+/* The limit is what a difference is on the finest level less what that errs by. */
+static void take_limit(struct estimate difference, struct contact_error *error) {
+    error->value = difference.value - error->value;
+    error->standard_error = hypot(difference.standard_error, error->standard_error);
 }
 
 /* The difference in the limit of the levels: it holds none of the meshes' own errors, but a bound
@@ -137,10 +134,9 @@ static bool model_errors(const struct contact_tally *tally, enum contact_measure
                          size_t model, struct contact_error *out) {
     if (!has_difference(tally, model))
         return false;
+    limit_errors(tally, measure, model, contact_tally_model_level, out);
     for (size_t k = 0; k < tally->one_case->load_count; k++)
-        out[k] = difference_limit(tally, measure, model, k,
-                                  contact_tally_model(tally, measure, model, k));
-    spread_bounds(tally, measure, model, out);
+        take_limit(contact_tally_model(tally, measure, model, k), &out[k]);
     return true;
 }
 
@@ -149,6 +145,7 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
     const struct contact_case *one_case = tally->one_case;
     if (!has_difference(tally, model))
         return false;
+    limit_errors(tally, measure, model, contact_tally_model_level, out);
     for (size_t k = 0; k < one_case->load_count; k++) {
         struct estimate all = {0};
         for (size_t l = 1; l < one_case->level_count; l++) {
@@ -156,9 +153,8 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
             all.value += change.value;
             all.standard_error += change.standard_error; /* they may go together */
         }
-        out[k] = difference_limit(tally, measure, model, k, all);
+        take_limit(all, &out[k]);
     }
-    spread_bounds(tally, measure, model, out);
     return true;
 }
 
