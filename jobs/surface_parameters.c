@@ -187,11 +187,12 @@ static const struct parameter ROWS[] = {
      .type = PARAMETER_CHOICE,
      .choices = ITERATIONS,
      .sweep = true,
-     .default_json = "\"relaxed\"",
+     .default_json = "\"reflections\"",
      .example_json = "\"plain\"",
-     .help = "how non-Gaussian generation goes on: relaxed, 43 iterations whatever the tolerance; "
-             "reflections, which work down to the tolerance or until they stall; momentum, "
-             "likewise; or plain alternation as published (Perez-Rafols and Almqvist 2019)"},
+     .help = "how non-Gaussian generation goes on: reflections, which work down to the tolerance "
+             "or until they stall; momentum, likewise; plain alternation as published "
+             "(Perez-Rafols and Almqvist 2019); or relaxed, the default of before, 43 iterations "
+             "whatever the tolerance"},
     {.path = "/surface/heights/draw",
      .type = PARAMETER_CHOICE,
      .choices = DRAWS,

@@ -13,7 +13,7 @@ enum surface_keep { KEEP_SPECTRUM, KEEP_HEIGHTS };
 enum surface_iteration {
     ITERATION_RELAXED,     /* 43 iterations of a fixed schedule, whatever the tolerance */
     ITERATION_PLAIN,       /* alternation, as in the reference */
-    ITERATION_REFLECTIONS, /* a little momentum, then relaxed reflections */
+    ITERATION_REFLECTIONS, /* the default: a little momentum, then relaxed reflections */
     ITERATION_MOMENTUM     /* momentum alone */
 };
 enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
@@ -32,7 +32,7 @@ struct surface_options {
     double stall_gain;         /* default 0.05: stuck when the worst error has not gained this */
     size_t stall_iterations;   /* default 10: ... in so many iterations */
     size_t max_iterations;     /* default 1000, of all kinds together */
-    size_t relaxed_iterations; /* of ITERATION_RELAXED, default 40; nongaussian.c says why */
+    size_t relaxed_iterations; /* of ITERATION_RELAXED, default 40 */
     double relaxation;         /* of ITERATION_RELAXED, default 0.8 */
 };
 extern const struct surface_options SURFACE_DEFAULTS; /* Gaussian, and the defaults above */

@@ -168,8 +168,10 @@ static void summit_figures(const struct surface_options *options, size_t surface
 }
 
 /* C = 1 maximum, the hardest: number, mean height and mean curvature of summits of the default
- * iteration against 600 plain ones, paired. 0.5 % (number, height) and 1 % (curvature) is what 600
- * plain iterations themselves are from 6000; the rest is 3 standard errors of the paired mean. */
+ * iteration against 600 plain ones, paired. 2 % (number), 0.5 % (height) and 1.5 % (curvature) is
+ * what these differ by the way surfaces are found (bench_nongaussian drift: 600 plain iterations
+ * are 0.5, 0.5 and 1 % from 6000, the default 1.1, 0.5 and 0.7 %); the rest is 3 standard errors of
+ * the paired mean. */
 static void default_iteration_is_near_the_limit(void **state) {
     (void)state;
     enum { SURFACES = 24 };
@@ -181,7 +183,7 @@ static void default_iteration_is_near_the_limit(void **state) {
     options.max_iterations = options.stall_iterations = 600;
     options.tolerance = 0;
     summit_figures(&options, SURFACES, limit);
-    static const double BIAS[FIGURES] = {0.005, 0.005, 0.01};
+    static const double BIAS[FIGURES] = {0.02, 0.005, 0.015};
     for (size_t f = 0; f < FIGURES; f++) {
         double sum = 0, square = 0;
         for (size_t r = 0; r < SURFACES; r++) {
