@@ -30,7 +30,7 @@ extern const struct command *const COMMANDS[]; /* all, ended by NULL */
 extern const struct command COMMAND_RUN, COMMAND_CHECK, COMMAND_SUBMIT, COMMAND_STATUS,
     COMMAND_CURVES, COMMAND_REPORT, COMMAND_SNAPSHOT, COMMAND_CANCEL, COMMAND_RETRY, COMMAND_SERVE,
     COMMAND_WORK, COMMAND_GENERATE, COMMAND_CHARACTERISE, COMMAND_PRESS, COMMAND_THEORY,
-    COMMAND_HELP;
+    COMMAND_PLOT, COMMAND_HELP;
 
 /* Set by SIGINT and SIGTERM once signals_catch was called; the second SIGINT ends at once. */
 extern atomic_int stop_requested;

@@ -15,7 +15,7 @@ static double axis_place(const struct plot_axis *axis, double value) {
 }
 
 double frame_x(const struct frame *frame, double x) {
-    return FRAME_LEFT + (FRAME_RIGHT - FRAME_LEFT) * axis_place(&frame->x, x);
+    return FRAME_LEFT + (frame->right - FRAME_LEFT) * axis_place(&frame->x, x);
 }
 
 double frame_y(const struct frame *frame, double y) {
@@ -38,8 +38,25 @@ void frame_include(struct frame *frame, size_t n, const double *x, const double 
 }
 
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
-    frame->x = (struct plot_axis){INFINITY, -INFINITY, x_logarithmic};
-    frame->y = (struct plot_axis){INFINITY, -INFINITY, y_logarithmic};
+    *frame = (struct frame){.x = {.low = INFINITY, .high = -INFINITY, .logarithmic = x_logarithmic},
+                            .y = {.low = INFINITY, .high = -INFINITY, .logarithmic = y_logarithmic},
+                            .right = FRAME_RIGHT};
+}
+
+void frame_include_point(struct frame *frame, double x, double y) {
+    if (!frame_has_place(frame, x, y))
+        return;
+    axis_include(&frame->x, x);
+    axis_include(&frame->y, y);
+}
+
+void frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths) {
+    const double height = FRAME_BOTTOM - FRAME_TOP, width = FRAME_RIGHT - FRAME_LEFT;
+    double wanted = height * (x[1] - x[0]) / (y[1] - y[0]);
+    *frame = (struct frame){
+        .x = {.low = x[0], .high = x[1]}, .y = {.low = y[0], .high = y[1]}, .right = FRAME_RIGHT};
+    if (same_lengths && wanted >= width / 3 && wanted < width)
+        frame->right = FRAME_LEFT + (int)lrint(wanted);
 }
 
 /* Zero belongs to an axis that begins near it. */
@@ -68,9 +85,8 @@ bool frame_finish(struct frame *frame) {
     return true;
 }
 
-/* A step of 1, 2 or 5 times a power of ten, with about five of them along the axis. */
-static double tick_step(const struct plot_axis *axis) {
-    double rough = (axis->high - axis->low) / 5, power = pow(10, floor(log10(rough)));
+double round_step(double range, int parts) {
+    double rough = range / parts, power = pow(10, floor(log10(rough)));
     double relative = rough / power;
     return power * (relative < 1.5 ? 1 : relative < 3.5 ? 2 : relative < 7.5 ? 5 : 10);
 }
@@ -85,7 +101,7 @@ static void draw_tick(FILE *file, const struct frame *frame, bool horizontal, do
     double x = horizontal ? frame_x(frame, value) : FRAME_LEFT;
     double y = horizontal ? FRAME_BOTTOM : frame_y(frame, value);
     fprintf(file, "<path d=\"M%.1f %.1f%c%d\" class=\"grid\"/>", x, y, horizontal ? 'V' : 'H',
-            horizontal ? FRAME_TOP : FRAME_RIGHT);
+            horizontal ? FRAME_TOP : frame->right);
     if (numbered)
         fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">%.4g</text>",
                 horizontal ? x : x - 8, horizontal ? y + 18 : y + 4, horizontal ? "middle" : "end",
@@ -108,11 +124,15 @@ static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool h
 
 static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
     const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
+    for (size_t n = 0; n < axis->tick_count; n++)
+        draw_tick(file, frame, horizontal, axis->ticks[n], true);
+    if (axis->tick_count > 0)
+        return;
     if (axis->logarithmic) {
         draw_logarithmic_ticks(file, frame, horizontal);
         return;
     }
-    double step = tick_step(axis);
+    double step = round_step(axis->high - axis->low, 5);
     long last = lrint(floor(axis->high / step));
     for (long n = lrint(ceil(axis->low / step)); n <= last; n++)
         draw_tick(file, frame, horizontal, tick_value((double)n * step, axis), true);
@@ -137,8 +157,8 @@ void frame_draw(FILE *file, const struct frame *frame, const char *x_label, cons
     draw_ticks(file, frame, true);
     draw_ticks(file, frame, false);
     fprintf(file, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" class=\"frame\"/>\n",
-            FRAME_LEFT, FRAME_TOP, FRAME_RIGHT - FRAME_LEFT, FRAME_BOTTOM - FRAME_TOP);
-    fprintf(file, "<text x=\"%d\" y=\"%d\" class=\"middle\">", (FRAME_LEFT + FRAME_RIGHT) / 2,
+            FRAME_LEFT, FRAME_TOP, frame->right - FRAME_LEFT, FRAME_BOTTOM - FRAME_TOP);
+    fprintf(file, "<text x=\"%d\" y=\"%d\" class=\"middle\">", (FRAME_LEFT + frame->right) / 2,
             FRAME_BOTTOM + 44);
     svg_text(file, x_label);
     fprintf(file, "</text>\n<text transform=\"translate(20 %d) rotate(-90)\" class=\"middle\">",

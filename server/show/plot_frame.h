@@ -12,14 +12,22 @@ enum { FRAME_LEFT = 80, FRAME_RIGHT = 700, FRAME_TOP = 40, FRAME_BOTTOM = 500 };
 struct plot_axis {
     double low, high;
     bool logarithmic;
+    size_t tick_count;   /* 0: ticks at round numbers */
+    const double *ticks; /* borrowed: the only places of ticks */
 };
 struct frame {
     struct plot_axis x, y;
+    int right; /* FRAME_RIGHT, or less in a narrower picture */
 };
 /* Start, include the n points that must be seen, finish: false when there is no point at all. */
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic);
 void frame_include(struct frame *frame, size_t n, const double *x, const double *y);
 bool frame_finish(struct frame *frame);
+/* Includes a point as it is, also one at zero. */
+void frame_include_point(struct frame *frame, double x, double y);
+/* In place of all of these: linear axes between exactly these ends, and, where the ratio of the
+ * sides allows it, a length of x as long as one of y. */
+void frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths);
 
 /* Returns where a value stands on the picture. */
 double frame_x(const struct frame *frame, double x);
@@ -27,6 +35,8 @@ double frame_y(const struct frame *frame, double y);
 /* Returns whether a point has a place: two finite numbers, above 0 on logarithmic axes. */
 bool frame_has_place(const struct frame *frame, double x, double y);
 
+/* Returns the step of 1, 2 or 5 times a power of ten that divides a range into about `parts`. */
+double round_step(double range, int parts);
 void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label);
 /* Prints a text, in which what XML reserves is escaped. */
 void svg_text(FILE *file, const char *text);

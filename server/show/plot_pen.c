@@ -52,16 +52,20 @@ void pen_line(const struct plot_pen *pen, size_t n, const double *x, const doubl
     fputs("\"/>\n", pen->file);
 }
 
+int pen_row(int row) {
+    return FRAME_TOP + 8 + 20 * row;
+}
+
 void pen_legend(struct plot_pen *pen, const char *label, const char *style) {
-    int y = FRAME_TOP + 12 + 20 * pen->rows++;
-    fprintf(pen->file, "<path d=\"M%d %dh26\" %s/><text x=\"%d\" y=\"%d\">", FRAME_RIGHT + 16,
-            y - 4, style, PEN_LEGEND, y);
+    int y = pen_row(pen->rows++) + 4;
+    fprintf(pen->file, "<path d=\"M%d %dh26\" %s/><text x=\"%d\" y=\"%d\">", pen->frame.right + 16,
+            y - 4, style, pen->frame.right + PEN_LEGEND - FRAME_RIGHT, y);
     svg_text(pen->file, label);
     fputs("</text>\n", pen->file);
 }
 
 void pen_note(struct plot_pen *pen, const char *text) {
-    fprintf(pen->file, "<text x=\"%d\" y=\"%d\" class=\"note\">", FRAME_RIGHT + 16,
+    fprintf(pen->file, "<text x=\"%d\" y=\"%d\" class=\"note\">", pen->frame.right + 16,
             FRAME_TOP + 16 + 20 * pen->rows++);
     svg_text(pen->file, text);
     fputs("</text>\n", pen->file);

@@ -26,6 +26,8 @@ void pen_line(const struct plot_pen *pen, size_t n, const double *x, const doubl
               const char *style);
 /* Adds a row to the legend: a stroke of the style and its label; or a note. */
 void pen_legend(struct plot_pen *pen, const char *label, const char *style);
+/* Returns the height of the stroke of a row. */
+int pen_row(int row);
 void pen_note(struct plot_pen *pen, const char *text);
 
 #endif

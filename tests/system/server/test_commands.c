@@ -102,9 +102,10 @@ static void wrong_usage_and_input(void **state) {
 
 static void every_command_has_help(void **state) {
     (void)state;
-    static const char *const COMMANDS[] = {
-        "run",   "check", "submit", "status",   "curves",       "report", "snapshot", "cancel",
-        "retry", "serve", "work",   "generate", "characterise", "press",  "theory",   "help"};
+    static const char *const COMMANDS[] = {"run",    "check",    "submit",       "status", "curves",
+                                           "report", "snapshot", "cancel",       "retry",  "serve",
+                                           "work",   "generate", "characterise", "press",  "theory",
+                                           "plot",   "help"};
     for (size_t c = 0; c < sizeof COMMANDS / sizeof *COMMANDS; c++) {
         char line[120], usage[80];
         snprintf(line, sizeof line, "$RUGO %s --help && $RUGO help %s | cmp - shell.out",

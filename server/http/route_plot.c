@@ -1,0 +1,81 @@
+/* Pictures of results over HTTP. */
+#include "core/memory_file.h"
+#include "server/http/route.h"
+#include "server/show/picture.h"
+#include <stdlib.h>
+
+/* What a picture is drawn from: a study of the service's store. */
+struct origin {
+    struct service *service;
+    const char *id;
+};
+
+static int results(const void *context, const struct result_filter *filter,
+                   struct study_result *out, struct error *err) {
+    const struct origin *origin = context;
+    struct store *reader;
+    int status = service_reader(origin->service, &reader, err);
+    if (status == 0)
+        status = aggregate_study(reader, origin->id, filter, out, err);
+    service_give_back(origin->service, reader);
+    return status;
+}
+
+static int difference(const void *context, const struct comparison *comparison,
+                      struct study_result *out, struct error *err) {
+    const struct origin *origin = context;
+    struct store *reader;
+    int status = service_reader(origin->service, &reader, err);
+    if (status == 0)
+        status = comparison_make(reader, origin->id, comparison, out, err);
+    service_give_back(origin->service, reader);
+    return status;
+}
+
+/* Draws into memory; the text is the caller's to free, NULL after a failure. */
+static int draw(const struct origin *origin, const struct picture_request *request, char **text,
+                struct error *err) {
+    const struct picture_source source = {origin, results, difference};
+    struct memory_file picture;
+    *text = NULL;
+    if (!memory_file_open(&picture))
+        return error_memory(err, 0, "a picture");
+    int status = picture_draw(&source, request, picture.file, err);
+    *text = memory_file_close(&picture, NULL);
+    if (status == 0)
+        return *text != NULL ? 0 : error_memory(err, 0, "a picture");
+    free(*text);
+    *text = NULL;
+    return status;
+}
+
+static void refuse_without_quantity(struct exchange *exchange) {
+    struct fault_list faults = {0};
+    fault_add(&faults, "?quantity", "missing: the name of curves or of a scalar");
+    answer_problem(exchange, 422, "the query is not valid", &faults);
+    fault_list_clear(&faults);
+}
+
+void handle_plot(struct exchange *exchange, const char *id) {
+    struct error err = {0};
+    struct origin origin = {exchange->service, id};
+    struct comparison comparison = {.quantity = exchange_query(exchange, "quantity")};
+    struct picture_request request = {.quantity = comparison.quantity,
+                                      .x = exchange_query(exchange, "x"),
+                                      .colour = exchange_query(exchange, "colour"),
+                                      .case_number = -1};
+    bool differs = false;
+    char *text;
+    if (request.quantity == NULL) {
+        refuse_without_quantity(exchange);
+        return;
+    }
+    if (query_difference(exchange, &comparison, &differs) != 0 ||
+        !query_number(exchange, "case", 0, INT64_MAX - 1, &request.case_number))
+        return;
+    request.difference = differs ? &comparison : NULL;
+    if (draw(&origin, &request, &text, &err) == 0)
+        answer_text(exchange, 200, "image/svg+xml", text);
+    else
+        answer_error(exchange, &err);
+}

@@ -1,0 +1,30 @@
+/* The picture of whatever a name stands for in a study: curves of a quantity, a scalar over a
+ * parameter. Results are asked for as the picture needs them, from a store or a service. */
+#ifndef RUGO_SERVER_SHOW_PICTURE_H
+#define RUGO_SERVER_SHOW_PICTURE_H
+
+#include "worker/aggregate.h"
+#include "worker/comparison.h"
+#include <stdio.h>
+
+struct picture_request {
+    const char *quantity;                /* of curves, or a scalar's name */
+    const char *x, *colour;              /* parameters, of scalars alone (sweep.h); NULL: chosen */
+    int64_t case_number;                 /* of curves; -1: all that a picture can show */
+    const struct comparison *difference; /* of curves, in place of cases; NULL: none */
+};
+/* Who asks gives these; each fills an empty document, which the caller clears also after a failure.
+ */
+struct picture_source {
+    const void *context;
+    int (*results)(const void *context, const struct result_filter *filter,
+                   struct study_result *out, struct error *err);
+    int (*difference)(const void *context, const struct comparison *comparison,
+                      struct study_result *out, struct error *err);
+};
+/* Draws the picture. ERROR_ABSENT for a name that no case has, ERROR_INPUT for a part of the
+ * request that does not belong to what is drawn. Write errors are left to the file's own flag. */
+int picture_draw(const struct picture_source *source, const struct picture_request *request,
+                 FILE *file, struct error *err);
+
+#endif

@@ -1,0 +1,105 @@
+/* Protects: pictures of results hold what they say, and are the same by service and command. */
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct process server;
+static unsigned port;
+static char id[17], url[64];
+
+static const char STUDY[] =
+    "{\"name\":\"two\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":8,\"surface\":"
+    "{\"dimension\":1,\"hurst\":[0.2,0.8],\"wavelength_ratio\":4,\"length_ratio\":4}}";
+
+/* A service that has one study of two cases, all computed. */
+static int start(void **state) {
+    (void)state;
+    char *answer;
+    port = serve_start(&server, NULL);
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    assert_int_equal(http_exchange(port, "POST", "/v1/studies",
+                                   "Content-Type: application/json\r\n", STUDY, &answer),
+                     201);
+    assert_int_equal(sscanf(answer, "{\"id\":\"%16[0-9a-f]\"", id), 1);
+    free(answer);
+    return run_rugo("work",
+                    (const char *[]){"work", "--server", url, "--drain", "--workers", "1", NULL});
+}
+
+static int stop(void **state) {
+    (void)state;
+    process_kill(&server, SIGTERM);
+    return process_wait(&server, 15);
+}
+
+/* Pictures are the same by the service and by the command, near and far. */
+static void plots_are_the_same_near_and_far(void **state) {
+    (void)state;
+    static const struct {
+        const char *query, *options[8], *word;
+    } PLOTS[] = {
+        {"quantity=summit_density", {"--quantity", "summit_density"}, "summit_density over hurst"},
+        {"quantity=psd&case=1", {"--quantity", "psd", "--case", "1"}, "two: psd"},
+        {"quantity=summit_height_pdf&difference=1,0",
+         {"--quantity", "summit_height_pdf", "--difference", "1", "0"},
+         "case 1 less case 0"},
+    };
+    for (size_t n = 0; n < sizeof PLOTS / sizeof *PLOTS; n++) {
+        char path[160], *answer;
+        const char *near[16] = {"plot", "--db", "rugo.db", id},
+                   *far[16] = {"plot", "--server", url, id};
+        for (size_t o = 0; o < 8 && PLOTS[n].options[o] != NULL; o++)
+            near[4 + o] = far[4 + o] = PLOTS[n].options[o];
+        assert_int_equal(run_rugo("near", near), 0);
+        assert_int_equal(run_rugo("far", far), 0);
+        snprintf(path, sizeof path, "/v1/studies/%s/plot?%s", id, PLOTS[n].query);
+        assert_int_equal(http_exchange(port, "GET", path, NULL, NULL, &answer), 200);
+        char *one = slurp("near.out"), *other = slurp("far.out");
+        assert_non_null(strstr(answer, PLOTS[n].word));
+        assert_non_null(strstr(answer, "class=\"curve\""));
+        assert_string_equal(one, answer);
+        assert_string_equal(other, answer);
+        free(one);
+        free(other);
+        free(answer);
+    }
+}
+
+static void what_cannot_be_drawn_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *query;
+        int status;
+        const char *word;
+    } REFUSED[] = {
+        {"", 422, "?quantity"},
+        {"?quantity=colour", 422, "no quantity 'colour'"},
+        {"?quantity=summit_density&x=shape", 422, "is no number"},
+        {"?quantity=summit_density&case=0", 422, "is a scalar"},
+        {"?quantity=psd&x=hurst", 422, "belong to scalars"},
+        {"?quantity=psd&case=2", 404, "has no case 2"},
+        {"?quantity=psd&difference=1,0&x=hurst", 422, "takes no case, x or colour"},
+        {"?quantity=psd&size=3", 422, "?size"},
+    };
+    for (size_t n = 0; n < sizeof REFUSED / sizeof *REFUSED; n++) {
+        char path[160], *answer;
+        snprintf(path, sizeof path, "/v1/studies/%s/plot%s", id, REFUSED[n].query);
+        int status = http_exchange(port, "GET", path, NULL, NULL, &answer);
+        if (status != REFUSED[n].status || strstr(answer, REFUSED[n].word) == NULL)
+            print_error("%s: %d %.300s\n", REFUSED[n].query, status, answer);
+        assert_int_equal(status, REFUSED[n].status);
+        assert_non_null(strstr(answer, REFUSED[n].word));
+        free(answer);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plots_are_the_same_near_and_far),
+        cmocka_unit_test(what_cannot_be_drawn_is_refused),
+    };
+    return cmocka_run_group_tests(tests, start, stop);
+}

@@ -1,0 +1,166 @@
+/* Protects: the picture of a scalar over a parameter has a line for each setting of the others,
+ * marks with their errors, theories once each, and says what it leaves out or cannot draw. */
+#include "server/show/plot_sweep.h"
+#include "tests/support/check.h"
+#include "tests/support/result_builder.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HURSTS = 4, RATIOS = 2 };
+
+/* Cases of four Hurst exponents (falling) by `ratios` ratios; theory is of the exponent alone. */
+static struct study_result study_of(size_t ratios) {
+    struct study_result study = built_study("statistics", "a & b", HURSTS * ratios);
+    for (size_t c = 0; c < study.case_count; c++) {
+        size_t step = c / ratios;
+        double hurst = 0.8 - 0.2 * (double)step, ratio = 8 * (double)(c % ratios + 1);
+        built_parameter(&study.cases[c], "/surface/hurst", NULL, hurst);
+        built_parameter(&study.cases[c], "/surface/wavelength_ratio", NULL, ratio);
+        built_parameter(&study.cases[c], "/surface/spectrum", "self_affine", 0);
+        built_scalar(&study.cases[c], "summit_density", hurst + ratio, 0.5, hurst);
+    }
+    return study;
+}
+
+static char *draw(const struct study_result *study, const struct sweep_request *request,
+                  int expected, struct error *err) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    assert_int_equal(plot_sweep(study, request, file, err), expected);
+    assert_int_equal(fclose(file), 0);
+    return text;
+}
+
+static size_t count_of(const char *text, const char *word) {
+    size_t n = 0;
+    for (const char *at = text; (at = strstr(at, word)) != NULL; at++)
+        n++;
+    return n;
+}
+
+static void check_count(const struct study_result *study, const struct sweep_request *request,
+                        const char *word, size_t expected) {
+    struct error err = {0};
+    char *text = draw(study, request, 0, &err);
+    assert_int_equal(count_of(text, word), expected);
+    assert_null(strstr(text, "nan"));
+    assert_null(strstr(text, "inf"));
+    free(text);
+}
+
+static const struct sweep_request DENSITY = {.scalar = "summit_density"};
+
+static void each_setting_is_a_line(void **state) {
+    (void)state;
+    struct study_result study = study_of(RATIOS);
+    const size_t points = study.case_count;
+    check_count(&study, &DENSITY, "class=\"curve\"", 2 * RATIOS);     /* and the legend */
+    check_count(&study, &DENSITY, "class=\"mark\"", points + RATIOS); /* likewise */
+    check_count(&study, &DENSITY, "class=\"bar\"", points);           /* an error each */
+    check_count(&study, &DENSITY, "class=\"theory\"", 2);             /* shared, and legend */
+    check_count(&study, &DENSITY, ">theory<", 1);
+    check_count(&study, &DENSITY, ">wavelength_ratio 8<", 1);
+    check_count(&study, &DENSITY, ">wavelength_ratio 16<", 1);
+    check_count(&study, &DENSITY, "a &amp; b: summit_density over hurst<", 2);
+    check_count(&study, &DENSITY, ">0.6</text>", 1); /* what was swept has the ticks */
+    study.cases[0].scalars[0].theory = 9;
+    check_count(&study, &DENSITY, "class=\"theory\"", 3);
+    check_count(&study, &DENSITY, ">theory, of each<", 1);
+    study.cases[0].scalars[0].grid = 9;
+    check_count(&study, &DENSITY, ">theory of the grid<", 1);
+    study_result_clear(&study);
+}
+
+/* Cases stand in the order of the study, points of a line by rising x. */
+static void points_rise_along_a_line(void **state) {
+    (void)state;
+    struct error err = {0};
+    struct study_result study = study_of(RATIOS);
+    struct sweep sweep = {0};
+    size_t count;
+    assert_int_equal(sweep_make(&sweep, &study, &DENSITY, &err), 0);
+    assert_int_equal(sweep.line_count, RATIOS);
+    for (size_t line = 0; line < RATIOS; line++) {
+        const struct sweep_point *points = sweep_line(&sweep, line, &count);
+        assert_int_equal(count, HURSTS);
+        for (size_t p = 0; p < count; p++) {
+            assert_true(fabs(points[p].x - 0.2 * (double)(p + 1)) < 1e-12);
+            assert_true(points[p].scalar->value == points[p].x + 8 * (double)(line + 1));
+        }
+    }
+    sweep_clear(&sweep);
+    study_result_clear(&study);
+}
+
+static void parameters_are_named(void **state) {
+    (void)state;
+    static const struct {
+        struct sweep_request request;
+        int status;
+        const char *word; /* of the picture or of the error */
+    } ROWS[] = {
+        {{"summit_density", "wavelength_ratio", NULL}, 0, "hurst 0.4"},
+        {{"summit_density", "surface/wavelength_ratio", "hurst"}, 0, "hurst 0.4"},
+        {{"summit_density", "/surface/hurst", "wavelength_ratio"}, 0, "wavelength_ratio 16"},
+        {{"summit_density", "shape", NULL}, ERROR_INPUT, "\"shape\" is no number"},
+        {{"summit_density", "spectrum", NULL}, ERROR_INPUT, "\"spectrum\" is no number"},
+        {{"summit_density", "hurst", "hurst"}, ERROR_INPUT, "\"hurst\" is not swept beside hurst"},
+        {{"summit_density", "hurst", "spectrum"}, ERROR_INPUT, "\"spectrum\" is not swept"},
+        {{"kurtosis", NULL, NULL}, ERROR_ABSENT, "no case has a value of \"kurtosis\""},
+    };
+    struct study_result study = study_of(RATIOS);
+    for (size_t r = 0; r < sizeof ROWS / sizeof *ROWS; r++) {
+        struct error err = {0};
+        char *text = draw(&study, &ROWS[r].request, ROWS[r].status, &err);
+        assert_non_null(strstr(ROWS[r].status == 0 ? text : err.text, ROWS[r].word));
+        free(text);
+    }
+    study_result_clear(&study);
+}
+
+/* A colour stands for the values of a parameter, marks for the rest. */
+static void colours_are_of_a_parameter(void **state) {
+    (void)state;
+    const struct sweep_request by_spectrum = {"summit_density", "hurst", "spectrum"};
+    struct study_result study = study_of(4);
+    for (size_t c = 0; c < study.case_count; c++)
+        study.cases[c].parameters[2].text = c % 4 < 2 ? "self_affine" : "table";
+    check_count(&study, &DENSITY, "stroke=\"#cc79a7\"", 2 + 2 * HURSTS + 1); /* the fourth one */
+    check_count(&study, &by_spectrum, "stroke=\"#cc79a7\"", 0);
+    check_count(&study, &by_spectrum, "stroke=\"#d55e00\"", 2 * (2 + 2 * HURSTS + 1));
+    study_result_clear(&study);
+}
+
+static void what_is_left_out_is_told(void **state) {
+    (void)state;
+    struct error err = {0};
+    struct study_result study = study_of(20);
+    const struct sweep_request by_hurst = {"summit_density", "hurst", NULL};
+    check_count(&study, &DENSITY, "over wavelength_ratio<", 2); /* which has more values */
+    check_count(&study, &by_hurst, "class=\"curve\"", 2 * 12);
+    check_count(&study, &by_hurst, "shown: first 12 of 20 lines", 1);
+    study_result_clear(&study);
+    study = study_of(RATIOS);
+    study.cases[3].scalars[0].value = NAN;
+    check_count(&study, &DENSITY, "without a value: 1 case<", 1);
+    study_result_clear(&study);
+    study = built_study("statistics", "alone", 1);
+    built_parameter(&study.cases[0], "/surface/hurst", NULL, 0.5);
+    built_scalar(&study.cases[0], "summit_density", 0, NAN, NAN);
+    free(draw(&study, &DENSITY, ERROR_INPUT, &err));
+    assert_non_null(strstr(err.text, "sweeps no number"));
+    check_count(&study, &by_hurst, "class=\"mark\"", 2); /* one point, at zero */
+    study_result_clear(&study);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_setting_is_a_line),   cmocka_unit_test(points_rise_along_a_line),
+        cmocka_unit_test(parameters_are_named),     cmocka_unit_test(colours_are_of_a_parameter),
+        cmocka_unit_test(what_is_left_out_is_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
