@@ -3,6 +3,7 @@
 #include "jobs/statistics/statistics_curves.h"
 #include "jobs/statistics/statistics_generation.h"
 #include "jobs/statistics/statistics_grid_theory.h"
+#include "jobs/statistics/statistics_levels.h"
 #include "jobs/statistics/statistics_pairs.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
@@ -34,6 +35,7 @@ struct statistics_workspace {
     struct moments moments;                 /* of the prescribed spectrum */
     struct roughness constants;             /* of all surfaces, where the spectrum is exact */
     struct summit_finder *finder;
+    struct levels_workspace *levels; /* NULL without levels */
     struct spectra spectra;
     struct statistics_generation *generation; /* NULL for Gaussian heights */
     struct summit_list summits[SIDES];        /* of a symmetric case the first has all of them */
@@ -56,6 +58,10 @@ static int workspace_create(void *workspace, const void *one_case,
                                       statistics->curvature, limited ? modes->mode_x : grid->nx / 2,
                                       limited ? modes->mode_y : grid->ny / 2, err);
     if (status == 0)
+        status = levels_workspace_create(&work->levels, statistics,
+                                         limited ? modes->mode_x : grid->nx / 2,
+                                         limited ? modes->mode_y : grid->ny / 2, err);
+    if (status == 0)
         status = spectra_create(&work->spectra, statistics, modes, err);
     if (status != 0)
         return status;
@@ -67,6 +73,7 @@ static void workspace_clear(void *workspace) {
     struct statistics_workspace *work = workspace;
     statistics_generation_destroy(&work->generation);
     summit_finder_destroy(&work->finder);
+    levels_workspace_destroy(&work->levels);
     spectra_clear(&work->spectra);
     for (size_t side = 0; side < SIDES; side++)
         summit_list_clear(&work->summits[side]);
@@ -122,6 +129,10 @@ static int realise(void *workspace, const struct realisation *realisation, void 
     if (status != 0)
         return status;
     statistics_tally_add(tally, realisation->key.realisation, grid_points(grid), work->summits);
+    status = levels_workspace_add(work->levels, realisation->key.realisation, realisation->z,
+                                  work->summits, tally, err);
+    if (status != 0)
+        return status;
     const struct realisation_measures measures = {.roughness = &roughness,
                                                   .moments = &realisation->moments,
                                                   .summits = work->summits,
@@ -134,30 +145,30 @@ static int realise(void *workspace, const struct realisation *realisation, void 
 
 static int sums_create(void *tally, const void *one_case, const struct surface_basis *basis,
                        struct error *err) {
-    return statistics_tally_create(tally, one_case, &basis->moments, spectra_densities(one_case),
-                                   spectra_correlations(one_case), err);
+    return statistics_levels_create(tally, one_case, &basis->moments, spectra_densities(one_case),
+                                    spectra_correlations(one_case), err);
 }
 
 static void sums_clear(void *tally) {
-    statistics_tally_clear(tally);
+    statistics_levels_clear(tally);
 }
 
 static int merge(void *into, const void *from, struct error *err) {
     (void)err;
-    statistics_tally_merge(into, from);
+    statistics_levels_merge(into, from);
     return 0;
 }
 
 static void put(struct bytes *bytes, const void *tally) {
-    statistics_tally_put(bytes, tally);
+    statistics_levels_put(bytes, tally);
 }
 
 static void get(struct byte_reader *reader, void *tally) {
-    statistics_tally_get(reader, tally);
+    statistics_levels_get(reader, tally);
 }
 
 static bool adds_up(const void *tally) {
-    return statistics_tally_adds_up(tally);
+    return statistics_levels_add_up(tally);
 }
 
 static bool belongs(const void *tally, const struct block_result *result) {
@@ -184,10 +195,7 @@ static int result(const void *one_case, const struct surface_basis *basis, const
         status = statistics_grid_theory(one_case, basis, out, err);
     if (status == 0)
         status = statistics_generation_errors(one_case, realisations, out, err);
-    /* All are of a surface sampled on a grid, and what that changes is not known. */
-    for (size_t a = 0; a < out->curve_count && status == 0; a++)
-        out->curves[a].errors[ERROR_DISCRETISATION].applies = true;
-    return status;
+    return status != 0 ? status : statistics_levels_errors(tally, out, err);
 }
 
 static bool point_groups(const void *tally, const struct curve *curve, size_t at,
@@ -223,7 +231,7 @@ const struct job_kind STATISTICS_KIND = {
     .workspace_size = sizeof(struct statistics_workspace),
     .workspace_create = workspace_create,
     .workspace_clear = workspace_clear,
-    .tally_size = sizeof(struct statistics_tally),
+    .tally_size = sizeof(struct statistics_levels),
     .tally_create = sums_create,
     .tally_clear = sums_clear,
     .realise = realise,

@@ -12,12 +12,17 @@ extern const struct parameter_table STATISTICS_PARAMETERS;
 /* Tables of the kind: SURFACE_PARAMETERS and the above. */
 extern const struct parameter_table *const STATISTICS_TABLES[];
 
+/* Coarser levels at most. */
+enum { STATISTICS_LEVELS_MOST = 4 };
+
 struct statistics_case {
     struct surface_case surface;
     enum summit_stencil stencil;
     enum summit_curvature curvature;
     struct bins height;     /* of z* = z/sqrt(m0) */
     struct bins equivalent; /* of t1 = -sqrt(3/m4) kappa_m; profiles z''/sqrt(m4) */
+    /* Coarser grids on which the surfaces are seen, too: every so many of their points, rising. */
+    size_t level_count, strides[STATISTICS_LEVELS_MOST];
 };
 /* Reads a case as surface_case_read does. */
 int statistics_case_read(struct statistics_case *out, const cJSON *parameters,

@@ -4,16 +4,21 @@
 #include "jobs/publishing_cost.h"
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_generation.h"
-#include "jobs/statistics/statistics_tally.h"
+#include "jobs/statistics/statistics_levels.h"
 #include <math.h>
 
 /* Returns the CPU seconds of one realisation. */
 static double expected_seconds(const struct statistics_case *one_case) {
     double points = (double)grid_points(&one_case->surface.grid);
     double nanoseconds = cost_generation(&one_case->surface.options);
-    nanoseconds += 2 * cost_summits(one_case->stencil, one_case->curvature); /* and pits */
     if (!surface_case_exact(&one_case->surface))
         nanoseconds += cost_spectra();
+    double summits = 2 * cost_summits(one_case->stencil, one_case->curvature); /* and pits */
+    nanoseconds += summits;
+    for (size_t l = 0; l < one_case->level_count; l++) {
+        double part = (double)one_case->strides[l];
+        nanoseconds += summits / (one_case->surface.dimension == 2 ? part * part : part);
+    }
     return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points) +
            statistics_generation_seconds(one_case);
 }
@@ -60,8 +65,8 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
         (limited ? summit_finder_bytes(grid, one_case->stencil, one_case->curvature, mode_x, mode_y)
                  : summit_finder_bytes(grid, one_case->stencil, one_case->curvature, grid->nx / 2,
                                        grid->ny / 2)) +
-        statistics_tally_bytes(one_case) + 6 * summits * sizeof(struct summit) +
-        (exact ? 0 : 24 * points) + 6e6;
+        statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
+        6 * summits * sizeof(struct summit) + (exact ? 0 : 24 * points) + 6e6;
     out->seconds = expected_seconds(one_case);
     out->case_seconds = expected_case_seconds(one_case, summits);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */

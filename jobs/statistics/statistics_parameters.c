@@ -44,6 +44,17 @@ static const struct parameter ROWS[] = {
      .example_json = "[-8, 0, 80]",
      .help = "[low, high, count] of the histogram of t1 = -sqrt(3/m4) kappa_m at summits; in "
              "profiles z''/sqrt(m4)"},
+    {.path = "/statistics/levels",
+     .type = PARAMETER_NUMBERS,
+     .minimum = 2,
+     .maximum = 1e4,
+     .items_low = 1,
+     .items_high = STATISTICS_LEVELS_MOST,
+     .later = true,
+     .example_json = "[4, 8]",
+     .help = "rising values of points_per_wavelength, whole parts of the surface's own, at which "
+             "the same surfaces are seen, too: two coarser ones and the surface's own tell the "
+             "discretisation error, one a bound of it"},
 };
 const struct parameter_table STATISTICS_PARAMETERS = {"statistics", ROWS,
                                                       sizeof ROWS / sizeof *ROWS};

@@ -32,8 +32,11 @@ static const char WEIBULL[] =
 static const char PROFILE[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.6, \"wavelength_ratio\": 16},"
     " \"statistics\": {\"summits\": \"refined\"}}";
-static const char *const STUDIES[] = {GAUSSIAN, WEIBULL, PROFILE};
-enum { STUDY_COUNT = 3 };
+static const char LEVELS[] =
+    "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
+    " \"points_per_wavelength\": 4}, \"statistics\": {\"levels\": [2]}}";
+static const char *const STUDIES[] = {GAUSSIAN, WEIBULL, PROFILE, LEVELS};
+enum { STUDY_COUNT = 4 };
 
 static const struct job_kind *kind(void) {
     return kind_find("statistics");
@@ -454,7 +457,7 @@ static void theory_of_the_grid(void **state) {
         struct block_result result = run(runner, 0, REALISATIONS);
         merge(merger, &result);
         cJSON *document = curves_of(merger);
-        bool grid = STUDIES[s] == GAUSSIAN, exact = STUDIES[s] != WEIBULL;
+        bool grid = STUDIES[s] == GAUSSIAN || STUDIES[s] == LEVELS, exact = STUDIES[s] != WEIBULL;
         for (size_t q = 0; q < sizeof OF_SUMMITS / sizeof *OF_SUMMITS; q++)
             assert_int_equal(json_at(curve_of(document, OF_SUMMITS[q]), "/theory/grid") != NULL,
                              grid && strcmp(OF_SUMMITS[q], "summit_joint_pdf") != 0);

@@ -1,0 +1,223 @@
+/* From changes between levels to the discretisation error of curves and scalars. */
+#include "core/statistics/richardson.h"
+#include "jobs/estimate.h"
+#include "jobs/statistics/statistics_levels.h"
+#include "jobs/statistics/statistics_pairs.h"
+#include "jobs/statistics/statistics_scalars.h"
+#include <math.h>
+#include <string.h>
+
+/* What is counted and measured at summits of a grid has errors of this order in its spacing (F8.3);
+ * extremes of points have, too. */
+static const double ORDER = 2;
+
+/* Of a level over the next finer one. */
+static double spacing_ratio(const struct statistics_levels *levels, size_t level) {
+    const struct statistics_case *one_case = levels->own.one_case;
+    double finer = level > 0 ? (double)one_case->strides[level - 1] : 1;
+    return (double)one_case->strides[level] / finer;
+}
+
+static struct pair_estimate difference(const struct point_groups *fine,
+                                       const struct point_groups *coarse) {
+    const struct estimate_groups left = {fine->counted, fine->things};
+    const struct estimate_groups right = {coarse->counted, coarse->things};
+    return estimate_group_pairs(POINT_GROUPS, &left, &right);
+}
+
+/* The error of what is `of[0]` on the own grid and of[l + 1] on level l. least: its standard error
+ * where too few groups tell of it. */
+struct level_error {
+    double value, bound, standard_error;
+};
+static struct level_error error_of(const struct statistics_levels *levels,
+                                   const struct point_groups of[], double least) {
+    struct pair_estimate fine = difference(&of[0], &of[1]);
+    struct mesh_changes changes = {.fine = fine.value,
+                                   .coarse = NAN,
+                                   .fine_ratio = spacing_ratio(levels, 0),
+                                   .coarse_ratio = NAN};
+    if (levels->count > 1) {
+        changes.coarse = difference(&of[1], &of[2]).value;
+        changes.coarse_ratio = spacing_ratio(levels, 1);
+    }
+    struct mesh_error mesh = mesh_error(&changes, ORDER);
+    bool rare = of[0].telling < TALLY_RARE || of[1].telling < TALLY_RARE;
+    double chance = rare ? M_SQRT2 * least : fine.standard_error;
+    return (struct level_error){.value = isnan(mesh.bound) ? (double)NAN : mesh.error,
+                                .bound = mesh.bound,
+                                .standard_error = mesh.weight * chance};
+}
+
+/* --- curves --- */
+
+/* Rows of an error of a curve, in the result's arena. */
+static int curve_room(struct case_result *out, struct curve *curve, double **room,
+                      struct error *err) {
+    *room = result_numbers(out, 3 * curve->n);
+    if (*room == NULL)
+        return error_set(err, ERROR_MEMORY, "no memory left for errors");
+    curve->errors[ERROR_DISCRETISATION] =
+        (struct curve_error){.applies = true,
+                             .value = *room,
+                             .bound = *room + curve->n,
+                             .standard_error = *room + 2 * curve->n,
+                             .order = NAN};
+    return 0;
+}
+
+/* Heights of points have no error: more of them tell the same. */
+static bool is_of_heights(const struct curve *curve) {
+    return strcmp(curve->quantity, "height_pdf") == 0 || strcmp(curve->quantity, "height_cdf") == 0;
+}
+
+static bool is_of_levels(const struct statistics_levels *levels, const struct curve *curve) {
+    struct point_groups groups;
+    return levels->count > 0 && curve->columns == 0 &&
+           statistics_point_groups(&levels->own, curve, 0, &groups);
+}
+
+static int curve_errors(const struct statistics_levels *levels, struct curve *curve,
+                        struct case_result *out, struct error *err) {
+    struct point_groups of[3];
+    double *room;
+    int status = curve_room(out, curve, &room, err);
+    for (size_t a = 0; a < curve->n && status == 0; a++) {
+        for (size_t l = 0; l < 3 && l <= levels->count; l++)
+            statistics_point_groups(l == 0 ? &levels->own : &levels->tallies[l - 1], curve, a,
+                                    &of[l]);
+        struct level_error error = error_of(levels, of, curve->standard_error[a]);
+        room[a] = error.value;
+        room[curve->n + a] = error.bound;
+        room[2 * curve->n + a] = error.standard_error;
+    }
+    return status;
+}
+
+static int tell_curve(const struct statistics_levels *levels, struct curve *curve,
+                      struct case_result *out, struct error *err) {
+    double *room;
+    curve->errors[ERROR_DISCRETISATION].applies = true;
+    if (is_of_heights(curve)) /* zeros */
+        return curve_room(out, curve, &room, err);
+    return is_of_levels(levels, curve) ? curve_errors(levels, curve, out, err) : 0;
+}
+
+/* --- scalars --- */
+
+static struct scalar *scalar_at(struct case_result *out, size_t at) {
+    const char *name = statistics_scalar_name(at);
+    for (size_t s = 0; s < out->scalar_count; s++)
+        if (strcmp(out->scalars[s].name, name) == 0)
+            return &out->scalars[s];
+    return NULL;
+}
+
+/* What a scalar is the mean of: sums over summits, or over realisations. */
+enum mean { MEAN_NUMBER, MEAN_HEIGHT, MEAN_SQUARE, MEAN_CURVATURE, MEAN_LOWEST, MEAN_HIGHEST };
+
+static double group_sum(const struct statistics_groups *moments, size_t g, size_t at) {
+    return exact_sum_value(&moments->sum[g * moments->sums + at]);
+}
+
+/* The mean height of all summits of a side. */
+static double mean_height(const struct statistics_groups *moments, size_t side) {
+    double sum = 0, things = 0;
+    for (size_t g = 0; g < GROUPS; g++) {
+        sum += group_sum(moments, g, side * SUMS_OF_SIDE + SUM_HEIGHT);
+        things += (double)moments->count[g * moments->counts + side];
+    }
+    return sum / things;
+}
+
+static void groups_of(const struct statistics_groups *moments, size_t side, enum mean mean,
+                      struct point_groups *out) {
+    double centre = mean == MEAN_SQUARE ? mean_height(moments, side) : 0;
+    *out = (struct point_groups){.telling = 0};
+    for (size_t g = 0; g < GROUPS; g++) {
+        const size_t at = side * SUMS_OF_SIDE;
+        double n = (double)moments->count[g * moments->counts + side];
+        double realisations = (double)moments->realisations[g];
+        double height = group_sum(moments, g, at + SUM_HEIGHT);
+        double square = group_sum(moments, g, at + SUM_SQUARE);
+        const double counted[] = {[MEAN_NUMBER] = n,
+                                  [MEAN_HEIGHT] = height,
+                                  [MEAN_SQUARE] = square - centre * (2 * height - centre * n),
+                                  [MEAN_CURVATURE] = group_sum(moments, g, at + SUM_CURVATURE),
+                                  [MEAN_LOWEST] = group_sum(moments, g, SUM_LOWEST),
+                                  [MEAN_HIGHEST] = group_sum(moments, g, SUM_HIGHEST)};
+        bool of_summits = mean >= MEAN_HEIGHT && mean <= MEAN_CURVATURE;
+        out->counted[g] = counted[mean];
+        out->things[g] = of_summits ? n : realisations;
+        out->telling += out->things[g] > 0;
+    }
+}
+
+static double ratio_of(const struct point_groups *groups) {
+    double counted = 0, things = 0;
+    for (size_t g = 0; g < GROUPS; g++) {
+        counted += groups->counted[g];
+        things += groups->things[g];
+    }
+    return counted / things;
+}
+
+/* Numbers are told per cell, per area, or half of summits and pits together: all in proportion. */
+static void tell_by_levels(const struct statistics_levels *levels, struct case_result *out,
+                           size_t at, size_t side, enum mean mean) {
+    struct scalar *scalar = scalar_at(out, at);
+    struct point_groups of[3];
+    if (scalar == NULL || isnan(scalar->value))
+        return;
+    scalar->errors[ERROR_DISCRETISATION].applies = true;
+    if (levels->count == 0)
+        return;
+    for (size_t l = 0; l < 3 && l <= levels->count; l++)
+        groups_of(&levels->moments[l], side, mean, &of[l]);
+    double unit = mean == MEAN_NUMBER ? scalar->value / ratio_of(&of[0]) : 1;
+    struct level_error error = error_of(levels, of, scalar->standard_error / unit);
+    scalar->errors[ERROR_DISCRETISATION] =
+        (struct scalar_error){.applies = true,
+                              .known = !isnan(error.value),
+                              .value = error.value * unit,
+                              .bound = error.bound * unit,
+                              .standard_error = error.standard_error * unit};
+}
+
+/* A constant of all surfaces of an exact spectrum: what differences find less what is prescribed.
+ */
+static void tell_exactly(struct case_result *out, size_t at, bool exact) {
+    struct scalar *scalar = scalar_at(out, at);
+    if (scalar == NULL || isnan(scalar->value))
+        return;
+    double error = scalar->value - scalar->theory;
+    scalar->errors[ERROR_DISCRETISATION] = (struct scalar_error){
+        .applies = true, .known = exact && !isnan(error), .value = exact ? error : 0};
+}
+
+static void tell_scalars(const struct statistics_levels *levels, struct case_result *out) {
+    static const enum mean OF_SIDE[] = {MEAN_NUMBER, MEAN_NUMBER, MEAN_NUMBER,
+                                        MEAN_HEIGHT, MEAN_SQUARE, MEAN_CURVATURE};
+    static const size_t BY_DIFFERENCES[] = {SCALAR_RMS_SLOPE, SCALAR_RMS_CURVATURE,
+                                            SCALAR_M2_DIFFERENCE, SCALAR_M4_DIFFERENCE,
+                                            SCALAR_NAYAK_ALPHA_DIFFERENCE};
+    const struct statistics_case *one_case = levels->own.one_case;
+    for (size_t side = 0; side < levels->own.sides; side++)
+        for (size_t a = 0; a < sizeof OF_SIDE / sizeof *OF_SIDE; a++)
+            tell_by_levels(levels, out, (side == SIDE_PITS ? SCALAR_PITS : SCALAR_SUMMITS) + a,
+                           side, OF_SIDE[a]);
+    tell_by_levels(levels, out, SCALAR_LOWEST, 0, MEAN_LOWEST);
+    tell_by_levels(levels, out, SCALAR_HIGHEST, 0, MEAN_HIGHEST);
+    for (size_t a = 0; a < sizeof BY_DIFFERENCES / sizeof *BY_DIFFERENCES; a++)
+        tell_exactly(out, BY_DIFFERENCES[a], surface_case_exact(&one_case->surface));
+}
+
+int statistics_levels_errors(const struct statistics_levels *levels, struct case_result *out,
+                             struct error *err) {
+    int status = 0;
+    for (size_t a = 0; a < out->curve_count && status == 0; a++)
+        status = tell_curve(levels, &out->curves[a], out, err);
+    if (status == 0)
+        tell_scalars(levels, out);
+    return status;
+}
