@@ -79,10 +79,13 @@ int kind_check_names(const struct job_kind *kind, const struct block_result *res
     size_t count = kind_scalar_count(kind);
     for (size_t a = 0; a < count; a++)
         if (a >= result->scalar_count || strcmp(kind->scalar(a), result->names[a]) != 0)
-            return error_set(err, ERROR_INPUT, "scalars: number %zu is not \"%s\"", a,
-                             kind->scalar(a));
+            return error_set(err, ERROR_INPUT,
+                             "scalars: number %zu is not \"%s\", as in other versions of the "
+                             "program; rugo retry computes it anew",
+                             a, kind->scalar(a));
     if (result->scalar_count != count)
-        return error_set(err, ERROR_INPUT, "scalars: %zu names; allowed: %zu", result->scalar_count,
-                         count);
+        return error_set(err, ERROR_INPUT,
+                         "scalars: %zu names; allowed: %zu; rugo retry computes it anew",
+                         result->scalar_count, count);
     return 0;
 }

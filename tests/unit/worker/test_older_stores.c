@@ -74,15 +74,22 @@ static void run_fresh(struct fixture *fresh, const char *source) {
 }
 
 static void check_same_rows(const char *path, const char *study, const struct fixture *fresh,
-                            const char *sql) {
+                            int from, const char *columns, const char *rest) {
+    char *sql = NULL;
+    assert_true(asprintf(&sql,
+                         "SELECT json_array(\"case\", %s WHERE study = ? AND \"case\" >= %d%s",
+                         columns, from, rest) > 0);
     char *old = rows_of(path, sql, study), *new = rows_of(fresh->database, sql, fresh->study);
-    assert_true(*new != 0);
+    assert_true(from > 0 || *new != 0);
     assert_string_equal(old, new);
     free(old);
     free(new);
+    free(sql);
 }
 
-static void check_study(const char *path, const struct study_status *about) {
+/* Cases from this one on are compared with a fresh run. Statistics that were published before stay
+ * as they were told: pits are counted beside summits since, and rare ones have other errors. */
+static void check_study(const char *path, const struct study_status *about, int from) {
     struct fixture fresh;
     char *source = rows_of(path,
                            "SELECT source FROM study_source JOIN study ON study.id = study_id "
@@ -93,27 +100,43 @@ static void check_study(const char *path, const struct study_status *about) {
     assert_int_equal(about->random, RANDOM_INDEPENDENT);
     run_fresh(&fresh, source);
     /* Areas by edges were told by another law, and pressures beside edges by none. */
-    check_same_rows(path, about->id, &fresh,
-                    "SELECT json_array(\"case\", quantity, series, x, y, standard_error, x2, "
-                    "model, kinematics, level, pressure, valueless) FROM curve_points WHERE "
-                    "study = ? AND NOT (quantity = 'contact_area' AND series = 'edges') "
-                    "AND quantity != 'contact_pressure_pdf' "
-                    "ORDER BY 1");
+    check_same_rows(path, about->id, &fresh, from,
+                    "quantity, series, x, y, standard_error, x2, model, kinematics, level, "
+                    "pressure, valueless) FROM curve_points",
+                    " AND NOT (quantity = 'contact_area' AND series = 'edges') AND quantity != "
+                    "'contact_pressure_pdf' ORDER BY 1");
     /* Fits are of areas by edges, and were once over the loads of each realisation's own; and
      * values at the last load were means of scalars, other than now in their last digits. */
-    check_same_rows(path, about->id, &fresh,
-                    "SELECT json_array(\"case\", name, value, standard_error, theory) FROM "
-                    "case_scalars WHERE study = ? AND name NOT LIKE '%kappa%' AND name NOT LIKE "
-                    "'power_law%' AND name NOT LIKE '%_last' ORDER BY 1");
-    check_same_rows(path, about->id, &fresh,
-                    "SELECT json_array(\"case\", state, realisations_done) FROM case_progress "
-                    "WHERE study = ? ORDER BY 1");
+    check_same_rows(path, about->id, &fresh, from,
+                    "name, value, standard_error, theory) FROM case_scalars",
+                    " AND name NOT LIKE '%kappa%' AND name NOT LIKE 'power_law%' AND name NOT "
+                    "LIKE '%_last' ORDER BY 1");
+    check_same_rows(path, about->id, &fresh, 0, "state, realisations_done) FROM case_progress",
+                    " ORDER BY 1");
     fixture_close(&fresh);
     free(source);
 }
 
+/* What an older program left half-way in another format is given up, and computed anew. */
+static void retry_failed(struct store *store, const char *path) {
+    struct study_status *list = NULL;
+    struct error err = {0};
+    size_t count = 0;
+    uint64_t retried = 0;
+    work_off(path);
+    assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
+    for (size_t s = 0; s < count; s++) {
+        if (list[s].cases_failed > 0)
+            assert_int_equal(store_retry(store, list[s].id, &retried, &err), 0);
+        study_status_clear(&list[s]);
+    }
+    free(list);
+    work_off(path);
+}
+
 static void a_store_of_version_1_goes_on(void **state) {
     (void)state;
+    static const int PUBLISHED[STUDIES] = {1, 0, 1}; /* cases of statistics */
     static const char *const STATES[STUDIES] = {"done", "done", "running", "cancelled", "failed"};
     struct store *store = NULL;
     struct study_status *list = NULL;
@@ -132,19 +155,10 @@ static void a_store_of_version_1_goes_on(void **state) {
         study_status_clear(&list[s]);
     }
     free(list);
-    work_off("old.db");
-    /* what an older program left half-way in another format is given up, and computed anew */
+    retry_failed(store, "old.db");
     assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
     for (size_t s = 0; s < count; s++) {
-        if (list[s].cases_failed > 0)
-            assert_int_equal(store_retry(store, list[s].id, &retried, &err), 0);
-        study_status_clear(&list[s]);
-    }
-    free(list);
-    work_off("old.db");
-    assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
-    for (size_t s = 0; s < count; s++) {
-        check_study("old.db", &list[s]);
+        check_study("old.db", &list[s], PUBLISHED[s]);
         study_status_clear(&list[s]);
     }
     free(list);
@@ -179,15 +193,14 @@ static void a_store_of_version_3_goes_on(void **state) {
     struct error err = {0};
     size_t count = 0;
     load("version-3.sql", "third.db");
-    work_off("third.db");
     if (store_open(&store, "third.db", NULL, &err) != 0)
         fail_msg("%s", err.text);
+    retry_failed(store, "third.db");
     assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
     assert_int_equal(count, 2);
     check_clock_stands_in(store, list[0].id);
-    assert_int_equal(list[1].time.jobs_without_cpu, 3); /* of six */
     for (size_t s = 0; s < count; s++) {
-        check_study("third.db", &list[s]);
+        check_study("third.db", &list[s], s == 0 ? 2 : 1); /* cases published before */
         study_status_clear(&list[s]);
     }
     free(list);
@@ -215,7 +228,6 @@ static void an_early_layout_is_mended(void **state) {
     for (int again = 0; again < 2; again++) {
         if (store_open(&store, "early.db", NULL, &err) != 0)
             fail_msg("%s", err.text);
-        store_close(&store);
         char *kept = rows_of("early.db", points, NULL),
              *progress = rows_of("early.db", cases, NULL);
         assert_string_equal(kept, "45 44\n");
@@ -224,7 +236,8 @@ static void an_early_layout_is_mended(void **state) {
         free(progress);
         execute("early.db", "DELETE FROM curve; DELETE FROM point; DELETE FROM published; "
                             "UPDATE study_case SET settled = 0");
-        work_off("early.db");
+        retry_failed(store, "early.db");
+        store_close(&store);
     }
 }
 
