@@ -5,7 +5,7 @@
 #include "schema/result/result_json.h"
 #include "server/command/command.h"
 #include "server/show/output.h"
-#include "server/show/plot.h"
+#include "server/show/picture.h"
 #include "server/show/summary.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -66,11 +66,9 @@ static int show(const struct study_result *study, const struct options *options,
     else if (options->format == FORMAT_JSON)
         done = study_print(stdout, study) && putchar('\n') != EOF;
     else if (options->format == FORMAT_SVG)
-        status = plot_quantity(study,
-                               &(struct plot_request){.quantity = options->quantity != NULL
-                                                                      ? options->quantity
-                                                                      : "summit_height_pdf"},
-                               stdout, err);
+        status = picture_of_results(
+            study, options->quantity != NULL ? options->quantity : "summit_height_pdf", stdout,
+            err);
     else
         summary_of_theory(study, stdout);
     if (status != 0)

@@ -2,6 +2,7 @@
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/show/plot.h"
+#include "server/show/plot_density.h"
 #include "server/show/view.h"
 #include <errno.h>
 #include <math.h>
@@ -42,8 +43,8 @@ static int write_json(const struct study_result *study, const char *folder, stru
 /* --- curves --- */
 
 /* Writes a name such as "case-3-contact_area-edges-full-hencky-8.csv". */
-static void curve_name(const struct case_result *one, const struct curve *curve, char *name,
-                       size_t size) {
+static void curve_name(const struct case_result *one, const struct curve *curve, const char *ending,
+                       char *name, size_t size) {
     const char *const parts[] = {curve->series, curve->model, curve->kinematics};
     size_t used = (size_t)snprintf(name, size, "case-%llu", (unsigned long long)one->case_number);
     if (one->difference)
@@ -57,14 +58,31 @@ static void curve_name(const struct case_result *one, const struct curve *curve,
         used += (size_t)snprintf(name + used, size - used, "-%g", curve->level);
     if (!isnan(curve->pressure))
         used += (size_t)snprintf(name + used, size - used, "-at-%g", curve->pressure);
-    snprintf(name + used, size - used, ".csv");
+    snprintf(name + used, size - used, ".%s", ending);
 }
 
-static int write_case(const struct case_result *one, const char *folder, struct error *err) {
+/* A matrix has a picture of its own, where it has values. */
+static int write_density(const struct study_result *study, const struct case_result *one,
+                         const struct curve *curve, const char *folder, struct error *err) {
+    char name[256];
+    FILE *file;
+    if (curve->columns == 0 || curve->cell_count == 0)
+        return 0;
+    curve_name(one, curve, "svg", name, sizeof name);
+    int status = open_file(&file, folder, name, err);
+    if (status != 0)
+        return status;
+    status = plot_density(study, one, curve, file, err);
+    int closed = close_file(file, folder, name, err);
+    return status != 0 ? status : closed;
+}
+
+static int write_case(const struct study_result *study, const struct case_result *one,
+                      const char *folder, struct error *err) {
     for (size_t a = 0; a < one->curve_count; a++) {
         char name[256];
         FILE *file;
-        curve_name(one, &one->curves[a], name, sizeof name);
+        curve_name(one, &one->curves[a], "csv", name, sizeof name);
         int status = open_file(&file, folder, name, err);
         if (status != 0)
             return status;
@@ -72,6 +90,9 @@ static int write_case(const struct case_result *one, const char *folder, struct 
         status = close_file(file, folder, name, err);
         if (status != 0 || !printed)
             return status != 0 ? status : error_memory(err, 0, "a table");
+        status = write_density(study, one, &one->curves[a], folder, err);
+        if (status != 0)
+            return status;
     }
     return 0;
 }
@@ -137,6 +158,6 @@ int output_write(const struct study_result *study, const char *folder, struct er
         return error_set(err, ERROR_SYSTEM, "folder %s: %s", folder, strerror(errno));
     int status = write_json(study, folder, err);
     for (size_t c = 0; status == 0 && c < study->case_count; c++)
-        status = write_case(&study->cases[c], folder, err);
+        status = write_case(study, &study->cases[c], folder, err);
     return status != 0 ? status : write_plots(study, folder, err);
 }

@@ -1,5 +1,6 @@
-/* The picture of whatever a name stands for in a study: curves of a quantity, a scalar over a
- * parameter. Results are asked for as the picture needs them, from a store or a service. */
+/* The picture of whatever a name stands for in a study: curves of a quantity, the density of one
+ * case, a scalar over a parameter. Results are asked for as the picture needs them, from a store or
+ * a service. */
 #ifndef RUGO_SERVER_SHOW_PICTURE_H
 #define RUGO_SERVER_SHOW_PICTURE_H
 
@@ -10,7 +11,8 @@
 struct picture_request {
     const char *quantity;                /* of curves, or a scalar's name */
     const char *x, *colour;              /* parameters, of scalars alone (sweep.h); NULL: chosen */
-    int64_t case_number;                 /* of curves; -1: all that a picture can show */
+    int64_t case_number;                 /* of curves; -1: all that a picture can show, of a density
+                                          the first one that has begun */
     const struct comparison *difference; /* of curves, in place of cases; NULL: none */
 };
 /* Who asks gives these; each fills an empty document, which the caller clears also after a failure.
@@ -26,5 +28,9 @@ struct picture_source {
  * request that does not belong to what is drawn. Write errors are left to the file's own flag. */
 int picture_draw(const struct picture_source *source, const struct picture_request *request,
                  FILE *file, struct error *err);
+
+/* Draws curves of results that are at hand, or the density of the first case that has it. */
+int picture_of_results(const struct study_result *study, const char *quantity, FILE *file,
+                       struct error *err);
 
 #endif

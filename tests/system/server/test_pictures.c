@@ -43,6 +43,10 @@ static void plots_are_the_same_near_and_far(void **state) {
     } PLOTS[] = {
         {"quantity=summit_density", {"--quantity", "summit_density"}, "summit_density over hurst"},
         {"quantity=psd&case=1", {"--quantity", "psd", "--case", "1"}, "two: psd"},
+        {"quantity=summit_joint_pdf&case=1",
+         {"--quantity", "summit_joint_pdf", "--case", "1"},
+         "summit_joint_pdf, case 1"},
+        {"quantity=summit_joint_pdf", {"--quantity", "summit_joint_pdf"}, "class=\"heat\""},
         {"quantity=summit_height_pdf&difference=1,0",
          {"--quantity", "summit_height_pdf", "--difference", "1", "0"},
          "case 1 less case 0"},
@@ -59,7 +63,7 @@ static void plots_are_the_same_near_and_far(void **state) {
         assert_int_equal(http_exchange(port, "GET", path, NULL, NULL, &answer), 200);
         char *one = slurp("near.out"), *other = slurp("far.out");
         assert_non_null(strstr(answer, PLOTS[n].word));
-        assert_non_null(strstr(answer, "class=\"curve\""));
+        assert_non_null(strstr(answer, "class=\"theory\""));
         assert_string_equal(one, answer);
         assert_string_equal(other, answer);
         free(one);
@@ -96,9 +100,26 @@ static void what_cannot_be_drawn_is_refused(void **state) {
     }
 }
 
+/* A density has a picture a case among the files, too. */
+static void files_have_densities(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_rugo("files", (const char *[]){"curves", "--server", url, id, "--out", "out", NULL}),
+        0);
+    for (int c = 0; c < 2; c++) {
+        char path[64], word[32];
+        snprintf(path, sizeof path, "out/case-%d-summit_joint_pdf.svg", c);
+        snprintf(word, sizeof word, "hurst: %s<", c == 0 ? "0.2" : "0.8");
+        assert_true(contains(path, "class=\"heat\""));
+        assert_true(contains(path, ">theory: "));
+        assert_true(contains(path, word));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plots_are_the_same_near_and_far),
+        cmocka_unit_test(files_have_densities),
         cmocka_unit_test(what_cannot_be_drawn_is_refused),
     };
     return cmocka_run_group_tests(tests, start, stop);
