@@ -90,9 +90,28 @@ static bool band_has_mode(int dimension, double low, double high) {
     return false;
 }
 
+/* The cell is to hold the longest waves along x, too; Nayak's parameter is that of isotropic ones.
+ */
+static void read_anisotropy(struct surface_case *out, struct values *values) {
+    static const char path[] = "/surface/anisotropy";
+    double anisotropy = values_number(values, path);
+    out->spectrum.anisotropy = anisotropy;
+    if (!(anisotropy > 1))
+        return;
+    if (out->dimension == 1)
+        values_fault(values, path, "%g: profiles have one direction", anisotropy);
+    if (anisotropy > out->length_ratio * (1 + ROUNDING))
+        values_fault(values, path, "%g is more than length_ratio, %g: no longest wave fits along x",
+                     anisotropy, out->length_ratio);
+    if (!isnan(values_number(values, "/surface/nayak_alpha")))
+        values_fault(values, path,
+                     "%g: nayak_alpha is of isotropic surfaces; give wavelength_ratio", anisotropy);
+}
+
 static int read_self_affine(struct surface_case *out, struct values *values, struct error *err) {
     double alpha = values_number(values, "/surface/nayak_alpha");
     double rolloff = values_number(values, "/surface/rolloff_ratio");
+    read_anisotropy(out, values);
     out->spectrum.hurst = values_number(values, "/surface/hurst");
     if (isnan(out->spectrum.hurst))
         values_fault(values, "/surface/hurst",
@@ -113,7 +132,8 @@ static int read_self_affine(struct surface_case *out, struct values *values, str
                      "%g is more than wavelength_ratio, %g: the roll-off lies within the band",
                      rolloff, ratio);
     if (!isnan(ratio) && !isnan(out->length_ratio) &&
-        !band_has_mode(out->dimension, out->length_ratio, out->length_ratio * ratio))
+        !band_has_mode(out->spectrum.anisotropy > 1 ? 1 : out->dimension, out->length_ratio,
+                       out->length_ratio * ratio))
         values_fault(
             values, "/surface/length_ratio",
             "no wave of this cell lies between lambda_l and lambda_s: take an integer, or a "

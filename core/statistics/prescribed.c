@@ -35,12 +35,14 @@ int psd_prescribed(const struct spectrum *spectrum, const struct modes *modes, d
     const struct grid *grid = &modes->grid;
     if (spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
         return exponential_density(spectrum, modes, wave_number, density, err);
+    psd_of_modes(modes, wave_number, density);
+    if (spectrum->type == SPECTRUM_SELF_AFFINE && spectrum->anisotropy > 1)
+        return 0; /* no density of the wave number alone: means over rings */
     /* Along the longer side waves are denser than rings, and some wave has a ring's own number. */
     bool along_y = !grid_is_profile(grid) && grid->ly < grid->lx;
     size_t most = along_y ? modes->mode_y : modes->mode_x;
     double cell =
         grid_is_profile(grid) ? grid->lx / (2 * M_PI) : grid->lx * grid->ly / (4 * M_PI * M_PI);
-    psd_of_modes(modes, wave_number, density);
     for (size_t r = 0; r < radial_bins(grid); r++) {
         double power = 0;
         if (r <= most)

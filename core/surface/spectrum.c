@@ -19,6 +19,8 @@ static bool is_length(double value) {
 static int self_affine_check(const struct spectrum *s, struct error *err) {
     if (!(s->hurst >= 0 && s->hurst <= 1))
         return refuse(err, "hurst", s->hurst, "0 to 1");
+    if (!(s->anisotropy >= 0 && isfinite(s->anisotropy)))
+        return refuse(err, "anisotropy", s->anisotropy, "above 0, finite; 0 is as 1");
     if (!is_length(s->wavelength_long))
         return refuse(err, "longest wavelength", s->wavelength_long, "above 0, finite");
     if (!is_length(s->wavelength_short) || s->wavelength_short > s->wavelength_long * (1 + EDGE))
@@ -98,7 +100,8 @@ static double table_density(const struct spectrum *s, double k) {
 }
 
 static double density(const struct spectrum *s, bool profile, double kx, double ky) {
-    double k = profile ? fabs(kx) : hypot(kx, ky);
+    double x = s->type == SPECTRUM_SELF_AFFINE && s->anisotropy > 0 ? kx * s->anisotropy : kx;
+    double k = profile ? fabs(kx) : hypot(x, ky);
     switch (s->type) {
     case SPECTRUM_SELF_AFFINE:
         return self_affine_density(s, profile, k / (2 * M_PI));
@@ -111,13 +114,13 @@ static double density(const struct spectrum *s, bool profile, double kx, double 
 }
 
 /* Returns the highest wave number along a side of `length` with `points`: the band edge, or Nyquist
- * for a spectrum without one. */
-static int band_edge(const struct spectrum *s, double length, size_t points, size_t *mode,
-                     struct error *err) {
+ * for a spectrum without one. anisotropy: of waves along this side. */
+static int band_edge(const struct spectrum *s, double length, size_t points, double anisotropy,
+                     size_t *mode, struct error *err) {
     size_t nyquist = points / 2;
     double edge = (double)nyquist;
     if (s->type == SPECTRUM_SELF_AFFINE)
-        edge = floor(length / s->wavelength_short * (1 + EDGE));
+        edge = floor(length / (s->wavelength_short * anisotropy) * (1 + EDGE));
     else if (s->type == SPECTRUM_TABLE)
         edge = floor(s->table_wave_number[s->table_count - 1] * length / (2 * M_PI) * (1 + EDGE));
     if (edge > (double)nyquist)
@@ -176,9 +179,11 @@ int modes_create(struct modes **out, const struct spectrum *spectrum, const stru
     if (modes == NULL)
         return error_memory(err, sizeof *modes, "a discrete spectrum");
     modes->grid = *grid;
-    status = band_edge(spectrum, grid->lx, grid->nx, &modes->mode_x, err);
+    bool anisotropic = spectrum->anisotropy > 0 && !grid_is_profile(grid);
+    status = band_edge(spectrum, grid->lx, grid->nx, anisotropic ? spectrum->anisotropy : 1,
+                       &modes->mode_x, err);
     if (status == 0 && !grid_is_profile(grid))
-        status = band_edge(spectrum, grid->ly, grid->ny, &modes->mode_y, err);
+        status = band_edge(spectrum, grid->ly, grid->ny, 1, &modes->mode_y, err);
     if (status == 0) {
         size_t count = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
         modes->power = array_create(count, sizeof *modes->power);

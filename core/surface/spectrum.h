@@ -20,6 +20,8 @@ struct spectrum {
      * <= |m| <= lx/short includes both edges, with a relative guard of 1e-9 against rounding */
     double hurst; /* [0, 1] */
     double wavelength_long, wavelength_rolloff, wavelength_short;
+    /* of surfaces: all waves are so many times as long along x as they are along y; 0 is as 1 */
+    double anisotropy;
     /* exponential autocorrelation exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (F2.2), as it is at the points
      * of the grid; it has no band limit and fills the grid */
     double correlation_x, correlation_y;

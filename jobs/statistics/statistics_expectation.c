@@ -139,7 +139,7 @@ static int add_scalars(struct expectation *e, size_t n, const struct expected_sc
 
 static double continuous_alpha(const struct surface_case *surface) {
     const struct spectrum *spectrum = &surface->spectrum;
-    if (spectrum->type != SPECTRUM_SELF_AFFINE)
+    if (spectrum->type != SPECTRUM_SELF_AFFINE || spectrum->anisotropy > 1)
         return NAN;
     return spectrum_alpha_continuous(surface->dimension, spectrum->hurst, surface->wavelength_ratio,
                                      spectrum->wavelength_long / spectrum->wavelength_rolloff);
@@ -249,7 +249,7 @@ static const double RATIO_REACH = 128; /* times the ratio of roll-off */
 static int add_alpha(struct expectation *e, struct error *err) {
     const struct surface_case *surface = &e->one_case.surface;
     const struct spectrum *spectrum = &surface->spectrum;
-    if (spectrum->type != SPECTRUM_SELF_AFFINE)
+    if (spectrum->type != SPECTRUM_SELF_AFFINE || spectrum->anisotropy > 1)
         return 0;
     double rolloff = spectrum->wavelength_long / spectrum->wavelength_rolloff;
     double *x = result_numbers(e->result, 2 * (RATIOS + HURSTS)), *y = x + RATIOS;

@@ -152,6 +152,39 @@ static void short_cells_are_clipped(void **state) {
     assert_true(before > 1e-4);
 }
 
+/* Anisotropic modes are those of the isotropic surface at s mx, and its moments go with s. */
+static void anisotropic_spectrum(void **state) {
+    (void)state;
+    struct grid grid = {256, 256, 32, 32};
+    struct spectrum spectrum = self_affine(0.7, 4);
+    struct modes *isotropic = NULL, *same = NULL, *anisotropic = NULL, *refused = NULL;
+    struct moments moments;
+    struct error err = {0};
+    assert_int_equal(modes_create(&isotropic, &spectrum, &grid, NULL), 0);
+    spectrum.anisotropy = 1;
+    assert_int_equal(modes_create(&same, &spectrum, &grid, NULL), 0);
+    spectrum.anisotropy = 4;
+    assert_int_equal(modes_create(&anisotropic, &spectrum, &grid, NULL), 0);
+    assert_true(anisotropic->mode_x == 8 && anisotropic->mode_y == 32);
+    assert_true(modes_power(same, 7, 9) == modes_power(isotropic, 7, 9));
+    double scale = modes_power(anisotropic, 0, 9) / modes_power(isotropic, 0, 9);
+    for (size_t mx = 1; mx <= 8; mx++)
+        for (long my = -30; my <= 30; my += 7)
+            check_close(modes_power(anisotropic, mx, my),
+                        scale * modes_power(isotropic, 4 * mx, my), 1e-15);
+    modes_moments(anisotropic, &moments);
+    check_relative(moments.m02 / moments.m20, 16, 0.1); /* few waves along x */
+    assert_false(moments_isotropic(&moments));
+    modes_moments(isotropic, &moments);
+    assert_true(moments_isotropic(&moments));
+    spectrum.anisotropy = -1;
+    assert_int_equal(modes_create(&refused, &spectrum, &grid, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "anisotropy"));
+    modes_destroy(&anisotropic);
+    modes_destroy(&same);
+    modes_destroy(&isotropic);
+}
+
 static void table_spectrum(void **state) {
     (void)state;
     const double k[] = {0.5, 1, 4}, density[] = {4, 2, 2.0 / 64};
@@ -233,8 +266,9 @@ int main(void) {
         cmocka_unit_test(discrete_alpha),        cmocka_unit_test(continuous_alpha),
         cmocka_unit_test(ratios_of_given_alpha), cmocka_unit_test(alpha_out_of_reach),
         cmocka_unit_test(exponential_spectrum),  cmocka_unit_test(short_cells_are_clipped),
-        cmocka_unit_test(table_spectrum),        cmocka_unit_test(scale_by_slope),
-        cmocka_unit_test(units_do_not_matter),   cmocka_unit_test(wrong_input_is_named),
+        cmocka_unit_test(anisotropic_spectrum),  cmocka_unit_test(table_spectrum),
+        cmocka_unit_test(scale_by_slope),        cmocka_unit_test(units_do_not_matter),
+        cmocka_unit_test(wrong_input_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -167,6 +167,17 @@ static void theory_knows_its_limits(void **state) {
     result_clear(&surface);
 }
 
+static void anisotropic_surfaces_are_of_the_grid_alone(void **state) {
+    (void)state;
+    struct case_result out = expect(
+        "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"anisotropy\": 4}}", false);
+    assert_null(series(&out, "summit_height_pdf", "nayak"));
+    assert_non_null(series(&out, "summit_height_pdf", "grid"));
+    assert_null(result_curve(&out, "nayak_alpha_by_ratio"));
+    assert_true(scalar(&out, "isotropy")->value < 0.5);
+    result_clear(&out);
+}
+
 static void faults_are_told(void **state) {
     (void)state;
     struct case_result out = {0};
@@ -184,6 +195,7 @@ int main(void) {
         cmocka_unit_test(results_have_the_same_theories),
         cmocka_unit_test(only_what_theory_tells),
         cmocka_unit_test(theory_knows_its_limits),
+        cmocka_unit_test(anisotropic_surfaces_are_of_the_grid_alone),
         cmocka_unit_test(faults_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
