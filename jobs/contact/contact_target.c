@@ -258,28 +258,24 @@ static bool is_halfspace(const struct choices *choices) {
     return strcmp(choices->model, "halfspace") == 0 || (layers && choices->mesh && choices->height);
 }
 
-/* The model that is asked for less the cheap one: on a coarse mesh, which takes little; and what
- * that changes to the limit, which scatters little and needs few surfaces. Of a named mesh, that
- * one and the next coarser, to tell its error, together. In 3D, elements of a third level would
- * take the time of all else. */
+/* The model that is asked for less the cheap one. Of profiles on a coarse mesh, which takes little,
+ * and what that changes to the limit, which scatters little and needs few surfaces. Of surfaces
+ * together, since elements of a third level would take the time of all else; and of a named mesh,
+ * with the next coarser one to tell its error. */
 static int add_models(struct study_case *one, const struct choices *choices) {
+    const size_t levels = choices->levels, pair = levels > 1 ? 2 : 1;
+    const bool split = choices->mesh && choices->profile;
+    const size_t count = split ? LADDER_LEAST : pair;
+    const size_t most = !choices->mesh ? levels : split ? FINEST_MOST : pair;
+    const size_t first = (levels < most ? levels : most) - count;
     const double length = choices->model_length_ratio;
-    const size_t levels = choices->levels, named = levels > 1 ? 2 : 1;
-    const size_t count = choices->profile ? 3 : 2;
-    const size_t finest = !choices->profile ? count : levels < FINEST_MOST ? levels : FINEST_MOST;
-    const struct variant whole = {"model", MODEL_FIRST, 0.05, true, levels - named, named, length};
-    const struct variant coarse = {"model", MODEL_FIRST, 0.05, true, finest - count, 1, length};
-    const struct variant mesh = {"model_mesh",
-                                 MODEL_MESH_FIRST,
-                                 0.01,
-                                 true,
-                                 finest - count,
-                                 count,
-                                 fmax(length / 2, fmin(4, length))};
-    if (!choices->mesh)
-        return add(one, choices, &whole);
-    int status = add(one, choices, &mesh);
-    return status == 0 ? add(one, choices, &coarse) : status;
+    const double mesh_length = fmax(length / 2, fmin(4, length));
+    const struct variant mesh = {"model_mesh", MODEL_MESH_FIRST, 0.01, true, first,
+                                 count,        mesh_length};
+    const struct variant model = {"model", MODEL_FIRST,       0.05,  true,
+                                  first,   split ? 1 : count, length};
+    int status = split ? add(one, choices, &mesh) : 0;
+    return status == 0 ? add(one, choices, &model) : status;
 }
 
 /* The dearest first, so that none of its jobs is left to the end of a round. */
