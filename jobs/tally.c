@@ -169,21 +169,32 @@ static double dispersion_of(double variance, double count) {
     return count > 0 ? fmax(1, variance / count) : 1;
 }
 
-static double neighbours_dispersion(const struct tally *tally, size_t cell,
-                                    const struct tally_total *total, bool outside) {
-    struct window window = window_at(tally, cell);
+/* What a window holds. */
+struct window_sum {
     double variance, count;
     uint64_t some;
-    do {
-        variance = count = 0;
-        some = 0;
-        for (size_t a = window.first; a < window.last; a++) {
-            variance += tally->count[a] > 0 ? cell_variance(tally, a, total) : 0;
-            count += (double)side_count(tally, a, total, outside);
-            some += side_some(tally, a, total, outside);
-        }
-    } while (some < TALLY_RARE && window_grow(&window));
-    return dispersion_of(variance, count);
+};
+static void window_add(struct window_sum *sum, const struct tally *tally, size_t cell,
+                       const struct tally_total *total, bool outside) {
+    sum->variance += tally->count[cell] > 0 ? cell_variance(tally, cell, total) : 0;
+    sum->count += (double)side_count(tally, cell, total, outside);
+    sum->some += side_some(tally, cell, total, outside);
+}
+
+/* Each cell is added once: a window may grow over all of its row, from every rare cell. */
+static double neighbours_dispersion(const struct tally *tally, size_t cell,
+                                    const struct tally_total *total, bool outside) {
+    struct window window = window_at(tally, cell), before = window;
+    struct window_sum sum = {0};
+    window_add(&sum, tally, cell, total, outside);
+    while (sum.some < TALLY_RARE && window_grow(&window)) {
+        if (window.first < before.first)
+            window_add(&sum, tally, window.first, total, outside);
+        if (window.last > before.last)
+            window_add(&sum, tally, before.last, total, outside);
+        before = window;
+    }
+    return dispersion_of(sum.variance, sum.count);
 }
 
 /* The error of a count of clusters as large as the dispersion: a Poisson mean of which n were seen
