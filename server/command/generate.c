@@ -5,6 +5,7 @@
 #include "jobs/surface_case.h"
 #include "server/command/command.h"
 #include "server/show/characterisation.h"
+#include "server/show/plot_map.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -16,8 +17,9 @@ struct generate_options {
     const char **overrides; /* of --set */
     int64_t case_number, realisation;
     const char *format;
-    const char *mesh; /* NULL: the surface alone */
-    double pressure;  /* p/(E* h') on the mesh; 0: not pressed */
+    const char *picture; /* NULL: none */
+    const char *mesh;    /* NULL: the surface alone */
+    double pressure;     /* p/(E* h') on the mesh; 0: not pressed */
 };
 #define AT(member) offsetof(struct generate_options, member)
 static const struct option_row OPTIONS[] = {
@@ -26,6 +28,8 @@ static const struct option_row OPTIONS[] = {
     {"format", 0, OPTION_TEXT, 0, 0, AT(format), "npy|csv|xyz", NULL,
      "of the height map (that of the file's name, or npy)"},
     {"output", 'o', OPTION_TEXT, 0, 0, AT(output), "FILE", NULL, "write the height map there"},
+    {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg", NULL,
+     "draw the surface there, its summits marked"},
     {"mesh", 0, OPTION_TEXT, 0, 0, AT(mesh), "FILE.vtu", NULL,
      "write the block of the model full, meshed on the surface"},
     {"pressure", 0, OPTION_NUMBER, 0, 0, AT(pressure), "P", NULL,
@@ -40,9 +44,10 @@ struct generate_order {
     enum height_map_format format;
 };
 
-/* A mesh takes the place of a surface on standard output. */
+/* A mesh or a picture takes the place of a surface on standard output. */
 static bool writes_surface(const struct generate_order *order) {
-    return order->options->mesh == NULL || order->output != NULL;
+    return (order->options->mesh == NULL && order->options->picture == NULL) ||
+           order->output != NULL;
 }
 
 /* Chooses the format asked for, or that of the output's name, or npy; returns 0 or EXIT_USAGE. */
@@ -75,18 +80,52 @@ static int read_order(struct generate_order *order, const struct generate_option
     return choose_format(order);
 }
 
+static int open_file(FILE **file, const char *path, struct error *err) {
+    *file = fopen(path, "wb");
+    return *file != NULL
+               ? 0
+               : error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
+}
+
+/* Returns the status of what was written, or that of the file, which may be full. */
+static int close_file(FILE *file, const char *path, int status, struct error *err) {
+    bool failed = ferror(file) != 0;
+    if ((fclose(file) != 0 || failed) && status == 0)
+        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
+    return status;
+}
+
 static int write_output(const struct generate_order *order, const struct grid *grid,
                         const double *z, struct error *err) {
+    FILE *file;
     if (order->output == NULL)
         return height_map_write(stdout, order->format, grid, z, err);
-    FILE *file = fopen(order->output, "wb");
-    if (file == NULL)
-        return error_set(err, ERROR_SYSTEM, "cannot open %s: %s", order->output, strerror(errno));
-    int status = height_map_write(file, order->format, grid, z, err);
-    if (fclose(file) != 0 && status == 0)
-        status =
-            error_set(err, ERROR_SYSTEM, "cannot write %s: %s", order->output, strerror(errno));
-    return status;
+    int status = open_file(&file, order->output, err);
+    if (status != 0)
+        return status;
+    status = height_map_write(file, order->format, grid, z, err);
+    return close_file(file, order->output, status, err);
+}
+
+static int write_picture(const struct generate_order *order, const struct study *study,
+                         const struct grid *grid, const double *z, struct error *err) {
+    const char *path = order->options->picture;
+    char subject[80];
+    FILE *file;
+    snprintf(subject, sizeof subject, "case %lld, realisation %lld",
+             (long long)order->options->case_number, (long long)order->options->realisation);
+    const struct map_picture picture = {.name = study->name,
+                                        .subject = subject,
+                                        .x_label = "x/lambda_s",
+                                        .y_label = "y/lambda_s",
+                                        .z_label = "z",
+                                        .grid = grid,
+                                        .z = z};
+    int status = open_file(&file, path, err);
+    if (status != 0)
+        return status;
+    status = plot_map(&picture, file, err);
+    return close_file(file, path, status, err);
 }
 
 static const char *end_name(enum surface_end end) {
@@ -169,6 +208,8 @@ static int generate(const struct generate_order *order, const struct study *stud
     generator_destroy(&generator);
     if (status == 0 && order->options->mesh != NULL)
         status = write_mesh(order, study, z, err);
+    if (status == 0 && order->options->picture != NULL)
+        status = write_picture(order, study, &surface.grid, z, err);
     if (status == 0 && writes_surface(order))
         status = write_output(order, &surface.grid, z, err);
     if (status == 0)

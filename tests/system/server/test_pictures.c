@@ -1,4 +1,5 @@
-/* Protects: pictures of results hold what they say, and are the same by service and command. */
+/* Protects: pictures of results and surfaces hold what they say, and are the same by service and
+ * command. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include <signal.h>
@@ -116,10 +117,34 @@ static void files_have_densities(void **state) {
     }
 }
 
+/* A surface is drawn in place of its heights on standard output, or beside them in a file. */
+static void surfaces_are_drawn(void **state) {
+    (void)state;
+    spit("two.json", STUDY);
+    assert_int_equal(run_rugo("one", (const char *[]){"generate", "two.json", "--case", "1",
+                                                      "--picture", "one.svg", NULL}),
+                     0);
+    assert_true(contains("one.svg", "two: case 1, realisation 0<"));
+    assert_true(contains("one.svg", "class=\"summit\""));
+    assert_true(contains("one.out", "skewness"));
+    assert_int_equal(
+        run_rugo("map", (const char *[]){"generate", "two.json", "--set", "surface/dimension=2",
+                                         "--picture", "map.svg", "-o", "map.npy", NULL}),
+        0);
+    assert_true(contains("map.svg", "class=\"heat\""));
+    assert_true(contains("map.svg", "class=\"summit\""));
+    assert_true(contains("map.npy", "NUMPY"));
+    assert_int_equal(run_rugo("none", (const char *[]){"generate", "two.json", "--picture",
+                                                       "no/folder.svg", NULL}),
+                     1);
+    assert_true(contains("none.err", "cannot open no/folder.svg"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plots_are_the_same_near_and_far),
         cmocka_unit_test(files_have_densities),
+        cmocka_unit_test(surfaces_are_drawn),
         cmocka_unit_test(what_cannot_be_drawn_is_refused),
     };
     return cmocka_run_group_tests(tests, start, stop);

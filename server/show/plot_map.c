@@ -1,0 +1,171 @@
+#include "server/show/plot_map.h"
+#include "core/statistics/summits.h"
+#include "server/show/plot_heat.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { MARKS_MOST = 1000, GROUPS_MOST = 1000, CELLS_A_SIDE = 128 };
+
+struct map_plot {
+    const struct map_picture *picture;
+    struct plot_pen pen;
+    struct summit_list summits; /* the highest first */
+};
+
+/* --- summits --- */
+
+static int higher(const void *a, const void *b) {
+    double one = ((const struct summit *)a)->height, other = ((const struct summit *)b)->height;
+    return (one < other) - (one > other);
+}
+
+static int find_summits(struct map_plot *plot, struct error *err) {
+    const struct grid *grid = plot->picture->grid;
+    struct summit_finder *finder = NULL;
+    int status = summit_finder_create(&finder, grid, SUMMITS_NINE_POINT,
+                                      CURVATURE_FINITE_DIFFERENCE, grid->nx / 2, grid->ny / 2, err);
+    if (status == 0)
+        status = summits_find(finder, plot->picture->z, &plot->summits, err);
+    summit_finder_destroy(&finder);
+    if (plot->summits.count > 0)
+        qsort(plot->summits.summits, plot->summits.count, sizeof *plot->summits.summits, higher);
+    return status;
+}
+
+/* Marks are smaller where they are many. */
+static void draw_summits(struct map_plot *plot) {
+    bool profile = grid_is_profile(plot->picture->grid);
+    size_t all = plot->summits.count, count = all < MARKS_MOST ? all : MARKS_MOST;
+    double radius = count < 150 ? 3.2 : count < 500 ? 2.4 : 1.6;
+    const char *fill = profile ? "#d55e00" : "#fff";
+    char text[PLOT_LABEL_SIZE];
+    for (size_t n = 0; n < count; n++) {
+        const struct summit *summit = &plot->summits.summits[n];
+        fprintf(plot->pen.file,
+                "<circle class=\"summit\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\" "
+                "stroke=\"#222\" stroke-width=\".8\"/>\n",
+                frame_x(&plot->pen.frame, summit->x),
+                frame_y(&plot->pen.frame, profile ? summit->height : summit->y), radius, fill);
+    }
+    if (count < all)
+        snprintf(text, sizeof text, "circles: the %zu highest of %zu summits", count, all);
+    else
+        snprintf(text, sizeof text, "circles: %zu %s", all, profile ? "peaks" : "summits");
+    pen_note(&plot->pen, text);
+}
+
+static void range_of(const struct map_picture *picture, double range[2]) {
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (size_t n = 0; n < grid_points(picture->grid); n++) {
+        range[0] = fmin(range[0], picture->z[n]);
+        range[1] = fmax(range[1], picture->z[n]);
+    }
+    if (!(range[0] < range[1]))
+        range[1] = range[0] + 1;
+}
+
+/* --- a profile --- */
+
+/* Two points of each group of neighbours: its lowest and highest, in their order. */
+static size_t trace_of(const struct map_picture *picture, double *x, double *y) {
+    size_t nx = picture->grid->nx, step = (nx + GROUPS_MOST - 1) / GROUPS_MOST, count = 0;
+    double dx = grid_dx(picture->grid);
+    for (size_t first = 0; first < nx; first += step) {
+        size_t low = first, high = first;
+        for (size_t i = first; i < nx && i < first + step; i++) {
+            low = picture->z[i] < picture->z[low] ? i : low;
+            high = picture->z[i] > picture->z[high] ? i : high;
+        }
+        const size_t ends[2] = {low < high ? low : high, low < high ? high : low};
+        for (size_t e = ends[0] == ends[1]; e < 2; e++) {
+            x[count] = (double)ends[e] * dx;
+            y[count++] = picture->z[ends[e]];
+        }
+    }
+    x[count] = picture->grid->lx; /* where the profile begins anew */
+    y[count++] = picture->z[0];
+    return count;
+}
+
+static int draw_profile(struct map_plot *plot, struct error *err) {
+    static const char STYLE[] = "class=\"curve\" stroke=\"#0072b2\" stroke-width=\"1.2\"";
+    const struct map_picture *picture = plot->picture;
+    struct plot_pen *pen = &plot->pen;
+    double range[2], *points = array_create(4 * GROUPS_MOST + 2, sizeof *points);
+    if (points == NULL)
+        return error_memory(err, (4 * GROUPS_MOST + 2) * sizeof *points, "a trace");
+    double *heights = points + 2 * GROUPS_MOST + 1;
+    size_t count = trace_of(picture, points, heights);
+    range_of(picture, range);
+    double margin = 0.06 * (range[1] - range[0]);
+    frame_set(&pen->frame, (const double[]){0, picture->grid->lx},
+              (const double[]){range[0] - margin, range[1] + margin}, false);
+    frame_draw(pen->file, &pen->frame, picture->x_label, picture->z_label);
+    pen_line(pen, count, points, heights, STYLE);
+    free(points);
+    return 0;
+}
+
+/* --- a surface --- */
+
+/* Means over squares of step by step points, fewer at the far sides. */
+static void join_points(const struct map_picture *picture, size_t step,
+                        const struct heat_cells *cells, double *out) {
+    const struct grid *grid = picture->grid;
+    for (size_t row = 0; row < cells->ny; row++)
+        for (size_t column = 0; column < cells->nx; column++) {
+            double sum = 0;
+            size_t count = 0;
+            for (size_t j = row * step; j < grid->ny && j < (row + 1) * step; j++)
+                for (size_t i = column * step; i < grid->nx && i < (column + 1) * step;
+                     i++, count++)
+                    sum += picture->z[j * grid->nx + i];
+            out[row * cells->nx + column] = sum / (double)count;
+        }
+}
+
+static int draw_surface(struct map_plot *plot, struct error *err) {
+    const struct map_picture *picture = plot->picture;
+    const struct grid *grid = picture->grid;
+    struct plot_pen *pen = &plot->pen;
+    size_t longer = grid->nx > grid->ny ? grid->nx : grid->ny;
+    size_t step = (longer + CELLS_A_SIDE - 1) / CELLS_A_SIDE;
+    struct heat_cells cells = {.nx = (grid->nx + step - 1) / step,
+                               .ny = (grid->ny + step - 1) / step};
+    double range[2], dx = grid_dx(grid), dy = grid_dy(grid);
+    double *values = array_create(cells.nx * cells.ny, sizeof *values);
+    if (values == NULL)
+        return error_memory(err, cells.nx * cells.ny * sizeof *values, "a picture");
+    join_points(picture, step, &cells, values);
+    cells.values = values;
+    cells.x[0] = -dx / 2; /* a point lies in the middle of its square */
+    cells.x[1] = cells.x[0] + (double)(cells.nx * step) * dx;
+    cells.y[0] = -dy / 2;
+    cells.y[1] = cells.y[0] + (double)(cells.ny * step) * dy;
+    range_of(picture, range);
+    const struct heat_scale scale = heat_scale_between(range[0], range[1], 10, HEAT_HEIGHT);
+    frame_set(&pen->frame, cells.x, cells.y, true);
+    frame_draw(pen->file, &pen->frame, picture->x_label, picture->y_label);
+    heat_draw(pen, &cells, &scale);
+    heat_legend(pen, &scale, picture->z_label);
+    free(values);
+    return 0;
+}
+
+int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
+    struct map_plot plot = {.picture = picture, .pen = {.file = file}};
+    int status = find_summits(&plot, err);
+    if (status == 0) {
+        pen_head(&plot.pen, PEN_WIDTH);
+        pen_title(&plot.pen, picture->name, picture->subject);
+        status =
+            grid_is_profile(picture->grid) ? draw_profile(&plot, err) : draw_surface(&plot, err);
+    }
+    if (status == 0) {
+        draw_summits(&plot);
+        fputs("</svg>\n", file);
+    }
+    summit_list_clear(&plot.summits);
+    return status;
+}

@@ -1,0 +1,128 @@
+/* Protects: the picture of a surface marks each of its summits at its place, shows the extremes of
+ * a trace however many points it has, and says where it marks but the highest. */
+#include "server/show/plot_frame.h"
+#include "server/show/plot_map.h"
+#include "tests/support/check.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static size_t count_of(const char *text, const char *word) {
+    size_t n = 0;
+    for (const char *at = text; (at = strstr(at, word)) != NULL; at++)
+        n++;
+    return n;
+}
+
+static char *draw(const struct grid *grid, const double *z) {
+    const struct map_picture picture = {.name = "a & b",
+                                        .subject = "case 1",
+                                        .x_label = "along",
+                                        .y_label = "across",
+                                        .z_label = "height",
+                                        .grid = grid,
+                                        .z = z};
+    char *text = NULL;
+    size_t size = 0;
+    struct error err = {0};
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    assert_int_equal(plot_map(&picture, file, &err), 0);
+    assert_int_equal(fclose(file), 0);
+    assert_null(strstr(text, "nan"));
+    assert_non_null(strstr(text, "</svg>"));
+    return text;
+}
+
+/* Returns a cosine of `waves` waves along x, one along y where the grid has rows; the caller frees.
+ */
+static double *waves_of(const struct grid *grid, double waves) {
+    double *z = array_create(grid_points(grid), sizeof *z);
+    assert_non_null(z);
+    for (size_t j = 0; j < grid->ny; j++)
+        for (size_t i = 0; i < grid->nx; i++)
+            z[j * grid->nx + i] =
+                cos(2 * M_PI * waves * (double)i / (double)grid->nx) +
+                (grid_is_profile(grid) ? 0 : cos(2 * M_PI * (double)j / (double)grid->ny));
+    return z;
+}
+
+static void a_trace_has_its_peaks(void **state) {
+    (void)state;
+    const struct grid grid = {.nx = 64, .ny = 1, .lx = 8, .ly = 1};
+    double *z = waves_of(&grid, 4), x, y, range[2] = {-1.12, 1.12};
+    struct frame frame;
+    char *text = draw(&grid, z);
+    frame_set(&frame, (const double[]){0, 8}, range, false);
+    assert_int_equal(count_of(text, "class=\"summit\""), 4);
+    assert_int_equal(count_of(text, ">circles: 4 peaks<"), 1);
+    assert_int_equal(count_of(text, ">along<"), 1);
+    assert_int_equal(count_of(text, ">height<"), 1);
+    assert_int_equal(count_of(text, "a &amp; b: case 1<"), 2);
+    bool seen[4] = {false};
+    for (const char *at = text; (at = strstr(at, "class=\"summit\"")) != NULL; at++) {
+        assert_int_equal(sscanf(at, "class=\"summit\" cx=\"%lf\" cy=\"%lf\"", &x, &y), 2);
+        assert_true(fabs(y - frame_y(&frame, 1)) < 0.06);
+        for (int peak = 0; peak < 4; peak++)
+            seen[peak] = seen[peak] || fabs(x - frame_x(&frame, 2 * peak)) < 0.06;
+    }
+    assert_true(seen[0] && seen[1] && seen[2] && seen[3]);
+    free(text);
+    free(z);
+}
+
+static void a_surface_has_its_summits(void **state) {
+    (void)state;
+    const struct grid grid = {.nx = 32, .ny = 16, .lx = 8, .ly = 8};
+    double *z = waves_of(&grid, 2);
+    char *text = draw(&grid, z);
+    assert_int_equal(count_of(text, "class=\"summit\""), 2);
+    assert_int_equal(count_of(text, ">circles: 2 summits<"), 1);
+    assert_true(count_of(text, "class=\"heat\"") >= 4);
+    assert_int_equal(count_of(text, ">across<"), 1);
+    assert_int_equal(count_of(text, ">height<"), 1);
+    free(text);
+    free(z);
+}
+
+/* One high point among many is seen, though points are joined. */
+static void extremes_of_long_traces_are_seen(void **state) {
+    (void)state;
+    const struct grid grid = {.nx = 100000, .ny = 1, .lx = 100000, .ly = 1};
+    double *z = waves_of(&grid, 5000);
+    z[54321] = 3;
+    char *text = draw(&grid, z), place[32];
+    struct frame frame;
+    frame_set(&frame, (const double[]){0, grid.lx}, (const double[]){-1.24, 3.24}, false);
+    snprintf(place, sizeof place, "L%.2f %.2f", frame_x(&frame, 54321), frame_y(&frame, 3));
+    assert_int_equal(count_of(text, place), 1);
+    assert_int_equal(count_of(text, "class=\"summit\""), 1000);
+    assert_int_equal(count_of(text, "circles: the 1000 highest of 500"), 1);
+    assert_true(strlen(text) < 250000);
+    free(text);
+    free(z);
+}
+
+/* A flat surface has neither summits nor a range. */
+static void flat_surfaces_are_drawn(void **state) {
+    (void)state;
+    const struct grid grid = {.nx = 16, .ny = 300, .lx = 1, .ly = 20};
+    double *z = array_create(grid_points(&grid), sizeof *z);
+    assert_non_null(z);
+    memset(z, 0, grid_points(&grid) * sizeof *z);
+    char *text = draw(&grid, z);
+    assert_int_equal(count_of(text, "class=\"heat\""), 1);
+    assert_int_equal(count_of(text, ">circles: 0 summits<"), 1);
+    free(text);
+    free(z);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_trace_has_its_peaks),
+        cmocka_unit_test(a_surface_has_its_summits),
+        cmocka_unit_test(extremes_of_long_traces_are_seen),
+        cmocka_unit_test(flat_surfaces_are_drawn),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
