@@ -155,7 +155,9 @@ size_t radial_bins(const struct grid *grid) {
     return (size_t)(radius(grid, (double)nyquist_x, (double)nyquist_y) + 0.5) + 1;
 }
 
-void psd_of_modes(const struct modes *modes, double *wave_number, double *density) {
+/* band: means are over the waves of a ring that have any power, else over all of the ring. */
+static void ring_density(const struct modes *modes, bool band, double *wave_number,
+                         double *density) {
     const struct grid *grid = &modes->grid;
     size_t bins = radial_bins(grid);
     bool profile = grid_is_profile(grid);
@@ -171,14 +173,23 @@ void psd_of_modes(const struct modes *modes, double *wave_number, double *densit
                 continue;
             size_t r = (size_t)(radius(grid, (double)mx, (double)my) + 0.5);
             double weight = mx == 0 || 2 * mx == grid->nx ? 1 : 2;
-            wave_number[r] += weight;
-            if (mx <= modes->mode_x && labs(my) <= mode_y)
-                density[r] += weight * modes_power(modes, mx, my);
+            double power =
+                mx <= modes->mode_x && labs(my) <= mode_y ? modes_power(modes, mx, my) : 0;
+            wave_number[r] += band && power == 0 ? 0 : weight;
+            density[r] += weight * power;
         }
     for (size_t r = 0; r < bins; r++) {
         density[r] = wave_number[r] > 0 ? density[r] / wave_number[r] * cell : 0;
         wave_number[r] = 2 * M_PI * (double)r / shorter_side(grid);
     }
+}
+
+void psd_of_modes(const struct modes *modes, double *wave_number, double *density) {
+    ring_density(modes, false, wave_number, density);
+}
+
+void psd_of_band(const struct modes *modes, double *wave_number, double *density) {
+    ring_density(modes, true, wave_number, density);
 }
 
 int psd_measure(const struct grid *grid, const double *z, double *wave_number, double *density,

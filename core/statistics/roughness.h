@@ -30,6 +30,9 @@ int psd_measure(const struct grid *grid, const double *z, double *wave_number, d
                 struct error *err);
 /* Does likewise for a discrete spectrum, which costs no transform. */
 void psd_of_modes(const struct modes *modes, double *wave_number, double *density);
+/* The same over the waves of a ring that lie within the band, so that rings at its ends have its
+ * density, too. */
+void psd_of_band(const struct modes *modes, double *wave_number, double *density);
 /* Measures the autocorrelation R(r)/R(0) at lags 0, dx, 2dx … (nx/2 + 1 of them), radially averaged
  * for surfaces. */
 int acf_measure(const struct grid *grid, const double *z, double *lag, double *correlation,

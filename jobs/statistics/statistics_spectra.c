@@ -103,9 +103,13 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
         status = columns_create(result, &reference, n, err);
     if (status != 0)
         return status;
-    psd_of_modes(modes, reference.x, reference.theory);
     psd_of_modes(modes, reference.x, reference.y);
     reference_of(n, reference.y);
+    psd_of_band(modes, reference.x, reference.theory);
+    /* Measured densities are of all waves of a ring; of surfaces that have none but those of the
+     * band they are told over these. */
+    for (size_t a = 0; a < n && surface_case_band_limited(&one_case->surface); a++)
+        reference.y[a] = reference.theory[a];
     status = psd_prescribed(&one_case->surface.spectrum, modes, columns.x, columns.theory, err);
     if (status != 0)
         return status;
