@@ -70,5 +70,6 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
     out->seconds = expected_seconds(one_case);
     out->case_seconds = expected_case_seconds(one_case, summits);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */
-    out->relative_error = 2.239 * sqrt(spread / (summits * bins_width(&one_case->height)));
+    double counted = statistics_case_symmetric(one_case) ? 2 * summits : summits; /* with pits */
+    out->relative_error = 2.239 * sqrt(spread / (counted * bins_width(&one_case->height)));
 }

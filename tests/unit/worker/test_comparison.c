@@ -38,7 +38,8 @@ static void a_difference_is_by_pairs(void **state) {
     assert_string_equal(result_parameter(one, "/surface/hurst")->text, "0.8 less 0.2");
     const struct scalar *summits = result_scalar(one, "summit_height_mean");
     assert_true(summits->paired && summits->standard_error > 0);
-    assert_false(result_curve(one, "summit_height_pdf")->paired);
+    assert_true(result_curve(one, "summit_height_pdf")->paired);
+    assert_false(result_curve(one, "psd")->paired); /* known, not measured */
     study_result_clear(&study);
     assert_int_equal(compare(&fixture, 0, 1, "summit_height_pdf", &study, &err), 0);
     assert_int_equal(study.cases[0].curve_count, 1);
