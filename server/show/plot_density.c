@@ -8,7 +8,7 @@
 enum { CELLS_A_SIDE = 45 };
 /* What is less than this part of the highest value, of the matrix and of each theory, need not be
  * seen. */
-static const double SEEN_PART = 0.02;
+static const double SEEN_PART = 0.01;
 
 /* Theories differ by colour: their contours are many short strokes, which dashes would break. */
 static const char *const STROKES[] = {"#000", "#d55e00", "#009e73", "#cc79a7"};
@@ -145,13 +145,11 @@ static struct heat_cells cells_of(const struct density *density, size_t which) {
     return cells;
 }
 
-/* Theories say how high the levels are, since a mean over few things has chance heights. */
+/* The matrix and its theories have one scale, up to the highest of all. */
 static struct heat_scale scale_of(const struct density *density) {
     size_t cells = density->x.count * density->y.count;
-    double highest = 0;
-    for (size_t t = 0; t < density->curve->theory_count; t++)
-        highest = fmax(highest, highest_of(density->coarse + (1 + t) * cells, cells));
-    return heat_scale_of_density(highest > 0 ? highest : highest_of(density->coarse, cells));
+    return heat_scale_of_density(
+        highest_of(density->coarse, cells * (1 + density->curve->theory_count)));
 }
 
 static void draw_theories(struct density *density, const struct heat_scale *scale) {

@@ -15,8 +15,15 @@ struct heat_scale heat_scale_between(double low, double high, int levels, enum h
 }
 
 struct heat_scale heat_scale_of_density(double highest) {
-    struct heat_scale scale = heat_scale_between(0, highest, 6, HEAT_DENSITY);
-    scale.bounds[0] = scale.bounds[1] / 5;
+    static const double STEPS[] = {1, 2, 5};
+    struct heat_scale scale = {.ramp = HEAT_DENSITY};
+    double least = highest / 50, decade = pow(10, floor(log10(least)));
+    size_t bounds = 0;
+    for (; bounds == 0 || scale.bounds[bounds - 1] <= highest; decade *= 10)
+        for (size_t s = 0; s < 3; s++)
+            if (STEPS[s] * decade >= least && (bounds == 0 || scale.bounds[bounds - 1] <= highest))
+                scale.bounds[bounds++] = STEPS[s] * decade;
+    scale.count = bounds - 1;
     return scale;
 }
 

@@ -21,10 +21,11 @@ struct heat_scale {
 /* About so many levels, 10 at most, at round numbers, which hold all values from low to high, low <
  * high. */
 struct heat_scale heat_scale_between(double low, double high, int levels, enum heat_ramp ramp);
-/* Levels of a density: at round numbers, and one below the lowest; what is less has no colour. */
+/* Levels of a density, highest > 0: at 1, 2 and 5 of each decade, from a fiftieth of it on; what is
+ * less has no colour. */
 struct heat_scale heat_scale_of_density(double highest);
 
-/* Draws each cell in the colour of its level; values above the last level are in it. */
+/* Draws each cell in the colour of its level; the scale holds all values. */
 void heat_draw(const struct plot_pen *pen, const struct heat_cells *cells,
                const struct heat_scale *scale);
 /* Draws the lines at the bounds of the levels, between the centres of cells, straight in each. */

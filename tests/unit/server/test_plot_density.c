@@ -75,7 +75,7 @@ static void levels_have_colours_and_theories_contours(void **state) {
     (void)state;
     struct error err = {0};
     double values[CELLS] = {0};
-    values[0] = values[CELLS - 1] = 0.05; /* the lowest level, in two corners */
+    values[0] = values[CELLS - 1] = 0.03; /* the lowest level, in two corners */
     values[COLUMNS + 1] = 0.35;
     values[COLUMNS + 2] = 0.35;
     struct study_result study = study_of(ROWS, COLUMNS, values, 0.55);
@@ -85,7 +85,7 @@ static void levels_have_colours_and_theories_contours(void **state) {
     assert_int_equal(count_of(text, ">theory: nayak<"), 1);
     assert_int_equal(count_of(text, "theory: grid"), 0);
     assert_int_equal(count_of(text, ">0.1 to 0.2<"), 1);
-    assert_int_equal(count_of(text, ">0.02 to 0.1<"), 1);
+    assert_int_equal(count_of(text, ">0.02 to 0.05<"), 1);
     assert_int_equal(count_of(text, ">hurst: 0.25<"), 1);
     assert_int_equal(count_of(text, "a &amp; b: joint, case 0<"), 2);
     assert_int_equal(count_of(text, "height &lt;z&gt;"), 1);
@@ -96,6 +96,20 @@ static void levels_have_colours_and_theories_contours(void **state) {
     const char *heat = strstr(text, "class=\"heat\"");
     assert_int_equal(count_of(heat, "Z"), count_of(text, "Z"));
     assert_int_equal(count_of(text, "Z\"/>") + count_of(text, "ZM"), 4);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* Where more was counted than any theory has, the levels reach there. */
+static void levels_hold_all_values(void **state) {
+    (void)state;
+    struct error err = {0};
+    double values[CELLS] = {0};
+    values[COLUMNS + 1] = 0.95;
+    struct study_result study = study_of(ROWS, COLUMNS, values, 0.15);
+    char *text = draw(&study, 0, &err);
+    assert_int_equal(count_of(text, ">0.5 to 1<"), 1);
+    assert_int_equal(count_of(text, "class=\"heat\""), 1);
     free(text);
     study_result_clear(&study);
 }
@@ -128,13 +142,13 @@ static void many_bins_are_joined(void **state) {
     double *values = array_create(MANY * MANY, sizeof *values);
     assert_non_null(values);
     for (size_t cell = 0; cell < MANY * MANY; cell++)
-        values[cell] = cell % 2 == 0 ? 0.8 : 0; /* a mean of 0.4 in each group of four or nine */
+        values[cell] = cell % 2 == 0 ? 0.6 : 0; /* at most 0.4 as a mean of three */
     values[MANY * MANY - 1] = 0.1;
     struct study_result study = study_of(MANY, MANY, values, 0);
     char *text = draw(&study, 0, &err);
     size_t rectangles = count_of(text, "ZM") + count_of(text, "Z\"/>");
     assert_true(rectangles > 0 && rectangles < 60 * 60);
-    assert_int_equal(count_of(text, "0.8 to"), 0); /* no level as high as a single bin */
+    assert_int_equal(count_of(text, "0.5 to"), 0); /* no level as high as a single bin */
     free(text);
     study_result_clear(&study);
     free(values);
@@ -154,6 +168,7 @@ static void nothing_is_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(levels_have_colours_and_theories_contours),
+        cmocka_unit_test(levels_hold_all_values),
         cmocka_unit_test(contours_lie_between_cells),
         cmocka_unit_test(many_bins_are_joined),
         cmocka_unit_test(nothing_is_told),
