@@ -37,8 +37,8 @@ static int level_of(const struct heat_scale *scale, double value) {
     return (int)level;
 }
 
-/* Colours between these are mixed evenly: blues of a light ground, and those of the map "viridis"
- * (van der Walt & Smith 2015), whose lightness rises evenly. */
+/* Colours between these are mixed evenly: blues on a light ground, and those of the map "viridis",
+ * whose lightness rises evenly. */
 enum { ANCHORS = 5 };
 static const unsigned char RAMPS[][ANCHORS][3] = {{{0xe6, 0xf0, 0xf8},
                                                    {0xb9, 0xd5, 0xea},
