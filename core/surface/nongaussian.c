@@ -227,10 +227,10 @@ static int plain_phase(struct nongaussian *g, struct transform *transform, doubl
  * and minimum (H = 0.8, ratio 4, 256 x 256, 16 surfaces) have summits that differ from those of
  * 6000 plain iterations by 1.1 +- 0.6 and 1.2 +- 0.9 % in number, -0.5 and -0.4 % in mean height,
  * -0.7 and 0.0 % in mean curvature, which is what plain iterations of 1500 and 6000 differ, or
- * twice that. With no opening curvatures differ by 1 to 2 %, with momentum alone by 1 to 3 % of the
- * maximum; steps beyond the heights (up to four times as far, early) come to an error of 2 % in
- * half the iterations, and then to 4 % more summits. On a grid of 4 points a shortest wave, where
- * the heights between the points are free, the number of summits stays 3 % low whatever follows. */
+ * twice that (bench_nongaussian drift). Momentum alone ends with curvatures of the maximum 1 to 2 %
+ * off. Steps beyond the heights are faster early, but end with other numbers of summits. On a grid
+ * of 4 points a shortest wave, where the heights between the points are free, the number of summits
+ * stays low whatever follows. */
 enum { OPENING = 15, CHECKED_EACH = 5 };
 static const double REFLECTION = 0.9;
 
