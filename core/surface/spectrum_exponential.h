@@ -4,7 +4,7 @@
 #ifndef RUGO_CORE_SURFACE_SPECTRUM_EXPONENTIAL_H
 #define RUGO_CORE_SURFACE_SPECTRUM_EXPONENTIAL_H
 
-#include "core/surface/spectrum.h"
+#include "core/surface/modes.h"
 
 /* Returns the autocorrelation over its value at 0 for the lag (i dx, j dy), the shorter way round
  * the cell. */
