@@ -14,7 +14,7 @@ struct values {
     const char *misread; /* a path that a reader asked for in vain; borrowed */
     size_t count;        /* of rows */
     const cJSON **at;    /* owned array of count borrowed values; NULL: absent */
-    cJSON **defaults;    /* owned array of count owned values, where at has a default */
+    cJSON **defaults; /* owned array of count owned values, of rows that are absent or came later */
 };
 
 /* Finds and checks the value of every row. */
@@ -22,16 +22,18 @@ static int values_fill(struct values *values, const cJSON *parameters, struct er
     for (size_t p = 0; p < values->count; p++) {
         const struct parameter *row = parameter_row(values->tables, p);
         values->at[p] = json_at(parameters, row->path);
-        if (values->at[p] != NULL) {
+        bool given = values->at[p] != NULL;
+        if (given)
             value_check(row, values->at[p], row->path, values->faults);
-        } else if (row->default_json != NULL) {
-            values->defaults[p] = value_default(row);
-            values->at[p] = values->defaults[p];
-            if (values->at[p] == NULL)
-                return error_memory(err, strlen(row->default_json), row->path);
-        } else if (row->required) {
+        else if (row->required && row->default_json == NULL)
             value_missing(row, values->faults);
-        }
+        if (row->default_json == NULL || (given && !row->later))
+            continue;
+        values->defaults[p] = value_default(row);
+        if (values->defaults[p] == NULL)
+            return error_memory(err, strlen(row->default_json), row->path);
+        if (!given)
+            values->at[p] = values->defaults[p];
     }
     return values_status(values, err);
 }
@@ -78,13 +80,8 @@ const cJSON *values_json(const struct values *values, size_t index) {
 }
 
 bool values_is_default(const struct values *values, size_t index) {
-    const cJSON *value = values_json(values, index);
-    if (value == NULL || value == values->defaults[index])
-        return true;
-    cJSON *usual = value_default(parameter_row(values->tables, index));
-    bool same = usual != NULL && cJSON_Compare(value, usual, true);
-    cJSON_Delete(usual);
-    return same;
+    const cJSON *value = values_json(values, index), *usual = values->defaults[index];
+    return value == NULL || value == usual || (usual != NULL && cJSON_Compare(value, usual, true));
 }
 
 /* The row of a path and its value; NULL, and the path remembered, where it is no row of that type.

@@ -40,7 +40,8 @@ int values_numbers(struct values *values, const char *path, double **out, size_t
 /* [low, high, count] of a histogram of at most `most` bins; a fault, and *out left alone, where
  * they make none. */
 void values_bins(struct values *values, const char *path, size_t most, struct bins *out);
-/* Returns whether the value of row number `index` is its default, or absent. */
+/* Returns whether the value of row number `index`, one that came later, is its default, or absent.
+ */
 bool values_is_default(const struct values *values, size_t index);
 /* Returns the value of row number `index` as JSON, given or default; NULL where it is absent. */
 const cJSON *values_json(const struct values *values, size_t index);
