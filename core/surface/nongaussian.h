@@ -18,7 +18,8 @@ int nongaussian_create(struct nongaussian **out, const struct modes *modes,
                        const struct surface_options *options, struct error *err);
 void nongaussian_destroy(struct nongaussian **nongaussian);
 
-void nongaussian_aim(struct nongaussian *nongaussian, const struct surface_aim *aim);
+/* Changes what the next runs work down to. */
+void nongaussian_aim(struct nongaussian *g, const struct surface_aim *aim);
 
 /* On entry z[ny*nx] is the Gaussian start, on return the surface. transform belongs to the grid and
  * band of modes; its spectrum is overwritten. report may be NULL. After an error z is undefined. */

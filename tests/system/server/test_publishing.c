@@ -170,8 +170,10 @@ static void what_cannot_be_merged_is_marked(void **state) {
     assert_int_equal(run_rugo("other", (const char *[]){"run", "--db", "old.db", "--set", "seed=4",
                                                         "one.json", NULL}),
                      0);
-    change("old.db", "DELETE FROM point; DELETE FROM curve; DELETE FROM scalar; DELETE FROM "
-                     "published; UPDATE study_case SET settled = 0");
+    change(
+        "old.db",
+        "DELETE FROM point_error; DELETE FROM scalar_error; DELETE FROM point; DELETE "
+        "FROM curve; DELETE FROM scalar; DELETE FROM published; UPDATE study_case SET settled = 0");
     older = ask("old.db", "SELECT public FROM study WHERE id = 1", NULL);
     other = ask("old.db", "SELECT public FROM study WHERE id = 2", NULL);
     serve_start(&server, (const char *[]){"--db", "old.db", NULL});
