@@ -48,6 +48,8 @@ static void ran_clear(struct ran *ran) {
 }
 
 static double value(const struct ran *ran, uint64_t realisation, size_t scalar) {
+    if (ran->block.scalars == NULL)
+        return (double)NAN;
     return ran->block.scalars[realisation * ran->block.scalar_count + scalar];
 }
 

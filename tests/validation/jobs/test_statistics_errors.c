@@ -3,14 +3,14 @@
  *
  * A Gaussian error known from 20 realisations would hold in 67 % (one) and 94 % (two) of all
  * studies. Bins that most studies do not see have bounds, which hold in more. Tails of heights, to
- * which few clusters of many points add, hold in the least: measured 66 and 88 %. */
+ * which few clusters of many points add, hold in the least: measured on 400 studies 66 and 88 %. */
 #include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 #include <string.h>
 
-enum { STUDIES = 400, REALISATIONS = 20, CLASSES = 4, BINS_MOST = 200, SEED = 71 };
+enum { STUDIES = 120, REALISATIONS = 20, CLASSES = 4, BINS_MOST = 200, SEED = 71 };
 
 static const char *const QUANTITIES[] = {"height_pdf",           "height_cdf",
                                          "summit_height_pdf",    "summit_height_cdf",
@@ -58,8 +58,9 @@ static void keep_truth(const struct case_result *all) {
     for (size_t q = 0; q < QUANTITY_COUNT; q++) {
         const struct curve *curve = result_curve(all, QUANTITIES[q]);
         /* cumulative ones: by the density of the same bin */
-        const struct curve *density =
-            strstr(QUANTITIES[q], "_cdf") != NULL ? result_curve(all, QUANTITIES[q - 1]) : curve;
+        const struct curve *density = q > 0 && strstr(QUANTITIES[q], "_cdf") != NULL
+                                          ? result_curve(all, QUANTITIES[q - 1])
+                                          : curve;
         for (size_t b = 0; b < curve->n; b++) {
             told[q].truth[b] = curve->y[b];
             told[q].share[b] = REALISATIONS - density->valueless[b] / STUDIES;
@@ -128,7 +129,7 @@ static void check_quantity(size_t q) {
                none[c] / (all[c] + none[c]));
         bool ratio = strcmp(QUANTITIES[q], "summit_mean_curvature") == 0;
         assert_true(ratio || none[c] == 0);
-        assert_true(all[c] > (ratio ? 100 : 2000));
+        assert_true(all[c] > (ratio ? 30 : 500));
         assert_true(one[c] > 0.63 * all[c] && two[c] > 0.86 * all[c]);
     }
 }
