@@ -12,10 +12,14 @@
  * They are chosen component by component (Sloan & Reztsov 2002) for smooth periodic functions;
  * folding makes the ends of others meet. Independent shifts tell the error: 2e-4 of the density of
  * nine-point summits, 1e-6 of others. */
-enum { SHIFTS_MOST = 8, LATTICE_SEED = 1, LATTICE_POINTS = 16381 };
+enum { SHIFTS_MOST = 8, LATTICE_SEED = 1, LATTICE_POINTS = 16381, PROFILE_POINTS = 2039 };
 static const unsigned STEPS[UNIFORMS] = {3711, 5711, 3321, 7766, 7145, 6041};
 static size_t shift_count(size_t pairs) {
     return pairs == PAIRS_NINE_POINT ? SHIFTS_MOST : 2;
+}
+/* Profiles have an integral over one line. */
+static size_t point_count(size_t pairs) {
+    return pairs == PAIRS_PROFILE ? PROFILE_POINTS : LATTICE_POINTS;
 }
 
 struct lattice_sums {
@@ -92,15 +96,16 @@ static void add_point(const struct summit_integrand *f, const struct bins *t1, c
  * the next; the other coordinates are those of a lattice, folded so that its ends meet. */
 static void integrate(const struct summit_integrand *f, const struct bins *t1,
                       struct lattice_sums *sums) {
-    const double interval = LEAD_MOST / LATTICE_POINTS;
+    const size_t points = point_count(f->pairs);
+    const double interval = LEAD_MOST / (double)points;
     for (size_t shift = 0; shift < shift_count(f->pairs); shift++) {
         double random[UNIFORMS + 1], u[UNIFORMS], y[PAIRS_MOST] = {0};
         double before = sums->weight;
         random_uniform((struct random_key){LATTICE_SEED, 0, shift}, STREAM_PHASES, 0, UNIFORMS + 1,
                        random);
-        for (size_t n = 0; n < LATTICE_POINTS; n++) {
+        for (size_t n = 0; n < points; n++) {
             for (size_t a = 0; a < UNIFORMS; a++) {
-                double place = (double)n * STEPS[a] / LATTICE_POINTS + random[a];
+                double place = (double)n * STEPS[a] / (double)points + random[a];
                 u[a] = fmin(fmax(fabs(2 * (place - floor(place)) - 1), 1e-15), 1 - 1e-15);
             }
             double lead = interval * ((double)n + random[UNIFORMS]);
@@ -194,7 +199,7 @@ static int take(const struct summit_integrand *f, const struct sampled_surface *
         return status;
     for (size_t b = 0; sums->t1 != NULL && b < bins->t1->count; b++)
         sums->t1[b] /= sums->weight * bins_width(bins->t1);
-    double points = (double)shift_count(f->pairs) * LATTICE_POINTS;
+    double points = (double)(shift_count(f->pairs) * point_count(f->pairs));
     double area = grid_is_profile(grid) ? grid_dx(grid) : grid_dx(grid) * grid_dy(grid);
     out->density = sums->weight / points / area;
     out->density_error = relative_error(sums, shift_count(f->pairs));
