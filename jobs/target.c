@@ -108,47 +108,51 @@ double target_quantile(const struct target *target, size_t count, const struct t
     return gsl_cdf_tdist_Pinv((1 + target->confidence) / 2, variance * variance / square);
 }
 
+/* A plan whose least work is sought. */
+struct search {
+    const struct target_plan *plan;
+    size_t count;
+    const struct target_part *parts;
+    double quantile; /* normal */
+    const double *numbers;
+};
+
 /* Variance of one realisation of a part over what is allowed at a point; 0 where it is left out. */
-static double relative_variance(const struct target_plan *plan, const struct target_part *part,
-                                size_t point) {
-    double quantile = gsl_cdf_ugaussian_Pinv((1 + plan->target->confidence) / 2);
-    double ratio = quantile / plan->allowed[point];
-    double relative = part->variance[point] * ratio * ratio;
+static double relative_variance(const struct search *search, size_t part, size_t point) {
+    double ratio = search->quantile / search->plan->allowed[point];
+    double relative = search->parts[part].variance[point] * ratio * ratio;
     return isfinite(relative) ? relative : 0;
 }
 
 /* The sum of V/N over what is allowed at a point; N of a part is `scale` times its number, at least
  * what is done. */
-static double sum_at(const struct target_plan *plan, size_t count, const struct target_part *parts,
-                     const double *numbers, double scale, size_t point) {
+static double sum_at(const struct search *search, double scale, size_t point) {
     double sum = 0;
-    for (size_t a = 0; a < count; a++) {
-        double variance = relative_variance(plan, &parts[a], point);
+    for (size_t a = 0; a < search->count; a++) {
+        double variance = relative_variance(search, a, point);
         if (variance > 0)
-            sum += variance / fmax((double)parts[a].done, scale * numbers[a]);
+            sum += variance / fmax((double)search->parts[a].done, scale * search->numbers[a]);
     }
     return sum;
 }
 
-static bool suffices(const struct target_plan *plan, size_t count, const struct target_part *parts,
-                     const double *numbers, double scale) {
-    for (size_t k = 0; k < plan->points; k++)
-        if (sum_at(plan, count, parts, numbers, scale, k) > 1)
+static bool suffices(const struct search *search, double scale) {
+    for (size_t k = 0; k < search->plan->points; k++)
+        if (sum_at(search, scale, k) > 1)
             return false;
     return true;
 }
 
 /* The least scale of the numbers that suffices; they suffice from some scale on. */
-static double least_scale(const struct target_plan *plan, size_t count,
-                          const struct target_part *parts, const double *numbers) {
+static double least_scale(const struct search *search) {
     double low = 0, high = 1;
-    if (suffices(plan, count, parts, numbers, 0))
+    if (suffices(search, 0))
         return 0;
-    while (high < SCALE_MOST && !suffices(plan, count, parts, numbers, high))
+    while (high < SCALE_MOST && !suffices(search, high))
         high *= 2;
     for (int step = 0; step < BISECTIONS; step++) {
         double middle = (low + high) / 2;
-        *(suffices(plan, count, parts, numbers, middle) ? &high : &low) = middle;
+        *(suffices(search, middle) ? &high : &low) = middle;
     }
     return high;
 }
@@ -158,18 +162,20 @@ static double least_scale(const struct target_plan *plan, size_t count,
 double target_least_work(const struct target_plan *plan, size_t count,
                          const struct target_part *parts, double *needed) {
     double scale = 0, lacking = 0;
+    const struct search search = {
+        plan, count, parts, gsl_cdf_ugaussian_Pinv((1 + plan->target->confidence) / 2), needed};
     for (size_t k = 0; k < plan->points; k++)
         plan->multipliers[k] = 1;
     for (int step = 0; step < STEPS; step++) {
         for (size_t a = 0; a < count; a++) {
             double sum = 0;
             for (size_t k = 0; k < plan->points; k++)
-                sum += plan->multipliers[k] * relative_variance(plan, &parts[a], k);
+                sum += plan->multipliers[k] * relative_variance(&search, a, k);
             needed[a] = sqrt(sum / parts[a].work);
         }
-        scale = least_scale(plan, count, parts, needed);
+        scale = least_scale(&search);
         for (size_t k = 0; k < plan->points; k++)
-            plan->multipliers[k] *= sum_at(plan, count, parts, needed, scale, k);
+            plan->multipliers[k] *= sum_at(&search, scale, k);
     }
     for (size_t a = 0; a < count; a++) {
         needed[a] = fmax((double)parts[a].done, scale * needed[a]);

@@ -25,47 +25,68 @@ static double asked_at(const struct contact_answer *answer, const struct contact
     return answer->target.error * fabs(sum->value[load]);
 }
 
-static bool is_of_model(enum role role) {
-    return role == ROLE_MODEL || role == ROLE_MODEL_MESH;
-}
+/* A plan under way. */
+struct planning {
+    const struct contact_answer *answer;
+    const struct contact_sum *sum;
+    size_t count;
+    struct target_part parts[ROLES + 1]; /* and room for the longer cell */
+    double *allowed;                     /* by load: how far chance may go */
+    double *multipliers;
+    bool reaches;   /* the bounds as they are leave enough to chance */
+    double lacking; /* work, with these bounds */
+};
 
-/* How far chance may go at each load if the bounds of a role were `times` what they are: what the
+/* How far chance may go at each load if a bound (NULL: none) were `times` what it is: what the
  * bounds leave of the error, at least CHANCE_LEAST of it. Returns whether they leave that at every
  * load. */
-static bool allow(const struct contact_answer *answer, const struct contact_sum *sum,
-                  enum role role, double times, double *allowed) {
-    const double *bound = role == ROLE_CELL   ? sum->length
-                          : is_of_model(role) ? sum->model
-                                              : sum->mesh;
+static bool allow(const struct planning *planning, const double *bound, double times) {
+    const struct contact_answer *answer = planning->answer;
     bool enough = true;
     for (size_t k = 0; k < answer->loads; k++) {
-        double asked = asked_at(answer, sum, k), all = contact_sum_bounds(answer, sum, k);
-        double less = bound[k] * bound[k] * (1 - times * times);
+        double asked = asked_at(answer, planning->sum, k);
+        double all = contact_sum_bounds(answer, planning->sum, k);
+        double less = bound != NULL ? bound[k] * bound[k] * (1 - times * times) : 0;
         double left = left_by(asked, sqrt(fmax(0, all * all - less)));
         enough = enough && !(left < CHANCE_LEAST * asked);
-        allowed[k] = fmax(left, CHANCE_LEAST * asked);
+        planning->allowed[k] = fmax(left, CHANCE_LEAST * asked);
     }
     return enough;
+}
+
+static struct target_plan plan_of(const struct planning *planning) {
+    return (struct target_plan){&planning->answer->target, planning->answer->loads,
+                                planning->allowed, planning->multipliers};
+}
+
+/* What is lacking to bring chance to what is allowed now. */
+static double lacking_of(const struct planning *planning, size_t count,
+                         const struct target_part *parts) {
+    const struct target_plan plan = plan_of(planning);
+    double needed[ROLES];
+    return target_least_work(&plan, count, parts, needed);
 }
 
 /* Doubles a component whose levels tell a bound, where a bound half as large saves more work than
  * that takes, or brings the error within reach: whether levels show their order is seen better by
  * more realisations. */
-static bool sharpen(const struct contact_answer *answer, const struct contact_sum *sum,
-                    const struct target_plan *plan, double *allowed, size_t count,
-                    const struct target_part *parts, enum role role, size_t at, uint64_t *wanted) {
-    double needed[ROLES];
-    const struct target_part *part = &parts[at];
+static bool sharpen(const struct planning *planning, enum role role, const struct target_part *part,
+                    uint64_t *wanted) {
+    const struct contact_answer *answer = planning->answer;
+    bool of_model = role == ROLE_MODEL || role == ROLE_MODEL_MESH;
     if (part->done >= SHARPENED_MOST ||
         component_case(answer->of[role])->level_count < LEVELS_SHARPENED ||
-        (!is_of_model(role) && (answer->named_mesh || role != contact_sum_mesh(answer))))
+        (!of_model && (answer->named_mesh || role != contact_sum_mesh(answer))))
         return false;
-    bool reaches = allow(answer, sum, role, 1, allowed);
-    double now = target_least_work(plan, count, parts, needed);
-    bool could = allow(answer, sum, role, 0, allowed);
-    (void)allow(answer, sum, role, 0.5, allowed);
-    double then = target_least_work(plan, count, parts, needed);
-    bool saves = reaches ? now - then > part->work * (double)part->done : could;
+    const double *bound = of_model ? planning->sum->model : planning->sum->mesh;
+    bool saves;
+    if (planning->reaches) {
+        (void)allow(planning, bound, 0.5);
+        double then = lacking_of(planning, planning->count, planning->parts);
+        saves = planning->lacking - then > part->work * (double)part->done;
+    } else {
+        saves = allow(planning, bound, 0);
+    }
     if (saves)
         *wanted = 2 * part->done;
     return saves;
@@ -83,17 +104,15 @@ static bool is_seen(const struct contact_answer *answer, const struct contact_su
 
 /* The parts as they would be with the longer cell for base: a share of its realisations with as
  * much length makes for the same chance. The base becomes the cell beside it, and needs no more. */
-static size_t lengthened(const struct contact_answer *answer, const struct contact_sum *sum,
-                         struct target_part parts[ROLES]) {
+static size_t lengthened(const struct planning *planning, struct target_part parts[ROLES]) {
+    const struct contact_answer *answer = planning->answer;
     const struct contact_case *own = component_case(answer->of[ROLE_BASE]);
     double times = component_case(answer->longer)->surface.length_ratio / own->surface.length_ratio;
-    struct target_part all[ROLES];
     size_t count = 0;
-    (void)contact_sum_parts(answer, sum, all);
     for (size_t a = 0, part = 0; a < ROLES; a++) {
         if (answer->of[a] == NULL)
             continue;
-        struct target_part one = all[part++];
+        struct target_part one = planning->parts[part++];
         if (a == ROLE_CELL)
             continue;
         if (a == ROLE_BASE) {
@@ -107,67 +126,63 @@ static size_t lengthened(const struct contact_answer *answer, const struct conta
 
 /* Begins with longer cells in place of all else where these bring the error within reach, or take
  * less work than more of the same, and there is time. */
-static bool lengthen(const struct contact_answer *answer, const struct contact_sum *sum,
-                     const struct target_plan *plan, double *allowed, size_t count,
-                     struct target_part parts[ROLES + 1], uint64_t *wanted) {
-    if (answer->longer == NULL || !is_seen(answer, sum))
-        return false;
+static bool lengthen(struct planning *planning, uint64_t *wanted) {
+    const struct contact_answer *answer = planning->answer;
+    const size_t count = planning->count;
     struct target_part longer[ROLES];
-    double needed[ROLES];
-    bool reaches = allow(answer, sum, ROLE_CELL, 1, allowed);
-    double now = target_least_work(plan, count, parts, needed);
-    (void)allow(answer, sum, ROLE_CELL, 0.25, allowed);
-    double then = target_least_work(plan, lengthened(answer, sum, longer), longer, needed);
-    if (reaches && now <= LONGER_SAVES * then)
+    if (answer->longer == NULL || !is_seen(answer, planning->sum))
+        return false;
+    (void)allow(planning, planning->sum->length, 0.25);
+    double then = lacking_of(planning, lengthened(planning, longer), longer);
+    if (planning->reaches && planning->lacking <= LONGER_SAVES * then)
         return false;
     uint64_t next[ROLES + 1];
     for (size_t a = 0; a < count; a++)
-        next[a] = parts[a].done;
+        next[a] = planning->parts[a].done;
     next[count] = LONGER_FIRST;
-    parts[count] = (struct target_part){.seconds = answer->longer->seconds};
-    target_hold(&answer->target, count + 1, parts, next);
+    planning->parts[count] = (struct target_part){.seconds = answer->longer->seconds};
+    target_hold(&answer->target, count + 1, planning->parts, next);
     if (next[count] < LONGER_FIRST)
         return false;
-    for (size_t a = 0; a <= count; a++)
-        wanted[a] = next[a];
+    memcpy(wanted, next, sizeof *next * (count + 1));
     return true;
 }
 
 /* Adds what sharper bounds need, in place of all else where they do. */
-static void sharpen_all(const struct contact_answer *answer, const struct contact_sum *sum,
-                        const struct target_plan *plan, double *allowed, size_t count,
-                        const struct target_part *parts, uint64_t *wanted) {
+static void sharpen_all(const struct planning *planning, uint64_t *wanted) {
     bool sharpened = false;
     uint64_t sharper[ROLES];
-    for (size_t a = 0; a < count; a++)
-        sharper[a] = parts[a].done;
+    for (size_t a = 0; a < planning->count; a++)
+        sharper[a] = planning->parts[a].done;
     for (size_t a = 0, part = 0; a < ROLES; a++)
-        if (answer->of[a] != NULL) {
-            bool bounds = a == ROLE_MESH || a == ROLE_FINE || is_of_model((enum role)a);
-            sharpened = (bounds && sharpen(answer, sum, plan, allowed, count, parts, (enum role)a,
-                                           part, &sharper[part])) ||
+        if (planning->answer->of[a] != NULL) {
+            bool bounds = a != ROLE_BASE && a != ROLE_CELL;
+            sharpened = (bounds &&
+                         sharpen(planning, (enum role)a, &planning->parts[part], &sharper[part])) ||
                         sharpened;
             part++;
         }
     if (!sharpened)
         return;
-    memcpy(wanted, sharper, count * sizeof *sharper);
-    target_hold(&answer->target, count, parts, wanted);
+    memcpy(wanted, sharper, planning->count * sizeof *sharper);
+    target_hold(&planning->answer->target, planning->count, planning->parts, wanted);
 }
 
 int contact_plan(const struct contact_answer *answer, const struct contact_sum *sum,
                  uint64_t wanted[ROLES + 1], struct error *err) {
-    struct target_part parts[ROLES + 1];
-    size_t count = contact_sum_parts(answer, sum, parts);
-    double *room = array_create(answer->loads, 2 * sizeof *room);
-    if (room == NULL)
-        return error_memory(err, answer->loads * 2 * sizeof *room, "a plan");
-    const struct target_plan plan = {&answer->target, answer->loads, room, room + answer->loads};
-    (void)allow(answer, sum, ROLE_MODEL, 1, room);
-    target_allot(&plan, count, parts, wanted);
-    wanted[count] = 0;
-    if (!lengthen(answer, sum, &plan, room, count, parts, wanted))
-        sharpen_all(answer, sum, &plan, room, count, parts, wanted);
-    free(room);
+    struct planning planning = {.answer = answer, .sum = sum};
+    planning.count = contact_sum_parts(answer, sum, planning.parts);
+    planning.allowed = array_create(answer->loads, 2 * sizeof *planning.allowed);
+    if (planning.allowed == NULL)
+        return error_memory(err, answer->loads * 2 * sizeof *planning.allowed, "a plan");
+    planning.multipliers = planning.allowed + answer->loads;
+    planning.reaches = allow(&planning, NULL, 1);
+    planning.lacking = lacking_of(&planning, planning.count, planning.parts);
+    const struct target_plan plan = plan_of(&planning);
+    target_allot(&plan, planning.count, planning.parts, wanted);
+    wanted[planning.count] = 0;
+    if (!lengthen(&planning, wanted))
+        sharpen_all(&planning, wanted);
+    free(planning.allowed);
     return 0;
 }

@@ -62,19 +62,27 @@ void characterisation_print(FILE *file, const struct characterisation *character
         }
 }
 
+/* Prints the name of an entry, and that of its group before the first of it. */
+static bool print_name_json(FILE *file, const char *group, bool begins, const char *before,
+                            const char *name) {
+    bool done = true;
+    if (begins) {
+        fputs(before, file);
+        done = json_print_text(file, group);
+    }
+    fputs(begins ? ":{" : ",", file);
+    done = done && json_print_text(file, name);
+    fputc(':', file);
+    return done;
+}
+
 static bool print_columns_json(FILE *file, const struct characterisation *characterisation) {
     bool done = true;
     for (size_t c = 0; c < characterisation->column_count && done; c++) {
         const struct characteristic_column *column = &characterisation->columns[c];
-        bool begins = begins_table(characterisation, c);
-        if (begins) {
-            fputs(c > 0 ? "}," : ",", file);
-            done = json_print_text(file, column->group);
-            fputs(":{", file);
-        }
-        fputs(begins ? "" : ",", file);
-        done = done && json_print_text(file, column->name);
-        fputs(":[", file);
+        done = print_name_json(file, column->group, begins_table(characterisation, c),
+                               c > 0 ? "}," : ",", column->name);
+        fputc('[', file);
         for (size_t row = 0; row < column->count; row++) {
             fputs(row > 0 ? "," : "", file);
             json_print_number(file, column->values[row]);
@@ -90,15 +98,8 @@ bool characterisation_print_json(FILE *file, const struct characterisation *char
     fputc('{', file);
     for (size_t n = 0; n < characterisation->count && done; n++) {
         const struct characteristic *entry = &characterisation->list[n];
-        bool begins = begins_group(characterisation, n);
-        if (begins) {
-            fputs(n > 0 ? "}," : "", file);
-            done = json_print_text(file, entry->group);
-            fputs(":{", file);
-        }
-        fputs(begins ? "" : ",", file);
-        done = done && json_print_text(file, entry->name);
-        fputc(':', file);
+        done = print_name_json(file, entry->group, begins_group(characterisation, n),
+                               n > 0 ? "}," : "", entry->name);
         if (entry->text == NULL)
             json_print_number(file, entry->value);
         else

@@ -3,6 +3,7 @@
 #include "server/show/plot.h"
 #include "server/show/plot_choice.h"
 #include "tests/support/check.h"
+#include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -122,13 +123,6 @@ static char *picture_of(const struct study_result *study, const struct plot_requ
     assert_int_equal(plot_quantity(study, request, file, &err), 0);
     fclose(file);
     return text;
-}
-
-static size_t count_of(const char *text, const char *part) {
-    size_t count = 0;
-    for (; (text = strstr(text, part)) != NULL; text += strlen(part))
-        count++;
-    return count;
 }
 
 static const struct plot_request AREA = {.quantity = "contact_area"};

@@ -3,6 +3,7 @@
 #include "server/show/plot_cost.h"
 #include "server/show/plot_frame.h"
 #include "tests/support/check.h"
+#include "tests/support/count_of.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,13 +49,6 @@ static char *draw(const struct study_report *study, int expected) {
     assert_int_equal(plot_cost(study, file, &err), expected);
     assert_int_equal(fclose(file), 0);
     return text;
-}
-
-static size_t count_of(const char *text, const char *word) {
-    size_t n = 0;
-    for (const char *at = text; (at = strstr(at, word)) != NULL; at++)
-        n++;
-    return n;
 }
 
 static void each_series_is_drawn(void **state) {

@@ -3,19 +3,13 @@
 #include "server/show/plot_density.h"
 #include "server/show/plot_heat.h"
 #include "tests/support/check.h"
+#include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { ROWS = 8, COLUMNS = 6, CELLS = ROWS * COLUMNS };
-
-static size_t count_of(const char *text, const char *word) {
-    size_t n = 0;
-    for (const char *at = text; (at = strstr(at, word)) != NULL; at++)
-        n++;
-    return n;
-}
 
 static char *draw(const struct study_result *study, int expected, struct error *err) {
     char *text = NULL;

@@ -3,16 +3,10 @@
 #include "server/show/plot_frame.h"
 #include "server/show/plot_map.h"
 #include "tests/support/check.h"
+#include "tests/support/count_of.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static size_t count_of(const char *text, const char *word) {
-    size_t n = 0;
-    for (const char *at = text; (at = strstr(at, word)) != NULL; at++)
-        n++;
-    return n;
-}
 
 static char *draw(const struct grid *grid, const double *z) {
     const struct map_picture picture = {.name = "a & b",

@@ -2,6 +2,7 @@
  * marks with their errors, theories once each, and says what it leaves out or cannot draw. */
 #include "server/show/plot_sweep.h"
 #include "tests/support/check.h"
+#include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"
 #include <math.h>
 #include <stdlib.h>
@@ -32,13 +33,6 @@ static char *draw(const struct study_result *study, const struct sweep_request *
     assert_int_equal(plot_sweep(study, request, file, err), expected);
     assert_int_equal(fclose(file), 0);
     return text;
-}
-
-static size_t count_of(const char *text, const char *word) {
-    size_t n = 0;
-    for (const char *at = text; (at = strstr(at, word)) != NULL; at++)
-        n++;
-    return n;
 }
 
 static void check_count(const struct study_result *study, const struct sweep_request *request,
