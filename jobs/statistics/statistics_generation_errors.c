@@ -116,12 +116,14 @@ static struct change relative(struct change change, double value) {
 
 static struct side_changes side_changes(const struct changes *changes,
                                         const struct case_result *result, bool pits) {
-    size_t first = pits ? SCALAR_PIT_HEIGHT_MEAN : SCALAR_SUMMIT_HEIGHT_MEAN;
+    size_t side = pits ? SIDE_SCALARS : 0;
+    size_t mean = SCALAR_SUMMIT_HEIGHT_MEAN + side, curvature = SCALAR_SUMMIT_CURVATURE_MEAN + side;
+    size_t variance = SCALAR_SUMMIT_HEIGHT_VARIANCE + side;
     return (struct side_changes){
-        .mean = scalar_value(result, first),
-        .shift = changes->of[first],
-        .stretch = relative(changes->of[first + 1], 2 * scalar_value(result, first + 1)),
-        .curvature = relative(changes->of[first + 2], scalar_value(result, first + 2))};
+        .mean = scalar_value(result, mean),
+        .shift = changes->of[mean],
+        .stretch = relative(changes->of[variance], 2 * scalar_value(result, variance)),
+        .curvature = relative(changes->of[curvature], scalar_value(result, curvature))};
 }
 
 /* The derivative by x of f(x) = (x - origin)^power y. */

@@ -69,6 +69,8 @@ static void set_summits(const struct statistics_case *one_case,
                summits->density * (profile ? ratio : ratio * ratio));
     set_scalar(out, SCALAR_SUMMIT_HEIGHT_MEAN, summits->height_mean);
     set_scalar(out, SCALAR_SUMMIT_HEIGHT_VARIANCE, summits->height_variance);
+    set_scalar(out, SCALAR_SUMMIT_HEIGHT_SKEWNESS, summits->height_skewness);
+    set_scalar(out, SCALAR_SUMMIT_HEIGHT_KURTOSIS, summits->height_kurtosis);
     set_scalar(out, SCALAR_SUMMIT_CURVATURE_MEAN, summits->curvature);
 }
 

@@ -183,6 +183,8 @@ static void add_moments(struct statistics_groups *moments, const struct statisti
             double height = summits[side].summits[a].height * tally->scales.height;
             of[SUM_HEIGHT] += height;
             of[SUM_SQUARE] += height * height;
+            of[SUM_CUBE] += height * height * height;
+            of[SUM_FOURTH] += height * height * height * height;
             of[SUM_CURVATURE] -=
                 summits[side].summits[a].curvature * tally->scales.curvature / third;
         }

@@ -55,7 +55,7 @@ int statistics_levels_errors(const struct statistics_levels *levels, struct case
 
 /* Where the sums of `moments` stand: counts by side; of each side these sums, then those of all
  * points. In z* and kappa_m/sqrt(m4). */
-enum level_sum { SUM_HEIGHT, SUM_SQUARE, SUM_CURVATURE, SUMS_OF_SIDE };
+enum level_sum { SUM_HEIGHT, SUM_SQUARE, SUM_CUBE, SUM_FOURTH, SUM_CURVATURE, SUMS_OF_SIDE };
 enum { SUM_LOWEST = SIDES * SUMS_OF_SIDE, SUM_HIGHEST, LEVEL_SUMS };
 
 #endif

@@ -4,6 +4,7 @@
 #include "jobs/statistics/statistics_levels.h"
 #include "jobs/statistics/statistics_pairs.h"
 #include "jobs/statistics/statistics_scalars.h"
+#include "jobs/statistics/summit_heights.h"
 #include <math.h>
 #include <string.h>
 
@@ -114,38 +115,72 @@ static struct scalar *scalar_at(struct case_result *out, size_t at) {
 }
 
 /* What a scalar is the mean of: sums over summits, or over realisations. */
-enum mean { MEAN_NUMBER, MEAN_HEIGHT, MEAN_SQUARE, MEAN_CURVATURE, MEAN_LOWEST, MEAN_HIGHEST };
+enum mean {
+    MEAN_NUMBER,
+    MEAN_HEIGHT,
+    MEAN_VARIANCE,
+    MEAN_SKEWNESS,
+    MEAN_KURTOSIS,
+    MEAN_CURVATURE,
+    MEAN_LOWEST,
+    MEAN_HIGHEST
+};
 
 static double group_sum(const struct statistics_groups *moments, size_t g, size_t at) {
     return exact_sum_value(&moments->sum[g * moments->sums + at]);
 }
 
-/* The mean height of all summits of a side. */
-static double mean_height(const struct statistics_groups *moments, size_t side) {
-    double sum = 0, things = 0;
+/* Powers of the heights of a side's summits of a group, about a height. */
+static struct height_powers powers_of(const struct statistics_groups *moments, size_t g,
+                                      size_t side, double c) {
+    const size_t at = side * SUMS_OF_SIDE;
+    double n = (double)moments->count[g * moments->counts + side];
+    double first = group_sum(moments, g, at + SUM_HEIGHT);
+    double second = group_sum(moments, g, at + SUM_SQUARE);
+    double third = group_sum(moments, g, at + SUM_CUBE);
+    double fourth = group_sum(moments, g, at + SUM_FOURTH);
+    return (struct height_powers){
+        .number = n,
+        .first = first - c * n,
+        .second = second - c * (2 * first - c * n),
+        .third = third - c * (3 * second - c * (3 * first - c * n)),
+        .fourth = fourth - c * (4 * third - c * (6 * second - c * (4 * first - c * n)))};
+}
+
+/* Over all groups. */
+static struct height_powers powers_of_all(const struct statistics_groups *moments, size_t side,
+                                          double c) {
+    struct height_powers all = {0};
     for (size_t g = 0; g < GROUPS; g++) {
-        sum += group_sum(moments, g, side * SUMS_OF_SIDE + SUM_HEIGHT);
-        things += (double)moments->count[g * moments->counts + side];
+        const struct height_powers some = powers_of(moments, g, side, c);
+        all.number += some.number;
+        all.first += some.first;
+        all.second += some.second;
+        all.third += some.third;
+        all.fourth += some.fourth;
     }
-    return sum / things;
+    return all;
 }
 
 static void groups_of(const struct statistics_groups *moments, size_t side, enum mean mean,
                       struct point_groups *out) {
-    double centre = mean == MEAN_SQUARE ? mean_height(moments, side) : 0;
+    const struct height_powers heights = powers_of_all(moments, side, 0);
+    double centre = heights.first / heights.number;
+    const struct height_powers all = powers_of_all(moments, side, centre);
     *out = (struct point_groups){.telling = 0};
     for (size_t g = 0; g < GROUPS; g++) {
-        const size_t at = side * SUMS_OF_SIDE;
         double n = (double)moments->count[g * moments->counts + side];
         double realisations = (double)moments->realisations[g];
-        double height = group_sum(moments, g, at + SUM_HEIGHT);
-        double square = group_sum(moments, g, at + SUM_SQUARE);
-        const double counted[] = {[MEAN_NUMBER] = n,
-                                  [MEAN_HEIGHT] = height,
-                                  [MEAN_SQUARE] = square - centre * (2 * height - centre * n),
-                                  [MEAN_CURVATURE] = group_sum(moments, g, at + SUM_CURVATURE),
-                                  [MEAN_LOWEST] = group_sum(moments, g, SUM_LOWEST),
-                                  [MEAN_HIGHEST] = group_sum(moments, g, SUM_HIGHEST)};
+        const struct height_powers some = powers_of(moments, g, side, centre);
+        const double counted[] = {
+            [MEAN_NUMBER] = n,
+            [MEAN_HEIGHT] = group_sum(moments, g, side * SUMS_OF_SIDE + SUM_HEIGHT),
+            [MEAN_VARIANCE] = height_moment_part(HEIGHT_VARIANCE, &all, &some),
+            [MEAN_SKEWNESS] = height_moment_part(HEIGHT_SKEWNESS, &all, &some),
+            [MEAN_KURTOSIS] = height_moment_part(HEIGHT_KURTOSIS, &all, &some),
+            [MEAN_CURVATURE] = group_sum(moments, g, side * SUMS_OF_SIDE + SUM_CURVATURE),
+            [MEAN_LOWEST] = group_sum(moments, g, SUM_LOWEST),
+            [MEAN_HIGHEST] = group_sum(moments, g, SUM_HIGHEST)};
         bool of_summits = mean >= MEAN_HEIGHT && mean <= MEAN_CURVATURE;
         out->counted[g] = counted[mean];
         out->things[g] = of_summits ? n : realisations;
@@ -196,14 +231,15 @@ static void tell_exactly(struct case_result *out, size_t at, bool exact) {
 }
 
 static void tell_scalars(const struct statistics_levels *levels, struct case_result *out) {
-    static const enum mean OF_SIDE[] = {MEAN_NUMBER, MEAN_NUMBER, MEAN_NUMBER,
-                                        MEAN_HEIGHT, MEAN_SQUARE, MEAN_CURVATURE};
+    static const enum mean OF_SIDE[SIDE_SCALARS] = {MEAN_NUMBER,   MEAN_NUMBER,   MEAN_NUMBER,
+                                                    MEAN_HEIGHT,   MEAN_VARIANCE, MEAN_SKEWNESS,
+                                                    MEAN_KURTOSIS, MEAN_CURVATURE};
     static const size_t BY_DIFFERENCES[] = {SCALAR_RMS_SLOPE, SCALAR_RMS_CURVATURE,
                                             SCALAR_M2_DIFFERENCE, SCALAR_M4_DIFFERENCE,
                                             SCALAR_NAYAK_ALPHA_DIFFERENCE};
     const struct statistics_case *one_case = levels->own.one_case;
     for (size_t side = 0; side < levels->own.sides; side++)
-        for (size_t a = 0; a < sizeof OF_SIDE / sizeof *OF_SIDE; a++)
+        for (size_t a = 0; a < SIDE_SCALARS; a++)
             tell_by_levels(levels, out, (side == SIDE_PITS ? SCALAR_PITS : SCALAR_SUMMITS) + a,
                            side, OF_SIDE[a]);
     tell_by_levels(levels, out, SCALAR_LOWEST, 0, MEAN_LOWEST);

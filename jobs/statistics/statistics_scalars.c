@@ -4,6 +4,7 @@
 #include "core/theory/sampled_field.h"
 #include "jobs/estimate.h"
 #include "jobs/statistics/statistics_theory.h"
+#include "jobs/statistics/summit_heights.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -27,12 +28,16 @@ static const char *const NAMES[SCALAR_COUNT] = {
     [SCALAR_SUMMIT_DENSITY_PER_AREA] = "summit_density_per_area",
     [SCALAR_SUMMIT_HEIGHT_MEAN] = "summit_height_mean",
     [SCALAR_SUMMIT_HEIGHT_VARIANCE] = "summit_height_variance",
+    [SCALAR_SUMMIT_HEIGHT_SKEWNESS] = "summit_height_skewness",
+    [SCALAR_SUMMIT_HEIGHT_KURTOSIS] = "summit_height_kurtosis",
     [SCALAR_SUMMIT_CURVATURE_MEAN] = "summit_curvature_mean",
     [SCALAR_PITS] = "pits",
     [SCALAR_PIT_DENSITY] = "pit_density",
     [SCALAR_PIT_DENSITY_PER_AREA] = "pit_density_per_area",
     [SCALAR_PIT_HEIGHT_MEAN] = "pit_height_mean",
     [SCALAR_PIT_HEIGHT_VARIANCE] = "pit_height_variance",
+    [SCALAR_PIT_HEIGHT_SKEWNESS] = "pit_height_skewness",
+    [SCALAR_PIT_HEIGHT_KURTOSIS] = "pit_height_kurtosis",
     [SCALAR_PIT_CURVATURE_MEAN] = "pit_curvature_mean",
     [SCALAR_GENERATOR_ITERATIONS] = "generator_iterations",
     [SCALAR_GENERATOR_CONVERGED] = "generator_converged",
@@ -52,17 +57,14 @@ const char *statistics_scalar_name(size_t at) {
     return at < SCALAR_COUNT ? NAMES[at] : NULL;
 }
 
-/* The scalars of pits stand behind those of summits in the same order. */
-enum { SIDE_SCALARS = SCALAR_PITS - SCALAR_SUMMITS };
-
-/* Mean and variance of heights, mean curvature, of the summits of one realisation; NaN (0/0) where
+/* Moments of heights, mean curvature, of the summits of one realisation; NaN (0/0) where
  * there is none. out: the scalars of summits, or of pits as if they were those. */
 static void measure_summits(const struct statistics_case *one_case, const struct moments *moments,
                             const struct summit_list *list, double *out) {
     const struct grid *grid = &one_case->surface.grid;
     double n = (double)list->count, ratio = one_case->surface.wavelength_ratio;
     bool surface = one_case->surface.dimension == 2;
-    struct sum heights = {0, 0}, curvatures = {0, 0}, squares = {0, 0};
+    struct sum heights = {0}, curvatures = {0}, squares = {0}, cubes = {0}, fourths = {0};
     for (size_t a = 0; a < list->count; a++) {
         sum_add(&heights, list->summits[a].height);
         sum_add(&curvatures, list->summits[a].curvature);
@@ -70,14 +72,20 @@ static void measure_summits(const struct statistics_case *one_case, const struct
     double height = sum_value(&heights) / n, curvature = sum_value(&curvatures) / n;
     for (size_t a = 0; a < list->count; a++) {
         double deviation = list->summits[a].height - height;
-        sum_add(&squares, deviation * deviation);
+        double square = deviation * deviation;
+        sum_add(&squares, square);
+        sum_add(&cubes, square * deviation);
+        sum_add(&fourths, square * square);
     }
+    double variance = sum_value(&squares) / n;
     out[SCALAR_SUMMITS] = statistics_case_symmetric(one_case) ? n / 2 : n;
     out[SCALAR_SUMMIT_DENSITY] = out[SCALAR_SUMMITS] / (surface ? grid->lx * grid->ly : grid->lx);
     out[SCALAR_SUMMIT_DENSITY_PER_AREA] =
         out[SCALAR_SUMMIT_DENSITY] * (surface ? ratio * ratio : ratio);
     out[SCALAR_SUMMIT_HEIGHT_MEAN] = height / sqrt(moments->m0);
-    out[SCALAR_SUMMIT_HEIGHT_VARIANCE] = sum_value(&squares) / n / moments->m0;
+    out[SCALAR_SUMMIT_HEIGHT_VARIANCE] = variance / moments->m0;
+    out[SCALAR_SUMMIT_HEIGHT_SKEWNESS] = sum_value(&cubes) / n / (variance * sqrt(variance));
+    out[SCALAR_SUMMIT_HEIGHT_KURTOSIS] = sum_value(&fourths) / n / (variance * variance);
     out[SCALAR_SUMMIT_CURVATURE_MEAN] = curvature / sqrt(moments->m4);
 }
 
@@ -139,7 +147,8 @@ void statistics_constants(const struct modes *modes, const struct moments *momen
 /* Columns of the scalars, n values each, and the estimates made of them. */
 struct scalar_columns {
     size_t n;
-    double *values; /* SCALAR_COUNT x n */
+    double *values;  /* SCALAR_COUNT x n */
+    double *scratch; /* n */
 };
 static const double *column(const struct scalar_columns *columns, enum statistics_scalar scalar) {
     return columns->values + (size_t)scalar * columns->n;
@@ -154,44 +163,60 @@ static size_t number_behind(size_t scalar) {
         return SCALAR_PITS;
     return SCALAR_COUNT;
 }
-/* Tells whether it is a variance; the mean stands before it. */
-static bool is_variance(size_t scalar) {
-    return scalar == SCALAR_SUMMIT_HEIGHT_VARIANCE || scalar == SCALAR_PIT_HEIGHT_VARIANCE;
+
+/* Tells whether it is a moment of heights about their mean, and which. */
+static bool is_moment(size_t scalar, enum height_moment *moment) {
+    size_t first = number_behind(scalar) == SCALAR_PITS ? SCALAR_PIT_HEIGHT_VARIANCE
+                                                        : SCALAR_SUMMIT_HEIGHT_VARIANCE;
+    if (scalar < first || scalar > first + HEIGHT_KURTOSIS)
+        return false;
+    *moment = (enum height_moment)(scalar - first);
+    return true;
 }
 
-/* Variances about the means of n realisations become those about the mean over all their summits.
- */
-static void centre(size_t n, const double *mean, const double *number, double *variance) {
-    double common = estimate_weighted(n, mean, number).value;
-    for (size_t r = 0; r < n; r++)
-        variance[r] += (mean[r] - common) * (mean[r] - common);
-}
-
-/* Over all summits of the case; the variance about the common mean, which it replaces. */
+/* Over all summits of the case; moments about the common mean. */
 static struct estimate summit_estimate(const struct scalar_columns *columns,
                                        enum statistics_scalar scalar) {
-    const double *number = column(columns, (enum statistics_scalar)number_behind(scalar));
-    if (is_variance(scalar))
-        centre(columns->n, column(columns, scalar - 1), number,
-               columns->values + (size_t)scalar * columns->n);
-    return estimate_weighted(columns->n, column(columns, scalar), number);
+    enum height_moment moment;
+    enum statistics_scalar number = (enum statistics_scalar)number_behind(scalar);
+    const double *values = column(columns, scalar);
+    if (is_moment(scalar, &moment)) {
+        const double *mean = column(columns, scalar - moment - 1);
+        const struct height_columns heights = {.n = columns->n,
+                                               .number = column(columns, number),
+                                               .mean = mean,
+                                               .variance = mean + columns->n,
+                                               .skewness = mean + 2 * columns->n,
+                                               .kurtosis = mean + 3 * columns->n};
+        height_moment_values(&heights, moment, columns->scratch);
+        values = columns->scratch;
+    }
+    return estimate_weighted(columns->n, values, column(columns, number));
 }
 
 int statistics_scalar_values(const struct realisations *realisations, size_t scalar, double *values,
                              double *weights, struct error *err) {
-    size_t n = (size_t)realisations->count;
+    size_t n = (size_t)realisations->count, number = number_behind(scalar);
+    enum height_moment moment;
     realisations_column(realisations, scalar, values);
-    if (number_behind(scalar) == SCALAR_COUNT)
+    if (number == SCALAR_COUNT)
         return 0;
-    realisations_column(realisations, number_behind(scalar), weights);
-    if (!is_variance(scalar))
+    realisations_column(realisations, number, weights);
+    if (!is_moment(scalar, &moment))
         return 0;
-    double *mean = array_create(n, sizeof *mean);
-    if (mean == NULL)
-        return error_memory(err, n * sizeof *mean, "scalars");
-    realisations_column(realisations, scalar - 1, mean);
-    centre(n, mean, weights, values);
-    free(mean);
+    double *columns = array_create(4 * n, sizeof *columns);
+    if (columns == NULL)
+        return error_memory(err, 4 * n * sizeof *columns, "scalars");
+    for (size_t a = 0; a < 4; a++)
+        realisations_column(realisations, scalar - moment - 1 + a, columns + a * n);
+    const struct height_columns heights = {.n = n,
+                                           .number = weights,
+                                           .mean = columns,
+                                           .variance = columns + n,
+                                           .skewness = columns + 2 * n,
+                                           .kurtosis = columns + 3 * n};
+    height_moment_values(&heights, moment, values);
+    free(columns);
     return 0;
 }
 
@@ -211,6 +236,8 @@ static void theory_of_summits(const struct statistics_case *one_case, const stru
     }
     out[SCALAR_SUMMIT_HEIGHT_MEAN] = expected.height_mean;
     out[SCALAR_SUMMIT_HEIGHT_VARIANCE] = expected.height_variance;
+    out[SCALAR_SUMMIT_HEIGHT_SKEWNESS] = expected.height_skewness;
+    out[SCALAR_SUMMIT_HEIGHT_KURTOSIS] = expected.height_kurtosis;
     out[SCALAR_SUMMIT_CURVATURE_MEAN] = expected.curvature;
 }
 
@@ -276,7 +303,7 @@ static void constants_of_scalars(const struct statistics_case *one_case,
 
 /* Values that chance made the same show no scatter, but are no constants: their error is not known.
  * A share of realisations has the bound of a count not seen (F15.8). */
-static struct estimate chance_estimate(struct scalar_columns *columns,
+static struct estimate chance_estimate(const struct scalar_columns *columns,
                                        enum statistics_scalar scalar) {
     struct estimate out = number_behind(scalar) < SCALAR_COUNT
                               ? summit_estimate(columns, scalar)
@@ -289,7 +316,7 @@ static struct estimate chance_estimate(struct scalar_columns *columns,
 }
 
 static int add_scalars(struct case_result *out, const struct statistics_case *one_case,
-                       const struct surface_basis *basis, struct scalar_columns *columns,
+                       const struct surface_basis *basis, const struct scalar_columns *columns,
                        struct error *err) {
     double theory[SCALAR_COUNT], constants[SCALAR_COUNT];
     theory_of_scalars(one_case, &basis->moments, theory);
@@ -312,9 +339,10 @@ int statistics_scalars(const struct statistics_case *one_case, const struct surf
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err) {
     struct scalar_columns columns = {.n = (size_t)realisations->count};
-    columns.values = array_create(columns.n + 1, SCALAR_COUNT * sizeof(double));
+    columns.values = array_create(columns.n + 1, (SCALAR_COUNT + 1) * sizeof(double));
     if (columns.values == NULL)
-        return error_memory(err, columns.n * SCALAR_COUNT * sizeof(double), "scalars");
+        return error_memory(err, columns.n * (SCALAR_COUNT + 1) * sizeof(double), "scalars");
+    columns.scratch = columns.values + SCALAR_COUNT * columns.n;
     for (size_t a = 0; a < SCALAR_COUNT; a++)
         realisations_column(realisations, a, columns.values + a * columns.n);
     int status = add_scalars(out, one_case, basis, &columns, err);

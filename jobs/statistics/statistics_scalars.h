@@ -19,10 +19,14 @@
     ENTRY(SUMMITS, "summits")                                                                      \
     ENTRY(SUMMIT_HEIGHT_MEAN, "summit_height_mean")                                                \
     ENTRY(SUMMIT_HEIGHT_VARIANCE, "summit_height_variance")                                        \
+    ENTRY(SUMMIT_HEIGHT_SKEWNESS, "summit_height_skewness")                                        \
+    ENTRY(SUMMIT_HEIGHT_KURTOSIS, "summit_height_kurtosis")                                        \
     ENTRY(SUMMIT_CURVATURE_MEAN, "summit_curvature_mean")                                          \
     ENTRY(PITS, "pits")                                                                            \
     ENTRY(PIT_HEIGHT_MEAN, "pit_height_mean")                                                      \
     ENTRY(PIT_HEIGHT_VARIANCE, "pit_height_variance")                                              \
+    ENTRY(PIT_HEIGHT_SKEWNESS, "pit_height_skewness")                                              \
+    ENTRY(PIT_HEIGHT_KURTOSIS, "pit_height_kurtosis")                                              \
     ENTRY(PIT_CURVATURE_MEAN, "pit_curvature_mean")                                                \
     ENTRY(EPS_H, "eps_h")
 #define GENERATION_NUMBER(scalar, name) GENERATION_##scalar,
@@ -51,12 +55,16 @@ enum statistics_scalar {
     SCALAR_SUMMIT_DENSITY_PER_AREA, /* per lambda_l^2, profiles per lambda_l */
     SCALAR_SUMMIT_HEIGHT_MEAN,
     SCALAR_SUMMIT_HEIGHT_VARIANCE,
+    SCALAR_SUMMIT_HEIGHT_SKEWNESS,
+    SCALAR_SUMMIT_HEIGHT_KURTOSIS,
     SCALAR_SUMMIT_CURVATURE_MEAN, /* kappa_m/sqrt(m4) */
-    SCALAR_PITS,                  /* as the six above, of the summits of -z; none if Gaussian */
+    SCALAR_PITS,                  /* as the eight above, of the summits of -z; none if Gaussian */
     SCALAR_PIT_DENSITY,
     SCALAR_PIT_DENSITY_PER_AREA,
     SCALAR_PIT_HEIGHT_MEAN,
     SCALAR_PIT_HEIGHT_VARIANCE,
+    SCALAR_PIT_HEIGHT_SKEWNESS,
+    SCALAR_PIT_HEIGHT_KURTOSIS,
     SCALAR_PIT_CURVATURE_MEAN,
     SCALAR_GENERATOR_ITERATIONS,
     SCALAR_GENERATOR_CONVERGED, /* 1 below tolerance, 0 stalled or at the limit; none if Gaussian */
@@ -70,6 +78,8 @@ enum statistics_scalar {
     GENERATION_SCALARS(GENERATION_OTHER) GENERATION_SCALARS(GENERATION_LONGER) SCALAR_COUNT
 };
 enum { SCALAR_OTHER = SCALAR_OWN, SCALAR_LONGER = SCALAR_OTHER + GENERATION_COUNT };
+/* The scalars of pits stand behind those of summits, in the same order, by so many. */
+enum { SIDE_SCALARS = SCALAR_PITS - SCALAR_SUMMITS };
 const char *statistics_scalar_name(size_t at); /* NULL behind the last */
 /* The own scalar of each of GENERATION_SCALARS. */
 extern const unsigned char GENERATION_OWN[GENERATION_COUNT];

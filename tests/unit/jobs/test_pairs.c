@@ -193,12 +193,13 @@ static const struct scalar *scalar_of(const struct case_result *result, const ch
 static void scalars_are_those_told(void **state) {
     (void)state;
     static const struct {
-        const char *kind, *a, *b, *names[5];
+        const char *kind, *a, *b, *names[7];
     } CASES[] = {{"contact", A, B, {"kappa", "power_law_b", "contact_area_last", "kurtosis", NULL}},
                  {"statistics",
                   STATISTICS("0.8"),
                   STATISTICS("0.7"),
-                  {"lowest", "summit_height_mean", "summit_height_variance", "summits", NULL}}};
+                  {"lowest", "summit_height_mean", "summit_height_variance",
+                   "summit_height_skewness", "summit_height_kurtosis", "summits", NULL}}};
     for (size_t c = 0; c < 2; c++) {
         struct side a = side_of(CASES[c].kind, CASES[c].a, 0, 4);
         struct side b = side_of(CASES[c].kind, CASES[c].b, 0, 2);

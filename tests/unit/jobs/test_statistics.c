@@ -444,6 +444,19 @@ static int stop_at_two(void *context, uint64_t done) {
     return done == 2;
 }
 
+/* Within four standard errors, which are below 0.2, of theory of the grid; without a grid it is
+ * another. */
+static void assert_shape_of_heights(const cJSON *document) {
+    static const char *const MOMENTS[] = {"summit_height_skewness", "summit_height_kurtosis"};
+    for (size_t a = 0; a < 2; a++) {
+        double error = scalar(document, MOMENTS[a], "standard_error");
+        double expected = scalar(document, MOMENTS[a], "grid_theory");
+        assert_true(error > 0 && error < 0.2);
+        assert_true(fabs(scalar(document, MOMENTS[a], "value") - expected) < 4 * error);
+        assert_true(fabs(scalar(document, MOMENTS[a], "theory") - expected) < 0.1);
+    }
+}
+
 /* Theory of the grid stands beside that without a grid where it applies, and agrees with what is
  * constant. */
 static void theory_of_the_grid(void **state) {
@@ -472,6 +485,7 @@ static void theory_of_the_grid(void **state) {
             double expected = scalar(document, "summit_density", "grid_theory");
             assert_true(fabs(density - expected) < 4 * error);
             assert_true(scalar(document, "kurtosis", "grid_theory") < 2.95);
+            assert_shape_of_heights(document);
         } else {
             assert_true(isnan(scalar(document, "summit_density", "grid_theory")));
         }

@@ -213,6 +213,12 @@ static void nayak_curves(void **state) {
     assert_near("summit_height_variance", scalar(curves, "summit_height_variance", "value"),
                 scalar(curves, "summit_height_variance", "theory"),
                 4 * scalar(curves, "summit_height_variance", "standard_error") + 0.005);
+    assert_near("summit_height_skewness", scalar(curves, "summit_height_skewness", "value"),
+                scalar(curves, "summit_height_skewness", "theory"),
+                4 * scalar(curves, "summit_height_skewness", "standard_error") + 0.005);
+    assert_near("summit_height_kurtosis", scalar(curves, "summit_height_kurtosis", "value"),
+                scalar(curves, "summit_height_kurtosis", "theory"),
+                4 * scalar(curves, "summit_height_kurtosis", "standard_error") + 0.01);
     assert_near("summit_curvature_mean", scalar(curves, "summit_curvature_mean", "value"),
                 1.50450556, 4 * scalar(curves, "summit_curvature_mean", "standard_error") + 0.005);
     cJSON_Delete(curves);
@@ -222,12 +228,13 @@ static void nayak_curves(void **state) {
  */
 static void profiles(void **state) {
     (void)state;
-    static const char *const names[] = {"summit_density", "summit_height_mean",
-                                        "summit_height_variance", "summit_curvature_mean"};
+    static const char *const names[] = {"summit_density",         "summit_height_mean",
+                                        "summit_height_variance", "summit_height_skewness",
+                                        "summit_height_kurtosis", "summit_curvature_mean"};
     cJSON *curves = study(400, "{'surface': {'dimension': 1, 'hurst': 0.8, 'wavelength_ratio': 16, "
                                "'length_ratio': 64, 'points_per_wavelength': 16}, "
                                "'statistics': {'summits': 'refined'}}");
-    for (int a = 0; a < 4; a++)
+    for (int a = 0; a < 6; a++)
         assert_near(names[a], scalar(curves, names[a], "value"), scalar(curves, names[a], "theory"),
                     4 * scalar(curves, names[a], "standard_error") +
                         0.005 * scalar(curves, names[a], "theory"));
