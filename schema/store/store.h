@@ -42,6 +42,10 @@ int store_commit(struct store *store, struct error *err);
 int store_submit(struct store *store, const struct study *study, const char *key,
                  char id[STUDY_ID_SIZE], bool *existing, struct error *err);
 
+/* The id of the one study that `given` stands for: its id, the first digits of it, or its name.
+ * ERROR_ABSENT where there is none; ERROR_INPUT, with a list of them, where there are several. */
+int store_find(struct store *store, const char *given, char id[STUDY_ID_SIZE], struct error *err);
+
 struct study_status {
     char id[STUDY_ID_SIZE];
     char *name, *kind; /* owned */

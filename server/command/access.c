@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { GIVEN_MOST = 255 }; /* bytes of what may stand for a study in a path */
+
 struct access {
     struct store *store; /* one of the two */
     struct client *client;
@@ -87,6 +89,51 @@ static int ask_study(struct access *access, const char *method, const char *id, 
     char path[320];
     int status = study_path(path, sizeof path, id, rest, err);
     return status != 0 ? status : ask(access, method, path, NULL, out, err);
+}
+
+/* Writes a text as one segment of a path (RFC 3986, 2.1). */
+static void escape_segment(const char *text, char *out, size_t size) {
+    static const char PLAIN[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_~";
+    size_t used = 0;
+    for (; *text != '\0' && used + 4 < size; text++)
+        if (strchr(PLAIN, *text) != NULL)
+            out[used++] = *text;
+        else
+            used += (size_t)snprintf(out + used, size - used, "%%%02X", (unsigned char)*text);
+    out[used] = '\0';
+}
+
+/* A server finds what fits, and its answer has the whole id. */
+static int find_remote(struct access *access, const char *given, char id[STUDY_ID_SIZE],
+                       struct error *err) {
+    char segment[3 * GIVEN_MOST + 4], path[sizeof segment + 16];
+    cJSON *document = NULL;
+    bool dots = strcmp(given, ".") == 0 || strcmp(given, "..") == 0; /* steps of a path */
+    if (strlen(given) > GIVEN_MOST || strchr(given, '/') != NULL || dots)
+        return error_set(err, ERROR_INPUT,
+                         "a server finds no study by the name \"%.40s\"; name its id", given);
+    escape_segment(given, segment, sizeof segment);
+    snprintf(path, sizeof path, "/v1/studies/%s", segment);
+    int status = ask(access, "GET", path, NULL, &document, err);
+    const char *found = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(document, "id"));
+    if (status == 0 && (found == NULL || !is_study_id(found)))
+        status = error_set(err, ERROR_SYSTEM, "the server's answer has no id");
+    if (status == 0)
+        snprintf(id, STUDY_ID_SIZE, "%s", found);
+    cJSON_Delete(document);
+    return status;
+}
+
+int access_find(struct access *access, const char *given, char id[STUDY_ID_SIZE],
+                struct error *err) {
+    if (access->client == NULL)
+        return store_find(access->store, given, id, err);
+    if (*given == '\0')
+        return error_set(err, ERROR_INPUT, "a study has an id and a name, and neither is empty");
+    if (strlen(given) + 1 != STUDY_ID_SIZE || !is_study_id(given))
+        return find_remote(access, given, id, err);
+    snprintf(id, STUDY_ID_SIZE, "%s", given);
+    return 0;
 }
 
 /* A server has no --set: the changes are made before the study is sent. */

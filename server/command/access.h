@@ -32,6 +32,10 @@ int access_open(struct access **out, const struct access_options *options, enum 
                 struct error *err);
 void access_close(struct access **access);
 
+/* The id of the study that `given` stands for (store_find); the functions below take ids alone. */
+int access_find(struct access *access, const char *given, char id[STUDY_ID_SIZE],
+                struct error *err);
+
 /* These give documents as in openapi.yaml; the caller deletes them. */
 int access_submit(struct access *access, const char *text, size_t size,
                   const char *const *overrides, cJSON **out, struct fault_list *faults,

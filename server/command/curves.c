@@ -60,15 +60,20 @@ static int ask(struct access *access, const char *id, const struct options *opti
 static int run(const void *values, const char *const *arguments) {
     const struct options *options = values;
     struct error err = {0};
+    char id[STUDY_ID_SIZE];
     struct access *access = NULL;
     struct study_result study = {0};
     if (access_options_check("curves", &options->place) != 0)
         return EXIT_USAGE;
     if (options->difference[0] >= 0 && options->case_number >= 0)
         return usage_error("curves", "--difference and --case exclude each other");
-    int status = access_open(&access, &options->place, ACCESS_READ, &err);
+    int status = options->folder != NULL ? output_prepare(options->folder, &err) : 0;
     if (status == 0)
-        status = ask(access, arguments[0], options, &study, &err);
+        status = access_open(&access, &options->place, ACCESS_READ, &err);
+    if (status == 0)
+        status = access_find(access, arguments[0], id, &err);
+    if (status == 0)
+        status = ask(access, id, options, &study, &err);
     if (status == 0)
         status = show(&study, options, &err);
     for (size_t c = 0; c < study.case_count && status == 0; c++)

@@ -22,6 +22,15 @@ const struct command *command_find(const char *name) {
     return NULL;
 }
 
+const char *command_near(const char *typed) {
+    const char *near = NULL;
+    size_t best = 3;
+    for (size_t c = 0; COMMANDS[c] != NULL; c++)
+        if (name_is_nearer(typed, COMMANDS[c]->name, &best))
+            near = COMMANDS[c]->name;
+    return near;
+}
+
 void help_commands(FILE *file) {
     fprintf(file, "usage: rugo COMMAND [OPTIONS]\n\n"
                   "Monte Carlo studies of rough surfaces and rough contact.\n\n");
@@ -78,6 +87,19 @@ static int help_study(const char *path, bool markdown) {
     return status == 0 ? EXIT_DONE : command_fail("help", &err);
 }
 
+/* Tells of a topic other than study, or that there is none of this name. */
+static int help_topic(const char *name) {
+    for (size_t t = 0; t < TOPIC_COUNT; t++)
+        if (TOPICS[t].print != NULL && strcmp(TOPICS[t].name, name) == 0) {
+            TOPICS[t].print(stdout);
+            return EXIT_DONE;
+        }
+    const char *near = command_near(name);
+    return usage_error("help", "there is no command or topic \"%.40s\"%s%s%s", name,
+                       near != NULL ? " (did you mean " : "", near != NULL ? near : "",
+                       near != NULL ? "?)" : "");
+}
+
 static int run(const void *values, const char *const *arguments) {
     const struct options *options = values;
     const char *name = arguments[0], *path = arguments[1];
@@ -86,18 +108,12 @@ static int run(const void *values, const char *const *arguments) {
         return help_study(path, options->markdown != 0);
     if (path != NULL)
         return usage_error("help", "unexpected argument %.60s", path);
-    if (name == NULL)
-        help_commands(stdout);
-    else if (command != NULL)
+    if (command == NULL && name != NULL)
+        return help_topic(name);
+    if (command != NULL)
         help_command(command, stdout);
-    else {
-        for (size_t t = 0; t < TOPIC_COUNT; t++)
-            if (strcmp(TOPICS[t].name, name) == 0) {
-                TOPICS[t].print(stdout);
-                return EXIT_DONE;
-            }
-        return usage_error("help", "there is no command or topic \"%.40s\"", name);
-    }
+    else
+        help_commands(stdout);
     return EXIT_DONE;
 }
 

@@ -15,5 +15,7 @@ void help_option_name(const struct option_row *row, char *text, size_t size);
 void help_option_text(const struct option_row *row, char *text, size_t size);
 /* Returns NULL where there is none of this name. */
 const struct command *command_find(const char *name);
+/* Returns the name of the command nearest to what was typed; NULL where none is near. */
+const char *command_near(const char *typed);
 
 #endif

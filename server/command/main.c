@@ -45,11 +45,7 @@ static int run_command(const struct command *command, int argc, char **argv) {
 }
 
 static int unknown_command(const char *name) {
-    const char *near = NULL;
-    size_t best = 3;
-    for (size_t c = 0; COMMANDS[c] != NULL; c++)
-        if (name_is_nearer(name, COMMANDS[c]->name, &best))
-            near = COMMANDS[c]->name;
+    const char *near = command_near(name);
     fprintf(stderr, "rugo: there is no command \"%.40s\"%s%s%s; see rugo --help\n", name,
             near != NULL ? " (did you mean " : "", near != NULL ? near : "",
             near != NULL ? "?)" : "");
@@ -65,7 +61,7 @@ static int dispatch(int argc, char **argv) {
         help_commands(stdout);
         return EXIT_DONE;
     }
-    if (strcmp(argv[1], "--version") == 0) {
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "version") == 0) {
         puts("rugo " PROGRAM_VERSION);
         return EXIT_DONE;
     }

@@ -61,6 +61,7 @@ static int draw(struct access *access, const char *id, const struct options *opt
 static int run(const void *values, const char *const *arguments) {
     const struct options *options = values;
     struct error err = {0};
+    char id[STUDY_ID_SIZE];
     struct access *access = NULL;
     if (access_options_check("plot", &options->place) != 0)
         return EXIT_USAGE;
@@ -68,7 +69,9 @@ static int run(const void *values, const char *const *arguments) {
         return usage_error("plot", "--quantity is missing: the name of curves or of a scalar");
     int status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)
-        status = draw(access, arguments[0], options, &err);
+        status = access_find(access, arguments[0], id, &err);
+    if (status == 0)
+        status = draw(access, id, options, &err);
     access_close(&access);
     return status != 0 ? command_fail("plot", &err) : EXIT_DONE;
 }

@@ -3,17 +3,21 @@
 #include <stdio.h>
 
 int question_answer(const struct question *question, const struct access_options *place,
-                    const char *id, const void *options) {
+                    const char *given, const void *options) {
     struct error err = {0};
+    char id[STUDY_ID_SIZE];
     struct access *access = NULL;
     cJSON *document = NULL;
     if (access_options_check(question->command, place) != 0)
         return EXIT_USAGE;
     int status = access_open(&access, place, question->mode, &err);
+    if (status == 0 && given != NULL)
+        status = access_find(access, given, id, &err);
+    const char *study = given != NULL ? id : NULL;
     if (status == 0)
-        status = question->ask(access, id, options, &document, &err);
+        status = question->ask(access, study, options, &document, &err);
     if (status == 0)
-        status = question->show(document, id, options, &err);
+        status = question->show(document, study, options, &err);
     cJSON_Delete(document);
     access_close(&access);
     return status == 0 ? EXIT_DONE : command_fail(question->command, &err);

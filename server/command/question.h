@@ -4,8 +4,8 @@
 
 #include "server/command/access.h"
 
-/* A command asks and shows by these; id is that of a study, as given on the command line, and
- * options are the command's. */
+/* A command asks and shows by these; id is that of a study, NULL where the command line gave none,
+ * and options are the command's. */
 struct question {
     const char *command;
     enum access_mode mode;
@@ -13,9 +13,10 @@ struct question {
                struct error *err);
     int (*show)(const cJSON *document, const char *id, const void *options, struct error *err);
 };
-/* Checks the place, asks and shows; returns an exit status. */
+/* Checks the place, finds the study that `given` stands for (NULL: none), asks and shows; returns
+ * an exit status. */
 int question_answer(const struct question *question, const struct access_options *place,
-                    const char *id, const void *options);
+                    const char *given, const void *options);
 /* A command that changes one study and shows its progress then; its only options are the place. */
 struct change_question {
     const char *command;

@@ -32,13 +32,16 @@ static int show(const struct study_report *report, int format, struct error *err
 static int run(const void *values, const char *const *arguments) {
     const struct options *options = values;
     struct error err = {0};
+    char id[STUDY_ID_SIZE];
     struct access *access = NULL;
     struct study_report report = {0};
     if (access_options_check("report", &options->place) != 0)
         return EXIT_USAGE;
     int status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)
-        status = access_report(access, arguments[0], &report, &err);
+        status = access_find(access, arguments[0], id, &err);
+    if (status == 0)
+        status = access_report(access, id, &report, &err);
     if (status == 0)
         status = show(&report, options->format, &err);
     for (size_t c = 0; c < report.case_count && status == 0; c++)

@@ -144,7 +144,9 @@ static int present(struct run *run, const char *kind, struct error *err) {
 static int perform(struct run *run, struct error *err) {
     struct study_status now = {0};
     struct publish_counts counts = {0};
-    int status = submit(run, err);
+    int status = run->folder != NULL ? output_prepare(run->folder, err) : 0;
+    if (status == 0)
+        status = submit(run, err);
     if (status == 0)
         status = store_status(run->store, run->id, &now, err);
     do { /* publishing may queue a round of a case that asks for an error */

@@ -200,9 +200,28 @@ void route_refuse_early(struct exchange *exchange) {
         query_check(exchange, route->queries);
 }
 
+/* Finds the study that a path names; false after an answer that there is none, or several. */
+static bool find_study(struct exchange *exchange, const char *given, char id[STUDY_ID_SIZE]) {
+    struct store *reader;
+    struct error err = {0};
+    int status = service_reader(exchange->service, &reader, &err);
+    if (status == 0)
+        status = store_find(reader, given, id, &err);
+    service_give_back(exchange->service, reader);
+    if (status != 0)
+        answer_error(exchange, &err);
+    return status == 0;
+}
+
 void route_answer(struct exchange *exchange) {
-    char id[SEGMENT_SIZE] = "";
-    find_route(exchange, id)->handler(exchange, id);
+    static const char STUDIES[] = "/v1/studies/*";
+    char given[SEGMENT_SIZE] = "", id[STUDY_ID_SIZE] = "";
+    const struct route *route = find_route(exchange, given);
+    bool study = strncmp(route->pattern, STUDIES, sizeof STUDIES - 1) == 0;
+    if (!study)
+        route->handler(exchange, given);
+    else if (find_study(exchange, given, id))
+        route->handler(exchange, id);
 }
 
 bool check_body(struct exchange *exchange) {

@@ -1,11 +1,11 @@
 /* Handlers of the routes; route.c has the table. id is the segment that stands for * in the
- * pattern. */
+ * pattern; of a study it is the whole id, whatever the path names it by. */
 #ifndef RUGO_SERVER_HTTP_ROUTE_H
 #define RUGO_SERVER_HTTP_ROUTE_H
 
 #include "server/http/http.h"
 
-enum { SEGMENT_SIZE = 64, QUERY_NAMES_MOST = 5 };
+enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 5 };
 typedef void route_handler(struct exchange *exchange, const char *id);
 
 route_handler handle_study_create, handle_study_list, handle_study, handle_study_cancel,

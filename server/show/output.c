@@ -6,8 +6,10 @@
 #include "server/show/view.h"
 #include <errno.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { PATH_SIZE = 4096 };
 
@@ -153,10 +155,25 @@ static int write_plots(const struct study_result *study, const char *folder, str
     return 0;
 }
 
-int output_write(const struct study_result *study, const char *folder, struct error *err) {
+int output_prepare(const char *folder, struct error *err) {
+    char path[PATH_SIZE];
     if (mkdir(folder, 0777) != 0 && errno != EEXIST)
         return error_set(err, ERROR_SYSTEM, "folder %s: %s", folder, strerror(errno));
-    int status = write_json(study, folder, err);
+    if (snprintf(path, sizeof path, "%s/.rugo-XXXXXX", folder) >= (int)sizeof path)
+        return error_set(err, ERROR_INPUT, "the path %.100s... is too long", folder);
+    int file = mkstemp(path);
+    if (file < 0)
+        return error_set(err, ERROR_SYSTEM, "folder %s: no file can be made in it: %s", folder,
+                         strerror(errno));
+    close(file);
+    (void)unlink(path);
+    return 0;
+}
+
+int output_write(const struct study_result *study, const char *folder, struct error *err) {
+    int status = output_prepare(folder, err);
+    if (status == 0)
+        status = write_json(study, folder, err);
     for (size_t c = 0; status == 0 && c < study->case_count; c++)
         status = write_case(study, &study->cases[c], folder, err);
     return status != 0 ? status : write_plots(study, folder, err);

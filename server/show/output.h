@@ -5,7 +5,10 @@
 
 #include "schema/result/result.h"
 
-/* Makes the folder if it is missing; replaces files of an earlier run. */
+/* Makes the folder if it is missing, and checks that files can be made in it: what takes hours to
+ * compute must not find that out at its end. */
+int output_prepare(const char *folder, struct error *err);
+/* Prepares the folder; replaces files of an earlier run. */
 int output_write(const struct study_result *study, const char *folder, struct error *err);
 
 #endif

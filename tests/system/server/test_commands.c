@@ -42,6 +42,7 @@ static void wrong_usage_and_input(void **state) {
         {"$RUGO", 2, "usage: rugo COMMAND"},
         {"$RUGO dance", 2, "there is no command \"dance\"; see rugo --help"},
         {"$RUGO chekc", 2, "there is no command \"chekc\" (did you mean check?)"},
+        {"$RUGO help statu", 2, "\"statu\" (did you mean status?)"},
         {"$RUGO help dance", 2, "there is no command or topic \"dance\""},
         {"$RUGO run", 2, "rugo run: an argument is missing"},
         {"$RUGO run one.json two.json", 2, "unexpected argument two.json"},
@@ -54,6 +55,9 @@ static void wrong_usage_and_input(void **state) {
         {"$RUGO run --workers many one.json", 2, "--workers many is not a whole number"},
         {"$RUGO serve --lease 0", 2, "--lease 0 is not a whole number in [1, 31536000]"},
         {"$RUGO run one.json --db", 2, "--db needs a value"},
+        {"$RUGO run one.json --db early.db --out absent/folder", 1,
+         "folder absent/folder: No such"},
+        {"test ! -e early.db", 0, ""}, /* before anything was computed */
         {"$RUGO run absent.json", 2, "absent.json: No such file"},
         {"$RUGO run broken.json", 2, "line 1, column 9"},
         {"$RUGO run --set nothing one.json", 2, "\"nothing\" is not PATH=VALUE"},
@@ -102,10 +106,10 @@ static void wrong_usage_and_input(void **state) {
 
 static void every_command_has_help(void **state) {
     (void)state;
-    static const char *const COMMANDS[] = {"run",    "check",    "submit",       "status", "curves",
-                                           "report", "snapshot", "cancel",       "retry",  "serve",
-                                           "work",   "generate", "characterise", "press",  "theory",
-                                           "plot",   "help"};
+    static const char *const COMMANDS[] = {"run",    "check", "submit",   "status",       "curves",
+                                           "report", "wait",  "snapshot", "cancel",       "retry",
+                                           "serve",  "work",  "generate", "characterise", "press",
+                                           "theory", "plot",  "help"};
     for (size_t c = 0; c < sizeof COMMANDS / sizeof *COMMANDS; c++) {
         char line[120], usage[80];
         snprintf(line, sizeof line, "$RUGO %s --help && $RUGO help %s | cmp - shell.out",
