@@ -9,23 +9,71 @@ static const double ROUNDING = 1e-9; /* relative: guards integers behind divisio
 
 static const struct parameter_table *const TABLES[] = {&SURFACE_PARAMETERS, NULL};
 
-/* Reads the heights and the iteration that gives them. */
-static void read_heights(struct surface_case *out, struct values *values) {
-    struct surface_options *options = &out->options;
-    *options = SURFACE_DEFAULTS;
-    options->heights.type =
-        (enum heights_type)values_choice(values, "/surface/heights/distribution");
-    options->amplitudes = (enum surface_amplitudes)values_choice(values, "/surface/amplitudes");
-    double shape = values_number(values, "/surface/heights/shape");
-    const struct distribution *distribution = heights_distribution(options->heights.type);
-    if (distribution->shape_means != NULL) {
-        options->heights.shape = shape;
-        if (!(shape >= distribution->shape_low && shape <= distribution->shape_high))
-            values_fault(values, "/surface/heights/shape",
-                         "the distribution needs its shape (%s), a number in [%g, %g]",
-                         distribution->shape_means, distribution->shape_low,
-                         distribution->shape_high);
+static void read_distribution(struct surface_case *out, struct values *values) {
+    struct heights *heights = &out->options.heights;
+    const struct distribution *distribution = heights_distribution(heights->type);
+    out->heights_name = distribution->family;
+    if (distribution->shape_means == NULL)
+        return;
+    heights->shape = values_number(values, "/surface/heights/shape");
+    if (!(heights->shape >= distribution->shape_low && heights->shape <= distribution->shape_high))
+        values_fault(values, "/surface/heights/shape",
+                     "the distribution needs its shape (%s), a number in [%g, %g]",
+                     distribution->shape_means, distribution->shape_low, distribution->shape_high);
+}
+
+/* Tells what is wrong with a table as a fault, but for want of memory. */
+static int table_status(struct values *values, const char *path, int status,
+                        const struct error *reason, struct error *err) {
+    if (status == ERROR_INPUT)
+        values_fault(values, path, "%s", reason->text);
+    return status == 0 || status == ERROR_INPUT ? 0 : error_set(err, status, "%s", reason->text);
+}
+
+static int read_samples(struct surface_case *out, struct values *values, struct error *err) {
+    static const char path[] = "/surface/heights/samples";
+    double *samples = NULL;
+    size_t n = 0;
+    struct error reason = {0};
+    int status = values_numbers(values, path, &samples, &n, err);
+    if (status != 0)
+        return status;
+    out->heights_name = "samples";
+    if (samples == NULL) {
+        values_fault(values, path, "the distribution needs its samples, heights in any order");
+        return 0;
     }
+    status = height_table_of_samples(&out->height_table, n, samples, &reason);
+    free(samples);
+    return table_status(values, path, status, &reason, err);
+}
+
+static int read_quantiles(struct surface_case *out, struct values *values, struct error *err) {
+    static const char at[] = "/surface/heights/probability", path[] = "/surface/heights/quantile";
+    double *probability = NULL, *quantile = NULL;
+    size_t n = 0, quantiles = 0;
+    struct error reason = {0};
+    out->heights_name = "quantiles";
+    int status = values_numbers(values, at, &probability, &n, err);
+    if (status == 0)
+        status = values_numbers(values, path, &quantile, &quantiles, err);
+    if (status == 0 && (probability == NULL || quantile == NULL || n != quantiles))
+        values_fault(values, path,
+                     "the distribution needs probability and quantile, as many of each");
+    else if (status == 0 && height_table_check(n, probability, &reason) != 0)
+        values_fault(values, at, "%s", reason.text);
+    else if (status == 0)
+        status = table_status(
+            values, path,
+            height_table_of_quantiles(&out->height_table, n, probability, quantile, &reason),
+            &reason, err);
+    free(probability);
+    free(quantile);
+    return status;
+}
+
+static void read_iteration(struct surface_options *options, struct values *values) {
+    options->amplitudes = (enum surface_amplitudes)values_choice(values, "/surface/amplitudes");
     options->tolerance = values_number(values, "/surface/heights/tolerance");
     options->keep = (enum surface_keep)values_choice(values, "/surface/heights/keep");
     options->iteration =
@@ -38,6 +86,25 @@ static void read_heights(struct surface_case *out, struct values *values) {
     options->stall_iterations = isnan(stall) ? options->stall_iterations : (size_t)stall;
     options->max_iterations = isnan(most) ? options->max_iterations : (size_t)most;
     options->relaxed_iterations = isnan(relaxed) ? options->relaxed_iterations : (size_t)relaxed;
+}
+
+/* Reads the heights and the iteration that gives them. */
+static int read_heights(struct surface_case *out, struct values *values, struct error *err) {
+    struct surface_options *options = &out->options;
+    int distribution = values_choice(values, "/surface/heights/distribution");
+    int status = 0;
+    *options = SURFACE_DEFAULTS;
+    options->heights.type =
+        distribution < HEIGHTS_TABLE ? (enum heights_type)distribution : HEIGHTS_TABLE;
+    if (distribution == GIVEN_SAMPLES)
+        status = read_samples(out, values, err);
+    else if (distribution == GIVEN_QUANTILES)
+        status = read_quantiles(out, values, err);
+    else
+        read_distribution(out, values);
+    options->heights.table = out->height_table;
+    read_iteration(options, values);
+    return status;
 }
 
 static void read_scale(struct surface_case *out, struct values *values) {
@@ -251,12 +318,11 @@ int surface_case_fill(struct surface_case *out, struct values *values, struct er
     out->length_ratio = values_number(values, "/surface/length_ratio");
     out->wavelength_ratio = values_number(values, "/surface/wavelength_ratio");
     out->spectrum.type = (enum spectrum_type)values_choice(values, "/surface/spectrum/type");
-    read_heights(out, values);
+    int status = read_heights(out, values, err);
     read_scale(out, values);
-    int status = 0;
-    if (out->spectrum.type == SPECTRUM_SELF_AFFINE)
+    if (status == 0 && out->spectrum.type == SPECTRUM_SELF_AFFINE)
         status = read_self_affine(out, values, err);
-    else if (isnan(out->wavelength_ratio))
+    else if (status == 0 && isnan(out->wavelength_ratio))
         values_fault(values, "/surface/wavelength_ratio",
                      "this spectrum needs it for the size of the cell, L/lambda_s = length_ratio "
                      "wavelength_ratio");
@@ -286,6 +352,7 @@ int surface_case_read(struct surface_case *out, const cJSON *parameters, struct 
 
 void surface_case_clear(struct surface_case *surface) {
     free(surface->table);
+    height_table_destroy(&surface->height_table);
     *surface = (struct surface_case){0};
 }
 

@@ -12,7 +12,9 @@ struct surface_case {
     struct surface_options options;
     double wavelength_ratio; /* as given, or solved for nayak_alpha */
     double length_ratio;
-    double *table; /* owned: memory behind a table spectrum */
+    double *table;                     /* owned: memory behind a table spectrum */
+    struct height_table *height_table; /* owned: heights of one's own; NULL: none */
+    const char *heights_name;          /* of the theory curves of heights */
 };
 /* Reads the surface of a case; adds faults (pointer "/surface/...") where values do not fit their
  * rows or each other, and returns ERROR_INPUT. faults may be NULL: the first fault is the error in

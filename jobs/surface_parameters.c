@@ -11,7 +11,9 @@ static const struct choice SPECTRA[] = {{"self_affine", SPECTRUM_SELF_AFFINE},
 static const struct choice AMPLITUDES[] = {
     {"fixed", AMPLITUDES_FIXED}, {"random", AMPLITUDES_RANDOM}, {0}};
 #define CHOICE(type, name) {name, HEIGHTS_##type},
-static const struct choice DISTRIBUTIONS[] = {HEIGHT_DISTRIBUTIONS(CHOICE){0}};
+#define GIVEN(type, name) {name, GIVEN_##type},
+static const struct choice DISTRIBUTIONS[] = {HEIGHT_DISTRIBUTIONS(CHOICE) GIVEN(SAMPLES, "samples")
+                                                  GIVEN(QUANTILES, "quantiles"){0}};
 
 static const struct choice KEPT[] = {{"spectrum", KEEP_SPECTRUM}, {"heights", KEEP_HEIGHTS}, {0}};
 static const struct choice ITERATIONS[] = {{"relaxed", ITERATION_RELAXED},
@@ -168,7 +170,8 @@ static const struct parameter ROWS[] = {
      .sweep = true,
      .default_json = "\"gaussian\"",
      .example_json = "[\"gaussian\", \"weibull_max\"]",
-     .help = "height distribution; all have mean 0 and the standard deviation of the spectrum"},
+     .help = "height distribution: a named one, or one's own by samples or quantiles; all are "
+             "brought to mean 0 and the standard deviation of the spectrum"},
     {.path = "/surface/heights/shape",
      .type = PARAMETER_NUMBER,
      .minimum = 0.01,
@@ -177,6 +180,38 @@ static const struct parameter ROWS[] = {
      .example_json = "1.5",
      .help = "shape of the distribution: Weibull: C, in [0.5, 20]; lognormal: standard deviation "
              "of the logarithm, in [0.01, 1]"},
+    {.path = "/surface/heights/samples",
+     .type = PARAMETER_NUMBERS,
+     .minimum = -1e100,
+     .maximum = 1e100,
+     .items_low = HEIGHT_SAMPLES_LEAST,
+     .items_high = 10000,
+     .later = true,
+     .unit = "any",
+     .example_json = "[-3, -1.5, -0.7, -0.2, 0.3, 0.6, 0.9, 1.1]",
+     .help = "heights that were measured, in any order: the distribution \"samples\"; equal ones "
+             "are flat ground of that height"},
+    {.path = "/surface/heights/probability",
+     .type = PARAMETER_NUMBERS,
+     .minimum = 0,
+     .maximum = 1,
+     .items_low = HEIGHT_QUANTILES_LEAST,
+     .items_high = 10000,
+     .later = true,
+     .example_json = "[0, 0.1, 0.5, 0.9, 1]",
+     .help = "rising probabilities of the quantiles; 0 and 1 give the lowest and the highest "
+             "point, without them heights go on as Gaussian ones"},
+    {.path = "/surface/heights/quantile",
+     .type = PARAMETER_NUMBERS,
+     .minimum = -1e100,
+     .maximum = 1e100,
+     .items_low = HEIGHT_QUANTILES_LEAST,
+     .items_high = 10000,
+     .later = true,
+     .unit = "any",
+     .example_json = "[-3.1, -1.4, 0.2, 1, 1.3]",
+     .help = "the distribution \"quantiles\": heights, of which each probability's share lies "
+             "below; they must not fall"},
     {.path = "/surface/heights/tolerance",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

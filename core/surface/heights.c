@@ -179,9 +179,19 @@ static int quantile_moments(const struct heights *heights, struct height_moments
 
 /* --- of any of them --- */
 
+static int table_moments(const struct heights *heights, struct height_moments *out,
+                         struct error *err) {
+    if (heights->table == NULL)
+        return error_set(err, ERROR_INPUT, "heights by a table without one");
+    height_table_moments(heights->table, out);
+    return 0;
+}
+
 int heights_moments(const struct heights *heights, struct height_moments *out, struct error *err) {
     if (heights->type == HEIGHTS_QUANTILE)
         return quantile_moments(heights, out, err);
+    if (heights->type == HEIGHTS_TABLE)
+        return table_moments(heights, out, err);
     const struct distribution *row = heights_distribution(heights->type);
     if (row == NULL)
         return error_set(err, ERROR_INPUT, "unknown height distribution %d", (int)heights->type);
@@ -197,11 +207,16 @@ double heights_quantile(const struct heights *heights, const struct height_momen
                         double probability) {
     const struct distribution *row = heights_distribution(heights->type);
     double raw = row != NULL ? row->quantile(heights->shape, probability)
-                             : heights->quantile(probability, heights->context);
+                 : heights->type == HEIGHTS_TABLE
+                     ? height_table_quantile(heights->table, probability)
+                     : heights->quantile(probability, heights->context);
     return (raw - moments->mean) / moments->deviation;
 }
 
 double heights_cdf(const struct heights *heights, const struct height_moments *moments, double z) {
     const struct distribution *row = heights_distribution(heights->type);
-    return row != NULL ? row->cdf(heights->shape, moments->mean + moments->deviation * z) : NAN;
+    double raw = moments->mean + moments->deviation * z;
+    if (row != NULL)
+        return row->cdf(heights->shape, raw);
+    return heights->type == HEIGHTS_TABLE ? height_table_cdf(heights->table, raw) : NAN;
 }

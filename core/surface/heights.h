@@ -1,9 +1,11 @@
-/* Height distributions: those of the table below, or any monotone quantile function.
+/* Height distributions: those of the table below, any monotone quantile function, or numbers.
  * All are centred (mean 0) and scaled to standard deviation 1 here; callers scale. */
 #ifndef RUGO_CORE_SURFACE_HEIGHTS_H
 #define RUGO_CORE_SURFACE_HEIGHTS_H
 
 #include "core/error.h"
+#include "core/surface/height_moments.h"
+#include "core/surface/height_table.h"
 
 /* Distributions, and their names in studies: ENTRY(type, name). A new one is an entry here and its
  * row with its functions in heights.c. */
@@ -14,7 +16,7 @@
     ENTRY(LOGNORMAL, "lognormal")
 
 #define HEIGHTS_TYPE(type, name) HEIGHTS_##type,
-enum heights_type { HEIGHT_DISTRIBUTIONS(HEIGHTS_TYPE) HEIGHTS_QUANTILE };
+enum heights_type { HEIGHT_DISTRIBUTIONS(HEIGHTS_TYPE) HEIGHTS_QUANTILE, HEIGHTS_TABLE };
 #undef HEIGHTS_TYPE
 
 struct heights {
@@ -24,13 +26,7 @@ struct heights {
      * quadrature); must be safe to call from many threads. context is borrowed. */
     double (*quantile)(double probability, const void *context);
     const void *context;
-};
-
-struct height_moments {
-    double mean, deviation;    /* of the raw distribution, before standardising */
-    double skewness, kurtosis; /* F4.2; kurtosis 3 for a Gaussian */
-    double lowest, highest;    /* bounds in standard deviations about the mean; +-INFINITY if none,
-                                  or unknown as for HEIGHTS_QUANTILE */
+    const struct height_table *table; /* HEIGHTS_TABLE: borrowed */
 };
 
 /* What is known of a distribution. Its raw variable has whatever scale is handiest: standardising
@@ -46,7 +42,7 @@ struct distribution {
     double (*quantile)(double shape, double probability); /* of the raw variable */
     double (*cdf)(double shape, double raw);
 };
-/* Returns NULL for HEIGHTS_QUANTILE, which has no row. */
+/* Returns NULL for HEIGHTS_QUANTILE and HEIGHTS_TABLE, which have no rows. */
 const struct distribution *heights_distribution(enum heights_type type);
 
 /* Fails with ERROR_INPUT for a shape out of range, or a quantile function that does not rise or has

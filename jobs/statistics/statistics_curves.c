@@ -242,7 +242,7 @@ int statistics_curves_complete(const struct statistics_case *one_case,
 static int add_heights(struct statistics_curve_maker *maker, struct error *err) {
     const struct statistics_case *one_case = maker->one_case;
     const struct statistics_tally *tally = maker->tally;
-    const char *name = heights_distribution(one_case->surface.options.heights.type)->family;
+    const char *name = one_case->surface.heights_name;
     int status = theories_create(maker, err);
     if (status == 0)
         status = statistics_theory_heights(one_case, maker->pdf, maker->cdf, err);

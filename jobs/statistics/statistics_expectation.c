@@ -40,18 +40,16 @@ static struct curve named(const char *quantity, const char *y_label) {
 static int add_heights(struct expectation *e, struct error *err) {
     const struct statistics_case *one_case = &e->one_case;
     size_t n = one_case->height.count;
-    const struct distribution *distribution =
-        heights_distribution(one_case->surface.options.heights.type);
     double *pdf = result_numbers(e->result, 2 * n), *cdf = pdf + n;
     if (pdf == NULL)
         return no_room(err);
     int status = statistics_theory_heights(one_case, pdf, cdf, err);
     if (status == 0)
-        status = add_curve(e, named("height_pdf", "probability density"), distribution->family, n,
-                           e->heights, pdf, err);
+        status = add_curve(e, named("height_pdf", "probability density"),
+                           one_case->surface.heights_name, n, e->heights, pdf, err);
     if (status == 0)
-        status = add_curve(e, named("height_cdf", "cumulative probability"), distribution->family,
-                           n, e->edges, cdf, err);
+        status = add_curve(e, named("height_cdf", "cumulative probability"),
+                           one_case->surface.heights_name, n, e->edges, cdf, err);
     return status;
 }
 

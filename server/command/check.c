@@ -100,6 +100,26 @@ static void print_cases(const struct study *study) {
     table_clear(&table);
 }
 
+enum { NUMBERS_SHOWN = 8 };
+
+/* Prints a value; of a long list of numbers, such as samples of heights, the first ones. */
+static void print_whole(const char *pointer, const cJSON *value) {
+    char *text = json_print(value);
+    int length = text != NULL ? (int)strlen(text) : 0, count = cJSON_GetArraySize(value);
+    bool cut = text != NULL && count > NUMBERS_SHOWN && cJSON_IsNumber(value->child);
+    if (cut) {
+        const char *end = text;
+        for (int n = 0; n < NUMBERS_SHOWN; n++)
+            end = strchr(end, ',') + 1;
+        length = (int)(end - text);
+    }
+    printf("  %-36s %.*s", pointer, text != NULL ? length : 1, text != NULL ? text : "?");
+    if (cut)
+        printf(" ...] (%d numbers)", count);
+    putchar('\n');
+    free(text);
+}
+
 /* Prints the effective values of all cases; what is swept stands in the table. */
 static void print_values(const struct study *study, const cJSON *object, const char *prefix) {
     for (const cJSON *member = object->child; member != NULL; member = member->next) {
@@ -108,13 +128,10 @@ static void print_values(const struct study *study, const cJSON *object, const c
         bool swept = false;
         for (size_t p = 0; study->swept[p] != NULL; p++)
             swept = swept || strcmp(study->swept[p], pointer) == 0;
-        if (cJSON_IsObject(member)) {
+        if (cJSON_IsObject(member))
             print_values(study, member, pointer);
-        } else if (!swept) {
-            char *text = json_print(member);
-            printf("  %-36s %s\n", pointer, text != NULL ? text : "?");
-            free(text);
-        }
+        else if (!swept)
+            print_whole(pointer, member);
     }
 }
 

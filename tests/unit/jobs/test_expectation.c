@@ -15,6 +15,11 @@ static const char PROFILE[] =
 static const char WEIBULL[] =
     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2, \"heights\":"
     " {\"distribution\": \"weibull_max\", \"shape\": 1}}}";
+/* Flat ground of a fifth of the area, at the top. */
+static const char OWN[] =
+    "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2, \"heights\":"
+    " {\"distribution\": \"quantiles\", \"probability\": [0, 0.1, 0.4, 0.6, 0.8, 1], \"quantile\":"
+    " [1, 4, 6, 7, 8, 8]}}}";
 static const char CONTACT[] = "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 8},"
                               " \"contact\": {\"model\": \"halfspace\"}}";
 static const char EXPONENTIAL[] =
@@ -131,6 +136,38 @@ static void only_what_theory_tells(void **state) {
     result_clear(&weibull);
 }
 
+/* Heights of one's own have a theory, of all of them, in results as without. */
+static void heights_of_ones_own_have_their_density(void **state) {
+    (void)state;
+    struct case_result expected = expect(OWN, false), result = {0};
+    struct error err = {0};
+    struct job_merger *merger = NULL;
+    cJSON *parameters = cJSON_Parse(OWN);
+    assert_int_equal(merger_create(&merger, kind_find("statistics"), parameters, &err), 0);
+    assert_int_equal(merger_result(merger, &result, &err), 0);
+    const struct curve *pdf = series(&expected, "height_pdf", "quantiles");
+    const struct curve *cdf = series(&expected, "height_cdf", "quantiles");
+    assert_true(pdf != NULL && cdf != NULL);
+    const struct theory *theory = &result_curve(&result, "height_pdf")->theories[0];
+    assert_string_equal(theory->name, "quantiles");
+    double width = pdf->x[1] - pdf->x[0], sum = 0, mean = 0, most = 0;
+    for (size_t b = 0; b < pdf->n; b++) {
+        assert_true(theory->y[b] == pdf->y[b]);
+        sum += width * pdf->y[b];
+        mean += width * pdf->y[b] * pdf->x[b];
+        most = fmax(most, width * pdf->y[b]);
+    }
+    check_close(sum, 1, 1e-12);
+    check_close(mean, 0, 0.02);   /* of the bin that holds the flat ground */
+    check_close(most, 0.2, 0.02); /* that, and little beside it */
+    check_close(cdf->y[cdf->n - 1], 1, 0);
+    assert_true(scalar(&expected, "skewness")->value < -0.5);
+    cJSON_Delete(parameters);
+    merger_destroy(&merger);
+    result_clear(&result);
+    result_clear(&expected);
+}
+
 /* An exponential autocorrelation is there at every lag, less the mean of the cell; its moments
  * diverge, and a lattice of four modes is not isotropic: neither has Nayak's theory. */
 static void theory_knows_its_limits(void **state) {
@@ -197,6 +234,7 @@ int main(void) {
         cmocka_unit_test(alpha_is_that_of_the_table),
         cmocka_unit_test(results_have_the_same_theories),
         cmocka_unit_test(only_what_theory_tells),
+        cmocka_unit_test(heights_of_ones_own_have_their_density),
         cmocka_unit_test(theory_knows_its_limits),
         cmocka_unit_test(anisotropic_surfaces_are_of_the_grid_alone),
         cmocka_unit_test(faults_are_told),

@@ -2,9 +2,7 @@
  * pointer and words, and the grid that follows. */
 #include "jobs/surface_case.h"
 #include "schema/study/fault.h"
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
+#include "tests/support/check.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -150,6 +148,37 @@ static void other_spectra(void **state) {
     surface_case_clear(&surface);
 }
 
+#define OWN(distribution)                                                                          \
+    "{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": " distribution "}}"
+
+/* The numbers arrive, and are those of one distribution however they were given. */
+static void heights_of_ones_own(void **state) {
+    (void)state;
+    struct surface_case by_samples =
+        read(OWN("\"samples\", \"samples\": [4, 1, 3, 9, 5, 8, 6, 7]"));
+    struct surface_case by_quantiles =
+        read(OWN("\"quantiles\", \"probability\": [0.0625, 0.1875, 0.3125, 0.4375, 0.5625, 0.6875, "
+                 "0.8125, 0.9375], \"quantile\": [1, 3, 4, 5, 6, 7, 8, 9]"));
+    struct surface_case named = read(OWN("\"gaussian\", \"samples\": [4, 1, 3, 9, 5, 8, 6, 7]"));
+    const struct heights *one = &by_samples.options.heights;
+    const struct heights *other = &by_quantiles.options.heights;
+    assert_true(one->type == HEIGHTS_TABLE && other->type == HEIGHTS_TABLE);
+    assert_true(named.options.heights.type == HEIGHTS_GAUSSIAN);
+    assert_string_equal(by_samples.heights_name, "samples");
+    assert_string_equal(by_quantiles.heights_name, "quantiles");
+    assert_string_equal(named.heights_name, "gaussian");
+    struct height_moments moments, same;
+    assert_int_equal(heights_moments(one, &moments, NULL), 0);
+    assert_int_equal(heights_moments(other, &same, NULL), 0);
+    assert_true(moments.skewness < -0.1 && moments.skewness > -1);
+    for (double p = 0.01; p < 1; p += 0.07)
+        check_close(heights_quantile(other, &same, p), heights_quantile(one, &moments, p), 1e-12);
+    surface_case_clear(&by_samples);
+    surface_case_clear(&by_quantiles);
+    surface_case_clear(&named);
+    assert_null(by_samples.height_table);
+}
+
 struct broken_case {
     const char *surface, *pointer, *words;
 };
@@ -175,6 +204,27 @@ static const struct broken_case BROKEN[] = {
      "/surface/heights/shape", "[0.5, 20]"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"normal\"}}",
      "/surface/heights/distribution", "gaussian"},
+    {OWN("\"samples\""), "/surface/heights/samples", "needs its samples"},
+    {OWN("\"samples\", \"samples\": [1, 2, 3, 4, 5, 6, 7]"), "/surface/heights/samples",
+     "8 to 10000 numbers"},
+    {OWN("\"samples\", \"samples\": [1, 2, 3, 4, 5, 6, 7, 1e101]"), "/surface/heights/samples/7",
+     "1e+100"},
+    {OWN("\"samples\", \"samples\": [1, 2, 3, 4, 5, 6, 7, null]"), "/surface/heights/samples/7",
+     "a number"},
+    {OWN("\"samples\", \"samples\": [[1, 2, 3, 4, 5, 6, 7, 8]]"), "/surface/heights/samples",
+     "8 to 10000 numbers"},
+    {OWN("\"samples\", \"samples\": [2, 2, 2, 2, 2, 2, 2, 2]"), "/surface/heights/samples",
+     "must differ"},
+    {OWN("\"quantiles\""), "/surface/heights/quantile", "as many of each"},
+    {OWN("\"quantiles\", \"probability\": [0, 0.1, 0.2, 0.5, 1], \"quantile\": "
+         "[1, 2, 3, 4, 5, 6]"),
+     "/surface/heights/quantile", "as many of each"},
+    {OWN("\"quantiles\", \"probability\": [0, 0.1, 0.2, 0.5, 2], \"quantile\": [1, 2, 3, 4, 5]"),
+     "/surface/heights/probability/4", "[0, 1]"},
+    {OWN("\"quantiles\", \"probability\": [0, 0.1, 0.7, 0.5, 1], \"quantile\": [1, 2, 3, 4, 5]"),
+     "/surface/heights/probability", "must rise; number 3"},
+    {OWN("\"quantiles\", \"probability\": [0, 0.1, 0.2, 0.5, 1], \"quantile\": [1, 2, 3, 9, 5]"),
+     "/surface/heights/quantile", "must not fall; number 4"},
     {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"exponential_acf\"}}",
      "/surface/spectrum/length", "correlation lengths"},
     {"{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"exponential_acf\", \"length\": [0]}}",
@@ -241,6 +291,7 @@ int main(void) {
         cmocka_unit_test(grids),
         cmocka_unit_test(ratios_of_alpha),
         cmocka_unit_test(other_spectra),
+        cmocka_unit_test(heights_of_ones_own),
         cmocka_unit_test(faults_have_pointer_and_words),
         cmocka_unit_test(all_faults_at_once),
     };

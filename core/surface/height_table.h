@@ -1,0 +1,36 @@
+/* A height distribution by numbers: heights at probabilities, such as a bearing curve, or samples
+ * (FORMULAS.md, F4.6). Immutable once made; many threads may read one. */
+#ifndef RUGO_CORE_SURFACE_HEIGHT_TABLE_H
+#define RUGO_CORE_SURFACE_HEIGHT_TABLE_H
+
+#include "core/error.h"
+#include "core/surface/height_moments.h"
+#include <stddef.h>
+
+struct height_table;
+
+enum { HEIGHT_QUANTILES_LEAST = 5, HEIGHT_SAMPLES_LEAST = 8 };
+
+/* Checks n probabilities of quantiles: ERROR_INPUT unless there are enough, in [0, 1] and rising.
+ */
+int height_table_check(size_t n, const double *probability, struct error *err);
+/* Makes a table of n heights of any unit, that of number a being the quantile at probability[a].
+ * Heights may be equal, which is flat ground of that share, but not fall. Those at probabilities 0
+ * and 1 are the bounds; without them the distribution goes on as a Gaussian one. Copies the
+ * arrays. ERROR_INPUT for what is checked above, and heights that are not finite, fall or do not
+ * differ; ERROR_MEMORY. */
+int height_table_of_quantiles(struct height_table **out, size_t n, const double *probability,
+                              const double *height, struct error *err);
+/* Makes one of n samples in any order: in rising order, number a from 0 is the quantile at
+ * (a + 1/2)/n. Errors as above. */
+int height_table_of_samples(struct height_table **out, size_t n, const double *sample,
+                            struct error *err);
+void height_table_destroy(struct height_table **table);
+
+/* The raw variable has a unit of the table's own. Takes a probability in (0, 1). */
+double height_table_quantile(const struct height_table *table, double probability);
+/* Returns the share of heights up to a raw one. */
+double height_table_cdf(const struct height_table *table, double raw);
+void height_table_moments(const struct height_table *table, struct height_moments *out);
+
+#endif
