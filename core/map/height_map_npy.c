@@ -15,12 +15,25 @@ static uint64_t little_endian(const char *at, size_t bytes) {
     return word;
 }
 
-/* Text behind 'key': in the header's dictionary; NULL where it is not. */
+static uint64_t big_endian(const char *at, size_t bytes) {
+    uint64_t word = 0;
+    for (size_t a = 0; a < bytes; a++)
+        word = word << 8 | (uint64_t)(unsigned char)at[a];
+    return word;
+}
+
+/* Text behind 'key': in the header's dictionary, whose keys have quotes of either kind; NULL where
+ * it is not. */
 static const char *value_behind(const char *header, const char *key) {
-    const char *at = strstr(header, key);
+    char single[32], twofold[32];
+    snprintf(single, sizeof single, "'%s'", key);
+    snprintf(twofold, sizeof twofold, "\"%s\"", key);
+    const char *at = strstr(header, single);
+    if (at == NULL)
+        at = strstr(header, twofold);
     if (at == NULL)
         return NULL;
-    at += strlen(key);
+    at += strlen(single);
     while (*at == ' ')
         at++;
     if (*at++ != ':')
@@ -71,8 +84,9 @@ static int read_header(const char *data, size_t size, char *header, size_t *star
         return error_set(err, ERROR_INPUT,
                          "this is no npy file: its first bytes are not \\x93NUMPY");
     unsigned major = (unsigned char)data[MAGIC_SIZE];
-    if (major < 1 || major > 2)
-        return error_set(err, ERROR_INPUT, "npy version %u is not read, only 1 and 2", major);
+    if (major < 1 || major > 3)
+        return error_set(err, ERROR_INPUT, "npy version %u is not read; allowed: 1, 2 and 3",
+                         major);
     size_t field = major == 1 ? 2 : 4;
     *start = MAGIC_SIZE + 2 + field;
     size_t length = size >= *start ? (size_t)little_endian(data + MAGIC_SIZE + 2, field) : 0;
@@ -85,21 +99,94 @@ static int read_header(const char *data, size_t size, char *header, size_t *star
     return 0;
 }
 
-static int read_heights(double *z, size_t n, const char *data, size_t width, struct error *err) {
-    for (size_t a = 0; a < n; a++) {
-        uint64_t bits = little_endian(data + a * width, width);
-        if (width == 4) {
-            uint32_t half = (uint32_t)bits;
-            float single;
-            memcpy(&single, &half, sizeof single);
-            z[a] = (double)single;
-        } else
-            memcpy(&z[a], &bits, sizeof bits);
-        if (isinf(z[a]))
-            return error_set(err, ERROR_INPUT, "height %zu is not finite", a);
-        if (isnan(z[a]))
-            z[a] = NAN; /* one of many */
-    }
+/* --- numbers --- */
+
+/* What the words of a file are: 'f', 'i' or 'u' of 1 to 8 bytes. */
+struct word {
+    char kind;
+    size_t bytes;
+    bool big_endian;
+};
+
+/* Reads '<f8' and the like, quoted in either way; = is the order of the machine that reads. */
+static bool read_type(const char *at, struct word *word) {
+    static const char KINDS[] = "f2 f4 f8 i1 i2 i4 i8 u1 u2 u4 u8";
+    const uint16_t one = 1;
+    char quote = *at;
+    bool native_big = *(const unsigned char *)&one == 0;
+    if ((quote != '\'' && quote != '"') || strchr("<>=|", at[1]) == NULL || at[1] == '\0')
+        return false;
+    const char name[3] = {at[2], at[2] != '\0' ? at[3] : '\0', '\0'};
+    if (strlen(name) != 2 || strchr("fiu", name[0]) == NULL || strstr(KINDS, name) == NULL ||
+        at[4] != quote)
+        return false;
+    *word = (struct word){name[0], (size_t)(name[1] - '0'), at[1] == '>'};
+    word->big_endian = word->big_endian || (at[1] == '=' && native_big);
+    return true;
+}
+
+/* IEEE 754 binary16. */
+static double half_number(uint64_t bits) {
+    int exponent = (int)(bits >> 10 & 31);
+    double fraction = (double)(bits & 1023) / 1024, size;
+    if (exponent == 31)
+        size = fraction > 0 ? (double)NAN : (double)INFINITY;
+    else
+        size = exponent > 0 ? ldexp(1 + fraction, exponent - 15) : ldexp(fraction, -14);
+    return (bits & 0x8000) != 0 ? -size : size;
+}
+
+static double float_number(uint64_t bits, size_t bytes) {
+    const uint32_t low = (uint32_t)bits;
+    float single;
+    double number;
+    if (bytes == 2)
+        return half_number(bits);
+    memcpy(&single, &low, sizeof single);
+    memcpy(&number, &bits, sizeof number);
+    return bytes == 4 ? (double)single : number;
+}
+
+static double read_word(const struct word *word, const char *at) {
+    uint64_t bits = word->big_endian ? big_endian(at, word->bytes) : little_endian(at, word->bytes);
+    if (word->kind == 'f')
+        return float_number(bits, word->bytes);
+    uint64_t sign = (uint64_t)1 << (8 * word->bytes - 1);
+    if (word->kind == 'u' || (bits & sign) == 0)
+        return (double)bits;
+    return -(double)(sign - (bits & (sign - 1))); /* two's complement */
+}
+
+/* The words of the file run along rows, or along columns where it is in Fortran's order. */
+static int read_heights(struct height_map *map, const char *data, const struct word *word,
+                        bool fortran, struct error *err) {
+    size_t nx = map->grid.nx, ny = map->grid.ny;
+    for (size_t j = 0; j < ny; j++)
+        for (size_t i = 0; i < nx; i++) {
+            size_t place = fortran ? i * ny + j : j * nx + i;
+            double z = read_word(word, data + place * word->bytes);
+            if (isinf(z))
+                return error_set(err, ERROR_INPUT,
+                                 "row %zu, column %zu: the height is not finite; allowed: finite "
+                                 "numbers, and NaN for holes",
+                                 j + 1, i + 1);
+            map->z[j * nx + i] = isnan(z) ? (double)NAN : z; /* one of many */
+        }
+    return 0;
+}
+
+static int check_type(const char *type, const char *order, struct word *word, bool *fortran,
+                      struct error *err) {
+    static const struct word NONE = {0};
+    *word = NONE;
+    if (type == NULL || !read_type(type, word))
+        return error_set(err, ERROR_INPUT,
+                         "the npy type %.20s is not read; allowed: f2, f4, f8, and i and u of 1, "
+                         "2, 4 or 8 bytes, as '<f8'",
+                         type != NULL ? type : "is absent, which");
+    *fortran = order != NULL && strncmp(order, "True", 4) == 0;
+    if (!*fortran && (order == NULL || strncmp(order, "False", 5) != 0))
+        return error_set(err, ERROR_INPUT, "the npy header must say fortran_order, True or False");
     return 0;
 }
 
@@ -107,31 +194,31 @@ int height_map_npy_parse(struct height_map *map, const char *data, size_t size, 
                          struct error *err) {
     char header[HEADER_MOST];
     size_t start = 0, nx, ny;
+    struct word word;
+    bool fortran;
     int status = read_header(data, size, header, &start, err);
+    if (status == 0)
+        status = check_type(value_behind(header, "descr"), value_behind(header, "fortran_order"),
+                            &word, &fortran, err);
     if (status != 0)
         return status;
-    const char *type = value_behind(header, "'descr'");
-    const char *order = value_behind(header, "'fortran_order'");
-    if (type == NULL || (strncmp(type, "'<f8'", 5) != 0 && strncmp(type, "'<f4'", 5) != 0))
-        return error_set(err, ERROR_INPUT, "the npy type must be '<f8' or '<f4', not %.20s",
-                         type != NULL ? type : "absent");
-    if (order == NULL || strncmp(order, "False", 5) != 0)
-        return error_set(err, ERROR_INPUT, "the npy file must be in C order");
-    if (!read_shape(value_behind(header, "'shape'"), &ny, &nx))
+    if (!read_shape(value_behind(header, "shape"), &ny, &nx))
         return error_set(err, ERROR_INPUT, "the npy shape must be (n,) or (ny, nx)");
     status = height_map_shape(map, ny, nx, dx, err);
     if (status != 0)
         return status;
-    size_t width = type[3] == '8' ? 8 : 4, n = nx * ny;
-    if (size - start != n * width)
+    size_t n = nx * ny;
+    if (size - start != n * word.bytes)
         return error_set(err, ERROR_INPUT,
-                         "%zu by %zu heights take %zu bytes; the npy file has %zu", ny, nx,
-                         n * width, size - start);
+                         "%zu rows of %zu heights take %zu bytes; the npy file has %zu", ny, nx,
+                         n * word.bytes, size - start);
     map->z = array_create(n, sizeof *map->z);
     if (map->z == NULL)
         return error_memory(err, n * sizeof *map->z, "a height map");
-    return read_heights(map->z, n, data + start, width, err);
+    return read_heights(map, data + start, &word, fortran, err);
 }
+
+/* --- writing --- */
 
 void height_map_npy_write(FILE *file, const struct grid *grid, const double *z) {
     char header[128];

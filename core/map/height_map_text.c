@@ -39,9 +39,20 @@ static bool is_hole(const char *at) {
     return strncasecmp(at, "nan", 3) == 0 && strchr(",; \t\r\n", at[3]) != NULL;
 }
 
+static const char ALLOWED[] = "allowed: numbers as -1.5e-6, and nan for holes";
+
+/* A fault in the number in this column of the row that is read. */
+static int refuse_number(const struct table *table, size_t column, const char *at, const char *what,
+                         struct error *err) {
+    int shown = (int)strcspn(at, ",; \t\r\n");
+    return error_set(err, ERROR_INPUT, "row %zu, column %zu (line %zu): '%.*s' %s; %s",
+                     table->rows + 1, column, table->line, shown < 40 ? shown : 40, at, what,
+                     ALLOWED);
+}
+
 /* One number in plain decimal, or nan; *at moves behind it. */
-static int read_number(const struct table *table, const char **at, const char *end, double *number,
-                       struct error *err) {
+static int read_number(const struct table *table, size_t column, const char **at, const char *end,
+                       double *number, struct error *err) {
     size_t length = strspn(*at, "+-.0123456789eE");
     char *stop;
     if (is_hole(*at)) {
@@ -50,14 +61,10 @@ static int read_number(const struct table *table, const char **at, const char *e
         return 0;
     }
     *number = strtod(*at, &stop);
-    if (length == 0 || stop != *at + length || stop > end) {
-        int shown = (int)strcspn(*at, ",; \t\r\n");
-        return error_set(err, ERROR_INPUT, "line %zu: '%.*s' is not a number", table->line,
-                         shown < 40 ? shown : 40, *at);
-    }
+    if (length == 0 || stop != *at + length || stop > end)
+        return refuse_number(table, column, *at, "is not a number", err);
     if (!isfinite(*number))
-        return error_set(err, ERROR_INPUT, "line %zu: '%.*s' is too large", table->line,
-                         length < 40 ? (int)length : 40, *at);
+        return refuse_number(table, column, *at, "is too large", err);
     *at = stop;
     return 0;
 }
@@ -66,20 +73,25 @@ static int read_row(struct table *table, const char *at, const char *end, struct
     size_t before = table->count;
     while ((at = skip_blank(at, end)) < end) {
         double number;
-        int status = read_number(table, &at, end, &number, err);
+        int status = read_number(table, table->count - before + 1, &at, end, &number, err);
         if (status == 0)
             status = table_append(table, number, err);
         if (status != 0)
             return status;
         at = skip_blank(at, end);
         if (at < end && (*at == ',' || *at == ';') && skip_blank(++at, end) == end)
-            return error_set(err, ERROR_INPUT, "line %zu ends with a separator", table->line);
+            return error_set(err, ERROR_INPUT,
+                             "row %zu (line %zu) ends with a separator; allowed: one between two "
+                             "numbers",
+                             table->rows + 1, table->line);
     }
     if (table->rows++ == 0)
         table->columns = table->count;
     if (table->count - before != table->columns)
-        return error_set(err, ERROR_INPUT, "line %zu has %zu numbers, the first row %zu",
-                         table->line, table->count - before, table->columns);
+        return error_set(err, ERROR_INPUT,
+                         "row %zu (line %zu) has %zu numbers, the first row %zu; allowed: as many "
+                         "in each",
+                         table->rows, table->line, table->count - before, table->columns);
     return 0;
 }
 

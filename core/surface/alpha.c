@@ -105,24 +105,23 @@ struct ring_search {
     struct ring_sums sums;
     double alpha;
     double best_square, best_alpha; /* ring whose alpha is nearest so far */
-    double first_alpha, last_alpha;
+    double least_alpha, most_alpha; /* of all rings so far; NaN before the first */
 };
 
-/* Visits one more ring; returns true once alpha has been passed. */
+/* Visits one more ring; returns true once alpha lies between those of the rings so far. */
 static bool ring_visit(struct ring_search *search, double square, double points, double fourth) {
     ring_add(&search->sums, square, points, fourth);
     double reached = ring_alpha(&search->sums);
     /* The shortest wave may not be longer than the roll-off. */
     if (isnan(reached) || sqrt(square) < search->sums.rolloff * (1 - 1e-9))
         return false;
-    if (isnan(search->first_alpha))
-        search->first_alpha = reached;
-    search->last_alpha = reached;
+    search->least_alpha = fmin(search->least_alpha, reached); /* which pass over NaN */
+    search->most_alpha = fmax(search->most_alpha, reached);
     if (!(fabs(reached - search->alpha) >= fabs(search->best_alpha - search->alpha))) {
         search->best_alpha = reached;
         search->best_square = square;
     }
-    return reached >= search->alpha;
+    return search->least_alpha <= search->alpha && search->alpha <= search->most_alpha;
 }
 
 static bool plane_search(struct ring_search *search, double *work) {
@@ -158,8 +157,8 @@ int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, d
         .sums = {dimension, hurst, length_ratio, length_ratio * ratio_rolloff, 0, 0, 0},
         .alpha = alpha,
         .best_alpha = NAN,
-        .first_alpha = NAN,
-        .last_alpha = NAN,
+        .least_alpha = NAN,
+        .most_alpha = NAN,
     };
     size_t bytes = 2 * (2 * RINGS_MOST + 1) * sizeof(double);
     double *work = dimension == 2 ? malloc(bytes) : NULL;
@@ -167,11 +166,11 @@ int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, d
         return error_memory(err, bytes, "rings of modes");
     bool passed = dimension == 2 ? plane_search(&search, work) : line_search(&search);
     free(work);
-    if (!passed || alpha < search.first_alpha)
+    if (!passed)
         return error_set(err, ERROR_NUMERIC,
                          "no wavelength ratio gives alpha = %g at hurst = %g and a cell of %g long "
                          "waves; allowed: %.6g to %.6g",
-                         alpha, hurst, length_ratio, search.first_alpha, search.last_alpha);
+                         alpha, hurst, length_ratio, search.least_alpha, search.most_alpha);
     *ratio = sqrt(search.best_square) / length_ratio;
     *reached = search.best_alpha;
     return 0;

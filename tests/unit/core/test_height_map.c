@@ -91,6 +91,59 @@ static void numpy_headers(void **state) {
     height_map_clear(&map);
 }
 
+/* The numbers 1 to 6 of two rows, in every type that NumPy has for numbers, either order of bytes
+ * and of indices; -1 in place of 5 where there is a sign. */
+static void every_type_and_order(void **state) {
+    (void)state;
+    static const char *const TYPES[] = {"f2", "f4", "f8", "i1", "i2", "i4",
+                                        "i8", "u1", "u2", "u4", "u8"};
+    char file[1000], header[120], data[48];
+    for (size_t t = 0; t < 4 * sizeof TYPES / sizeof *TYPES; t++) {
+        const char *type = TYPES[t / 4];
+        bool big = t % 2 != 0, fortran = t / 2 % 2 != 0, has_sign = *type != 'u';
+        size_t bytes = (size_t)(type[1] - '0');
+        static const uint64_t HALVES[] = {0, 0x3c00, 0x4000, 0x4200, 0x4400, 0xbc00, 0x4600};
+        for (size_t place = 0; place < 6; place++) {
+            size_t number = fortran ? place % 2 * 3 + place / 2 + 1 : place + 1;
+            double value = number == 5 && has_sign ? -1 : (double)number;
+            float single = (float)value;
+            uint64_t bits = number == 5 && has_sign ? UINT64_MAX : number;
+            if (*type == 'f' && bytes == 8)
+                memcpy(&bits, &value, 8);
+            else if (*type == 'f' && bytes == 4)
+                memcpy(&bits, &single, 4); /* the low half, of a machine as ours */
+            else if (*type == 'f')
+                bits = HALVES[number];
+            for (size_t b = 0; b < bytes; b++)
+                data[place * bytes + (big ? bytes - 1 - b : b)] = (char)(bits >> (8 * b) & 0xff);
+        }
+        snprintf(header, sizeof header, "{'descr': '%c%s', 'fortran_order': %s, 'shape': (2, 3), }",
+                 big ? '>' : '<', type, fortran ? "True" : "False");
+        struct height_map map =
+            parse(HEIGHT_MAP_NPY, file, npy(file, 1 + (int)(t % 3), header, data, 6 * bytes), 1);
+        assert_true(map.grid.nx == 3 && map.grid.ny == 2);
+        for (size_t number = 1; number <= 6; number++) {
+            double expected = number == 5 && has_sign ? -1 : (double)number;
+            if (!(map.z[number - 1] == expected))
+                fail_msg("%s: number %zu is %g", header, number, map.z[number - 1]);
+        }
+        height_map_clear(&map);
+    }
+}
+
+/* What half precision has beside normal numbers. */
+static void half_precision(void **state) {
+    (void)state;
+    char file[200];
+    static const unsigned char DATA[] = {0x01, 0x00, 0xff, 0x83, 0x00, 0x7e, 0x00, 0x80};
+    size_t size = npy(file, 1, "{\"descr\": \"<f2\", \"fortran_order\": False, \"shape\": (4,)}",
+                      DATA, sizeof DATA);
+    struct height_map map = parse(HEIGHT_MAP_NPY, file, size, 1);
+    assert_true(map.z[0] == ldexp(1, -24) && map.z[1] == -1023 * ldexp(1, -24));
+    assert_true(isnan(map.z[2]) && map.z[3] == 0 && signbit(map.z[3]) != 0);
+    height_map_clear(&map);
+}
+
 static void refused(enum height_map_format format, const char *text, size_t size,
                     const char *words) {
     struct height_map map = {0};
@@ -106,10 +159,14 @@ static void refused_npy(void **state) {
     static const struct {
         const char *header, *words;
     } cases[] = {
-        {"{'descr': '>f8', 'fortran_order': False, 'shape': (2, 3), }", "'<f8' or '<f4'"},
-        {"{'descr': '<i8', 'fortran_order': False, 'shape': (2, 3), }", "'<f8' or '<f4'"},
+        {"{'descr': '<c16', 'fortran_order': False, 'shape': (2, 3), }", "'<c16'"},
+        {"{'descr': '<f16', 'fortran_order': False, 'shape': (2, 3), }", "allowed: f2, f4, f8"},
+        {"{'descr': '<i3', 'fortran_order': False, 'shape': (2, 3), }", "'<i3'"},
+        {"{'descr': 'f8', 'fortran_order': False, 'shape': (2, 3), }", "'f8'"},
+        {"{'descr': '<", "'<"},
+        {"{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (2, 3), }", "allowed"},
         {"{'fortran_order': False, 'shape': (2, 3), }", "absent"},
-        {"{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }", "C order"},
+        {"{'descr': '<f8', 'fortran_order': 1, 'shape': (2, 3), }", "True or False"},
         {"{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3, 1), }", "shape"},
         {"{'descr': '<f8', 'fortran_order': False, 'shape': (-2, 3), }", "shape"},
         {"{'descr': '<f8', 'fortran_order': False, 'shape': (), }", "shape"},
@@ -123,10 +180,10 @@ static void refused_npy(void **state) {
     for (size_t a = 0; a < sizeof cases / sizeof *cases; a++)
         refused(HEIGHT_MAP_NPY, file, npy(file, 1, cases[a].header, z, sizeof z), cases[a].words);
     const char *good = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }";
-    refused(HEIGHT_MAP_NPY, file, npy(file, 3, good, z, sizeof z), "version 3");
+    refused(HEIGHT_MAP_NPY, file, npy(file, 4, good, z, sizeof z), "version 4");
     z[4] = INFINITY;
     size_t size = npy(file, 1, good, z, sizeof z);
-    refused(HEIGHT_MAP_NPY, file, size, "height 4 is not finite");
+    refused(HEIGHT_MAP_NPY, file, size, "row 2, column 2: the height is not finite");
     for (size_t cut = 0; cut < size; cut++)
         refused(HEIGHT_MAP_NPY, file, cut, "");
     refused(HEIGHT_MAP_NPY, "1,2,3", 5, "no npy file");
@@ -155,13 +212,13 @@ static void refused_text(void **state) {
     } cases[] = {
         {HEIGHT_MAP_CSV, "", "no number"},
         {HEIGHT_MAP_CSV, "# only a comment\n", "no number"},
-        {HEIGHT_MAP_CSV, "1,2\n3\n", "line 2 has 1 numbers, the first row 2"},
-        {HEIGHT_MAP_CSV, "1,2\n3,x\n", "line 2: 'x' is not a number"},
+        {HEIGHT_MAP_CSV, "1,2\n3\n", "row 2 (line 2) has 1 numbers, the first row 2"},
+        {HEIGHT_MAP_CSV, "1,2\n3,x\n", "row 2, column 2 (line 2): 'x' is not a number; allowed"},
         {HEIGHT_MAP_CSV, "1,nana\n", "'nana' is not a number"},
         {HEIGHT_MAP_XYZ, "0 0 1\nnan 0 1\n2 0 1\n", "point 2"},
         {HEIGHT_MAP_CSV, "1,inf\n", "'inf' is not a number"},
         {HEIGHT_MAP_CSV, "1,0x10\n", "is not a number"},
-        {HEIGHT_MAP_CSV, "1,1e999\n", "too large"},
+        {HEIGHT_MAP_CSV, "# x\n1,1e999\n", "row 1, column 2 (line 2): '1e999' is too large"},
         {HEIGHT_MAP_CSV, "1,2,\n", "ends with a separator"},
         {HEIGHT_MAP_CSV, "1,,2\n", "is not a number"},
         {HEIGHT_MAP_CSV, "1\n", "at least 2"},
@@ -269,7 +326,8 @@ static void formats_by_name(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trip),     cmocka_unit_test(failing_write),
-        cmocka_unit_test(numpy_headers),  cmocka_unit_test(refused_npy),
+        cmocka_unit_test(numpy_headers),  cmocka_unit_test(every_type_and_order),
+        cmocka_unit_test(half_precision), cmocka_unit_test(refused_npy),
         cmocka_unit_test(csv_separators), cmocka_unit_test(refused_text),
         cmocka_unit_test(holes),          cmocka_unit_test(xyz_coordinates),
         cmocka_unit_test(random_bytes),   cmocka_unit_test(formats_by_name),

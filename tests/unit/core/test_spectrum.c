@@ -3,6 +3,7 @@
 #include "core/surface/spectrum.h"
 #include "core/surface/spectrum_exponential.h"
 #include "tests/support/check.h"
+#include <stdio.h>
 #include <string.h>
 
 static struct spectrum self_affine(double hurst, double ratio) {
@@ -81,8 +82,22 @@ static void alpha_out_of_reach(void **state) {
     assert_int_equal(spectrum_ratio_continuous(2, 0.8, 1, 1.2, &ratio, &err), ERROR_NUMERIC);
     assert_non_null(strstr(err.text, "alpha = 1.2"));
     assert_non_null(strstr(err.text, "allowed: 1.5 to"));
+    assert_int_equal(spectrum_ratio_discrete(1, 0.5, 1, 8, 0.5, &ratio, &reached, &err),
+                     ERROR_NUMERIC);
+    double least, most; /* what is told can be had, and a little beyond cannot */
+    assert_int_equal(sscanf(strstr(err.text, "allowed: "), "allowed: %lf to %lf", &least, &most),
+                     2);
+    assert_true(least == 1 && most > 500);
+    assert_int_equal(spectrum_ratio_discrete(1, 0.5, 1, 8, least, &ratio, &reached, &err), 0);
+    assert_int_equal(spectrum_ratio_discrete(1, 0.5, 1, 8, 0.9999 * most, &ratio, &reached, &err),
+                     0);
+    assert_int_equal(spectrum_ratio_discrete(1, 0.5, 1, 8, 1.0001 * most, &ratio, &reached, &err),
+                     ERROR_NUMERIC);
     assert_int_equal(spectrum_ratio_discrete(2, 0.8, 1, 8, 1.2, &ratio, &reached, &err),
                      ERROR_NUMERIC);
+    assert_int_equal(sscanf(strstr(err.text, "allowed: "), "allowed: %lf to %lf", &least, &most),
+                     2);
+    assert_true(least > 1.2 && least <= 2 && most > 10000);
     assert_int_equal(spectrum_ratio_discrete(1, 0.5, 1, 8, 1e30, &ratio, &reached, &err),
                      ERROR_NUMERIC);
 }
