@@ -4,6 +4,7 @@
 #include "schema/study/override.h"
 #include "server/command/api.h"
 #include "server/command/command.h"
+#include "server/command/token_file.h"
 #include "worker/client.h"
 #include <errno.h>
 #include <stdio.h>
@@ -26,9 +27,10 @@ int access_options_check(const char *command, const struct access_options *optio
 }
 
 static int open_client(struct access *access, const struct access_options *options,
-                       struct error *err) {
+                       enum access_mode mode, struct error *err) {
     char *token = NULL;
-    int status = token_read(options->token_file, &token, err);
+    int status =
+        token_read(options->token_file, mode == ACCESS_READ ? ROLE_READ : ROLE_SUBMIT, &token, err);
     if (status == 0)
         status = client_create(&access->client, options->server, token, err);
     free(token);
@@ -44,7 +46,7 @@ int access_open(struct access **out, const struct access_options *options, enum 
                                   .existing = mode != ACCESS_CREATE};
     int status =
         options->server != NULL
-            ? open_client(access, options, err)
+            ? open_client(access, options, mode, err)
             : store_open(&access->store, options->database != NULL ? options->database : DATABASE,
                          &store, err);
     if (status != 0) {

@@ -20,7 +20,7 @@ struct access_options {
          "URL",    NULL, "a server instead"},                                                      \
     {                                                                                              \
         "token-file", 0, OPTION_TEXT, 0, 0, offsetof(options, place.token_file), "FILE", NULL,     \
-            "its token; or RUGO_TOKEN"                                                             \
+            "its token, or that of its own file of tokens which fits; or RUGO_TOKEN"               \
     }
 
 enum access_mode { ACCESS_READ, ACCESS_WRITE, ACCESS_CREATE };

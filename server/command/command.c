@@ -128,19 +128,3 @@ int study_file_read(struct study **out, const char *path, const char *const *ove
     free(text);
     return status != 0 ? error_context(err, "%s", name_of(path)) : 0;
 }
-
-int token_read(const char *token_file, char **token, struct error *err) {
-    const char *given = getenv("RUGO_TOKEN");
-    size_t size;
-    *token = NULL;
-    if (token_file == NULL) {
-        *token = given != NULL && *given != '\0' ? strdup(given) : NULL;
-        return given != NULL && *given != '\0' && *token == NULL
-                   ? error_memory(err, strlen(given), "a token")
-                   : 0;
-    }
-    int status = file_read(token_file, 65536, token, &size, err);
-    if (status == 0)
-        (*token)[strcspn(*token, "\r\n")] = 0;
-    return status;
-}

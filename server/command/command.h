@@ -53,8 +53,5 @@ int file_read(const char *path, size_t limit, char **text, size_t *size, struct 
  * NULL: a study of statistics that has nothing but the changes. */
 int study_file_read(struct study **out, const char *path, const char *const *overrides,
                     struct fault_list *faults, struct error *err);
-/* The token of --token-file (its first line) or of RUGO_TOKEN; *token NULL where neither. Caller
- * frees. */
-int token_read(const char *token_file, char **token, struct error *err);
 
 #endif

@@ -21,7 +21,7 @@ static const struct option_row OPTIONS[] = {
     {"listen", 0, OPTION_TEXT, 0, 0, AT(listen), "ADDR:PORT", "127.0.0.1:8080",
      "where to listen; port 0 picks a free one"},
     {"token-file", 0, OPTION_TEXT, 0, 0, AT(token_file), "FILE", NULL,
-     "tokens, role:token a line; needed beyond loopback"},
+     "tokens, role:token a line (read, submit, work); needed beyond loopback"},
     {"workers", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(workers), "N", "0",
      "run jobs in this process too, on N threads"},
     {"lease", 0, OPTION_COUNT, 1, SECONDS_MOST, AT(lease_s), "SECONDS", "60",
@@ -129,7 +129,7 @@ static int local_workers_token(struct local_workers *workers, struct error *err)
         return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
     for (size_t i = 0; i < sizeof bytes; i++)
         snprintf(workers->token + 2 * i, 3, "%02x", bytes[i]);
-    return tokens_add(tokens, ROLE_WORK, workers->token, err);
+    return tokens_add(tokens, ROLE_READ | ROLE_WORK, workers->token, err);
 }
 
 /* --- the service --- */

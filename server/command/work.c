@@ -1,6 +1,7 @@
 /* `rugo work`: claims and runs jobs of a local store or of a server. */
 #include "server/command/access.h"
 #include "server/command/command.h"
+#include "server/command/token_file.h"
 #include "worker/worker.h"
 #include <stdlib.h>
 
@@ -46,8 +47,9 @@ static int run(const void *values, const char *const *arguments) {
         return EXIT_USAGE;
     if (options->lease_s > 0 && options->place.server != NULL)
         return usage_error("work", "--lease goes with --db; a server has its own");
-    int status =
-        options->place.server != NULL ? token_read(options->place.token_file, &token, &err) : 0;
+    int status = options->place.server != NULL
+                     ? token_read(options->place.token_file, ROLE_WORK, &token, &err)
+                     : 0;
     if (status == 0)
         status = work(options, token, &err);
     free(token);

@@ -1,5 +1,4 @@
 #include "server/http/tokens.h"
-#include "server/command/command.h"
 #include <nettle/memops.h>
 #include <nettle/sha2.h>
 #include <stdint.h>
@@ -22,68 +21,48 @@ static void digest_of(const char *token, uint8_t digest[SHA256_DIGEST_SIZE]) {
     sha256_digest(&context, SHA256_DIGEST_SIZE, digest);
 }
 
-int tokens_add(struct tokens *tokens, enum role role, const char *token, struct error *err) {
+int tokens_add(struct tokens *tokens, unsigned roles, const char *token, struct error *err) {
     size_t bytes = (tokens->count + 1) * sizeof *tokens->entries;
     struct entry *larger = realloc(tokens->entries, bytes);
     if (larger == NULL)
         return error_memory(err, bytes, "tokens");
     tokens->entries = larger;
     digest_of(token, larger[tokens->count].digest);
-    larger[tokens->count++].roles = (unsigned)role | ROLE_READ;
+    larger[tokens->count++].roles = roles;
     return 0;
 }
 
-/* Returns the role in front of a line's colon; 0 for an unknown one. */
-static unsigned role_of(const char *line, size_t length) {
-    static const struct {
-        const char *name;
-        enum role role;
-    } ROLES[] = {{"read", ROLE_READ}, {"submit", ROLE_SUBMIT}, {"work", ROLE_WORK}};
-    for (size_t r = 0; r < sizeof ROLES / sizeof *ROLES; r++)
-        if (strlen(ROLES[r].name) == length && memcmp(line, ROLES[r].name, length) == 0)
-            return ROLES[r].role;
-    return ROLE_NONE;
-}
+/* What reads a file fills. */
+struct token_reading {
+    struct tokens *tokens;
+    const char *file;
+};
 
-static int add_line(struct tokens *tokens, const char *line, size_t number, const char *file,
+static int add_line(void *context, unsigned roles, const char *token, size_t line,
                     struct error *err) {
-    size_t length = strcspn(line, ":");
-    if (*line == 0 || *line == '#')
-        return 0;
-    unsigned role = line[length] != '\0' ? role_of(line, length) : ROLE_NONE;
-    if (role == ROLE_NONE)
+    struct token_reading *reading = context;
+    if (roles == ROLE_NONE)
         return error_set(err, ERROR_INPUT,
-                         "%s, line %zu: no role:token; roles are read, submit and work", file,
-                         number);
-    if (strlen(line + length + 1) < 16)
-        return error_set(err, ERROR_INPUT, "%s, line %zu: a token of less than 16 characters", file,
-                         number);
-    return tokens_add(tokens, (enum role)role, line + length + 1, err);
+                         "%s, line %zu: no role:token; roles are read, submit and work",
+                         reading->file, line);
+    if (strlen(token) < 16)
+        return error_set(err, ERROR_INPUT, "%s, line %zu: a token of less than 16 characters",
+                         reading->file, line);
+    return tokens_add(reading->tokens, roles, token, err);
 }
 
 int tokens_read(struct tokens **out, const char *file, struct error *err) {
-    char *text = NULL, *rest = NULL;
-    size_t size, number = 0;
-    struct tokens *tokens = array_create(1, sizeof *tokens);
-    int status = tokens != NULL ? file_read(file, 1 << 20, &text, &size, err)
-                                : error_memory(err, sizeof *tokens, "tokens");
-    for (char *line = text; status == 0 && line != NULL; line = rest) {
-        rest = strchr(line, '\n');
-        if (rest != NULL)
-            *rest++ = 0;
-        line[strcspn(line, "\r")] = 0;
-        status = add_line(tokens, line, ++number, file, err);
-    }
-    if (status == 0 && tokens->count == 0)
+    struct token_reading reading = {.tokens = array_create(1, sizeof *reading.tokens),
+                                    .file = file};
+    int status = reading.tokens != NULL ? token_file_read(file, add_line, &reading, err)
+                                        : error_memory(err, sizeof *reading.tokens, "tokens");
+    if (status == 0 && reading.tokens->count == 0)
         status = error_set(err, ERROR_INPUT, "%s holds no token", file);
-    if (text != NULL)
-        explicit_bzero(text, size);
-    free(text);
     if (status != 0) {
-        tokens_destroy(&tokens);
+        tokens_destroy(&reading.tokens);
         return status;
     }
-    *out = tokens;
+    *out = reading.tokens;
     return 0;
 }
 

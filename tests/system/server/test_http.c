@@ -338,66 +338,6 @@ static void description_and_routes_agree(void **state) {
     free(text);
 }
 
-/* --- tokens --- */
-
-static void roles_bound_what_a_token_may_do(void **state) {
-    (void)state;
-    struct process other = {0};
-    spit("tokens",
-         "# for the "
-         "test\nread:read-token-000000\nsubmit:submit-token-0000\nwork:work-token-000000\n");
-    unsigned main_port = port;
-    struct process main_server = server;
-    port =
-        serve_start(&other, (const char *[]){"--db", "tokens.db", "--token-file", "tokens", NULL});
-    static const struct {
-        const char *method, *path, *token;
-        int status;
-    } ASKED[] = {
-        {"GET", "/v1/studies", NULL, 401},
-        {"GET", "/v1/studies", "wrong-token-000000", 401},
-        {"GET", "/v1/studies", "read-token-000000", 200},
-        {"GET", "/v1/studies", "work-token-000000", 200},
-        {"POST", "/v1/studies", "read-token-000000", 403},
-        {"POST", "/v1/studies", "work-token-000000", 403},
-        {"POST", "/v1/studies", "submit-token-0000", 201},
-        {"POST", "/v1/jobs/claim", "submit-token-0000", 403},
-        {"POST", "/v1/jobs/claim", "work-token-000000", 200},
-        {"GET", "/healthz", NULL, 200},
-        {"GET", "/metrics", NULL, 401},
-    };
-    for (size_t a = 0; a < sizeof ASKED / sizeof *ASKED; a++) {
-        char headers[160] = JSON;
-        if (ASKED[a].token)
-            snprintf(headers, sizeof headers, JSON "Authorization: Bearer %s\r\n", ASKED[a].token);
-        bool claim = strstr(ASKED[a].path, "claim") != NULL, post = *ASKED[a].method == 'P';
-        const char *body = claim ? "{\"worker\":\"w\"}" : post ? ONE_CASE : NULL;
-        int status = http_exchange(port, ASKED[a].method, ASKED[a].path, headers, body, NULL);
-        if (status != ASKED[a].status)
-            print_error("%s %s with %s: %d\n", ASKED[a].method, ASKED[a].path,
-                        ASKED[a].token ? ASKED[a].token : "no token", status);
-        assert_int_equal(status, ASKED[a].status);
-    }
-    process_kill(&other, SIGTERM);
-    assert_int_equal(process_wait(&other, 15), 0);
-    assert_false(contains(other.err, "token-0000"));
-    port = main_port;
-    server = main_server;
-}
-
-static void beyond_loopback_tokens_are_needed(void **state) {
-    (void)state;
-    assert_int_equal(run_rugo("open", (const char *[]){"serve", "--db", "open.db", "--listen",
-                                                       "0.0.0.0:0", NULL}),
-                     2);
-    assert_true(contains("open.err", "tokens are needed"));
-    spit("bad-tokens", "admin:0123456789abcdef\n");
-    assert_int_equal(run_rugo("bad", (const char *[]){"serve", "--db", "open.db", "--token-file",
-                                                      "bad-tokens", NULL}),
-                     2);
-    assert_true(contains("bad.err", "bad-tokens, line 1"));
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_study_from_submission_to_curves),
@@ -408,8 +348,6 @@ int main(void) {
         cmocka_unit_test(a_lease_is_needed_to_report),
         cmocka_unit_test(descriptions_and_page),
         cmocka_unit_test(description_and_routes_agree),
-        cmocka_unit_test(roles_bound_what_a_token_may_do),
-        cmocka_unit_test(beyond_loopback_tokens_are_needed),
     };
     return cmocka_run_group_tests(tests, start, stop);
 }
