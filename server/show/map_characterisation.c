@@ -1,6 +1,7 @@
 #include "server/show/map_characterisation.h"
 #include "core/map/detrend.h"
 #include "core/statistics/areal.h"
+#include "core/statistics/height_quantiles.h"
 #include "core/statistics/roughness.h"
 #include "core/statistics/scales.h"
 #include "core/statistics/seam.h"
@@ -107,6 +108,19 @@ static int add_scales(struct characterisation *out, const struct measured_map *m
     return 0;
 }
 
+static int add_quantiles(struct characterisation *out, const struct measured_map *map, size_t n,
+                         struct error *err) {
+    static const char GROUP[] = "quantiles";
+    size_t count = height_quantiles_count(n);
+    if (count == 0)
+        return 0;
+    double *probability = characterisation_column(out, GROUP, "probability", count);
+    double *quantile = characterisation_column(out, GROUP, "quantile", count);
+    if (probability == NULL || quantile == NULL)
+        return error_memory(err, count * sizeof *quantile, "quantiles of the heights");
+    return height_quantiles_measure(map, n, probability, quantile, err);
+}
+
 static int add_psd(struct characterisation *out, const struct measured_map *map,
                    struct error *err) {
     static const char GROUP[] = "psd";
@@ -180,5 +194,8 @@ int map_characterise(struct characterisation *out, struct height_map *map,
         status = characterise_open(out, &measured, err);
     else
         status = characterise_heights(out, grid, map->z, grid->nx / 2, grid->ny / 2, err);
-    return status == 0 ? add_correlated(out, &measured, err) : status;
+    if (status == 0)
+        status = add_correlated(out, &measured, err);
+    size_t heights = grid_points(grid) - height_map_holes(map);
+    return status == 0 ? add_quantiles(out, &measured, heights, err) : status;
 }
