@@ -73,6 +73,16 @@ $(BUILD)/flags: FORCE
 	@mkdir -p $(@D); echo "$$FLAGS" | cmp -s - $@ || echo "$$FLAGS" >$@
 FORCE:
 
+# The commit that is built, as a C file that is rewritten when it changes: the program alone links it, so that a commit
+# relinks one file. An archive without git, or one unpacked inside another repository, has the commit "unknown".
+COMMIT ?= $(shell [ -z "$$(git rev-parse --show-prefix 2>&1)" ] && \
+            git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
+$(BUILD)/commit.c: FORCE
+	@mkdir -p $(@D); echo 'extern const char PROGRAM_COMMIT[]; const char PROGRAM_COMMIT[] = "$(COMMIT)";' | \
+	    cmp -s - $@ || echo 'extern const char PROGRAM_COMMIT[]; const char PROGRAM_COMMIT[] = "$(COMMIT)";' >$@
+$(BUILD)/commit.o: $(BUILD)/commit.c $(BUILD)/flags
+	$(Q)$(COMPILE) -c $< -o $@
+
 $(BUILD)/%.c.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(say) CC $<
@@ -95,7 +105,7 @@ $(BUILD)/lib$(1).a: $(call objects,$(call sources,$(1))) $(patsubst %,$(BUILD)/%
 endef
 $(foreach layer,$(LAYERS),$(eval $(call LAYER,$(layer))))
 
-$(BUILD)/rugo: $(call objects,$(MAIN)) $(call archive,$(BELOW_server))
+$(BUILD)/rugo: $(call objects,$(MAIN)) $(BUILD)/commit.o $(call archive,$(BELOW_server))
 	$(say) LD $@
 	$(Q)$(LINK) -pie -o $@ $^ $(LIBS_server) $(LDLIBS)
 

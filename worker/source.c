@@ -1,4 +1,5 @@
 #include "worker/source.h"
+#include "schema/program.h"
 #include "worker/source_backend.h"
 #include "worker/wire.h"
 
@@ -10,7 +11,7 @@ enum { NAME_MOST = 256 };
 struct source {
     const struct source_backend *backend;
     void *self;
-    char worker[NAME_MOST], host[NAME_MOST];
+    char worker[NAME_MOST], host[NAME_MOST], program[PROGRAM_SIZE];
     char study[STUDY_ID_SIZE]; /* "": any */
     const char *kinds[WIRE_KINDS_MOST + 1];
 };
@@ -35,6 +36,7 @@ static int source_fill(struct source *source, const struct source_options *optio
     if (JOB_KINDS[n] != NULL)
         return error_set(err, ERROR_INPUT, "a claim names at most %d kinds, and there are more",
                          WIRE_KINDS_MOST);
+    program_write(source->program);
     source->backend = options->database != NULL ? &SOURCE_STORE : &SOURCE_SERVER;
     int status = name_copy(source->worker, NAME_MOST, "worker name", options->worker, err);
     status =
@@ -73,6 +75,7 @@ int source_claim(struct source *source, struct claimed_job *job, int *found, str
     struct claim claim = {
         .worker = source->worker,
         .host = source->host,
+        .program = source->program,
         .kinds = source->kinds,
         .study = source->study[0] != '\0' ? source->study : NULL,
         .count = 1,

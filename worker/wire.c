@@ -1,5 +1,6 @@
 #include "worker/wire.h"
 #include "schema/json/field.h"
+#include "schema/program.h"
 
 #include <errno.h>
 #include <math.h>
@@ -37,6 +38,7 @@ cJSON *wire_claim(const struct claim *claim) {
     return fields_finish(
         value, value != NULL && field_put_text(value, "worker", claim->worker) &&
                    field_put_text(value, "host", claim->host != NULL ? claim->host : "") &&
+                   (claim->program == NULL || field_put_text(value, "program", claim->program)) &&
                    (claim->kinds == NULL || field_put(value, "kinds", texts(claim->kinds))) &&
                    field_put_count(value, "count", claim->count) &&
                    field_put(value, "sequence", cJSON_CreateBool(!claim->independent_only)));
@@ -68,6 +70,8 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
     if (status == 0 && host != NULL && !cJSON_IsString(host))
         status = field_fault("host", "a string", err);
     claim.host = host != NULL ? cJSON_GetStringValue(host) : "";
+    if (status == 0 && field_at(value, "program") != NULL)
+        status = field_text(value, "program", PROGRAM_SIZE, &claim.program, err);
     if (status == 0 && field_at(value, "kinds") != NULL)
         status = read_kinds(field_at(value, "kinds"), kinds, err);
     if (status == 0 && field_at(value, "count") != NULL)

@@ -2,6 +2,7 @@
  */
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_curves.h"
+#include "jobs/contact/contact_loads.h"
 #include "jobs/contact/contact_pairs.h"
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
@@ -158,6 +159,7 @@ const struct job_kind CONTACT_KIND = {
               .tables = CONTACT_TABLES,
               .default_realisations = 20,
               .check = kind_check,
+              .fill = contact_loads_fill,
               .expand = contact_target_expand},
     .scalar = contact_scalar_name,
     .view = &CONTACT_VIEW,

@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_cell.h"
+#include "jobs/contact/contact_loads.h"
 #include "jobs/contact/contact_probe.h"
 #include <math.h>
 #include <stdlib.h>
@@ -86,13 +87,15 @@ static int read_loads(struct contact_case *out, struct values *values, struct er
     if (status != 0)
         return status;
     if (out->loads != NULL) {
-        if (!isnan(to) || !isnan(steps))
+        bool swept = isnan(steps) && to == out->loads[out->load_count - 1]; /* contact_loads.h */
+        if (!swept && (!isnan(to) || !isnan(steps)))
             values_fault(values, path, "give the values, or to and steps, not both");
         check_rising(values, path, out->load_count, out->loads);
         return 0;
     }
-    to = isnan(to) ? 0.3 : to;
-    size_t count = isnan(steps) ? 30 : (size_t)steps;
+    /* A case of a store whose program did not yet write out the loads: they stay as they were. */
+    to = isnan(to) ? CONTACT_LOAD_HIGHEST : to;
+    size_t count = isnan(steps) ? CONTACT_LOADS : (size_t)steps;
     out->loads = array_create(count, sizeof *out->loads);
     if (out->loads == NULL)
         return error_memory(err, count * sizeof *out->loads, "loads");

@@ -197,7 +197,7 @@ static int copy_about(struct case_result *out, const struct case_result *result)
         const struct result_parameter *from = &result->parameters[p];
         struct result_parameter *to = &out->parameters[out->parameter_count++];
         *to = (struct result_parameter){result_text(out, from->pointer),
-                                        result_text(out, from->text), from->number};
+                                        result_text(out, from->text), from->number, from->list};
         done = to->pointer != NULL && (from->text == NULL || to->text != NULL);
     }
     for (size_t n = 0; n < result->note_count && done; n++) {

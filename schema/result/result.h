@@ -153,6 +153,7 @@ struct result_parameter {
     const char *pointer;
     const char *text; /* NULL: a number */
     double number;
+    bool list; /* the text is a JSON array: one value of several, such as levels */
 };
 
 struct arena; /* private */

@@ -45,7 +45,10 @@ int result_read(const cJSON *document, struct case_result *out, struct error *er
 int study_head_read(const cJSON *document, struct study_result *out, struct error *err);
 int study_result_read(const cJSON *document, struct study_result *out, struct error *err);
 /* Fills the parameters of a result from the object of a case's effective values, by the RFC 6901
- * pointer of each number and string within it, in the order of the object; lists are left out. */
+ * pointer of each number, string and list within it, in the order of the object. */
 int result_set_parameters(struct case_result *result, const cJSON *parameters, struct error *err);
+/* Adds one of them, for which the list has room, and no value of another type; false when out of
+ * memory. */
+bool result_add_parameter(struct case_result *result, const char *pointer, const cJSON *value);
 
 #endif

@@ -1,6 +1,7 @@
 #include "schema/result/result_json.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { POINTER_MOST = 256 };
@@ -27,6 +28,26 @@ static size_t count_leaves(const cJSON *object) {
     return count;
 }
 
+bool result_add_parameter(struct case_result *result, const char *pointer, const cJSON *value) {
+    struct result_parameter *one = &result->parameters[result->parameter_count];
+    if (cJSON_IsNumber(value)) {
+        *one = (struct result_parameter){.number = value->valuedouble};
+    } else if (cJSON_IsString(value)) {
+        *one = (struct result_parameter){.text = result_text(result, value->valuestring)};
+    } else if (cJSON_IsArray(value)) {
+        char *text = json_print(value);
+        *one = (struct result_parameter){.text = result_text(result, text), .list = true};
+        free(text);
+    } else {
+        return true;
+    }
+    if (!cJSON_IsNumber(value))
+        one->number = NAN;
+    one->pointer = result_text(result, pointer);
+    result->parameter_count++;
+    return one->pointer != NULL && (cJSON_IsNumber(value) || one->text != NULL);
+}
+
 /* pointer says where `object` is; it is extended in place for its members. */
 static int flatten(struct case_result *result, const cJSON *object, char pointer[POINTER_MOST],
                    struct error *err) {
@@ -36,17 +57,10 @@ static int flatten(struct case_result *result, const cJSON *object, char pointer
         if (length + 4 > POINTER_MOST || !pointer_append(pointer, length, item->string))
             return error_set(err, ERROR_INPUT, "a parameter's name is longer than %d bytes",
                              POINTER_MOST);
-        const char *text = cJSON_GetStringValue(item);
-        if (cJSON_IsObject(item)) {
+        if (cJSON_IsObject(item))
             status = flatten(result, item, pointer, err);
-        } else if (text != NULL || cJSON_IsNumber(item)) {
-            struct result_parameter *one = &result->parameters[result->parameter_count++];
-            one->pointer = result_text(result, pointer);
-            one->text = result_text(result, text);
-            one->number = text != NULL ? (double)NAN : item->valuedouble;
-            if (one->pointer == NULL || (text != NULL && one->text == NULL))
-                status = error_memory(err, POINTER_MOST, "a parameter");
-        }
+        else if (!result_add_parameter(result, pointer, item))
+            status = error_memory(err, POINTER_MOST, "a parameter");
         if (status != 0)
             return status;
     }

@@ -171,10 +171,17 @@ static bool print_curve(FILE *file, const struct curve *curve) {
 bool result_print_parameters(FILE *file, size_t count, const struct result_parameter *parameters) {
     bool done = true, first = true;
     fputc('{', file);
-    for (size_t p = 0; p < count && done; p++)
-        done = parameters[p].text != NULL
-                   ? put_text(file, &first, parameters[p].pointer, parameters[p].text)
-                   : put_number(file, &first, parameters[p].pointer, parameters[p].number);
+    for (size_t p = 0; p < count && done; p++) {
+        const struct result_parameter *one = &parameters[p];
+        if (one->text == NULL) {
+            done = put_number(file, &first, one->pointer, one->number);
+        } else if (one->list) {
+            done = put_key(file, &first, one->pointer);
+            fputs(one->text, file);
+        } else {
+            done = put_text(file, &first, one->pointer, one->text);
+        }
+    }
     fputc('}', file);
     return done;
 }

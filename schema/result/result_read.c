@@ -283,25 +283,15 @@ int result_read_error(struct case_result *result, const cJSON *error, struct err
 /* Reads an object of parameters as it was printed. */
 int result_read_parameters(struct case_result *result, const cJSON *parameters, struct error *err) {
     const struct reading reading = {result, err};
-    size_t count = (size_t)cJSON_GetArraySize(parameters), n = 0;
-    struct result_parameter *list = result_room(result, count + 1, sizeof *list);
-    if (list == NULL)
+    size_t count = (size_t)cJSON_GetArraySize(parameters);
+    result->parameter_count = 0;
+    result->parameters = result_room(result, count + 1, sizeof *result->parameters);
+    if (result->parameters == NULL)
         return no_memory(&reading);
     for (const cJSON *item = parameters != NULL ? parameters->child : NULL; item != NULL;
-         item = item->next) {
-        const char *text = cJSON_GetStringValue(item);
-        if (text == NULL && !cJSON_IsNumber(item))
-            continue;
-        list[n] =
-            (struct result_parameter){.pointer = result_text(result, item->string),
-                                      .text = result_text(result, text),
-                                      .number = text != NULL ? (double)NAN : item->valuedouble};
-        if (list[n].pointer == NULL || (text != NULL && list[n].text == NULL))
+         item = item->next)
+        if (!result_add_parameter(result, item->string, item))
             return no_memory(&reading);
-        n++;
-    }
-    result->parameters = list;
-    result->parameter_count = n;
     return 0;
 }
 

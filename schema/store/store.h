@@ -65,6 +65,8 @@ struct study_status {
 };
 void study_status_clear(struct study_status *status);
 int store_status(struct store *store, const char *id, struct study_status *out, struct error *err);
+/* The document that was submitted, with the changes of --set; the caller deletes it. */
+int store_document(struct store *store, const char *id, cJSON **out, struct error *err);
 /* Up to limit studies created after study `after` ("" from the start), oldest first; frees by
  * study_status_clear each, then free. */
 int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
@@ -98,6 +100,7 @@ void claimed_job_clear(struct claimed_job *job);
 
 struct claim {
     const char *worker, *host; /* for the log */
+    const char *program;       /* of the worker (schema/program.h); NULL: not known */
     const char *const *kinds;  /* NULL-terminated; NULL: any */
     const char *study;         /* only this study; NULL: any */
     size_t count;              /* at most */

@@ -101,8 +101,8 @@ static int lease_job(struct store *store, const struct claim *claim,
     return store_run(
         store, err,
         "UPDATE job SET state = 'running', attempts = attempts + 1, token = ?, worker = ?, "
-        "host = ?, lease_until = ?, reported = 0, claimed = ? WHERE id = ?",
-        "tttiti", job->token, claim->worker, claim->host,
+        "host = ?, program = ?, lease_until = ?, reported = 0, claimed = ? WHERE id = ?",
+        "ttttiti", job->token, claim->worker, claim->host, claim->program,
         store_now(store) + store->options.lease_ms, store_time(store), job->id);
 }
 

@@ -149,6 +149,22 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
     return status;
 }
 
+int store_document(struct store *store, const char *id, cJSON **out, struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int64_t study = 0;
+    int status = study_row(store, id, &study, err);
+    if (status == 0)
+        status = store_query(store, &row, err, "SELECT source FROM study_source WHERE study_id = ?",
+                             "i", study);
+    if (status == 0)
+        status = store_step(store, row, err);
+    if (status <= 0)
+        return status != 0 ? status : error_set(err, ERROR_SYSTEM, "study %s has no document", id);
+    status = column_json(row, 0, out, err);
+    sqlite3_reset(row);
+    return status;
+}
+
 static void free_list(struct study_status *list, size_t count) {
     for (size_t i = 0; i < count; i++)
         study_status_clear(&list[i]);

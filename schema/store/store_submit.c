@@ -1,4 +1,5 @@
 /* Submission: a study with its cases, what these are made of, and their jobs. */
+#include "schema/program.h"
 #include "schema/store/store_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,16 +85,17 @@ static int insert_study(struct store *store, const struct study *study, const ch
     uint64_t jobs = 0;
     for (size_t c = 0; c < study->case_count; c++)
         jobs += jobs_of(&study->cases[c]);
-    char seed[24];
+    char seed[24], program[PROGRAM_SIZE];
+    program_write(program);
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
-    int status =
-        store_run(store, err,
-                  "INSERT INTO study (public, name, kind, seed, random, realisations, "
-                  "submit_key, state, cases, jobs, jobs_waiting, created) VALUES "
-                  "(?, ?, ?, ?, ?, ?, ?, 'queued', ?, ?, ?, ?)",
-                  "tttttitiiit", id, study->name, study->kind->name, seed,
-                  choice_name(STUDY_RANDOM, (int)study->random), (int64_t)study->realisations, key,
-                  (int64_t)study->case_count, (int64_t)jobs, (int64_t)jobs, store_time(store));
+    int status = store_run(store, err,
+                           "INSERT INTO study (public, name, kind, seed, random, realisations, "
+                           "submit_key, state, cases, jobs, jobs_waiting, created, program) VALUES "
+                           "(?, ?, ?, ?, ?, ?, ?, 'queued', ?, ?, ?, ?, ?)",
+                           "tttttitiiitt", id, study->name, study->kind->name, seed,
+                           choice_name(STUDY_RANDOM, (int)study->random),
+                           (int64_t)study->realisations, key, (int64_t)study->case_count,
+                           (int64_t)jobs, (int64_t)jobs, store_time(store), program);
     int64_t row = sqlite3_last_insert_rowid(store->db);
     if (status == 0)
         status = store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",

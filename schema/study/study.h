@@ -35,6 +35,10 @@ struct study_kind {
     /* Adds faults that no single range shows (0 then too), and estimates the cost. */
     int (*check)(const struct study_kind *kind, const cJSON *parameters, struct fault_list *faults,
                  struct study_cost *cost, struct error *err);
+    /* Writes into the parameters of a case, each of which fits its row, what its values stand for
+     * in full, such as the loads of "to" and "steps": workers, results and the store then all have
+     * the same numbers. The document says what the study sweeps. ERROR_MEMORY. NULL: nothing. */
+    int (*fill)(const cJSON *document, cJSON *parameters, struct error *err);
     /* Makes the components of a case that asks for an error, with their parameters, roles and
      * realisations, and takes what it chooses out of the parameters of the case. The document says
      * what the study names. Adds faults (0 then too). NULL: a kind that takes no target. */

@@ -226,7 +226,9 @@ static int check_cases(struct study *study, const cJSON *document, double memory
     for (size_t c = 0; c < study->case_count && status == 0; c++) {
         struct study_case *one = &study->cases[c];
         one->realisations = study->realisations;
-        if (study->realisations == 0)
+        if (study->kind->fill != NULL)
+            status = study->kind->fill(document, one->parameters, err);
+        if (status == 0 && study->realisations == 0)
             status = study->kind->expand(document, one, faults, err);
         if (status == 0)
             status = check_case(study->kind, one, one->component_count > 0 ? 0 : memory_limit,

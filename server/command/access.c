@@ -177,6 +177,11 @@ int access_status(struct access *access, const char *id, cJSON **out, struct err
                                   : api_status(access->store, id, out, err);
 }
 
+int access_document(struct access *access, const char *id, cJSON **out, struct error *err) {
+    return access->client != NULL ? ask_study(access, "GET", id, "/study", out, err)
+                                  : store_document(access->store, id, out, err);
+}
+
 enum { PAGE = 100 };
 
 static int list_page(struct access *access, const char *after, cJSON **out, struct error *err) {

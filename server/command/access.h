@@ -41,6 +41,7 @@ int access_submit(struct access *access, const char *text, size_t size,
                   const char *const *overrides, cJSON **out, struct fault_list *faults,
                   struct error *err);
 int access_status(struct access *access, const char *id, cJSON **out, struct error *err);
+int access_document(struct access *access, const char *id, cJSON **out, struct error *err);
 int access_list(struct access *access, cJSON **out, struct error *err); /* of all studies */
 int access_cancel(struct access *access, const char *id, cJSON **out, struct error *err);
 int access_retry(struct access *access, const char *id, cJSON **out, struct error *err);

@@ -15,6 +15,7 @@ static const struct route {
     {"GET", "/v1/studies", ROLE_READ, handle_study_list, {"limit", "after"}},
     {"GET", "/v1/studies/*", ROLE_READ, handle_study, {NULL}},
     {"DELETE", "/v1/studies/*", ROLE_SUBMIT, handle_study_cancel, {NULL}},
+    {"GET", "/v1/studies/*/study", ROLE_READ, handle_document, {NULL}},
     {"POST", "/v1/studies/*/retry", ROLE_SUBMIT, handle_study_retry, {NULL}},
     {"GET", "/v1/studies/*/curves", ROLE_READ, handle_curves, {"case", "quantity", "difference"}},
     {"GET", "/v1/studies/*/report", ROLE_READ, handle_report, {NULL}},

@@ -122,16 +122,26 @@ void handle_study_list(struct exchange *exchange, const char *id) {
         answer_json(exchange, 200, document);
 }
 
-void handle_study(struct exchange *exchange, const char *id) {
+static void answer_question(struct exchange *exchange, const char *id,
+                            int (*ask)(struct store *store, const char *id, cJSON **out,
+                                       struct error *err)) {
     struct store *reader;
     struct error err = {0};
     cJSON *document = NULL;
     int status = service_reader(exchange->service, &reader, &err);
     if (status == 0)
-        status = api_status(reader, id, &document, &err);
+        status = ask(reader, id, &document, &err);
     service_give_back(exchange->service, reader);
     if (status != 0)
         answer_error(exchange, &err);
     else
         answer_json(exchange, 200, document);
+}
+
+void handle_study(struct exchange *exchange, const char *id) {
+    answer_question(exchange, id, api_status);
+}
+
+void handle_document(struct exchange *exchange, const char *id) {
+    answer_question(exchange, id, store_document);
 }

@@ -166,7 +166,7 @@ static void append_swept(char label[PLOT_LABEL_SIZE], const struct study_result 
                          const struct case_result *one) {
     for (size_t p = 0; p < one->parameter_count; p++) {
         const struct result_parameter *value = &one->parameters[p];
-        if (!varies(study, one, p))
+        if (value->list || !varies(study, one, p))
             continue;
         if (value->text != NULL)
             append(label, "%s", value->text);

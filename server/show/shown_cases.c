@@ -42,7 +42,7 @@ static void find_varied(struct shown_cases *shown) {
             const char *pointer = one->parameters[p].pointer;
             bool candidate =
                 c == 0 ? varies(shown, p) : parameter_at(shown->list[0], pointer, p) == NULL;
-            if (candidate && !is_varied(shown, pointer))
+            if (candidate && !one->parameters[p].list && !is_varied(shown, pointer))
                 shown->varied[shown->varied_count++] = pointer;
         }
     }

@@ -13,6 +13,8 @@ struct shown_cases {
     const struct case_result **list; /* owned; the results are borrowed */
     /* Pointers whose values differ between cases, in the order of the first case; then those that
      * the first case does not have. Borrowed. */
+    /* Pointers of what differs between cases: numbers and words. Lists are left out, which are as
+     * long as a line and go with a number, such as the loads with the highest one. */
     size_t varied_count;
     const char *varied[COLUMNS_MOST];
     bool partial; /* some curve has points without the values of all realisations */

@@ -226,7 +226,7 @@ static void a_finished_run_only_prints(void **state) {
     assert_string_equal(told, "");
     assert_non_null(strstr(first, "summit_density"));
     free(first);
-    free(second);
+    char *second_table = second;
     free(told);
     assert_int_equal(
         shell("$RUGO run --db done.db --out out one.json && test -s out/curves.json && test -s "
@@ -239,6 +239,14 @@ static void a_finished_run_only_prints(void **state) {
               "$RUGO status --db copy.db $id | grep -q done && ! $RUGO cancel --db done.db $id && "
               "$RUGO retry --db done.db $id"),
         0);
+    assert_int_equal(
+        shell("id=$($RUGO status --db done.db | awk 'NR == 2 {print $1}'); $RUGO show --db done.db "
+              "$id > shown.json && $RUGO run --db done.db shown.json"),
+        0); /* the same study: nothing is computed again */
+    char *again = slurp("shell.out");
+    assert_string_equal(again, second_table);
+    free(again);
+    free(second_table);
     assert_int_equal(shell("$RUGO snapshot --db done.db copy.db"), 2);
     assert_true(contains("shell.err", "copy.db exists"));
 }

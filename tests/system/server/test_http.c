@@ -82,6 +82,9 @@ static void a_study_from_submission_to_curves(void **state) {
                                                        "--workers", "1", NULL}),
                      0);
     wait_until_done(path);
+    path_of(path, sizeof path, id, "/study");
+    check_answer("GET", path, NULL, 200, ONE_CASE);
+    check_answer("GET", "/v1/studies/0123456789abcdef/study", NULL, 404, "there is no study");
     path_of(path, sizeof path, id, "/curves?quantity=summit_height_pdf");
     check_answer("GET", path, NULL, 200, "\"quantity\":\"summit_height_pdf\"");
     path_of(path, sizeof path, id, "/curves?case=1");

@@ -205,7 +205,7 @@ static void faults(void **state) {
          "must rise"},
         {STUDY(PROFILE, "\"pressures\": {\"values\": [0, 0.1]}"), "/contact/pressures/values/0",
          "(0,"},
-        {STUDY(PROFILE, "\"pressures\": {\"values\": [0.3], \"to\": 0.3}"),
+        {STUDY(PROFILE, "\"pressures\": {\"values\": [0.3], \"to\": 0.4}"),
          "/contact/pressures/values", "not both"},
         {STUDY(PROFILE, "\"estimators\": [\"perimeter\"]"), "/contact/estimators", "profile"},
         {STUDY(PROFILE, "\"estimators\": [\"corners\"]"), "/contact/estimators/0", "not one of"},

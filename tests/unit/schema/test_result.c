@@ -1,5 +1,6 @@
 /* A result comes back from each of its formats as it went in: JSON, bytes; and its table and report
  * say what it holds. */
+#include "core/memory_file.h"
 #include "schema/result/csv.h"
 #include "schema/result/curve_bytes.h"
 #include "schema/result/report.h"
@@ -266,15 +267,29 @@ static void report_measures_and_comes_back(void **state) {
 
 static void parameters_are_told_by_pointer(void **state) {
     (void)state;
-    cJSON *parameters =
-        cJSON_Parse("{\"a\":{\"b/c\":1,\"d~\":\"x\"},\"list\":[1],\"e\":{\"f\":{\"g\":-2.5}}}");
+    cJSON *parameters = cJSON_Parse(
+        "{\"a\":{\"b/c\":1,\"d~\":\"x\"},\"list\":[1,0.06],\"e\":{\"f\":{\"g\":-2.5}}}");
     struct case_result result = {0};
     assert_int_equal(result_set_parameters(&result, parameters, NULL), 0);
-    assert_int_equal(result.parameter_count, 3);
+    assert_int_equal(result.parameter_count, 4);
     assert_true(result_parameter(&result, "/a/b~1c")->number == 1);
     assert_string_equal(result_parameter(&result, "/a/d~0")->text, "x");
     assert_true(result_parameter(&result, "/e/f/g")->number == -2.5);
-    assert_null(result_parameter(&result, "/list"));
+    const struct result_parameter *list = result_parameter(&result, "/list");
+    assert_true(list != NULL && list->list && strcmp(list->text, "[1,0.06]") == 0);
+    struct memory_file memory;
+    assert_true(memory_file_open(&memory));
+    assert_true(result_print_parameters(memory.file, result.parameter_count, result.parameters));
+    char *text = memory_file_close(&memory, NULL);
+    cJSON *printed = cJSON_Parse(text); /* which reads back, the list as a list */
+    struct case_result again = {0};
+    assert_int_equal(result_read_parameters(&again, printed, NULL), 0);
+    assert_int_equal(again.parameter_count, 4);
+    assert_string_equal(result_parameter(&again, "/list")->text, "[1,0.06]");
+    assert_true(cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(printed, "/list")));
+    cJSON_Delete(printed);
+    free(text);
+    result_clear(&again);
     result_clear(&result);
     cJSON_Delete(parameters);
 }

@@ -1,5 +1,6 @@
 /* Protects: the states of studies and jobs, through every transition, on a clock that the test
  * sets: what a lease allows, that nothing is done twice or lost, and what people read of it. */
+#include "core/rugo.h"
 #include "schema/store/store.h"
 #include "schema/study/fault.h"
 #include "schema/study/study_reader.h"
@@ -51,7 +52,7 @@ static struct study *read_study(const char *text) {
 }
 
 static size_t claim(struct store *store, const char *worker, struct claimed_job *job) {
-    struct claim claim = {.worker = worker, .host = "here", .count = 1};
+    struct claim claim = {.worker = worker, .host = "here", .program = "0.0.1+c0ffee", .count = 1};
     size_t count = 0;
     assert_int_equal(store_claim(store, &claim, job, &count, NULL), 0);
     return count;
@@ -429,6 +430,19 @@ static void results_and_views(void **state) {
     check_text("copy.db",
                "SELECT count(*) || group_concat(DISTINCT worker || host || attempts) FROM job_log",
                "4where1");
+    check_text("copy.db",
+               "SELECT group_concat(\"case\" || name || '=' || value) FROM case_parameters WHERE "
+               "name = '/box/width'",
+               "0/box/width=0.5,1/box/width=1");
+    check_text("copy.db", "SELECT host || program || jobs || (first <= last) FROM study_runs",
+               "here0.0.1+c0ffee41");
+    check_text("copy.db", "SELECT seed || program FROM study_progress",
+               "1" RUGO_VERSION "+unknown");
+    cJSON *document = NULL;
+    assert_int_equal(store_document(store, id, &document, NULL), 0);
+    assert_true(json_number_at(document, "/realisations", 0) == 20);
+    cJSON_Delete(document);
+    assert_int_equal(store_document(store, "0123456789abcdef", &document, NULL), ERROR_ABSENT);
     store_close(&store);
 }
 

@@ -59,7 +59,8 @@ static void released_migrations_are_frozen(void **state) {
                   {"schema/store/migrations/004.sql", 0x65a059156daafa6fu},
                   {"schema/store/migrations/005.sql", 0xd323a4efa3489637u},
                   {"schema/store/migrations/006.sql", 0x9a89fdf526d611cau},
-                  {"schema/store/migrations/007.sql", 0xcd64f16d5e3429ceu}};
+                  {"schema/store/migrations/007.sql", 0xcd64f16d5e3429ceu},
+                  {"schema/store/migrations/008.sql", 0xfce3dfd9844fee0du}};
     for (size_t f = 0; f < sizeof FROZEN / sizeof *FROZEN; f++) {
         size_t size = 0;
         char *text = read_source(FROZEN[f].name, &size);

@@ -183,13 +183,18 @@ static void more_jobs_than_room_are_refused(void **state) {
 static void claim_crosses(void **state) {
     (void)state;
     const char *const kinds[] = {"statistics", "contact", NULL};
-    struct claim claim = {.worker = "host-1-0", .host = "host", .kinds = kinds, .count = 3};
+    struct claim claim = {.worker = "host-1-0",
+                          .host = "host",
+                          .kinds = kinds,
+                          .count = 3,
+                          .program = "0.0.1+c0ffee"};
     struct wire_claim got;
     struct error err = {0};
     cJSON *value = cross(wire_claim(&claim));
     assert_int_equal(wire_claim_read(value, &got, &err), 0);
     assert_string_equal(got.claim.worker, "host-1-0");
     assert_string_equal(got.claim.host, "host");
+    assert_string_equal(got.claim.program, "0.0.1+c0ffee");
     assert_int_equal(got.claim.count, 3);
     assert_string_equal(got.claim.kinds[1], "contact");
     assert_null(got.claim.kinds[2]);

@@ -1,0 +1,22 @@
+/* The loads of a contact study that gives "to" and "steps", written out as the decimals that a
+ * person would write. */
+#ifndef RUGO_JOBS_CONTACT_CONTACT_LOADS_H
+#define RUGO_JOBS_CONTACT_CONTACT_LOADS_H
+
+#include "core/error.h"
+#include <cjson/cJSON.h>
+#include <stddef.h>
+
+/* What a study has that gives neither. */
+#define CONTACT_LOAD_HIGHEST 0.3
+enum { CONTACT_LOADS = 30 };
+
+/* Returns load k (from 0) of so many in equal steps up to `to`, as the double nearest to its
+ * decimal of 15 digits: 0.06 rather than 0.06000000000000001. The last one is `to` itself. */
+double contact_load(double to, size_t k, size_t count);
+
+/* Puts the loads as a list into /contact/pressures/values of a case without one, in place of
+ * "steps", and of "to" where the study does not sweep it. ERROR_MEMORY. */
+int contact_loads_fill(const cJSON *document, cJSON *parameters, struct error *err);
+
+#endif
