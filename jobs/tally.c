@@ -1,4 +1,5 @@
 #include "jobs/tally.h"
+#include "jobs/tally_near.h"
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -135,21 +136,6 @@ static double cell_variance(const struct tally *tally, size_t cell,
     return m / (m - 1) * fmax(0, (a - share * b) / things);
 }
 
-/* Cells first to last - 1 around one, grown by both its neighbours at a time within its row. */
-struct window {
-    size_t first, last, low, high; /* low and high: of the row */
-};
-static struct window window_at(const struct tally *tally, size_t cell) {
-    size_t low = cell - cell % tally->row;
-    return (struct window){cell, cell + 1, low, low + tally->row};
-}
-static bool window_grow(struct window *window) {
-    bool more = window->first > window->low || window->last < window->high;
-    window->first -= window->first > window->low;
-    window->last += window->last < window->high;
-    return more;
-}
-
 /* What a share is of: the things in a cell, or the things that are not. Both have one variance. */
 static fixed_point side_count(const struct tally *tally, size_t cell,
                               const struct tally_total *total, bool outside) {
@@ -181,18 +167,20 @@ static void window_add(struct window_sum *sum, const struct tally *tally, size_t
     sum->some += side_some(tally, cell, total, outside);
 }
 
-/* Each cell is added once: a window may grow over all of its row, from every rare cell. */
-static double neighbours_dispersion(const struct tally *tally, size_t cell,
-                                    const struct tally_total *total, bool outside) {
-    struct window window = window_at(tally, cell), before = window;
+/* Over the cell and its neighbours that tell of the side, nearest first, until there are enough;
+ * those as near on the left and on the right come together. */
+static double neighbours_dispersion(const struct tally_near *near, const struct tally_total *total,
+                                    bool outside) {
     struct window_sum sum = {0};
-    window_add(&sum, tally, cell, total, outside);
-    while (sum.some < TALLY_RARE && window_grow(&window)) {
-        if (window.first < before.first)
-            window_add(&sum, tally, window.first, total, outside);
-        if (window.last > before.last)
-            window_add(&sum, tally, before.last, total, outside);
-        before = window;
+    size_t left = 0, right = 0;
+    window_add(&sum, near->tally, near->cell, total, outside);
+    while (sum.some < TALLY_RARE && (left < near->left_count || right < near->right_count)) {
+        size_t before = left < near->left_count ? near->cell - near->left[left] : SIZE_MAX;
+        size_t behind = right < near->right_count ? near->right[right] - near->cell : SIZE_MAX;
+        if (before <= behind)
+            window_add(&sum, near->tally, near->left[left++], total, outside);
+        if (behind <= before)
+            window_add(&sum, near->tally, near->right[right++], total, outside);
     }
     return dispersion_of(sum.variance, sum.count);
 }
@@ -204,22 +192,43 @@ static double rare_error(double dispersion, double count) {
     return count > 0 ? dispersion * sqrt(count / dispersion + 1) : dispersion * TALLY_NONE_SEEN;
 }
 
-struct estimate tally_share(const struct tally *tally, size_t cell,
-                            const struct tally_total *total) {
+static struct estimate share_at(const struct tally_near *things, const struct tally_near *others,
+                                const struct tally_total *total) {
+    const struct tally *tally = things->tally;
+    size_t cell = things->cell;
     if (total->sum == 0)
         return (struct estimate){NAN, NAN};
-    double things = (double)total->sum, error;
-    struct estimate share = {(double)tally->count[cell] / things, NAN};
+    double all = (double)total->sum, error;
+    struct estimate share = {(double)tally->count[cell] / all, NAN};
     bool outside = 2 * (fixed_point)tally->count[cell] > total->sum;
     if (total->realisations < 2)
         return share;
     if (is_rare(side_some(tally, cell, total, outside), total->realisations))
-        error = rare_error(neighbours_dispersion(tally, cell, total, outside),
+        error = rare_error(neighbours_dispersion(outside ? others : things, total, outside),
                            (double)side_count(tally, cell, total, outside));
     else
         error = sqrt(cell_variance(tally, cell, total));
-    share.standard_error = error / things;
+    share.standard_error = error / all;
     return share;
+}
+
+void tally_shares(const struct tally *tally, size_t first, size_t n,
+                  const struct tally_total *total, struct estimate *out) {
+    struct tally_near things, others;
+    tally_near_begin(&things, tally, total->realisations, TELLING_THINGS, first);
+    tally_near_begin(&others, tally, total->realisations, TELLING_OTHERS, first);
+    for (size_t a = 0; a < n; a++) {
+        out[a] = share_at(&things, &others, total);
+        tally_near_next(&things);
+        tally_near_next(&others);
+    }
+}
+
+struct estimate tally_share(const struct tally *tally, size_t cell,
+                            const struct tally_total *total) {
+    struct estimate out;
+    tally_shares(tally, cell, 1, total, &out);
+    return out;
 }
 
 double tally_empty_bound(const struct tally *tally, const struct tally_total *total) {
@@ -316,28 +325,52 @@ struct estimate tally_sums_ratio(const struct tally_sums *sums, const struct tal
     return ratio;
 }
 
-struct estimate tally_sums_ratio_pooled(const struct tally_sums *sums, const struct tally *counts,
-                                        size_t cell) {
-    struct estimate ratio = tally_sums_ratio(sums, counts, cell);
-    uint64_t some = counts->some[cell];
-    if (some < 2 || some >= TALLY_RARE)
-        return ratio;
-    /* Residuals of m realisations with n things have the variance of n (m - 1)/m things. */
-    struct window window = window_at(counts, cell);
-    double squares, things, freedom;
-    do {
-        squares = things = freedom = 0;
-        for (size_t a = window.first; a < window.last; a++) {
-            double m = (double)counts->some[a];
-            if (!(m >= 2))
-                continue;
-            squares += residual_squares(sums, counts, a);
-            things += (double)counts->count[a] * (m - 1) / m;
-            freedom += m - 1;
-        }
-    } while (freedom < TALLY_RARE && window_grow(&window));
-    ratio.standard_error = sqrt(squares / things / (double)counts->count[cell]);
-    return ratio;
+/* Residuals of m realisations with n things have the variance of n (m - 1)/m things. */
+struct residuals {
+    double squares, things;
+};
+static void residuals_add(struct residuals *sum, const struct tally_sums *sums,
+                          const struct tally *counts, size_t cell) {
+    double m = (double)counts->some[cell];
+    sum->squares += residual_squares(sums, counts, cell);
+    sum->things += (double)counts->count[cell] * (m - 1) / m;
+}
+
+/* Over the cell and its neighbours that show a scatter, from the left to the right, as many as it
+ * takes for TALLY_RARE degrees of freedom. */
+static double pooled_variance(const struct tally_sums *sums, const struct tally_near *near) {
+    const struct tally *counts = near->tally;
+    uint64_t freedom = counts->some[near->cell] - 1;
+    struct residuals pooled = {0, 0};
+    size_t left = 0, right = 0;
+    while (freedom < TALLY_RARE && (left < near->left_count || right < near->right_count)) {
+        size_t before = left < near->left_count ? near->cell - near->left[left] : SIZE_MAX;
+        size_t behind = right < near->right_count ? near->right[right] - near->cell : SIZE_MAX;
+        if (before <= behind)
+            freedom += counts->some[near->left[left++]] - 1;
+        if (behind <= before)
+            freedom += counts->some[near->right[right++]] - 1;
+    }
+    while (left > 0)
+        residuals_add(&pooled, sums, counts, near->left[--left]);
+    residuals_add(&pooled, sums, counts, near->cell);
+    for (size_t a = 0; a < right; a++)
+        residuals_add(&pooled, sums, counts, near->right[a]);
+    return pooled.squares / pooled.things;
+}
+
+void tally_sums_ratios_pooled(const struct tally_sums *sums, const struct tally *counts,
+                              size_t first, size_t n, struct estimate *out) {
+    struct tally_near near;
+    tally_near_begin(&near, counts, 0, TELLING_SCATTER, first);
+    for (size_t a = 0; a < n; a++, tally_near_next(&near)) {
+        size_t cell = first + a;
+        uint64_t some = counts->some[cell];
+        out[a] = tally_sums_ratio(sums, counts, cell);
+        if (some >= 2 && some < TALLY_RARE)
+            out[a].standard_error =
+                sqrt(pooled_variance(sums, &near) / (double)counts->count[cell]);
+    }
 }
 
 struct estimate tally_sums_mean(const struct tally_sums *sums, size_t cell, uint64_t realisations) {

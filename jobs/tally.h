@@ -70,6 +70,9 @@ enum { TALLY_RARE = 10 };
  * the bound which its share is within at the confidence of one standard deviation. */
 struct estimate tally_share(const struct tally *tally, size_t cell,
                             const struct tally_total *total);
+/* Does the same for cells first to first + n - 1, in one pass over them. */
+void tally_shares(const struct tally *tally, size_t first, size_t n,
+                  const struct tally_total *total, struct estimate *out);
 /* Returns the bound of empty cells from the dispersion of all rare cells. */
 double tally_empty_bound(const struct tally *tally, const struct tally_total *total);
 
@@ -91,9 +94,9 @@ void tally_sums_get(struct byte_reader *reader, struct tally_sums *sums);
 /* Estimates the ratio in a cell over the realisations that have things there, n_r of `counts`. */
 struct estimate tally_sums_ratio(const struct tally_sums *sums, const struct tally *counts,
                                  size_t cell);
-/* Does the same with the variance a thing of the neighbours where the cell is rare. */
-struct estimate tally_sums_ratio_pooled(const struct tally_sums *sums, const struct tally *counts,
-                                        size_t cell);
+/* Does the same for n cells, with the variance a thing of the neighbours where a cell is rare. */
+void tally_sums_ratios_pooled(const struct tally_sums *sums, const struct tally *counts,
+                              size_t first, size_t n, struct estimate *out);
 /* Estimates the mean of k a realisation where every n_r was 1. */
 struct estimate tally_sums_mean(const struct tally_sums *sums, size_t cell, uint64_t realisations);
 

@@ -83,7 +83,8 @@ int surface_pass_run(const struct surface_pass *pass, const struct grid *grid, c
     for (size_t first = 0; first < grid->ny && status == 0; first += most) {
         size_t rows = grid->ny - first < most ? grid->ny - first : most;
         const double *strip = z + first * nx;
-        histogram_add(pass->bins, rows * nx, strip, pass->scale, pass->counts);
+        if (pass->bins != NULL)
+            histogram_add(pass->bins, rows * nx, strip, pass->scale, pass->counts);
         if (pass->sums != NULL)
             rows_add(&totals, nx, rows, strip);
         status = extremes_find(pass->finder, z, first, rows, pass->summits, pass->pits, err);

@@ -14,7 +14,7 @@ struct height_sums {
 
 struct surface_pass {
     struct summit_finder *finder; /* borrowed, as all; its grid is that of the surface */
-    const struct bins *bins;      /* of scale * height */
+    const struct bins *bins;      /* of scale * height; NULL: not wanted, with the next two */
     double scale;
     uint64_t *counts;         /* bins->count + 2, which are added to */
     struct height_sums *sums; /* NULL: not wanted */

@@ -225,15 +225,16 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     const uint64_t *count = maker->tally->pressures.count +
                             contact_tally_pressure_cell(maker->tally, model, finest, at);
     double *x = result_numbers(maker->result, 8 * n);
-    if (x == NULL)
+    struct estimate *shares = result_room(maker->result, 2 * n, sizeof *shares);
+    if (x == NULL || shares == NULL)
         return no_room(err);
     double *y = x + n, *standard_error = y + n, *valueless = standard_error + n;
     double *pdf = valueless + n, *none = pdf + n, *bound = none + n, *chance = bound + n;
+    contact_tally_pressure_shares(maker->tally, model, finest, at, shares);
     for (size_t b = 0; b < n; b++) {
-        struct estimate share = contact_tally_pressure(maker->tally, model, finest, at, b + 1);
         x[b] = bins_centre(bins, b);
-        y[b] = share.value / width;
-        standard_error[b] = share.standard_error / width;
+        y[b] = shares[b].value / width;
+        standard_error[b] = shares[b].standard_error / width;
         valueless[b] = (double)contact_tally_valueless(maker->tally, MEASURE_NODES, cell);
     }
     struct curve curve = curve_of(one_case, model, finest, "contact_pressure_pdf",
@@ -242,7 +243,7 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     for (enum error_source s = 0; s < ERROR_SOURCES; s++)
         curve.errors[s].applies =
             contact_error_applies(maker->tally, MEASURE_NODES, model, finest, s);
-    if (contact_errors_pressures(maker->tally, model, at, bound, chance)) {
+    if (contact_errors_pressures(maker->tally, model, at, shares, shares + n, bound, chance)) {
         curve.errors[ERROR_DISCRETISATION] = (struct curve_error){
             .applies = true, .value = none, .bound = bound, .standard_error = chance, .order = NAN};
     }

@@ -290,20 +290,20 @@ static double chance_of_nodes(const struct contact_tally *tally, size_t model, s
 }
 
 bool contact_errors_pressures(const struct contact_tally *tally, size_t model, size_t at,
-                              double *bound, double *standard_error) {
+                              const struct estimate *shares, struct estimate *coarse, double *bound,
+                              double *standard_error) {
     const struct contact_case *one_case = tally->one_case;
     size_t finest = finest_of(one_case), n = one_case->pressure.count;
     if (finest == 0)
         return false;
     double width = bins_width(&one_case->pressure), before[BINS_NEAR] = {0};
+    contact_tally_pressure_shares(tally, model, finest - 1, at, coarse);
     for (size_t b = 0; b < n; b++) {
         struct mesh_changes changes = {.coarse = NAN,
                                        .fine_ratio = refinement(one_case, finest - 1)};
-        double share = contact_tally_pressure(tally, model, finest, at, b + 1).value;
-        changes.fine =
-            (share - contact_tally_pressure(tally, model, finest - 1, at, b + 1).value) / width;
+        changes.fine = (shares[b].value - coarse[b].value) / width;
         bound[b] = mesh_error(&changes, 1).bound;
-        standard_error[b] = chance_of_nodes(tally, model, at, share) / width;
+        standard_error[b] = chance_of_nodes(tally, model, at, shares[b].value) / width;
     }
     for (size_t b = 0; b < n; b++) {
         double own = bound[b];

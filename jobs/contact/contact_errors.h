@@ -23,9 +23,11 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
 
 /* The error of the mesh of the density of pressures at position `at` of pdf_loads, by bin: bounds
  * on both sides from the two finest levels, at least those of the two bins on either side, and
- * standard errors, as nodes fall into bins by chance. Both have room for all bins; false where
- * there is one level. */
+ * standard errors, as nodes fall into bins by chance. shares: of the finest level, by
+ * contact_tally_pressure_shares; coarse: scratch. All have room for all bins; false where there is
+ * one level. */
 bool contact_errors_pressures(const struct contact_tally *tally, size_t model, size_t at,
-                              double *bound, double *standard_error);
+                              const struct estimate *shares, struct estimate *coarse, double *bound,
+                              double *standard_error);
 
 #endif

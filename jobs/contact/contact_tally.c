@@ -344,16 +344,21 @@ size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t mod
            contact_tally_bins(one_case);
 }
 
-struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model,
-                                       size_t level, size_t at, size_t bin) {
+static struct tally_total pressure_total(const struct contact_tally *tally, size_t model,
+                                         size_t level, size_t at) {
     const struct contact_case *one_case = tally->one_case;
     size_t cell = contact_case_cell(one_case, model, level, one_case->pdf_loads[at]);
     fixed_point parts =
         (fixed_point)grid_points(&one_case->levels[level].grid) * CONTACT_AREA_PARTS;
     uint64_t solved = tally->sums[MEASURE_NODES].counts.count[cell];
-    struct tally_total total = {solved, parts * solved, parts * parts * solved};
-    return tally_share(&tally->pressures,
-                       contact_tally_pressure_cell(tally, model, level, at) + bin, &total);
+    return (struct tally_total){solved, parts * solved, parts * parts * solved};
+}
+
+void contact_tally_pressure_shares(const struct contact_tally *tally, size_t model, size_t level,
+                                   size_t at, struct estimate *out) {
+    const struct tally_total total = pressure_total(tally, model, level, at);
+    tally_shares(&tally->pressures, contact_tally_pressure_cell(tally, model, level, at) + 1,
+                 tally->one_case->pressure.count, &total, out);
 }
 
 void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally) {

@@ -100,9 +100,10 @@ struct estimate contact_tally_own_length(const struct contact_tally *tally,
 struct estimate contact_tally_other_length(const struct contact_tally *tally,
                                            enum contact_measure measure, enum contact_length length,
                                            size_t load);
-/* Area of a bin over that of the cell, over the realisations with values there. */
-struct estimate contact_tally_pressure(const struct contact_tally *tally, size_t model,
-                                       size_t level, size_t at, size_t bin);
+/* Areas of all bins, without under- and overflow, over that of the cell, over the realisations with
+ * values there. */
+void contact_tally_pressure_shares(const struct contact_tally *tally, size_t model, size_t level,
+                                   size_t at, struct estimate *out);
 /* Returns how many bins pressures have, with under- and overflow. */
 static inline size_t contact_tally_bins(const struct contact_case *one_case) {
     return one_case->pressure.count + 2;

@@ -22,13 +22,15 @@ static int no_room(struct error *err) {
 /* A curve over n points with room for its numbers. */
 struct curve_points {
     double *x, *y, *standard_error, *valueless;
+    struct estimate *estimates; /* scratch */
 };
 static int curve_points_create(struct statistics_curve_maker *maker, size_t n,
                                struct curve_points *out, struct error *err) {
     double *x = result_numbers(maker->result, 4 * n);
-    if (x == NULL)
+    struct estimate *estimates = result_room(maker->result, n, sizeof *estimates);
+    if (x == NULL || estimates == NULL)
         return no_room(err);
-    *out = (struct curve_points){x, x + n, x + 2 * n, x + 3 * n};
+    *out = (struct curve_points){x, x + n, x + 2 * n, x + 3 * n, estimates};
     return 0;
 }
 
@@ -88,8 +90,9 @@ static int add_density(struct statistics_curve_maker *maker, const struct histog
     int status = curve_points_create(maker, bins->count, &points, err);
     if (status != 0)
         return status;
+    tally_shares(histogram->cells, 1, bins->count, histogram->total, points.estimates);
     for (size_t b = 0; b < bins->count; b++) {
-        struct estimate share = tally_share(histogram->cells, b + 1, histogram->total);
+        struct estimate share = points.estimates[b];
         points.x[b] = bins_centre(bins, b);
         points.y[b] = share.value / width;
         points.standard_error[b] = share.standard_error / width;
@@ -115,8 +118,9 @@ static int add_cumulative(struct statistics_curve_maker *maker, const char *quan
     int status = curve_points_create(maker, bins->count, &points, err);
     if (status != 0)
         return status;
+    tally_shares(below, 1, bins->count, total, points.estimates);
     for (size_t b = 0; b < bins->count; b++) {
-        struct estimate share = tally_share(below, b + 1, total);
+        struct estimate share = points.estimates[b];
         points.x[b] = bins->low + (double)(b + 1) * bins_width(bins);
         points.y[b] = share.value;
         points.standard_error[b] = share.standard_error;
@@ -136,8 +140,9 @@ static int add_curvature(struct statistics_curve_maker *maker, struct error *err
     int status = curve_points_create(maker, bins->count, &points, err);
     if (status != 0)
         return status;
+    tally_sums_ratios_pooled(&tally->curvature, &tally->height, 1, bins->count, points.estimates);
     for (size_t b = 0; b < bins->count; b++) {
-        struct estimate mean = tally_sums_ratio_pooled(&tally->curvature, &tally->height, b + 1);
+        struct estimate mean = points.estimates[b];
         points.x[b] = bins_centre(bins, b);
         points.y[b] = mean.value;
         points.standard_error[b] = mean.standard_error;
@@ -161,50 +166,82 @@ static size_t joint_cell(const struct statistics_case *one_case, size_t cell) {
     return (cell / columns + 1) * (columns + 2) + cell % columns + 1;
 }
 
-/* Only the cells that summits fell into; their theory is made where it is asked for. */
-static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
+/* The occupied cells of a matrix, and what summits inside of it there are. */
+struct joint_cells {
+    size_t count;
+    uint32_t *cells;
+    double *y, *standard_error, inside;
+    struct estimate *row; /* scratch */
+};
+
+static int joint_cells_create(struct statistics_curve_maker *maker, struct joint_cells *out,
+                              struct error *err) {
     const struct statistics_case *one_case = maker->one_case;
-    const struct bins *height = &one_case->height, *equivalent = &one_case->equivalent;
     const struct tally *tally = &side_tally(maker)->joint;
-    const struct tally_total *total = &side_tally(maker)->total;
-    double area = bins_width(height) * bins_width(equivalent), inside = 0;
-    size_t all = height->count * equivalent->count, count = 0;
+    size_t all = one_case->height.count * one_case->equivalent.count, count = 0;
     for (size_t cell = 0; cell < all; cell++)
         count += tally->count[joint_cell(one_case, cell)] > 0;
-    uint32_t *cells = result_room(maker->result, count + 1, sizeof *cells);
+    double *y = result_numbers(maker->result, 2 * count);
+    *out = (struct joint_cells){
+        .cells = result_room(maker->result, count + 1, sizeof *out->cells),
+        .y = y,
+        .standard_error = y + count,
+        .row = result_room(maker->result, one_case->equivalent.count, sizeof *out->row)};
+    return out->cells != NULL && y != NULL && out->row != NULL ? 0 : no_room(err);
+}
+
+static void joint_cells_fill(const struct statistics_curve_maker *maker, double area,
+                             struct joint_cells *out) {
+    const struct statistics_case *one_case = maker->one_case;
+    const struct summit_tally *side = side_tally(maker);
+    size_t columns = one_case->equivalent.count;
+    for (size_t row = 0; row < one_case->height.count; row++) {
+        size_t first = joint_cell(one_case, row * columns);
+        tally_shares(&side->joint, first, columns, &side->total, out->row);
+        for (size_t b = 0; b < columns; b++) {
+            uint64_t n = side->joint.count[first + b];
+            if (n == 0)
+                continue;
+            out->y[out->count] = out->row[b].value / area;
+            out->standard_error[out->count] = out->row[b].standard_error / area;
+            out->cells[out->count++] = (uint32_t)(row * columns + b);
+            out->inside += (double)n;
+        }
+    }
+}
+
+/* Only the cells that summits fell into; their theory is made where it is asked for. */
+static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
+    const struct bins *height = &maker->one_case->height;
+    const struct bins *equivalent = &maker->one_case->equivalent;
+    const struct summit_tally *side = side_tally(maker);
+    double area = bins_width(height) * bins_width(equivalent);
     double *axes = result_numbers(maker->result, height->count + equivalent->count);
-    double *y = result_numbers(maker->result, 2 * count), *standard_error = y + count;
-    if (cells == NULL || axes == NULL || y == NULL)
+    struct joint_cells occupied;
+    if (axes == NULL)
         return no_room(err);
+    int status = joint_cells_create(maker, &occupied, err);
+    if (status != 0)
+        return status;
     for (size_t b = 0; b < height->count; b++)
         axes[b] = bins_centre(height, b);
     for (size_t b = 0; b < equivalent->count; b++)
         axes[height->count + b] = bins_centre(equivalent, b);
-    count = 0;
-    for (size_t cell = 0; cell < all; cell++) {
-        uint64_t n = tally->count[joint_cell(one_case, cell)];
-        if (n == 0)
-            continue;
-        struct estimate share = tally_share(tally, joint_cell(one_case, cell), total);
-        y[count] = share.value / area;
-        standard_error[count] = share.standard_error / area;
-        cells[count++] = (uint32_t)cell;
-        inside += (double)n;
-    }
+    joint_cells_fill(maker, area, &occupied);
     struct curve curve =
         summit_curve(maker, "summit_joint_pdf", height_label(), "probability density");
-    curve_set_points(&curve, height->count, axes, y, standard_error);
+    curve_set_points(&curve, height->count, axes, occupied.y, occupied.standard_error);
     curve.columns = equivalent->count;
     curve.x2 = axes + height->count;
     curve.x2_label = equivalent_label(maker);
-    curve.cells = cells;
-    curve.cell_count = count;
-    curve.empty_y = total->sum == 0 ? (double)NAN : 0;
-    curve.empty_standard_error = tally_empty_bound(tally, total) / area;
+    curve.cells = occupied.cells;
+    curve.cell_count = occupied.count;
+    curve.empty_y = side->total.sum == 0 ? (double)NAN : 0;
+    curve.empty_standard_error = tally_empty_bound(&side->joint, &side->total) / area;
     add_theory(&curve, maker->theory_name, NULL);
     curve.counted = true;
     curve.underflow = 0;
-    curve.overflow = (double)total->sum - inside;
+    curve.overflow = (double)side->total.sum - occupied.inside;
     return result_add_curve(maker->result, &curve, err);
 }
 

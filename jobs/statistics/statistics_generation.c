@@ -1,5 +1,6 @@
 #include "jobs/statistics/statistics_generation.h"
 #include "core/cost.h"
+#include "core/statistics/surface_pass.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -81,13 +82,13 @@ static int measure(struct statistics_generation *generation, struct random_key k
     struct surface_report report;
     struct roughness roughness;
     double scalars[SCALAR_COUNT];
+    const struct surface_pass pass = {.finder = generation->finder,
+                                      .summits = &generation->summits[SIDE_SUMMITS],
+                                      .pits = &generation->summits[SIDE_PITS]};
     generator_aim(generation->generator, aim);
     int status = generator_run(generation->generator, key, generation->z, &report, err);
     if (status == 0)
-        status = summits_find(generation->finder, generation->z, &generation->summits[SIDE_SUMMITS],
-                              err);
-    if (status == 0)
-        status = pits_find(generation->finder, generation->z, &generation->summits[SIDE_PITS], err);
+        status = surface_pass_run(&pass, grid, generation->z, err);
     if (status != 0)
         return status;
     roughness_measure(grid, generation->z, &roughness);

@@ -5,6 +5,7 @@
 #include "jobs/runner.h"
 #include "jobs/statistics/statistics_expectation.h"
 #include "tests/support/check.h"
+#include "tests/support/scalar_of.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,12 +42,6 @@ static struct case_result expect(const char *text, bool joint) {
     return out;
 }
 
-static const struct scalar *scalar(const struct case_result *result, const char *name) {
-    const struct scalar *found = result_scalar(result, name);
-    assert_non_null(found);
-    return found;
-}
-
 static const struct curve *series(const struct case_result *result, const char *quantity,
                                   const char *name) {
     for (size_t a = 0; a < result->curve_count; a++)
@@ -60,9 +55,9 @@ static const struct curve *series(const struct case_result *result, const char *
 static void alpha_is_that_of_the_table(void **state) {
     (void)state;
     struct case_result surface = expect(SURFACE, false), contact = expect(CONTACT, false);
-    check_close(scalar(&surface, "nayak_alpha")->value, 5.3368, 5e-5);
-    check_close(scalar(&surface, "nayak_alpha_continuous")->value, 5.2277, 5e-5);
-    check_close(scalar(&contact, "nayak_alpha")->value, 5.3368, 5e-5);
+    check_close(scalar_of(&surface, "nayak_alpha")->value, 5.3368, 5e-5);
+    check_close(scalar_of(&surface, "nayak_alpha_continuous")->value, 5.2277, 5e-5);
+    check_close(scalar_of(&contact, "nayak_alpha")->value, 5.3368, 5e-5);
     const struct curve *by_ratio = result_curve(&surface, "nayak_alpha_by_ratio");
     check_close(by_ratio->x[0], 1, 1e-12);
     check_close(by_ratio->y[0], 1.5, 1e-9);
@@ -104,9 +99,9 @@ static void results_have_the_same_theories(void **state) {
             }
         }
         assert_true(compared >= 10);
-        const struct scalar *density = scalar(&result, "summit_density");
-        assert_true(density->theory == scalar(&expected, "summit_density")->value);
-        assert_true(density->grid == scalar(&expected, "summit_density")->grid);
+        const struct scalar *density = scalar_of(&result, "summit_density");
+        assert_true(density->theory == scalar_of(&expected, "summit_density")->value);
+        assert_true(density->grid == scalar_of(&expected, "summit_density")->grid);
         cJSON_Delete(parameters);
         merger_destroy(&merger);
         result_clear(&result);
@@ -119,12 +114,12 @@ static void only_what_theory_tells(void **state) {
     struct case_result weibull = expect(WEIBULL, false), refined = expect(REFINED, true);
     assert_null(result_scalar(&weibull, "summit_density"));
     assert_null(result_curve(&weibull, "summit_height_pdf"));
-    check_close(scalar(&weibull, "skewness")->value, -2, 1e-9);
-    assert_true(isnan(scalar(&weibull, "kurtosis")->grid));
+    check_close(scalar_of(&weibull, "skewness")->value, -2, 1e-9);
+    assert_true(isnan(scalar_of(&weibull, "kurtosis")->grid));
     assert_non_null(series(&weibull, "height_pdf", "weibull"));
     assert_non_null(series(&refined, "summit_height_pdf", "nayak"));
     assert_null(series(&refined, "summit_height_pdf", "grid"));
-    assert_true(isnan(scalar(&refined, "summit_density")->grid));
+    assert_true(isnan(scalar_of(&refined, "summit_density")->grid));
     const struct curve *joint = series(&refined, "summit_joint_pdf", "nayak");
     assert_non_null(joint);
     assert_int_equal(joint->cell_count, joint->n * joint->columns);
@@ -161,7 +156,7 @@ static void heights_of_ones_own_have_their_density(void **state) {
     check_close(mean, 0, 0.02);   /* of the bin that holds the flat ground */
     check_close(most, 0.2, 0.02); /* that, and little beside it */
     check_close(cdf->y[cdf->n - 1], 1, 0);
-    assert_true(scalar(&expected, "skewness")->value < -0.5);
+    assert_true(scalar_of(&expected, "skewness")->value < -0.5);
     cJSON_Delete(parameters);
     merger_destroy(&merger);
     result_clear(&result);
@@ -176,7 +171,7 @@ static void theory_knows_its_limits(void **state) {
     const struct curve *acf = result_curve(&exponential, "acf");
     assert_string_equal(acf->theories[0].name, "prescribed");
     const double *prescribed = acf->theories[0].y;
-    assert_true(scalar(&exponential, "spectrum_clipped")->value < 1e-9);
+    assert_true(scalar_of(&exponential, "spectrum_clipped")->value < 1e-9);
     double mean = (prescribed[1] - acf->y[1]) / (1 - acf->y[1]);
     assert_true(mean > 0 && mean < 0.05);
     for (size_t a = 0; a < acf->n; a++)
@@ -191,11 +186,11 @@ static void theory_knows_its_limits(void **state) {
     assert_non_null(series(&exponential, "summit_height_pdf", "grid"));
     assert_null(series(&lattice, "summit_height_pdf", "nayak"));
     assert_non_null(series(&lattice, "summit_height_pdf", "grid"));
-    check_close(scalar(&lattice, "isotropy")->value, 0, 1e-12);
+    check_close(scalar_of(&lattice, "isotropy")->value, 0, 1e-12);
     result_clear(&lattice);
     result_clear(&exponential);
     struct case_result surface = expect(SURFACE, false);
-    check_close(scalar(&surface, "isotropy")->value, 1, 5e-3);
+    check_close(scalar_of(&surface, "isotropy")->value, 1, 5e-3);
     psd = result_curve(&surface, "psd");
     size_t rings = 0; /* 8 to 64 waves: means over those of the band, also at its ends */
     for (size_t r = 0; r < psd->n; r++) {
@@ -214,7 +209,7 @@ static void anisotropic_surfaces_are_of_the_grid_alone(void **state) {
     assert_null(series(&out, "summit_height_pdf", "nayak"));
     assert_non_null(series(&out, "summit_height_pdf", "grid"));
     assert_null(result_curve(&out, "nayak_alpha_by_ratio"));
-    assert_true(scalar(&out, "isotropy")->value < 0.5);
+    assert_true(scalar_of(&out, "isotropy")->value < 0.5);
     result_clear(&out);
 }
 

@@ -5,6 +5,7 @@
 #include "jobs/realisations.h"
 #include "jobs/runner.h"
 #include "tests/support/check.h"
+#include "tests/support/scalar_of.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -180,13 +181,6 @@ static void contact_by_its_realisations(void **state) {
     result_clear(&out);
     side_clear(&a);
     side_clear(&b);
-}
-
-static const struct scalar *scalar_of(const struct case_result *result, const char *name) {
-    const struct scalar *scalar = result_scalar(result, name);
-    if (scalar == NULL)
-        fail_msg("no scalar %s", name);
-    return scalar;
 }
 
 /* Over the same realisations a difference is that of what the cases tell, and exacter. */

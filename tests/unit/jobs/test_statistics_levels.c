@@ -4,6 +4,7 @@
 #include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "tests/support/check.h"
+#include "tests/support/scalar_of.h"
 #include "tests/support/seed.h"
 #include <stdlib.h>
 #include <string.h>
@@ -51,14 +52,8 @@ static struct case_result result_of(const char *text, uint64_t *random) {
     return out;
 }
 
-static const struct scalar *scalar(const struct case_result *result, const char *name) {
-    const struct scalar *found = result_scalar(result, name);
-    assert_non_null(found);
-    return found;
-}
-
 static const struct scalar_error *error_of(const struct case_result *result, const char *name) {
-    return &scalar(result, name)->errors[ERROR_DISCRETISATION];
+    return &scalar_of(result, name)->errors[ERROR_DISCRETISATION];
 }
 
 /* Of two levels the bound is 5/4 of the change, of which a study on the coarse grid tells: the
@@ -81,8 +76,8 @@ static void a_level_is_a_study_on_its_grid(void **state) {
     struct case_result coarse = result_of(SURFACE("4", ""), NULL);
     for (size_t a = 0; a < sizeof NAMES / sizeof *NAMES; a++) {
         const struct scalar_error *error = error_of(&leveled, NAMES[a]);
-        double change = scalar(&fine, NAMES[a])->value - scalar(&coarse, NAMES[a])->value;
-        assert_true(scalar(&leveled, NAMES[a])->value == scalar(&fine, NAMES[a])->value);
+        double change = scalar_of(&fine, NAMES[a])->value - scalar_of(&coarse, NAMES[a])->value;
+        assert_true(scalar_of(&leveled, NAMES[a])->value == scalar_of(&fine, NAMES[a])->value);
         assert_true(error->known && error->value == 0 && fabs(change) > 0);
         check_relative(error->bound, 1.25 * fabs(change), 1e-6);
         assert_true(error->standard_error > 0);
@@ -113,7 +108,7 @@ static void three_levels_show_the_order(void **state) {
                   " \"points_per_wavelength\": 16}, \"statistics\": {\"levels\": [4, 8, 16],"
                   " \"summits\": \"five_point\"}}",
                   NULL);
-    const struct scalar *density = scalar(&result, "summit_density");
+    const struct scalar *density = scalar_of(&result, "summit_density");
     const struct scalar_error *error = error_of(&result, "summit_density");
     /* the five-point count tends to 1.306 times Nayak's; of few waves that is good to 2 % */
     double limit = 1.30639 * density->theory;
@@ -124,7 +119,8 @@ static void three_levels_show_the_order(void **state) {
     error = error_of(&result, "rms_slope");
     assert_true(error->known && error->bound == 0);
     check_close(error->value,
-                scalar(&result, "rms_slope")->value - scalar(&result, "rms_slope")->theory, 1e-12);
+                scalar_of(&result, "rms_slope")->value - scalar_of(&result, "rms_slope")->theory,
+                1e-12);
     const struct curve *heights = result_curve(&result, "height_pdf");
     assert_true(heights->errors[ERROR_DISCRETISATION].value[3] == 0);
     result_clear(&result);

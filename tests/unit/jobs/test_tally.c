@@ -255,11 +255,11 @@ static void ratios_of_few(void **state) {
             tally_sums_add(&sums, cell, k, 1);
         }
     assert_true(isnan(tally_sums_ratio(&sums, &counts, 2).standard_error));
-    struct estimate alone = tally_sums_ratio_pooled(&sums, &counts, 2);
+    struct estimate pooled[3];
+    tally_sums_ratios_pooled(&sums, &counts, 0, 3, pooled);
+    struct estimate many = pooled[0], two = pooled[1], alone = pooled[2];
     assert_true(alone.value >= 0 && isnan(alone.standard_error));
-    struct estimate two = tally_sums_ratio_pooled(&sums, &counts, 1);
     assert_close(two.standard_error, sqrt(1.0 / 3 / 2), 0.03);
-    struct estimate many = tally_sums_ratio_pooled(&sums, &counts, 0);
     assert_true(many.standard_error == tally_sums_ratio(&sums, &counts, 0).standard_error);
     tally_clear(&counts);
     tally_sums_clear(&sums);
