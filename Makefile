@@ -20,9 +20,10 @@ OBJCOPY         ?= objcopy
 Q      = $(if $(V),,@)
 say    = $(if $(V),@:,@echo)
 
-PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl nettle cmocka
+PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl nettle zlib cmocka
 APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev libsuitesparse-dev \
-           libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev nettle-dev libcmocka-dev
+           libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev nettle-dev zlib1g-dev \
+           libcmocka-dev
 # those without a pkg-config file
 HEADERS  = Random123/philox.h suitesparse/cholmod.h
 
@@ -44,7 +45,7 @@ LIBS_core   = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
 LIBS_schema = -lcjson -lsqlite3 $(LIBS_core)
 LIBS_jobs   = $(LIBS_schema)
 LIBS_worker = -lcurl $(LIBS_jobs)
-LIBS_server = -lmicrohttpd -lnettle $(LIBS_worker)
+LIBS_server = -lmicrohttpd -lnettle -lz $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
 embedded = $(wildcard $(1)/web/* $(1)/http/*.yaml)
@@ -248,6 +249,11 @@ check-figures: all
 	@tests/same-figures $(FIGURES) $(BUILD)/figures
 	@echo "figures: as the program draws them"
 .PHONY: check-citations figures check-figures
+
+# The description of the HTTP service, by a linter from npm; skipped where there is none.
+check-openapi: all
+	@tests/lint-openapi $(abspath $(BUILD)/rugo)
+.PHONY: check-openapi
 
 # Each archive needs nothing but those of the layers below it: linked whole, it leaves no symbol open.
 define WHOLE

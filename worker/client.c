@@ -101,7 +101,9 @@ static int client_options(struct client *client, bool loopback, struct error *er
         curl_easy_setopt(curl, CURLOPT_TCP_KEEPALIVE, 1L) == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_USERAGENT, "rugo") == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, client->detail) == CURLE_OK &&
-        (!loopback || curl_easy_setopt(curl, CURLOPT_PROXY, "") == CURLE_OK);
+        (!loopback || curl_easy_setopt(curl, CURLOPT_PROXY, "") == CURLE_OK) &&
+        /* a line is slower than zlib, this machine is not */
+        (loopback || curl_easy_setopt(curl, CURLOPT_ACCEPT_ENCODING, "gzip") == CURLE_OK);
     return good ? 0 : error_set(err, ERROR_SYSTEM, "libcurl refuses an option");
 }
 

@@ -23,7 +23,7 @@ static int fit_of(const char *range, size_t length, const char *type) {
         return 3;
     if (length == major + 1 && range[major] == '*' && strncasecmp(range, type, major) == 0)
         return 2;
-    return length == 3 && memcmp(range, "*/*", 3) == 0;
+    return (length == 3 && memcmp(range, "*/*", 3) == 0) || (length == 1 && *range == '*');
 }
 
 double accept_quality(const char *accept, const char *type) {

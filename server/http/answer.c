@@ -1,5 +1,6 @@
 /* Answers of the routes: documents, texts, problems. */
 #include "schema/json/field.h"
+#include "server/http/compress.h"
 #include "server/http/http.h"
 #include "worker/log.h"
 #include <stdlib.h>
@@ -24,13 +25,46 @@ static void finish(struct exchange *exchange, unsigned status, const char *type,
         "img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
 }
 
+bool answer_is_compressed(const struct exchange *exchange) {
+    return compress_is_accepted(exchange_header(exchange, "Accept-Encoding"));
+}
+
+/* Says that an answer is in gzip, or might be in another request. */
+static void tell_coding(struct exchange *exchange, bool compressed) {
+    if (compressed)
+        answer_header(exchange, "Content-Encoding", "gzip");
+    answer_header(exchange, "Vary", "Accept-Encoding");
+}
+
+/* Answers with the text in gzip; false where the peer does not take it, or for want of memory. */
+static bool answer_compressed(struct exchange *exchange, unsigned status, const char *type,
+                              const char *text, size_t size) {
+    size_t compressed;
+    char *bytes = answer_is_compressed(exchange) ? compress_text(text, size, &compressed) : NULL;
+    if (bytes == NULL)
+        return false;
+    finish(exchange, status, type,
+           MHD_create_response_from_buffer(compressed, bytes, MHD_RESPMEM_MUST_FREE));
+    if (exchange->response == NULL)
+        free(bytes);
+    tell_coding(exchange, true);
+    return true;
+}
+
 void answer_text(struct exchange *exchange, unsigned status, const char *type, char *text) {
     if (text == NULL) {
         exchange->status = 500; /* no response: the connection is closed */
         return;
     }
+    size_t size = strlen(text);
+    if (size >= COMPRESS_LEAST && answer_compressed(exchange, status, type, text, size)) {
+        free(text);
+        return;
+    }
     finish(exchange, status, type,
-           MHD_create_response_from_buffer(strlen(text), text, MHD_RESPMEM_MUST_FREE));
+           MHD_create_response_from_buffer(size, text, MHD_RESPMEM_MUST_FREE));
+    if (size >= COMPRESS_LEAST)
+        tell_coding(exchange, false);
 }
 
 /* Bytes of a well-formed UTF-8 sequence (RFC 3629); 0 if it is none. Reads no further than a NUL.
@@ -65,8 +99,12 @@ void answer_json(struct exchange *exchange, unsigned status, cJSON *document) {
 }
 
 void answer_static(struct exchange *exchange, const char *type, const char *data, size_t size) {
+    if (size >= COMPRESS_LEAST && answer_compressed(exchange, 200, type, data, size))
+        return;
     finish(exchange, 200, type,
            MHD_create_response_from_buffer(size, (void *)data, MHD_RESPMEM_PERSISTENT));
+    if (size >= COMPRESS_LEAST)
+        tell_coding(exchange, false);
 }
 
 void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
@@ -82,6 +120,19 @@ void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
            MHD_create_response_from_callback(size, PART, read, context, free_context));
     if (exchange->response == NULL)
         free_context(context);
+}
+
+void answer_document_stream(struct exchange *exchange, const char *type,
+                            MHD_ContentReaderCallback read, void *context,
+                            MHD_ContentReaderFreeCallback free_context) {
+    struct compressor *compressor =
+        answer_is_compressed(exchange) ? compressor_create(read, context, free_context) : NULL;
+    if (compressor != NULL)
+        answer_stream(exchange, type, MHD_SIZE_UNKNOWN, compressor_read, compressor,
+                      compressor_free);
+    else
+        answer_stream(exchange, type, MHD_SIZE_UNKNOWN, read, context, free_context);
+    tell_coding(exchange, compressor != NULL);
 }
 
 void answer_empty(struct exchange *exchange, unsigned status) {

@@ -47,7 +47,7 @@ int exchange_socket(const struct exchange *exchange);
 
 /* Answers with a document, which it takes. */
 void answer_json(struct exchange *exchange, unsigned status, cJSON *document);
-/* Answers with a text, which it takes (malloc). */
+/* Answers with a text, which it takes (malloc); a large one in gzip where the peer takes that. */
 void answer_text(struct exchange *exchange, unsigned status, const char *type, char *text);
 /* Answers with static data that outlives the server. */
 void answer_static(struct exchange *exchange, const char *type, const char *data, size_t size);
@@ -69,6 +69,12 @@ void exchange_renew(struct exchange *exchange);
 void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
                    MHD_ContentReaderCallback read, void *context,
                    MHD_ContentReaderFreeCallback free_context);
+/* Likewise a document of unknown size, in gzip where the peer takes that. */
+void answer_document_stream(struct exchange *exchange, const char *type,
+                            MHD_ContentReaderCallback read, void *context,
+                            MHD_ContentReaderFreeCallback free_context);
+/* Whether the peer takes gzip: what tells one form of an answer from another must know. */
+bool answer_is_compressed(const struct exchange *exchange);
 
 /* route.c: checks who asks for what and answers. Called once before the body comes (body_known
  * false): may refuse; and once with it. */

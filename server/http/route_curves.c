@@ -4,6 +4,7 @@
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/http/accept.h"
+#include "server/http/compress.h"
 #include "server/http/route.h"
 #include "server/show/plot_cost.h"
 #include "worker/aggregate.h"
@@ -180,11 +181,15 @@ static int send_json(struct exchange *exchange, const char *id, const struct res
     stream->exchange = exchange;
     stream->report = report;
     int status = open_stream(stream, id, filter, err);
+    bool is_short =
+        status == 0 && stream->next == stream->end && strlen(stream->text) < COMPRESS_LEAST;
     if (status != 0)
         stream_free(stream);
-    else
+    else if (is_short)
         answer_stream(exchange, "application/json", MHD_SIZE_UNKNOWN, next_part, stream,
                       stream_free);
+    else
+        answer_document_stream(exchange, "application/json", next_part, stream, stream_free);
     return status;
 }
 
@@ -275,8 +280,8 @@ void handle_curves(struct exchange *exchange, const char *id) {
     int status = find_study(exchange, id, &study, &err);
     /* Every change of a study's results raises its revision: that, and the form, is the answer's
      * identity. */
-    snprintf(etag, sizeof etag, "\"%s-%llu-%s\"", id, (unsigned long long)study.revision,
-             csv ? "csv" : "json");
+    snprintf(etag, sizeof etag, "\"%s-%llu-%s%s\"", id, (unsigned long long)study.revision,
+             csv ? "csv" : "json", answer_is_compressed(exchange) ? "-gzip" : "");
     if (status == 0 && matches(exchange, etag))
         answer_empty(exchange, 304);
     else if (status == 0 && difference)

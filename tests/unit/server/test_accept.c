@@ -1,6 +1,7 @@
 /* Protects: a peer gets the form that it likes best, not one whose name its header happens to hold.
  */
 #include "server/http/accept.h"
+#include "server/http/compress.h"
 #include "tests/support/check.h"
 
 static void the_closest_range_says_how_much_a_type_is_liked(void **state) {
@@ -31,9 +32,22 @@ static void the_closest_range_says_how_much_a_type_is_liked(void **state) {
     }
 }
 
+static void a_coding_is_taken_where_it_is_named(void **state) {
+    (void)state;
+    assert_false(compress_is_accepted(NULL));
+    assert_false(compress_is_accepted(""));
+    assert_false(compress_is_accepted("br, deflate"));
+    assert_false(compress_is_accepted("gzip;q=0, *"));
+    assert_false(compress_is_accepted("gzipped"));
+    assert_true(compress_is_accepted("deflate, gzip, br"));
+    assert_true(compress_is_accepted("gzip;q=0.1"));
+    assert_true(compress_is_accepted("*"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_closest_range_says_how_much_a_type_is_liked),
+        cmocka_unit_test(a_coding_is_taken_where_it_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
