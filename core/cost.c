@@ -63,8 +63,13 @@ static const double DIGITS_MORE = 2, DIGITS_WHOLE = 10;
 static const double PROFILE_TRANSFORM_NS = 4, SURFACE_TRANSFORM_NS = 5;
 static const double TRANSFORM_CACHE_SLOPE = 0.1, TRANSFORM_CACHE_DOUBLINGS = 14;
 
+/* Points a side; of a rectangle the geometric mean, which is exact for squares. */
+static double mean_side(const struct grid *grid) {
+    return grid_is_profile(grid) ? (double)grid->nx : sqrt((double)grid->nx * (double)grid->ny);
+}
+
 static double load_transforms(const struct grid *grid, double tolerance, size_t loads) {
-    double side = (double)grid->nx, digits = -log10(tolerance);
+    double side = mean_side(grid), digits = -log10(tolerance);
     double transforms = grid_is_profile(grid) ? PROFILE_FRONT * pow(side, PROFILE_POWER)
                                               : SURFACE_FRONT * pow(side, SURFACE_POWER);
     return transforms * (1 + FEW_LOADS / (double)loads) * (DIGITS_MORE + digits) / DIGITS_WHOLE;
@@ -111,7 +116,7 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
     struct full_size size = {.degrees_of_freedom =
                                  (double)full_degrees_of_freedom(grid, block, options),
                              .newton = NEWTON_LEAST + (profile ? PROFILE_NEWTON : SURFACE_NEWTON) *
-                                                          log2((double)grid->nx),
+                                                          log2(mean_side(grid)),
                              .linear = LINEAR_LEAST + steep,
                              .pressures = gmres_needs_pressures(&material)};
     size.factored = size.linear > FACTORED_ITERATIONS &&

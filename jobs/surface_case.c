@@ -126,12 +126,17 @@ static int solve_ratio(struct surface_case *out, struct values *values, double a
     out->wavelength_ratio = NAN;
     if (isnan(out->spectrum.hurst) || isnan(rolloff) || isnan(out->length_ratio))
         return 0; /* at fault already */
-    int status = values_choice(values, "/surface/alpha_formula") == ALPHA_CONTINUOUS
-                     ? spectrum_ratio_continuous(out->dimension, out->spectrum.hurst, rolloff,
-                                                 alpha, &out->wavelength_ratio, &reason)
-                     : spectrum_ratio_discrete(out->dimension, out->spectrum.hurst, rolloff,
-                                               out->length_ratio, alpha, &out->wavelength_ratio,
-                                               &reached, &reason);
+    double hurst = out->spectrum.hurst;
+    int status;
+    if (values_choice(values, "/surface/alpha_formula") == ALPHA_CONTINUOUS)
+        status = spectrum_ratio_continuous(out->dimension, hurst, rolloff, alpha,
+                                           &out->wavelength_ratio, &reason);
+    else if (surface_case_is_square(out))
+        status = spectrum_ratio_discrete(out->dimension, hurst, rolloff, out->length_ratio, alpha,
+                                         &out->wavelength_ratio, &reached, &reason);
+    else
+        status = spectrum_ratio_rectangle(hurst, rolloff, out->length_ratio, out->length_ratio_y,
+                                          alpha, &out->wavelength_ratio, &reached, &reason);
     if (status == 0)
         return 0;
     out->wavelength_ratio = NAN;
@@ -141,20 +146,35 @@ static int solve_ratio(struct surface_case *out, struct values *values, double a
     return 0;
 }
 
-/* Returns whether a wave vector of the cell lies in the self-affine band; else the spectrum would
- * be empty. */
-static bool band_has_mode(int dimension, double low, double high) {
+/* Returns whether a wave vector lies in the self-affine band of a profile, or along one side. */
+static bool line_has_mode(double low, double high) {
+    return floor(high * (1 + ROUNDING)) >= ceil(low * (1 - ROUNDING));
+}
+
+/* The same of a cell with waves of numbers from low to high along x, and from times as much along
+ * y. */
+static bool plane_has_mode(double low, double high, double times) {
     low *= 1 - ROUNDING;
     high *= 1 + ROUNDING;
-    if (dimension == 1 || high >= low + 1)
+    if (high >= low + 1)
         return floor(high) >= ceil(low);
     for (size_t mx = 0; (double)mx <= high; mx++) {
         double square = (double)mx * (double)mx;
-        double my = ceil(sqrt(fmax(0, low * low - square)));
+        double my = ceil(times * sqrt(fmax(0, low * low - square))) / times;
         if (square + my * my <= high * high)
             return true;
     }
     return false;
+}
+
+/* Returns whether a wave vector of the cell lies in the self-affine band; else the spectrum would
+ * be empty. Waves that are longer along x have the band's lengths along y. */
+static bool band_has_mode(const struct surface_case *surface) {
+    double low = surface->length_ratio, along_y = surface->length_ratio_y;
+    double ratio = surface->wavelength_ratio;
+    if (surface->dimension == 1 || surface->spectrum.anisotropy > 1)
+        return line_has_mode(along_y, along_y * ratio);
+    return plane_has_mode(low, low * ratio, along_y / low);
 }
 
 /* The cell is to hold the longest waves along x, too; Nayak's parameter is that of isotropic ones.
@@ -198,9 +218,7 @@ static int read_self_affine(struct surface_case *out, struct values *values, str
         values_fault(values, "/surface/rolloff_ratio",
                      "%g is more than wavelength_ratio, %g: the roll-off lies within the band",
                      rolloff, ratio);
-    if (!isnan(ratio) && !isnan(out->length_ratio) &&
-        !band_has_mode(out->spectrum.anisotropy > 1 ? 1 : out->dimension, out->length_ratio,
-                       out->length_ratio * ratio))
+    if (!isnan(ratio) && !isnan(out->length_ratio) && !band_has_mode(out))
         values_fault(
             values, "/surface/length_ratio",
             "no wave of this cell lies between lambda_l and lambda_s: take an integer, or a "
@@ -276,38 +294,14 @@ static int read_table(struct surface_case *out, struct values *values, double po
     return status;
 }
 
-static bool is_smooth(size_t n) {
-    for (size_t prime = 2; prime <= 7; prime += prime == 2 ? 1 : 2)
-        while (n % prime == 0)
-            n /= prime;
-    return n == 1;
-}
-
-size_t surface_case_side(double points) {
-    double nearest = round(points);
-    if (fabs(points - nearest) <= ROUNDING * points)
-        return (size_t)nearest;
-    size_t n = (size_t)ceil(points);
-    for (n += n % 2; !is_smooth(n);)
-        n += 2;
-    return n;
-}
-
-static void read_grid(struct surface_case *out, struct values *values,
-                      double points_per_wavelength) {
-    double length = out->length_ratio * out->wavelength_ratio;
-    double points = length * points_per_wavelength;
-    if (isnan(points))
-        return; /* at fault already */
-    double total = out->dimension == 1 ? points : points * points;
-    if (total > SURFACE_POINTS_MOST * (1 + ROUNDING)) {
-        values_fault(values, "/surface/points_per_wavelength",
-                     "a grid of %.0f points a side is too large: at most %.0f", points,
-                     out->dimension == 1 ? SURFACE_POINTS_MOST : floor(sqrt(SURFACE_POINTS_MOST)));
-        return;
-    }
-    size_t side = surface_case_side(points);
-    out->grid = (struct grid){side, out->dimension == 1 ? 1 : side, length, length};
+static void read_lengths(struct surface_case *out, struct values *values) {
+    static const char path[] = "/surface/length_ratio_y";
+    double along_y = values_number(values, path);
+    out->length_ratio = values_number(values, "/surface/length_ratio");
+    if (!isnan(along_y) && out->dimension == 1)
+        values_fault(values, path, "%g: profiles have one length, length_ratio", along_y);
+    bool own = !isnan(along_y) && !isnan(out->length_ratio) && out->dimension == 2;
+    out->length_ratio_y = own ? along_y : out->length_ratio;
 }
 
 int surface_case_fill(struct surface_case *out, struct values *values, struct error *err) {
@@ -315,7 +309,7 @@ int surface_case_fill(struct surface_case *out, struct values *values, struct er
     double dimension = values_number(values, "/surface/dimension");
     double points = values_number(values, "/surface/points_per_wavelength");
     out->dimension = dimension == 1 ? 1 : 2;
-    out->length_ratio = values_number(values, "/surface/length_ratio");
+    read_lengths(out, values);
     out->wavelength_ratio = values_number(values, "/surface/wavelength_ratio");
     out->spectrum.type = (enum spectrum_type)values_choice(values, "/surface/spectrum/type");
     int status = read_heights(out, values, err);
@@ -330,8 +324,9 @@ int surface_case_fill(struct surface_case *out, struct values *values, struct er
         status = read_exponential(out, values, err);
     if (status == 0 && out->spectrum.type == SPECTRUM_TABLE)
         status = read_table(out, values, points, err);
-    if (status == 0)
-        read_grid(out, values, points);
+    if (status == 0 &&
+        !isnan(out->length_ratio * out->wavelength_ratio * points)) /* else at fault */
+        surface_case_grid(out, points, "/surface/points_per_wavelength", values, &out->grid);
     return status;
 }
 
@@ -356,19 +351,32 @@ void surface_case_clear(struct surface_case *surface) {
     *surface = (struct surface_case){0};
 }
 
-size_t surface_case_band(const struct surface_case *surface) {
-    double highest = surface->grid.lx; /* L/lambda_s */
-    if (surface->spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
-        highest = (double)surface->grid.nx;
-    else if (surface->spectrum.type == SPECTRUM_TABLE)
-        highest = surface->spectrum.table_wave_number[surface->spectrum.table_count - 1] *
-                  surface->grid.lx / TWO_PI;
-    size_t nyquist = surface->grid.nx / 2;
+/* Highest wave number along a side of so many points and lambda_s. */
+static size_t side_band(const struct spectrum *spectrum, size_t points, double length) {
+    double highest = length;
+    if (spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
+        highest = (double)points;
+    else if (spectrum->type == SPECTRUM_TABLE)
+        highest = spectrum->table_wave_number[spectrum->table_count - 1] * length / TWO_PI;
+    size_t nyquist = points / 2;
     highest = floor(highest * (1 + ROUNDING));
     return highest < (double)nyquist ? (size_t)highest : nyquist;
 }
 
+struct surface_band surface_case_band(const struct surface_case *surface) {
+    const struct grid *grid = &surface->grid;
+    return (struct surface_band){
+        side_band(&surface->spectrum, grid->nx, grid->lx),
+        surface->dimension == 1 ? 0 : side_band(&surface->spectrum, grid->ny, grid->ly)};
+}
+
+struct surface_band surface_case_own_band(const struct surface_case *surface) {
+    const struct grid *grid = &surface->grid;
+    return surface_case_band_limited(surface) ? surface_case_band(surface)
+                                              : (struct surface_band){grid->nx / 2, grid->ny / 2};
+}
+
 double surface_case_bytes(const struct surface_case *surface) {
-    size_t mode_x = surface_case_band(surface), mode_y = surface->dimension == 1 ? 0 : mode_x;
-    return generator_bytes(&surface->grid, mode_x, mode_y, &surface->options);
+    struct surface_band band = surface_case_band(surface);
+    return generator_bytes(&surface->grid, band.x, band.y, &surface->options);
 }

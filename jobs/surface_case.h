@@ -4,17 +4,24 @@
 
 #include "core/surface/surface.h"
 #include "schema/study/values.h"
+#include <math.h>
 
 struct surface_case {
     int dimension;    /* 1 profile, 2 surface */
-    struct grid grid; /* cell in units of lambda_s = 1: lx = length_ratio * wavelength_ratio */
+    struct grid grid; /* cell in units of lambda_s = 1: lx = length_ratio * wavelength_ratio, ly
+                         likewise; its points are as far apart along y as along x */
     struct spectrum spectrum;
     struct surface_options options;
-    double wavelength_ratio; /* as given, or solved for nayak_alpha */
-    double length_ratio;
-    double *table;                     /* owned: memory behind a table spectrum */
-    struct height_table *height_table; /* owned: heights of one's own; NULL: none */
-    const char *heights_name;          /* of the theory curves of heights */
+    double wavelength_ratio;             /* as given, or solved for nayak_alpha */
+    double length_ratio, length_ratio_y; /* sides of the cell in longest waves; of profiles both are
+                                            the length */
+    double *table;                       /* owned: memory behind a table spectrum */
+    struct height_table *height_table;   /* owned: heights of one's own; NULL: none */
+    const char *heights_name;            /* of the theory curves of heights */
+};
+/* Highest wave numbers along x and y, in units of 2 pi over that side; y of profiles is 0. */
+struct surface_band {
+    size_t x, y;
 };
 /* Reads the surface of a case; adds faults (pointer "/surface/...") where values do not fit their
  * rows or each other, and returns ERROR_INPUT. faults may be NULL: the first fault is the error in
@@ -38,8 +45,28 @@ static inline bool surface_case_band_limited(const struct surface_case *surface)
 static inline bool surface_case_exact(const struct surface_case *surface) {
     return surface_case_band_limited(surface) && surface->options.amplitudes == AMPLITUDES_FIXED;
 }
-/* Highest wave number that the spectrum can have on the grid, in x as in y: at most nx/2. */
-size_t surface_case_band(const struct surface_case *surface);
+/* What the spectrum can have on the grid: at most nx/2 and ny/2. */
+struct surface_band surface_case_band(const struct surface_case *surface);
+/* What the returned surfaces have: the same where they are band limited, else all of the grid. */
+struct surface_band surface_case_own_band(const struct surface_case *surface);
+static inline bool surface_band_fits(struct surface_band band, const struct grid *grid) {
+    return grid->nx > 2 * band.x && (grid_is_profile(grid) || grid->ny > 2 * band.y);
+}
+
+static inline bool surface_case_is_square(const struct surface_case *surface) {
+    return surface->length_ratio == surface->length_ratio_y;
+}
+/* Sides in longest waves: the shorter one, and the geometric mean, which is exact for squares. */
+static inline double surface_case_shorter(const struct surface_case *surface) {
+    return fmin(surface->length_ratio, surface->length_ratio_y);
+}
+static inline double surface_case_mean_side(const struct surface_case *surface) {
+    return sqrt(surface->length_ratio * surface->length_ratio_y);
+}
+/* The longer side in lambda_s, which is as long as the longest wave that the cell can hold. */
+static inline double surface_case_longest(const struct surface_case *surface) {
+    return surface->dimension == 1 ? surface->grid.lx : fmax(surface->grid.lx, surface->grid.ly);
+}
 
 /* Peak bytes of a generator of the surface, with heights on its grid. */
 double surface_case_bytes(const struct surface_case *surface);
@@ -47,6 +74,12 @@ double surface_case_bytes(const struct surface_case *surface);
 /* Points a side of a cell that asks for `points`, at least that: where it is no integer, rounded up
  * to an even number without prime factors above 7. */
 size_t surface_case_side(double points);
+/* The grid of the cell with at least so many points a shortest wave, as far apart along x as along
+ * y: sides of p by q parts of equal length have p n by q n points, n as above. Returns false, and
+ * adds a fault, where it would be too large (path: of what asks for the points) or where sides that
+ * need rounding are no simple ratio; *out is left as it is then. */
+bool surface_case_grid(const struct surface_case *surface, double points, const char *path,
+                       struct values *values, struct grid *out);
 /* A grid has at most 2^31 points. */
 #define SURFACE_POINTS_MOST 2147483648.0
 

@@ -90,6 +90,15 @@ static const struct parameter ROWS[] = {
      .default_json = "8",
      .example_json = "4",
      .help = "L/lambda_l, side of the periodic cell over the longest wavelength"},
+    {.path = "/surface/length_ratio_y",
+     .type = PARAMETER_NUMBER,
+     .minimum = 1,
+     .maximum = 1e5,
+     .sweep = true,
+     .later = true,
+     .example_json = "[2, 4]",
+     .help = "of surfaces: Ly/lambda_l, side of a rectangular cell along y; unless given the cell "
+             "is square. Points are as far apart along y as along x"},
     {.path = "/surface/points_per_wavelength",
      .type = PARAMETER_NUMBER,
      .minimum = 2,
@@ -98,7 +107,8 @@ static const struct parameter ROWS[] = {
      .default_json = "8",
      .example_json = "16",
      .help = "lambda_s/dx, at least; where L/dx is no integer, the grid is rounded up to an even "
-             "number of points without prime factors above 7"},
+             "number of points without prime factors above 7 (of a rectangle: such a number times "
+             "its sides in least whole numbers)"},
     {.path = "/surface/rms_slope",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

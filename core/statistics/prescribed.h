@@ -12,7 +12,7 @@
 int psd_prescribed(const struct spectrum *spectrum, const struct modes *modes, double *wave_number,
                    double *density, struct error *err);
 /* The exponential autocorrelation as it stands; of others, known by their spectrum, that of modes.
- * Arrays have nx/2 + 1 entries. */
+ * Arrays have acf_lags entries. */
 int acf_prescribed(const struct spectrum *spectrum, const struct modes *modes, double *lag,
                    double *correlation, struct error *err);
 

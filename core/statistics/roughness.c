@@ -203,10 +203,17 @@ int psd_measure(const struct grid *grid, const double *z, double *wave_number, d
     return 0;
 }
 
+size_t acf_lags(const struct grid *grid) {
+    static const double EDGE = 1e-9; /* a lag this near to half a side is that */
+    if (grid_is_profile(grid) || grid->lx <= grid->ly)
+        return grid->nx / 2 + 1;
+    return (size_t)(grid->ly / grid_dx(grid) * (1 + EDGE) / 2) + 1;
+}
+
 /* Mean of a field even about the origin over rings of width dx about it, over its value there. */
 static void ring_means(const struct grid *grid, const double *field, double *counts, double *lag,
                        double *mean) {
-    size_t lags = grid->nx / 2 + 1;
+    size_t lags = acf_lags(grid);
     double dx = grid_dx(grid), dy = grid_is_profile(grid) ? 0 : grid_dy(grid);
     for (size_t r = 0; r < lags; r++)
         counts[r] = mean[r] = 0;
@@ -229,7 +236,7 @@ static void ring_means(const struct grid *grid, const double *field, double *cou
 
 int ring_average(const struct grid *grid, const double *field, double *lag, double *mean,
                  struct error *err) {
-    size_t lags = grid->nx / 2 + 1;
+    size_t lags = acf_lags(grid);
     double *counts = array_create(lags, sizeof *counts);
     if (counts == NULL)
         return error_memory(err, lags * sizeof *counts, "rings of lags");

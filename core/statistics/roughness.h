@@ -33,8 +33,10 @@ void psd_of_modes(const struct modes *modes, double *wave_number, double *densit
 /* The same over the waves of a ring that lie within the band, so that rings at its ends have its
  * density, too. */
 void psd_of_band(const struct modes *modes, double *wave_number, double *density);
-/* Measures the autocorrelation R(r)/R(0) at lags 0, dx, 2dx … (nx/2 + 1 of them), radially averaged
- * for surfaces. */
+/* Returns the number of lags 0, dx, 2dx ... up to half of the shorter side, so that all directions
+ * of a ring are there: nx/2 + 1 of profiles and squares. */
+size_t acf_lags(const struct grid *grid);
+/* Measures the autocorrelation R(r)/R(0) at these lags, radially averaged for surfaces. */
 int acf_measure(const struct grid *grid, const double *z, double *lag, double *correlation,
                 struct error *err);
 /* Means of a field over the same rings, over its value at the origin, about which it is even. */

@@ -144,15 +144,22 @@ static bool line_search(struct ring_search *search) {
     return false;
 }
 
+static int ratio_refused(int dimension, double hurst, double ratio_rolloff, double length,
+                         double most, struct error *err) {
+    if (length >= 1 && length < most && ratio_rolloff >= 1 && hurst >= 0 && hurst <= 1 &&
+        (dimension == 1 || dimension == 2))
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "dimension %d, hurst %g, roll-off ratio %g, length ratio %g: allowed: 1 or 2, "
+                     "0 to 1, 1 or more, 1 to %g",
+                     dimension, hurst, ratio_rolloff, length, most);
+}
+
 int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, double length_ratio,
                             double alpha, double *ratio, double *reached, struct error *err) {
-    if (!(length_ratio >= 1 && length_ratio < RINGS_MOST) || !(ratio_rolloff >= 1) ||
-        !(hurst >= 0 && hurst <= 1) || (dimension != 1 && dimension != 2))
-        return error_set(
-            err, ERROR_INPUT,
-            "dimension %d, hurst %g, roll-off ratio %g, length ratio %g: allowed: 1 or 2, "
-            "0 to 1, 1 or more, 1 to %d",
-            dimension, hurst, ratio_rolloff, length_ratio, RINGS_MOST);
+    int status = ratio_refused(dimension, hurst, ratio_rolloff, length_ratio, RINGS_MOST, err);
+    if (status != 0)
+        return status;
     struct ring_search search = {
         .sums = {dimension, hurst, length_ratio, length_ratio * ratio_rolloff, 0, 0, 0},
         .alpha = alpha,
@@ -160,10 +167,10 @@ int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, d
         .least_alpha = NAN,
         .most_alpha = NAN,
     };
-    size_t bytes = 2 * (2 * RINGS_MOST + 1) * sizeof(double);
-    double *work = dimension == 2 ? malloc(bytes) : NULL;
+    const size_t room = 2 * (2 * RINGS_MOST + 1);
+    double *work = dimension == 2 ? array_create(room, sizeof *work) : NULL;
     if (dimension == 2 && work == NULL)
-        return error_memory(err, bytes, "rings of modes");
+        return error_memory(err, room * sizeof *work, "rings of modes");
     bool passed = dimension == 2 ? plane_search(&search, work) : line_search(&search);
     free(work);
     if (!passed)
@@ -172,6 +179,99 @@ int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, d
                          "waves; allowed: %.6g to %.6g",
                          alpha, hurst, length_ratio, search.least_alpha, search.most_alpha);
     *ratio = sqrt(search.best_square) / length_ratio;
+    *reached = search.best_alpha;
+    return 0;
+}
+
+/* --- rectangles --- */
+
+/* Waves of one quadrant, counted in those along the longer side: that many, of |m|^2 = square. */
+struct lattice_ring {
+    double square, points, fourth;
+};
+
+static int compare_rings(const void *a, const void *b) {
+    double x = ((const struct lattice_ring *)a)->square,
+           y = ((const struct lattice_ring *)b)->square;
+    return (x > y) - (x < y);
+}
+
+/* Waves whose |m|^2 differ by less than this part are of one ring. */
+static const double SAME_RING = 1e-9;
+
+/* Integers behind rounding are told as such: they bound an annulus. */
+static double square_of(double x2, double y2) {
+    double square = x2 + y2, whole = round(square);
+    return fabs(square - whole) <= SAME_RING * square ? whole : square;
+}
+
+/* The waves with r <= |m| < r + 1, where those along y are `times` as far apart as those along x
+ * (times >= 1), in rising order; returns how many. rings has room for 4 (r + 2). */
+static size_t lattice_annulus(double r, double times, struct lattice_ring *rings) {
+    double inner = r * r, outer = (r + 1) * (r + 1);
+    size_t count = 0;
+    for (size_t row = 0; (double)row * times < r + 1; row++) {
+        double y = (double)row * times, y2 = y * y;
+        size_t x = (size_t)fmax(0, ceil(sqrt(fmax(0, inner - y2))) - 1);
+        for (double x2 = (double)x * (double)x; square_of(x2, y2) < outer;
+             x++, x2 = (double)x * (double)x) {
+            double copies = (x != 0 ? 2 : 1) * (row != 0 ? 2 : 1);
+            if (square_of(x2, y2) >= inner)
+                rings[count++] = (struct lattice_ring){square_of(x2, y2), copies,
+                                                       copies * (x2 * x2 + y2 * y2) / 2};
+        }
+    }
+    qsort(rings, count, sizeof *rings, compare_rings);
+    return count;
+}
+
+/* Beyond so many waves along the longer side no grid of 8 points a wave is small enough. */
+enum { LATTICE_MOST = 6000 };
+
+static bool lattice_search(struct ring_search *search, double times, struct lattice_ring *rings) {
+    for (size_t r = (size_t)search->sums.lowest; r < LATTICE_MOST; r++) {
+        size_t count = lattice_annulus((double)r, times, rings), next;
+        for (size_t first = 0; first < count; first = next) {
+            struct lattice_ring ring = rings[first];
+            for (next = first + 1;
+                 next < count && rings[next].square <= ring.square * (1 + SAME_RING); next++) {
+                ring.points += rings[next].points;
+                ring.fourth += rings[next].fourth;
+            }
+            if (ring.square > 0 && ring_visit(search, ring.square, ring.points, ring.fourth))
+                return true;
+        }
+    }
+    return false;
+}
+
+int spectrum_ratio_rectangle(double hurst, double ratio_rolloff, double length_x, double length_y,
+                             double alpha, double *ratio, double *reached, struct error *err) {
+    double longer = fmax(length_x, length_y), shorter = fmin(length_x, length_y);
+    int status = ratio_refused(2, hurst, ratio_rolloff, longer, LATTICE_MOST, err);
+    if (status == 0)
+        status = ratio_refused(2, hurst, ratio_rolloff, shorter, LATTICE_MOST, err);
+    if (status != 0)
+        return status;
+    struct ring_search search = {
+        .sums = {2, hurst, longer, longer * ratio_rolloff, 0, 0, 0},
+        .alpha = alpha,
+        .best_alpha = NAN,
+        .least_alpha = NAN,
+        .most_alpha = NAN,
+    };
+    size_t most = 4 * (LATTICE_MOST + 2);
+    struct lattice_ring *rings = array_create(most, sizeof *rings);
+    if (rings == NULL)
+        return error_memory(err, most * sizeof *rings, "rings of modes");
+    bool passed = lattice_search(&search, longer / shorter, rings);
+    free(rings);
+    if (!passed)
+        return error_set(err, ERROR_NUMERIC,
+                         "no wavelength ratio gives alpha = %g at hurst = %g and a cell of %g by "
+                         "%g long waves; allowed: %.6g to %.6g",
+                         alpha, hurst, length_x, length_y, search.least_alpha, search.most_alpha);
+    *ratio = sqrt(search.best_square) / longer;
     *reached = search.best_alpha;
     return 0;
 }

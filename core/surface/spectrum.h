@@ -42,5 +42,8 @@ int spectrum_ratio_continuous(int dimension, double hurst, double ratio_rolloff,
  * alpha is nearest, and *reached says which alpha that is. */
 int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, double length_ratio,
                             double alpha, double *ratio, double *reached, struct error *err);
+/* The same of surfaces on a cell of length_x by length_y long waves. */
+int spectrum_ratio_rectangle(double hurst, double ratio_rolloff, double length_x, double length_y,
+                             double alpha, double *ratio, double *reached, struct error *err);
 
 #endif

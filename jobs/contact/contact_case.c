@@ -37,7 +37,8 @@ bool contact_case_stretches(const struct contact_case *one_case, size_t model) {
 double contact_case_block_bound(const struct contact_case *one_case, size_t model) {
     static const double SAFETY = 10;
     /* 1 - (cosh 2x - 1)/(sinh 2x + 2x) (compliance.h), without what overflows and cancels. */
-    double x = 2 * M_PI * one_case->blocks[model].height / one_case->surface.grid.lx;
+    double longest = surface_case_longest(&one_case->surface);
+    double x = 2 * M_PI * one_case->blocks[model].height / longest;
     double falling = exp(-2 * x);
     if (!(falling > 0))
         return 0;

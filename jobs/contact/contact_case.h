@@ -29,14 +29,14 @@ struct contact_surfaces {
     double length;               /* over that of the case */
     struct surface_case surface; /* borrows from that of the case; its grid is that on which
                                     surfaces are generated, without points where there are none */
-    size_t band;                 /* highest wave number of a surface on it */
+    struct surface_band band;    /* of a surface on it */
     struct contact_level level;  /* as fine as the probe, of this grid */
     uint64_t interval;           /* of realisations, one of which is beside such a surface; 2^n */
 };
 
 struct contact_case {
     struct surface_case surface; /* and its own grid, on which realisations are generated */
-    size_t band;                 /* highest wave number of a realisation on its own grid */
+    struct surface_band band;    /* of a realisation on its own grid */
     size_t model_count;
     const struct contact_model *models[CONTACT_MODELS_MOST]; /* in the order given */
     struct block blocks[CONTACT_MODELS_MOST];                /* one a model */

@@ -16,7 +16,7 @@ static int read_height(const struct contact_case *one_case, struct values *value
     if (!isfinite(*out) || one_case->surface.grid.nx == 0)
         return 0;
     if (unit == HEIGHT_LENGTHS) {
-        *out *= one_case->surface.grid.lx;
+        *out *= surface_case_longest(&one_case->surface);
         return 0;
     }
     double rms_height, rms_slope;
@@ -56,7 +56,8 @@ static int read_blocks(struct contact_case *out, struct values *values, struct e
         out->blocks[m] = (struct block){
             .model = model->block,
             .poisson = poisson,
-            .height = !isnan(height) ? height : model->default_height * out->surface.grid.lx,
+            .height = !isnan(height) ? height
+                                     : model->default_height * surface_case_longest(&out->surface),
             .layer_growth = growth,
             .weighting = weighting};
     }
@@ -124,28 +125,26 @@ static void read_estimators(struct contact_case *out, struct values *values) {
  * so that it cannot be resampled; but it can be part of a finer one. */
 static bool level_make(struct contact_level *out, const struct contact_case *one_case,
                        double points, const char *path, struct values *values) {
-    const struct grid *own = &one_case->surface.grid;
-    double wanted = own->lx * points; /* lambda_s is 1 */
-    double total = one_case->surface.dimension == 1 ? wanted : wanted * wanted;
-    if (total > SURFACE_POINTS_MOST * (1 + ROUNDING)) {
-        values_fault(values, path, "a grid of %.0f points a side is too large: at most %.0f",
-                     wanted,
-                     one_case->surface.dimension == 1 ? SURFACE_POINTS_MOST
-                                                      : floor(sqrt(SURFACE_POINTS_MOST)));
+    const struct grid *own = &one_case->surface.grid, *grid = &out->grid;
+    *out = (struct contact_level){.points = points};
+    if (!surface_case_grid(&one_case->surface, points, path, values, &out->grid))
         return false;
-    }
-    size_t side = surface_case_side(wanted);
-    *out = (struct contact_level){.points = points,
-                                  .grid = {side, own->ny == 1 ? 1 : side, own->lx, own->ly},
-                                  .stride = own->nx % side == 0 ? own->nx / side : 0};
-    if (out->stride > 0 || side > 2 * one_case->band)
+    if (own->nx % grid->nx == 0 && own->ny % grid->ny == 0)
+        out->stride = own->nx / grid->nx;
+    if (out->stride > 0 || surface_band_fits(one_case->band, grid))
         return true;
     values_fault(
         values, path,
         "%g points a shortest wave, %zu in all, neither hold the %zu waves of the surface nor "
         "divide its own %zu points (points_per_wavelength)",
-        points, side, one_case->band, own->nx);
+        points, grid->nx, one_case->band.x, own->nx);
     return false;
+}
+
+/* Rectangles may be rounded up so far that the finer of two levels has fewer points. */
+static bool is_finer(const struct contact_level *level, const struct contact_level *before) {
+    bool rectangle = level->grid.nx != level->grid.ny && !grid_is_profile(&level->grid);
+    return rectangle ? level->grid.nx > before->grid.nx : level->grid.nx != before->grid.nx;
 }
 
 static int read_levels(struct contact_case *out, struct values *values, struct error *err) {
@@ -165,7 +164,7 @@ static int read_levels(struct contact_case *out, struct values *values, struct e
             out->level_count++;
     }
     for (size_t l = 1; l < out->level_count; l++)
-        if (out->levels[l].grid.nx == out->levels[l - 1].grid.nx) {
+        if (!is_finer(&out->levels[l], &out->levels[l - 1])) {
             values_fault(values, path, "%g and %g give the same grid of %zu points a side",
                          out->levels[l - 1].points, out->levels[l].points, out->levels[l].grid.nx);
             break;
@@ -234,8 +233,7 @@ static int read_contact(struct contact_case *out, struct values *values, struct 
     out->tolerance = values_number(values, "/contact/tolerance");
     out->stiffness = values_choice(values, "/contact/stiffness") != STIFFNESS_OMITTED;
     if (surface->grid.nx > 0)
-        out->band =
-            surface_case_band_limited(surface) ? surface_case_band(surface) : surface->grid.nx / 2;
+        out->band = surface_case_own_band(surface);
     read_estimators(out, values);
     int status = read_blocks(out, values, err);
     if (status == 0)

@@ -35,16 +35,14 @@ static bool has_any(const struct contact_case *one_case) {
 
 /* --- the choice --- */
 
-/* The grid of a cell `length` times as long, of the same distances; false where its points are no
- * integer, or too many. */
+/* The grid of a cell `length` times as long, and wide, of the same distances; false where its
+ * points are no integers, or too many. */
 static bool scale_grid(const struct grid *grid, double length, struct grid *out) {
-    double side = length * (double)grid->nx;
-    double points = grid_is_profile(grid) ? side : side * side;
     bool profile = grid_is_profile(grid);
-    if (fmod(side, 1) != 0 || points > SURFACE_POINTS_MOST)
+    double along_x = length * (double)grid->nx, along_y = profile ? 1 : length * (double)grid->ny;
+    if (fmod(along_x, 1) != 0 || fmod(along_y, 1) != 0 || along_x * along_y > SURFACE_POINTS_MOST)
         return false;
-    *out = (struct grid){(size_t)side, profile ? 1 : (size_t)side, length * grid->lx,
-                         length * grid->ly};
+    *out = (struct grid){(size_t)along_x, (size_t)along_y, length * grid->lx, length * grid->ly};
     return true;
 }
 
@@ -55,16 +53,17 @@ static bool choose_grids(const struct contact_case *one_case, struct contact_sur
     out->level = one_case->probe;
     *surface = one_case->surface;
     surface->length_ratio *= out->length;
+    surface->length_ratio_y *= out->length;
     if (!scale_grid(&one_case->probe.grid, out->length, &out->level.grid) ||
         !scale_grid(&one_case->surface.grid, out->length, &surface->grid))
         return false;
-    out->band =
-        surface_case_band_limited(surface) ? surface_case_band(surface) : surface->grid.nx / 2;
-    if (surface->options.heights.type == HEIGHTS_GAUSSIAN && out->level.grid.nx > 2 * out->band) {
+    out->band = surface_case_own_band(surface);
+    if (surface->options.heights.type == HEIGHTS_GAUSSIAN &&
+        surface_band_fits(out->band, &out->level.grid)) {
         surface->grid = out->level.grid;
         out->level.stride = 1;
     }
-    return out->level.stride > 0 || out->level.grid.nx > 2 * out->band;
+    return out->level.stride > 0 || surface_band_fits(out->band, &out->level.grid);
 }
 
 static double surface_seconds(const struct contact_case *one_case, enum contact_length length) {
@@ -102,8 +101,12 @@ static uint64_t interval_of(double seconds, double allowed, uint64_t least) {
 }
 
 static bool holds_waves(const struct contact_case *one_case, double length) {
-    double waves = length * one_case->surface.length_ratio;
-    return waves >= 1 && fabs(waves - round(waves)) <= ROUNDING * waves;
+    const double waves[] = {length * one_case->surface.length_ratio,
+                            length * one_case->surface.length_ratio_y};
+    for (size_t side = 0; side < 2; side++)
+        if (!(waves[side] >= 1 && fabs(waves[side] - round(waves[side])) <= ROUNDING * waves[side]))
+            return false;
+    return true;
 }
 
 /* Returns a quarter or half, whichever first holds whole longest waves; 0 where neither does. */

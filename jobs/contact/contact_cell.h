@@ -1,8 +1,8 @@
-/* What the finite length of the cell changes: surfaces of twice the length_ratio, and of a quarter
- * or half of it, of random numbers of their own, are pressed on a half-space on the coarse mesh of
- * the probe (contact_probe.h), beside some of the realisations. What the length changes bounds what
- * is left (contact_cell_share): longer surfaces see the lengths that matter, shorter ones are so
- * cheap that many of them tell a change well.
+/* What the finite length of the cell changes: surfaces of twice its length_ratio, and of a quarter
+ * or half of it (both sides of a rectangle, whose shape stays), of random numbers of their own, are
+ * pressed on a half-space on the coarse mesh of the probe (contact_probe.h), beside some of the
+ * realisations. What the length changes bounds what is left (contact_cell_share): longer surfaces
+ * see the lengths that matter, shorter ones are so cheap that many of them tell a change well.
  *
  * Such a surface is a function of the seed and its realisation, and cases that share their random
  * numbers share it. The other waves, the heights and the scale are those of the case. They are so

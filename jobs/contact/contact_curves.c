@@ -184,8 +184,9 @@ static int append_areas(struct contact_curve_maker *maker, struct error *err) {
 }
 
 static int append_others(struct contact_curve_maker *maker, struct error *err) {
-    bool surface = maker->one_case->surface.dimension == 2;
-    double waves = pow(maker->one_case->surface.length_ratio, maker->one_case->surface.dimension);
+    const struct surface_case *own = &maker->one_case->surface;
+    bool surface = own->dimension == 2;
+    double waves = pow(surface_case_mean_side(own), own->dimension);
     const struct row rows[] = {
         {"mean_gap", NULL, "mean gap/sqrt(m0)", MEASURE_GAP, 1},
         {"stiffness", NULL, "K sqrt(m0)/(E* h'_rms)", MEASURE_STIFFNESS, 1},

@@ -57,7 +57,8 @@ static const struct parameter ROWS[] = {
      .unit = "the named one",
      .example_json = "{\"lengths\": 2}",
      .help = "height of the block, in RMS heights of the surface (rms_heights) or in sides of the "
-             "cell (lengths); unless given, halfspace is infinite, layered and full are 1.5 sides "
+             "cell, the longer one of a rectangle (lengths); unless given, halfspace is infinite, "
+             "layered and full are 1.5 sides "
              "high; full: 4 RMS heights or more"},
     {.path = "/contact/layer_growth",
      .type = PARAMETER_NUMBER,

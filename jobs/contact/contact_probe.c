@@ -21,7 +21,9 @@ void contact_probe_choose(struct contact_case *one_case) {
     const struct contact_level *coarsest = &one_case->levels[0];
     struct contact_level *probe = &one_case->probe;
     *probe = *coarsest;
-    if (coarsest->stride == 0 || coarsest->grid.nx % 2 != 0 || coarsest->points < 2 * PROBE_POINTS)
+    bool even = coarsest->grid.nx % 2 == 0 &&
+                (grid_is_profile(&coarsest->grid) || coarsest->grid.ny % 2 == 0);
+    if (coarsest->stride == 0 || !even || coarsest->points < 2 * PROBE_POINTS)
         return;
     probe->points /= 2;
     probe->stride *= 2;

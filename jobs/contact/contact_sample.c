@@ -1,10 +1,11 @@
 #include "jobs/contact/contact_sample.h"
 
-int contact_sample(const struct grid *own, size_t band, const struct contact_level *level,
-                   const double *z, double *out, struct error *err) {
+int contact_sample(const struct grid *own, struct surface_band band,
+                   const struct contact_level *level, const double *z, double *out,
+                   struct error *err) {
     const struct grid *grid = &level->grid;
     if (level->stride == 0)
-        return surface_resample(own, z, grid, out, band, grid_is_profile(own) ? 0 : band, err);
+        return surface_resample(own, z, grid, out, band.x, band.y, err);
     for (size_t j = 0; j < grid->ny; j++) {
         const double *row = z + j * level->stride * own->nx;
         for (size_t i = 0; i < grid->nx; i++)

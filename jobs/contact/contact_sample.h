@@ -5,8 +5,9 @@
 #include "jobs/contact/contact_case.h"
 
 /* Heights on the grid `own`, of waves up to `band`, sampled on that of a level. */
-int contact_sample(const struct grid *own, size_t band, const struct contact_level *level,
-                   const double *z, double *out, struct error *err);
+int contact_sample(const struct grid *own, struct surface_band band,
+                   const struct contact_level *level, const double *z, double *out,
+                   struct error *err);
 /* Heights on the own grid of the case, sampled on that of a level. */
 int contact_level_sample(const struct contact_case *one_case, const struct contact_level *level,
                          const double *z, double *out, struct error *err);

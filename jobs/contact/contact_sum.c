@@ -43,7 +43,8 @@ static void bound_added(const struct contact_answer *answer, enum role role, dou
     const struct surface_case *own = &component_case(answer->of[role])->surface;
     if (own->length_ratio < component_case(answer->of[ROLE_BASE])->surface.length_ratio)
         sum->cell[load] =
-            hypot(sum->cell[load], fmin(1, share / pow(own->length_ratio, own->dimension)) * added);
+            hypot(sum->cell[load],
+                  fmin(1, share / pow(surface_case_shorter(own), own->dimension)) * added);
 }
 
 /* The changes of the cheap model from a level on: to the next one, or with a limit to that; what

@@ -79,10 +79,10 @@ static inline double component_variance(const struct target_component *component
  * errors of 0.1 to 0.4; on longer cells chance hides it. */
 #define HEIGHTS_CELL 1.4
 
-/* What is added on a cell of L longest waves a side, over its value on a long one, is within these
- * over L (profiles) or L^2 (surfaces) of 1: a difference of levels, and one of models whose areas
- * are stretched alike. Measured on profiles of slope 0.1, loads of 0.01 to 0.3, L from 2 to 64:
- * levels 1.3, models 0.7 (Weibull minimum, C = 1; Gaussian ones change less). */
+/* What is added on a cell of L longest waves a side (its shorter one), over its value on a long
+ * one, is within these over L (profiles) or L^2 (surfaces) of 1: a difference of levels, and one of
+ * models whose areas are stretched alike. Measured on profiles of slope 0.1, loads of 0.01 to 0.3,
+ * L from 2 to 64: levels 1.3, models 0.7 (Weibull minimum, C = 1; Gaussian ones change less). */
 #define LEVELS_CELL 1.6
 #define MODELS_CELL 0.8
 

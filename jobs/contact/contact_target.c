@@ -32,7 +32,9 @@ struct choices {
     bool own_grid; /* the surface depends on the grid that it is made on, which stays */
     double ladder[LADDER_MOST];
     size_t levels;
+    /* Lengths are those of the shorter side where the cell is a rectangle, as those of variants. */
     double length_ratio, mesh_length_ratio, fine_length_ratio, model_length_ratio;
+    double sides[2];         /* of a rectangle that the study names, along x and y; else 0 */
     double wavelength_ratio; /* in place of nayak_alpha, which gives another on each cell; or NaN */
 };
 
@@ -63,6 +65,18 @@ static int put(cJSON *parameters, const char *table, const char *name, cJSON *va
 static void take_out(cJSON *parameters, const char *table, const char *name) {
     cJSON_DeleteItemFromObjectCaseSensitive(cJSON_GetObjectItemCaseSensitive(parameters, table),
                                             name);
+}
+
+/* A rectangle keeps its shape. */
+static int put_length(cJSON *parameters, const struct choices *choices, double length) {
+    static const char *const names[] = {"length_ratio", "length_ratio_y"};
+    if (!(choices->sides[0] > 0))
+        return put(parameters, "surface", "length_ratio", cJSON_CreateNumber(length));
+    int status = 0;
+    for (size_t a = 0; a < 2 && status == 0; a++)
+        status = put(parameters, "surface", names[a],
+                     cJSON_CreateNumber(choices->sides[a] * (length / choices->length_ratio)));
+    return status;
 }
 
 /* A height in lengths of the cell stays the same height. */
@@ -109,7 +123,7 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
         status =
             put(all, "contact", "levels", cJSON_CreateDoubleArray(ladder, (int)variant->count));
     if (status == 0)
-        status = put(all, "surface", "length_ratio", cJSON_CreateNumber(variant->length_ratio));
+        status = put_length(all, choices, variant->length_ratio);
     if (status == 0 && !isnan(choices->wavelength_ratio)) {
         take_out(all, "surface", "nayak_alpha");
         status =
@@ -186,12 +200,25 @@ static double length_of_heights(const struct choices *choices, const cJSON *para
 /* Cells that are chosen begin with a length that is often enough; four times as long ones follow
  * where the change to them asks for it. What is added to the value on them changes less with the
  * length, and costs more: shorter cells do for it. */
-static void read_length(struct choices *out, const cJSON *document, const cJSON *parameters) {
+static void read_length(struct choices *out, const cJSON *document, const cJSON *parameters,
+                        struct fault_list *faults) {
+    static const char path[] = "/surface/length_ratio_y";
     size_t steps = steps_of(out->target.error);
     double usual = ldexp(out->profile ? 32 : 8, (int)(out->profile ? steps : steps / 2));
+    double named = json_number_at(parameters, "/surface/length_ratio", 8);
+    double along_y = json_number_at(parameters, path, named);
     out->length = json_at(document, "/surface/length_ratio") == NULL;
-    out->length_ratio = out->length ? fmax(usual, length_of_heights(out, parameters))
-                                    : json_number_at(parameters, "/surface/length_ratio", 8);
+    if (out->length && json_at(parameters, path) != NULL)
+        fault_add(faults, path,
+                  "a target chooses the length of square cells alone: give "
+                  "length_ratio, too");
+    if (along_y != named && !out->profile) {
+        out->sides[0] = named;
+        out->sides[1] = along_y;
+    }
+    out->length_ratio = out->length         ? fmax(usual, length_of_heights(out, parameters))
+                        : out->sides[0] > 0 ? fmin(named, along_y)
+                                            : named;
     out->mesh_length_ratio = out->length_ratio > usual ? out->length_ratio / 4 : out->length_ratio;
     out->fine_length_ratio = fmin(out->length_ratio, out->profile ? 16 : 4);
     out->model_length_ratio = fmin(out->length_ratio, out->profile ? ldexp(4, (int)steps) : 1);
@@ -205,9 +232,7 @@ static int read_alpha(struct choices *out, const cJSON *parameters, struct fault
     if (json_at(parameters, "/surface/nayak_alpha") == NULL)
         return 0;
     cJSON *all = cJSON_Duplicate(parameters, true);
-    int status = all == NULL
-                     ? ERROR_MEMORY
-                     : put(all, "surface", "length_ratio", cJSON_CreateNumber(out->length_ratio));
+    int status = all == NULL ? ERROR_MEMORY : put_length(all, out, out->length_ratio);
     if (status != 0)
         status = error_memory(err, 0, "the parameters of a surface");
     else
@@ -235,7 +260,7 @@ static int read_choices(struct choices *out, const cJSON *document, const cJSON 
     out->profile = json_number_at(parameters, "/surface/dimension", 2) == 1;
     out->weighting = out->profile && json_at(document, "/contact/gap_weighting") == NULL;
     read_ladder(out, document, parameters);
-    read_length(out, document, parameters);
+    read_length(out, document, parameters, faults);
     return read_alpha(out, parameters, faults, err);
 }
 

@@ -20,7 +20,8 @@ static void add_level(struct statistics_case *out, struct values *values, double
         values_fault(values, LEVELS,
                      "%g is no whole part of the surface's points_per_wavelength of %g, with %zu "
                      "points a side: levels are made of its own points",
-                     points, own, grid->nx);
+                     points, own,
+                     grid->nx % (size_t)stride != 0 || grid_is_profile(grid) ? grid->nx : grid->ny);
     else if (stride > 1)
         out->strides[out->level_count++] = (size_t)stride;
 }

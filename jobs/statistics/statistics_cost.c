@@ -30,9 +30,11 @@ static const double NINE_POINT_SECONDS = 0.06, FEW_POINT_SECONDS = 0.015;
 enum { CURVES = 9, HEIGHT_CURVES = 5 };
 
 /* The joint density is taken to have as many cells as ten realisations have summits, acf and psd
- * together a point for each point of a side. */
+ * together a point for each point of the shorter side. */
 static double expected_case_seconds(const struct statistics_case *one_case, double summits) {
-    size_t heights = one_case->height.count, side = one_case->surface.grid.nx;
+    const struct grid *grid = &one_case->surface.grid;
+    size_t side = grid_is_profile(grid) || grid->nx < grid->ny ? grid->nx : grid->ny;
+    size_t heights = one_case->height.count;
     size_t points = HEIGHT_CURVES * heights + one_case->equivalent.count + side;
     double cells = fmin(10 * summits, (double)(heights * one_case->equivalent.count) / 4);
     double theories = (double)heights * (one_case->surface.dimension == 1 ? PROFILE_BIN_SECONDS
@@ -48,23 +50,20 @@ static double expected_case_seconds(const struct statistics_case *one_case, doub
 void statistics_case_estimate(const struct statistics_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
     const struct grid *grid = &surface->grid;
-    size_t mode_x = surface_case_band(surface);
-    size_t mode_y = surface->dimension == 1 ? 0 : mode_x;
+    const struct surface_band band = surface_case_band(surface);
+    const struct surface_band own = surface_case_own_band(surface);
     double points = (double)grid_points(grid), alpha;
     double summits =
         fmax(1, spectrum_expected_summits(&surface->spectrum, grid, surface->length_ratio,
-                                          (double)mode_x, &alpha));
+                                          (double)band.x, &alpha));
     double spread = sqrt(fmax(0.05, 1 - 0.8968 / fmax(alpha, 1))); /* of summit heights */
-    bool exact = surface_case_exact(surface), limited = surface_case_band_limited(surface);
+    bool exact = surface_case_exact(surface);
     out->nx = grid->nx;
     out->ny = grid->ny;
     /* a list of summits doubles as it grows; spectra of height maps take a transform of the grid */
     out->memory_bytes =
-        generator_bytes(grid, mode_x, mode_y, &surface->options) +
-        statistics_generation_bytes(one_case) +
-        (limited ? summit_finder_bytes(grid, one_case->stencil, one_case->curvature, mode_x, mode_y)
-                 : summit_finder_bytes(grid, one_case->stencil, one_case->curvature, grid->nx / 2,
-                                       grid->ny / 2)) +
+        surface_case_bytes(surface) + statistics_generation_bytes(one_case) +
+        summit_finder_bytes(grid, one_case->stencil, one_case->curvature, own.x, own.y) +
         statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
         6 * summits * sizeof(struct summit) + (exact ? 0 : 24 * points) + 6e6;
     out->seconds = expected_seconds(one_case);

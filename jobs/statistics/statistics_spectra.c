@@ -14,7 +14,7 @@ size_t spectra_densities(const struct statistics_case *one_case) {
 }
 
 size_t spectra_correlations(const struct statistics_case *one_case) {
-    return surface_case_exact(&one_case->surface) ? 0 : one_case->surface.grid.nx / 2 + 1;
+    return surface_case_exact(&one_case->surface) ? 0 : acf_lags(&one_case->surface.grid);
 }
 
 /* What measured densities are divided by before they are summed, so that the sums are exact. */
@@ -130,11 +130,30 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
     return add_curve(result, &curve, columns.theory + 1, err);
 }
 
-static size_t correlation_side(const struct statistics_case *one_case) {
-    size_t side = one_case->surface.grid.nx, needed = 2 * surface_case_band(&one_case->surface) + 2;
+static size_t correlation_side(size_t side, size_t band) {
+    size_t needed = 2 * band + 2;
     if (side <= ACF_GRID || side <= needed)
         return side;
     return needed > ACF_GRID ? needed : ACF_GRID;
+}
+
+/* The grid that the prescribed autocorrelation is sampled on. Both sides of a rectangle are
+ * coarsened alike, as far as both have enough. */
+static struct grid correlation_grid(const struct surface_case *surface) {
+    const struct surface_band band = surface_case_band(surface);
+    struct grid grid = surface->grid;
+    size_t nx = correlation_side(grid.nx, band.x), ny = correlation_side(grid.ny, band.y);
+    if (!surface_case_exact(surface) || nx == grid.nx)
+        return grid;
+    if (grid_is_profile(&grid) || grid.nx == grid.ny) {
+        grid.nx = nx;
+        grid.ny = grid_is_profile(&grid) ? 1 : nx;
+        return grid;
+    }
+    double part = fmax((double)nx / (double)grid.nx, (double)ny / (double)grid.ny);
+    grid.nx = (size_t)ceil(part * (double)grid.nx);
+    grid.ny = (size_t)ceil(part * (double)grid.ny);
+    return grid;
 }
 
 /* Computes the autocorrelation at *n lags: y is that of the discrete spectrum, theory what it was
@@ -143,11 +162,9 @@ static int prescribed_correlation(const struct statistics_case *one_case, const 
                                   struct case_result *result, struct spectrum_columns *out,
                                   size_t *n, struct error *err) {
     struct modes *coarse = NULL;
-    struct grid grid = one_case->surface.grid;
+    struct grid grid = correlation_grid(&one_case->surface);
     int status = 0;
-    grid.nx = surface_case_exact(&one_case->surface) ? correlation_side(one_case) : grid.nx;
-    grid.ny = one_case->surface.dimension == 1 ? 1 : grid.nx;
-    *n = grid.nx / 2 + 1;
+    *n = acf_lags(&grid);
     if (grid.nx != modes->grid.nx) {
         status = modes_create(&coarse, &one_case->surface.spectrum, &grid, err);
         modes = coarse;

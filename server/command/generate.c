@@ -138,14 +138,9 @@ static int characterise(const struct generate_order *order, const struct surface
                         const struct surface_report *report, const double *z, struct error *err) {
     bool beside = writes_surface(order) && order->output == NULL;
     FILE *file = beside ? stderr : stdout;
-    size_t mode_x = surface_case_band(surface);
-    size_t mode_y = surface->dimension == 1 ? 0 : mode_x;
-    if (!surface_case_band_limited(surface)) {
-        mode_x = surface->grid.nx / 2;
-        mode_y = surface->grid.ny / 2;
-    }
+    const struct surface_band band = surface_case_own_band(surface);
     struct characterisation values = {0};
-    int status = characterise_heights(&values, &surface->grid, z, mode_x, mode_y, err);
+    int status = characterise_heights(&values, &surface->grid, z, band.x, band.y, err);
     if (status != 0)
         return status;
     characterisation_print(file, &values);

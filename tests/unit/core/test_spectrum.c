@@ -102,6 +102,42 @@ static void alpha_out_of_reach(void **state) {
                      ERROR_NUMERIC);
 }
 
+/* Rings of a rectangle that is a square are the square's, and those of any rectangle add up to the
+ * moments of its modes; a cell that is turned has the same. */
+static void ratios_on_rectangles(void **state) {
+    (void)state;
+    static const double SIDES[][2] = {{8, 4}, {8, 3}, {3, 2}, {5.5, 1.25}, {2, 1}};
+    double ratio, reached, square, square_reached;
+    for (double hurst = 0.2; hurst < 1; hurst += 0.3) {
+        assert_int_equal(spectrum_ratio_discrete(2, hurst, 2, 4, 4, &square, &square_reached, NULL),
+                         0);
+        assert_int_equal(spectrum_ratio_rectangle(hurst, 2, 4, 4, 4, &ratio, &reached, NULL), 0);
+        check_relative(ratio, square, 1e-14);
+        check_relative(reached, square_reached, 1e-12);
+    }
+    for (size_t s = 0; s < sizeof SIDES / sizeof *SIDES; s++) {
+        double x = SIDES[s][0], y = SIDES[s][1], turned;
+        assert_int_equal(spectrum_ratio_rectangle(0.6, 1, x, y, 5, &ratio, &reached, NULL), 0);
+        assert_int_equal(spectrum_ratio_rectangle(0.6, 1, y, x, 5, &turned, &reached, NULL), 0);
+        check_relative(turned, ratio, 1e-14);
+        struct grid grid = {(size_t)(8 * x * ratio), (size_t)(8 * y * ratio), x * ratio, y * ratio};
+        struct spectrum spectrum = self_affine(0.6, ratio);
+        struct modes *modes = NULL;
+        struct moments moments;
+        assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
+        modes_moments(modes, &moments);
+        check_relative(moments.nayak_alpha, reached, 1e-9);
+        check_close(reached, 5, 0.1);
+        modes_destroy(&modes);
+    }
+    struct error err = {0};
+    assert_int_equal(spectrum_ratio_rectangle(0.8, 1, 8, 4, 1.2, &ratio, &reached, &err),
+                     ERROR_NUMERIC);
+    assert_non_null(strstr(err.text, "8 by 4 long waves"));
+    assert_int_equal(spectrum_ratio_rectangle(0.8, 1, 8, 0.5, 5, &ratio, &reached, &err),
+                     ERROR_INPUT);
+}
+
 /* Autocorrelation of the modes at the lag (i dx, j dy), over that at 0. */
 static double correlation_of(const struct modes *modes, size_t i, size_t j) {
     const struct grid *grid = &modes->grid;
@@ -283,7 +319,7 @@ int main(void) {
         cmocka_unit_test(exponential_spectrum),  cmocka_unit_test(short_cells_are_clipped),
         cmocka_unit_test(anisotropic_spectrum),  cmocka_unit_test(table_spectrum),
         cmocka_unit_test(scale_by_slope),        cmocka_unit_test(units_do_not_matter),
-        cmocka_unit_test(wrong_input_is_named),
+        cmocka_unit_test(wrong_input_is_named),  cmocka_unit_test(ratios_on_rectangles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

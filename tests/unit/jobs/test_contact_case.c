@@ -148,6 +148,30 @@ static void levels(void **state) {
     contact_case_clear(&one_case);
 }
 
+/* Every level has the shape of the cell. The block is as high as its longer side asks for. */
+static void rectangles(void **state) {
+    (void)state;
+    static const char text[] = STUDY("\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 1,"
+                                     " \"length_ratio_y\": 3",
+                                     "\"levels\": [4, 6, 16], \"model\": \"layered\"");
+    static const size_t sides[] = {16, 24, 64}, strides[] = {2, 0, 0};
+    struct contact_case one_case = read_case(text);
+    assert_int_equal(one_case.level_count, 3);
+    for (size_t l = 0; l < 3; l++) {
+        assert_int_equal(one_case.levels[l].grid.nx, sides[l]);
+        assert_int_equal(one_case.levels[l].grid.ny, 3 * sides[l]);
+        assert_int_equal(one_case.levels[l].stride, strides[l]);
+    }
+    assert_true(one_case.band.x == 4 && one_case.band.y == 12);
+    assert_true(one_case.blocks[0].height == 1.5 * 12);
+    double bound = contact_case_block_bound(&one_case, 0);
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY("\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 3",
+                               "\"model\": \"layered\""));
+    assert_true(contact_case_block_bound(&one_case, 0) == bound);
+    contact_case_clear(&one_case);
+}
+
 static void faults(void **state) {
     (void)state;
     static const struct {
@@ -315,6 +339,7 @@ int main(void) {
         cmocka_unit_test(models_beside_full),
         cmocka_unit_test(loads_and_pressures),
         cmocka_unit_test(levels),
+        cmocka_unit_test(rectangles),
         cmocka_unit_test(faults),
         cmocka_unit_test(all_faults_at_once),
         cmocka_unit_test(fingerprints),

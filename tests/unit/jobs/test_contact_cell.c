@@ -102,6 +102,16 @@ static void surfaces_are_those_of_other_cells(void **state) {
     check_length(STUDY(SURFACE "\"length_ratio\": 2, \"points_per_wavelength\": 8", ""),
                  LENGTH_SHORTER, 0.5,
                  STUDY(SURFACE "\"length_ratio\": 1, \"points_per_wavelength\": 4", ""));
+    /* a rectangle keeps its shape */
+    check_length(STUDY(SURFACE "\"length_ratio\": 4, \"length_ratio_y\": 2", ""), LENGTH_LONGER, 2,
+                 STUDY(SURFACE "\"length_ratio\": 8, \"length_ratio_y\": 4,"
+                               " \"points_per_wavelength\": 4",
+                       ""));
+    check_length(STUDY(SURFACE "\"length_ratio\": 2, \"length_ratio_y\": 4", ""), LENGTH_SHORTER,
+                 0.5,
+                 STUDY(SURFACE "\"length_ratio\": 1, \"length_ratio_y\": 2,"
+                               " \"points_per_wavelength\": 4",
+                       ""));
     /* other heights depend on the grid that they are made on */
     check_length(STUDY(WEIBULL PROFILE "\"length_ratio\": 2, \"points_per_wavelength\": 8", ""),
                  LENGTH_LONGER, 2,

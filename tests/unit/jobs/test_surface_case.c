@@ -39,7 +39,8 @@ static void defaults(void **state) {
     assert_int_equal(surface.spectrum.scale, SCALE_NONE);
     assert_int_equal(surface.options.heights.type, HEIGHTS_GAUSSIAN);
     assert_true(surface.options.tolerance == 1e-3 && surface.options.max_iterations == 1000);
-    assert_int_equal(surface_case_band(&surface), 128);
+    assert_int_equal(surface_case_band(&surface).x, 128);
+    assert_int_equal(surface_case_band(&surface).y, 128);
     assert_true(surface_case_exact(&surface));
     surface_case_clear(&surface);
 }
@@ -111,6 +112,75 @@ static void grids(void **state) {
     surface_case_clear(&surface);
 }
 
+/* Rectangles have the same distances along both sides, and sides in exactly the ratio asked for:
+ * where points have to be rounded up, to that ratio in least whole numbers times a good number. */
+static void rectangles(void **state) {
+    (void)state;
+    static const struct {
+        const char *more;
+        size_t nx, ny;
+    } CASES[] = {
+        {"\"wavelength_ratio\": 16, \"length_ratio_y\": 4", 1024, 512},
+        {"\"wavelength_ratio\": 16, \"length_ratio\": 4, \"length_ratio_y\": 8", 512, 1024},
+        {"\"wavelength_ratio\": 8, \"length_ratio\": 3, \"length_ratio_y\": 1.5", 192, 96},
+        {"\"wavelength_ratio\": 7, \"length_ratio\": 7, \"length_ratio_y\": 5,"
+         " \"points_per_wavelength\": 3",
+         147, 105},
+        /* 624.096 by 312.048: the next even 2, 3, 5, 7 number above 312.048 */
+        {"\"wavelength_ratio\": 9.7515, \"length_ratio_y\": 4", 640, 320},
+        /* 624.096 by 234.036 is 8 by 3: 80 above 78.012 */
+        {"\"wavelength_ratio\": 9.7515, \"length_ratio_y\": 3", 640, 240},
+        {"\"wavelength_ratio\": 4, \"length_ratio\": 100, \"length_ratio_y\": 7.25", 3200, 232},
+        {"\"wavelength_ratio\": 16, \"length_ratio\": 8, \"length_ratio_y\": 8", 1024, 1024},
+    };
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        char text[200];
+        snprintf(text, sizeof text, "{\"hurst\": 0.8, %s}", CASES[c].more);
+        struct surface_case surface = read(text);
+        const struct grid *grid = &surface.grid;
+        struct surface_band band = surface_case_band(&surface);
+        assert_int_equal(grid->nx, CASES[c].nx);
+        assert_int_equal(grid->ny, CASES[c].ny);
+        assert_true(fabs(grid_dx(grid) / grid_dy(grid) - 1) <= 1e-14);
+        assert_true(grid->lx == surface.length_ratio * surface.wavelength_ratio &&
+                    grid->ly == surface.length_ratio_y * surface.wavelength_ratio);
+        assert_int_equal(band.x, (size_t)(grid->lx * (1 + 1e-9)));
+        assert_int_equal(band.y, (size_t)(grid->ly * (1 + 1e-9)));
+        assert_true(surface_case_longest(&surface) == fmax(grid->lx, grid->ly));
+        surface_case_clear(&surface);
+    }
+}
+
+/* The bytes of a generator are those of the cell, whichever side is the longer one. */
+static void bytes_of_a_rectangle(void **state) {
+    (void)state;
+    struct surface_case square = read("{\"hurst\": 0.8, \"wavelength_ratio\": 8}");
+    struct surface_case half =
+        read("{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"length_ratio_y\": 4}");
+    double ratio = surface_case_bytes(&half) / surface_case_bytes(&square);
+    assert_true(ratio > 0.45 && ratio < 0.55);
+    surface_case_clear(&square);
+    surface_case_clear(&half);
+}
+
+/* nayak_alpha is solved on the rectangle, and a cell that is turned has the same ratio. */
+static void alpha_of_a_rectangle(void **state) {
+    (void)state;
+    struct surface_case wide =
+        read("{\"hurst\": 0.8, \"nayak_alpha\": 5, \"length_ratio\": 8, \"length_ratio_y\": 3}");
+    struct surface_case high =
+        read("{\"hurst\": 0.8, \"nayak_alpha\": 5, \"length_ratio\": 3, \"length_ratio_y\": 8}");
+    struct modes *modes = NULL;
+    struct moments moments;
+    assert_int_equal(modes_create(&modes, &wide.spectrum, &wide.grid, NULL), 0);
+    modes_moments(modes, &moments);
+    modes_destroy(&modes);
+    assert_true(fabs(moments.nayak_alpha - 5) <= 0.02); /* half a step of the staircase */
+    assert_true(wide.wavelength_ratio == high.wavelength_ratio);
+    surface_case_clear(&wide);
+    surface_case_clear(&high);
+}
+
 /* Table 3.5 of the reference: ratios for a given alpha by the continuous formula. */
 static void ratios_of_alpha(void **state) {
     (void)state;
@@ -137,14 +207,14 @@ static void other_spectra(void **state) {
     struct surface_case surface = read("{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": "
                                        "\"exponential_acf\", \"length\": [2]}}");
     assert_true(surface.spectrum.correlation_x == 2 && surface.spectrum.correlation_y == 2);
-    assert_int_equal(surface_case_band(&surface), surface.grid.nx / 2);
+    assert_int_equal(surface_case_band(&surface).x, surface.grid.nx / 2);
     surface_case_clear(&surface);
     surface = read("{\"wavelength_ratio\": 4, \"spectrum\": {\"type\": \"table\","
                    " \"wave_number\": [1, 2, 6], \"density\": [3, 2, 0]}}");
     assert_int_equal(surface.spectrum.table_count, 3);
     assert_true(surface.spectrum.table_wave_number[2] == 6 &&
                 surface.spectrum.table_density[1] == 2);
-    assert_int_equal(surface_case_band(&surface), 30); /* 6 * 32 / (2 pi) */
+    assert_int_equal(surface_case_band(&surface).x, 30); /* 6 * 32 / (2 pi) */
     surface_case_clear(&surface);
 }
 
@@ -198,6 +268,16 @@ static const struct broken_case BROKEN[] = {
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 1, \"length_ratio\": 2.5}", "/surface/length_ratio",
      "no wave"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 1024}", "/surface/points_per_wavelength", "46340"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 1024, \"length_ratio_y\": 7}",
+     "/surface/points_per_wavelength", "65536 by 57344 points is too large: at most 2147483648"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"dimension\": 1, \"length_ratio_y\": 8}",
+     "/surface/length_ratio_y", "profiles have one length"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"length_ratio_y\": 0.5}",
+     "/surface/length_ratio_y", "[1, 100000]"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"length_ratio_y\": 3.14159}",
+     "/surface/length_ratio_y", "simple ratio"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 1, \"length_ratio\": 1.5, \"length_ratio_y\": 2.5}",
+     "/surface/length_ratio", "no wave"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"rms_slope\": 1, \"rms_height\": 1}",
      "/surface/rms_height", "not both"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_min\"}}",
@@ -289,6 +369,9 @@ int main(void) {
         cmocka_unit_test(everything_given),
         cmocka_unit_test(what_is_exact),
         cmocka_unit_test(grids),
+        cmocka_unit_test(rectangles),
+        cmocka_unit_test(bytes_of_a_rectangle),
+        cmocka_unit_test(alpha_of_a_rectangle),
         cmocka_unit_test(ratios_of_alpha),
         cmocka_unit_test(other_spectra),
         cmocka_unit_test(heights_of_ones_own),

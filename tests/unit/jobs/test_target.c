@@ -239,6 +239,39 @@ static void keeps_what_is_named(void **state) {
     study_destroy(&study);
 }
 
+/* All cells have the shape of a rectangle that the study names, none is narrower than a longest
+ * wave; the length of one whose length it does not name is not chosen. */
+static void keeps_the_shape_of_a_rectangle(void **state) {
+    (void)state;
+    struct fault_list faults = {0};
+    struct study *study = NULL;
+    static const char TEXT[] =
+        "{\"name\":\"t\",\"kind\":\"contact\",\"target\":{\"error\":0.02},"
+        "\"surface\":{\"hurst\":0.8,\"wavelength_ratio\":4,\"rms_slope\":0.1,"
+        "%s\"length_ratio_y\":4},\"contact\":{\"model\":\"full\"}}";
+    char text[512];
+    snprintf(text, sizeof text, TEXT, "\"length_ratio\":12,");
+    assert_int_equal(kind_read_study(&study, text, strlen(text), NULL, &faults, NULL), 0);
+    assert_true(study->cases[0].component_count > 3);
+    for (size_t a = 0; a < study->cases[0].component_count; a++) {
+        const struct study_case *one = &study->cases[0].components[a];
+        double along_y = number_at(one, "/surface/length_ratio_y");
+        check_relative(number_at(one, "/surface/length_ratio"), 3 * along_y, 1e-15);
+        assert_true(along_y >= 1);
+    }
+    const struct study_case *base = component(study, "base");
+    assert_true(number_at(base, "/surface/length_ratio") == 12);
+    assert_int_equal(base->cost.nx, 3 * base->cost.ny);
+    assert_true(number_at(component(study, "model"), "/surface/length_ratio") < 12);
+    study_destroy(&study);
+    snprintf(text, sizeof text, TEXT, "");
+    assert_int_equal(kind_read_study(&study, text, strlen(text), NULL, &faults, NULL), ERROR_INPUT);
+    assert_int_equal(faults.count, 1);
+    assert_non_null(strstr(faults.faults[0].pointer, "length_ratio_y"));
+    assert_non_null(strstr(faults.faults[0].detail, "square cells alone"));
+    fault_list_clear(&faults);
+}
+
 /* All components have the waves that the Nayak parameter gives on the cell of the base. */
 static void solves_the_nayak_parameter_once(void **state) {
     (void)state;
@@ -284,6 +317,7 @@ int main(void) {
         cmocka_unit_test(chooses_what_is_left_out),
         cmocka_unit_test(goes_without_what_has_no_room),
         cmocka_unit_test(keeps_what_is_named),
+        cmocka_unit_test(keeps_the_shape_of_a_rectangle),
         cmocka_unit_test(tells_faults),
         cmocka_unit_test(solves_the_nayak_parameter_once),
     };
