@@ -86,6 +86,15 @@ int store_failures(struct store *store, const char *id, struct failure **out, si
                    struct error *err);
 void failures_free(struct failure *failures, size_t count);
 
+/* Published cases none of whose realisations has a value on any curve, such as loads that none
+ * reached. */
+struct valueless {
+    uint64_t cases, first; /* their count, and the number of the first one */
+    char *note;            /* owned: its first note, "" without; NULL where there is no such case */
+};
+int store_valueless(struct store *store, const char *id, struct valueless *out, struct error *err);
+void valueless_clear(struct valueless *valueless);
+
 /* --- the queue --- */
 struct claimed_job {
     int64_t id;

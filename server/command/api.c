@@ -125,19 +125,34 @@ static bool put_failures(cJSON *document, const struct failure *failures, size_t
     return complete;
 }
 
+static bool put_valueless(cJSON *document, const struct valueless *valueless) {
+    return field_put_count(document, "cases_valueless", valueless->cases) &&
+           (valueless->cases == 0 || field_put_text(document, "valueless_note", valueless->note));
+}
+
+/* What is told of a study that has ended is asked for then alone: events look at others often. */
+static bool has_ended(const struct study_status *status) {
+    return strcmp(status->state, "done") == 0 || strcmp(status->state, "failed") == 0;
+}
+
 int api_status(struct store *store, const char *id, cJSON **out, struct error *err) {
     struct study_status status = {0};
+    struct valueless valueless = {0};
     struct failure *failures = NULL;
     size_t count = 0;
     int code = store_status(store, id, &status, err);
     if (code == 0 && status.jobs_failed + status.cases_failed > 0)
         code = store_failures(store, id, &failures, &count, err);
+    if (code == 0 && has_ended(&status))
+        code = store_valueless(store, id, &valueless, err);
     if (code == 0) {
         bool complete;
         cJSON *document = progress(&status, &complete);
-        complete = complete && put_failures(document, failures, count);
+        complete = complete && put_failures(document, failures, count) &&
+                   put_valueless(document, &valueless);
         code = finish(document, complete, out, err);
     }
+    valueless_clear(&valueless);
     failures_free(failures, count);
     study_status_clear(&status);
     return code;

@@ -112,6 +112,23 @@ static int check_published(const struct run *run, const struct study_status *now
                      run->id, counts->postponed > 0 ? counts->reason.text : "?");
 }
 
+/* A study that has nothing to tell is no success, whatever became of its jobs. */
+static int check_values(const struct run *run, const struct study_status *now, struct error *err) {
+    struct valueless valueless = {0};
+    int status = store_valueless(run->store, run->id, &valueless, err);
+    if (status == 0 && valueless.cases > 0 && valueless.cases == now->cases)
+        status = error_set(err, ERROR_NUMERIC, "study %s: no realisation has a value: %.300s",
+                           run->id, valueless.note);
+    else if (status == 0 && valueless.cases > 0)
+        fprintf(stderr,
+                "rugo run: no realisation has a value in %llu of %llu cases, such as case %llu: "
+                "%.300s\n",
+                (unsigned long long)valueless.cases, (unsigned long long)now->cases,
+                (unsigned long long)valueless.first, valueless.note);
+    valueless_clear(&valueless);
+    return status;
+}
+
 /* Returns what the table needs: all curves only where files are written. */
 static struct result_filter filter_of(const struct run *run, const char *kind) {
     const struct job_kind *found = kind_find(kind);
@@ -165,6 +182,8 @@ static int perform(struct run *run, struct error *err) {
         status = check_end(run, &now, err);
     if (status == 0)
         status = check_published(run, &now, &counts, err);
+    if (status == 0)
+        status = check_values(run, &now, err);
     study_status_clear(&now);
     return status;
 }

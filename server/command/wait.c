@@ -42,12 +42,15 @@ static int ask(struct access *access, const char *id, const void *values, cJSON 
     return wait_for_end(&watch, options->timeout_s, out, err);
 }
 
-/* A study that did not get done is no success. */
+/* A study that did not get done, or has nothing to tell, is no success. */
 static int show(const cJSON *progress, const char *id, const void *options, struct error *err) {
     int status = show_progress(progress, id, options, err);
     const char *state = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(progress, "state"));
     if (status == 0 && strcmp(state, "done") != 0)
         status = error_set(err, ERROR_STATE, "study %s is %s", id, state);
+    else if (status == 0 && status_has_no_value(progress))
+        status =
+            error_set(err, ERROR_NUMERIC, "study %s is done, and no realisation has a value", id);
     return status;
 }
 

@@ -45,10 +45,19 @@ void summary_of_status(const cJSON *status, FILE *file) {
         print_without_cpu(&time, file);
     if (!isnan(number_of(status, "error_reached")))
         fprintf(file, "  error reached %.3g %%\n", 100 * number_of(status, "error_reached"));
+    if (number_of(status, "cases_valueless") > 0)
+        fprintf(file, "  no realisation has a value in %.0f of %.0f cases: %s\n",
+                number_of(status, "cases_valueless"), number_of(status, "cases"),
+                text_of(status, "valueless_note"));
     const cJSON *failure;
     cJSON_ArrayForEach(failure, field_at(status, "failures")) {
         print_failure(failure, file);
     }
+}
+
+bool status_has_no_value(const cJSON *status) {
+    return number_of(status, "cases_valueless") > 0 &&
+           !(number_of(status, "cases_valueless") < number_of(status, "cases"));
 }
 
 void summary_of_list(const cJSON *studies, FILE *file) {

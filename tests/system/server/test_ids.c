@@ -135,12 +135,32 @@ static void waiting_ends_as_the_study_does(void **state) {
     assert_true(contains("waiting.err", "is cancelled"));
 }
 
+/* The first loads are far above what the model reaches: each realisation leaves a note, and no
+ * value.
+ */
+static void a_study_without_a_value_is_no_success(void **state) {
+    (void)state;
+    spit(
+        "steep.json",
+        "{\"name\":\"steep\",\"kind\":\"contact\",\"seed\":1,\"realisations\":2,\"surface\":{"
+        "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":8,\"length_ratio\":2,\"rms_slope\":1.9,"
+        "\"points_per_wavelength\":8},\"contact\":{\"model\":[\"full\"],\"levels\":[8],"
+        "\"pressures\":{\"values\":[4,6]}}}");
+    assert_int_equal(
+        run_rugo("steep", (const char *[]){"run", "--db", "rugo.db", "steep.json", NULL}), 1);
+    assert_true(contains("steep.out", "(0 of 2)"));
+    assert_true(contains("steep.err", "no realisation has a value: model full"));
+    check_both("wait", "steep", 1, "no realisation has a value");
+    check_both("status", "steep", 0, "no realisation has a value in 1 of 1 cases: model full");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_study_has_several_names),
         cmocka_unit_test(over_http_too),
         cmocka_unit_test(a_name_that_is_no_segment),
         cmocka_unit_test(waiting_ends_as_the_study_does),
+        cmocka_unit_test(a_study_without_a_value_is_no_success),
     };
     return cmocka_run_group_tests(tests, start, stop);
 }
