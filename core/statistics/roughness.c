@@ -245,7 +245,33 @@ int ring_average(const struct grid *grid, const double *field, double *lag, doub
     return 0;
 }
 
-int acf_of_modes(const struct modes *modes, double *lag, double *correlation, struct error *err) {
+/* correlation: of the field on all points. */
+static int changes_fill(const struct grid *grid, const double *field, const double *correlation,
+                        double *change, struct error *err) {
+    size_t lags = grid->nx / 4 + 1;
+    struct grid coarse = *grid;
+    for (size_t r = 0; r < lags; r++)
+        change[r] = NAN;
+    if (grid->nx % 2 != 0 || (!grid_is_profile(grid) && grid->ny % 2 != 0))
+        return 0;
+    coarse.nx = grid->nx / 2;
+    coarse.ny = grid_is_profile(grid) ? 1 : grid->ny / 2;
+    double *samples = array_create(grid_points(&coarse) + lags, sizeof *samples);
+    if (samples == NULL)
+        return error_memory(err, grid_points(&coarse) * sizeof *samples, "a coarser field");
+    for (size_t j = 0; j < coarse.ny; j++)
+        for (size_t i = 0; i < coarse.nx; i++)
+            samples[j * coarse.nx + i] = field[2 * j * grid->nx + 2 * i];
+    double *lag = samples + grid_points(&coarse);
+    int status = ring_average(&coarse, samples, lag, change, err);
+    for (size_t r = 0; r < lags && status == 0; r++)
+        change[r] = correlation[2 * r] - change[r];
+    free(samples);
+    return status;
+}
+
+int acf_of_modes_changes(const struct modes *modes, double *lag, double *correlation,
+                         double *change, struct error *err) {
     const struct grid *grid = &modes->grid;
     struct transform *transform = NULL;
     double *field = array_create(grid_points(grid), sizeof *field);
@@ -264,9 +290,15 @@ int acf_of_modes(const struct modes *modes, double *lag, double *correlation, st
         transform_inverse(transform, field);
         status = ring_average(grid, field, lag, correlation, err);
     }
+    if (status == 0 && change != NULL)
+        status = changes_fill(grid, field, correlation, change, err);
     transform_destroy(&transform);
     free(field);
     return status;
+}
+
+int acf_of_modes(const struct modes *modes, double *lag, double *correlation, struct error *err) {
+    return acf_of_modes_changes(modes, lag, correlation, NULL, err);
 }
 
 int acf_measure(const struct grid *grid, const double *z, double *lag, double *correlation,

@@ -159,13 +159,6 @@ static int add_curvature(struct statistics_curve_maker *maker, struct error *err
 
 /* --- the joint density of summit heights and curvatures --- */
 
-/* Cell of the tally, which has cells for under- and overflow around the bins. There is at least one
- * bin. */
-static size_t joint_cell(const struct statistics_case *one_case, size_t cell) {
-    size_t columns = one_case->equivalent.count > 0 ? one_case->equivalent.count : 1;
-    return (cell / columns + 1) * (columns + 2) + cell % columns + 1;
-}
-
 /* The occupied cells of a matrix, and what summits inside of it there are. */
 struct joint_cells {
     size_t count;
@@ -180,7 +173,7 @@ static int joint_cells_create(struct statistics_curve_maker *maker, struct joint
     const struct tally *tally = &side_tally(maker)->joint;
     size_t all = one_case->height.count * one_case->equivalent.count, count = 0;
     for (size_t cell = 0; cell < all; cell++)
-        count += tally->count[joint_cell(one_case, cell)] > 0;
+        count += tally->count[summit_joint_cell(one_case, cell)] > 0;
     double *y = result_numbers(maker->result, 2 * count);
     *out = (struct joint_cells){
         .cells = result_room(maker->result, count + 1, sizeof *out->cells),
@@ -196,7 +189,7 @@ static void joint_cells_fill(const struct statistics_curve_maker *maker, double 
     const struct summit_tally *side = side_tally(maker);
     size_t columns = one_case->equivalent.count;
     for (size_t row = 0; row < one_case->height.count; row++) {
-        size_t first = joint_cell(one_case, row * columns);
+        size_t first = summit_joint_cell(one_case, row * columns);
         tally_shares(&side->joint, first, columns, &side->total, out->row);
         for (size_t b = 0; b < columns; b++) {
             uint64_t n = side->joint.count[first + b];

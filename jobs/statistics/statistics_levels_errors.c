@@ -55,15 +55,15 @@ static struct level_error error_of(const struct statistics_levels *levels,
 /* Rows of an error of a curve, in the result's arena. */
 static int curve_room(struct case_result *out, struct curve *curve, double **room,
                       struct error *err) {
-    *room = result_numbers(out, 3 * curve->n);
+    size_t n = curve_value_count(curve);
+    *room = result_numbers(out, 3 * n);
     if (*room == NULL)
         return error_set(err, ERROR_MEMORY, "no memory left for errors");
-    curve->errors[ERROR_DISCRETISATION] =
-        (struct curve_error){.applies = true,
-                             .value = *room,
-                             .bound = *room + curve->n,
-                             .standard_error = *room + 2 * curve->n,
-                             .order = NAN};
+    curve->errors[ERROR_DISCRETISATION] = (struct curve_error){.applies = true,
+                                                               .value = *room,
+                                                               .bound = *room + n,
+                                                               .standard_error = *room + 2 * n,
+                                                               .order = NAN};
     return 0;
 }
 
@@ -95,12 +95,56 @@ static int curve_errors(const struct statistics_levels *levels, struct curve *cu
     return status;
 }
 
+/* --- the joint density --- */
+
+/* Of the grids by their tallies, the own one first. Summits that a coarser grid sees elsewhere move
+ * from cell to cell, so that little is gained by pairs, whose sums by groups would be many: the
+ * standard error is that of grids that do not go together, which is no less. */
+static struct level_error joint_error(const struct statistics_levels *levels, size_t side,
+                                      size_t cell) {
+    struct estimate of[3];
+    for (size_t l = 0; l < 3 && l <= levels->count; l++) {
+        const struct statistics_tally *tally = l == 0 ? &levels->own : &levels->tallies[l - 1];
+        of[l] = tally_share(&tally->summits[side].joint, cell, &tally->summits[side].total);
+    }
+    bool three = levels->count > 1;
+    const struct mesh_changes changes = {.fine = of[0].value - of[1].value,
+                                         .coarse = three ? of[1].value - of[2].value : (double)NAN,
+                                         .fine_ratio = spacing_ratio(levels, 0),
+                                         .coarse_ratio =
+                                             three ? spacing_ratio(levels, 1) : (double)NAN};
+    struct mesh_error mesh = mesh_error(&changes, ORDER);
+    return (struct level_error){
+        .value = isnan(mesh.bound) ? (double)NAN : mesh.error,
+        .bound = mesh.bound,
+        .standard_error = mesh.weight * hypot(of[0].standard_error, of[1].standard_error)};
+}
+
+static int joint_errors(const struct statistics_levels *levels, struct curve *curve,
+                        struct case_result *out, struct error *err) {
+    const struct statistics_case *one_case = levels->own.one_case;
+    double area = bins_width(&one_case->height) * bins_width(&one_case->equivalent), *room;
+    size_t side = strcmp(curve->series, "pits") == 0 ? SIDE_PITS : SIDE_SUMMITS;
+    size_t n = curve->cell_count;
+    int status = curve_room(out, curve, &room, err);
+    for (size_t a = 0; a < n && status == 0; a++) {
+        size_t cell = summit_joint_cell(one_case, curve->cells[a]);
+        struct level_error error = joint_error(levels, side, cell);
+        room[a] = error.value / area;
+        room[n + a] = error.bound / area;
+        room[2 * n + a] = error.standard_error / area;
+    }
+    return status;
+}
+
 static int tell_curve(const struct statistics_levels *levels, struct curve *curve,
                       struct case_result *out, struct error *err) {
     double *room;
     curve->errors[ERROR_DISCRETISATION].applies = true;
     if (is_of_heights(curve)) /* zeros */
         return curve_room(out, curve, &room, err);
+    if (levels->count > 0 && curve->columns > 0)
+        return joint_errors(levels, curve, out, err);
     return is_of_levels(levels, curve) ? curve_errors(levels, curve, out, err) : 0;
 }
 

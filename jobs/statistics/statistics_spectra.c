@@ -1,5 +1,6 @@
 #include "jobs/statistics/statistics_spectra.h"
 #include "core/statistics/prescribed.h"
+#include "core/statistics/richardson.h"
 #include "core/statistics/roughness.h"
 #include <math.h>
 #include <stdlib.h>
@@ -8,6 +9,9 @@ enum {
     ACF_GRID = 1024
 }; /* points a side that the prescribed autocorrelation is sampled on, at most
     * unless the band needs more: a long case would cost a transform of its grid */
+
+/* Of means over rings in their width. */
+static const double RING_ORDER = 2;
 
 size_t spectra_densities(const struct statistics_case *one_case) {
     return surface_case_exact(&one_case->surface) ? 0 : radial_bins(&one_case->surface.grid);
@@ -72,16 +76,17 @@ int spectra_measure(struct spectra *spectra, const struct grid *grid, const doub
     return status;
 }
 
-/* Four columns of a curve, in the result's arena. */
+/* Columns of a curve, in the result's arena. */
 struct spectrum_columns {
     double *x, *y, *standard_error, *theory;
+    double *change; /* of an autocorrelation, at every second lag (roughness.h) */
 };
 static int columns_create(struct case_result *result, struct spectrum_columns *out, size_t n,
                           struct error *err) {
-    double *x = result_numbers(result, 4 * n);
+    double *x = result_numbers(result, 5 * n);
     if (x == NULL)
-        return error_memory(err, n * 4 * sizeof *x, "a curve");
-    *out = (struct spectrum_columns){x, x + n, x + 2 * n, x + 3 * n};
+        return error_memory(err, n * 5 * sizeof *x, "a curve");
+    *out = (struct spectrum_columns){x, x + n, x + 2 * n, x + 3 * n, x + 4 * n};
     return 0;
 }
 
@@ -90,6 +95,51 @@ static int add_curve(struct case_result *result, struct curve *curve, const doub
     curve->theories[curve->theory_count++] = (struct theory){"prescribed", theory};
     return result_add_curve(result, curve, err);
 }
+
+/* --- the error of discretisation --- */
+
+/* Rows of the error of a curve of n points, zeros in the result's arena. */
+static int error_create(struct case_result *result, struct curve *curve, size_t n, double **bound,
+                        struct error *err) {
+    double *rows = result_numbers(result, 3 * n);
+    if (rows == NULL)
+        return error_memory(err, 3 * n * sizeof *rows, "errors of a curve");
+    curve->errors[ERROR_DISCRETISATION] = (struct curve_error){.applies = true,
+                                                               .value = rows,
+                                                               .bound = rows + n,
+                                                               .standard_error = rows + 2 * n,
+                                                               .order = NAN};
+    *bound = rows + n;
+    return 0;
+}
+
+/* Waves of a band below the grid's own are told without error: points of the surface are samples
+ * of it, which no wave is folded into. Of an exponential autocorrelation the spectrum itself goes
+ * as far as the grid's, and heights that are placed point by point have waves beyond. */
+static bool density_is_exact(const struct statistics_case *one_case) {
+    return surface_case_band_limited(&one_case->surface) &&
+           one_case->surface.spectrum.type != SPECTRUM_EXPONENTIAL_ACF;
+}
+
+/* Means over rings as wide as the grid's spacing are not those over circles. What rings twice as
+ * wide change bounds that, at the lags of theirs; between these the larger bound of both sides. */
+static int correlation_error(const struct statistics_case *one_case, const double *change, size_t n,
+                             struct case_result *result, struct curve *curve, struct error *err) {
+    double *bound;
+    if (!surface_case_band_limited(&one_case->surface) || isnan(change[0]))
+        return 0;
+    int status = error_create(result, curve, n, &bound, err);
+    for (size_t a = 0; a < n && status == 0; a += 2) {
+        const struct mesh_changes changes = {
+            .fine = change[a / 2], .coarse = NAN, .fine_ratio = 2, .coarse_ratio = NAN};
+        bound[a] = mesh_error(&changes, RING_ORDER).bound;
+    }
+    for (size_t a = 1; a < n && status == 0; a += 2)
+        bound[a] = fmax(bound[a - 1], a + 1 < n ? bound[a + 1] : 0);
+    return status;
+}
+
+/* --- curves --- */
 
 static int density_curve(const struct statistics_case *one_case, const struct modes *modes,
                          const struct statistics_tally *tally, struct case_result *result,
@@ -127,6 +177,11 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
         last--;
     /* ring 0 is the mean height */
     curve_set_points(&curve, last, columns.x + 1, columns.y + 1, columns.standard_error + 1);
+    double *zeros;
+    if (density_is_exact(one_case))
+        status = error_create(result, &curve, last, &zeros, err);
+    if (status != 0)
+        return status;
     return add_curve(result, &curve, columns.theory + 1, err);
 }
 
@@ -172,7 +227,7 @@ static int prescribed_correlation(const struct statistics_case *one_case, const 
     if (status == 0)
         status = columns_create(result, out, *n, err);
     if (status == 0)
-        status = acf_of_modes(modes, out->x, out->y, err);
+        status = acf_of_modes_changes(modes, out->x, out->y, out->change, err);
     if (status == 0)
         status = acf_prescribed(&one_case->surface.spectrum, modes, out->x, out->theory, err);
     modes_destroy(&coarse);
@@ -197,6 +252,9 @@ static int correlation_curve(const struct statistics_case *one_case, const struc
         columns.standard_error[a] = estimate.standard_error;
     }
     curve_set_points(&curve, n, columns.x, columns.y, columns.standard_error);
+    status = correlation_error(one_case, columns.change, n, result, &curve, err);
+    if (status != 0)
+        return status;
     return add_curve(result, &curve, columns.theory, err);
 }
 
@@ -212,5 +270,8 @@ int spectra_prescribed(const struct statistics_case *one_case, const struct mode
     struct statistics_case exact = *one_case; /* borrows what it points to */
     exact.surface.options.keep = KEEP_SPECTRUM;
     exact.surface.options.amplitudes = AMPLITUDES_FIXED;
-    return spectra_curves(&exact, modes, NULL, result, err);
+    int status = spectra_curves(&exact, modes, NULL, result, err);
+    for (size_t a = 0; a < result->curve_count && status == 0; a++) /* nothing was measured */
+        result->curves[a].errors[ERROR_DISCRETISATION] = (struct curve_error){.applies = false};
+    return status;
 }

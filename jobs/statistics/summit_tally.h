@@ -58,6 +58,13 @@ void histogram_tally_add(struct tally *cells, struct tally *below, const uint64_
 /* Returns whether every thing of a histogram is in one of its cells. */
 bool histogram_tally_adds_up(const struct tally *tally, const struct tally_total *total);
 
+/* Returns the cell of the joint tally, which has cells for under- and overflow around the bins, of
+ * a cell of the matrix of bins. There is at least one bin. */
+static inline size_t summit_joint_cell(const struct statistics_case *one_case, size_t cell) {
+    size_t columns = one_case->equivalent.count > 0 ? one_case->equivalent.count : 1;
+    return (cell / columns + 1) * (columns + 2) + cell % columns + 1;
+}
+
 /* Cells of a histogram over these bins. */
 static inline size_t cells_of(const struct bins *bins) {
     return bins->count + 2;

@@ -84,8 +84,7 @@ static void print_line(FILE *file, const struct case_result *one, const struct c
     print_field(file, curve->y[n]);
     print_field(file, curve->standard_error[n]);
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        const double *error = matrix ? NULL : curve->errors[s].value;
-        const double *bound = matrix ? NULL : curve->errors[s].bound;
+        const double *error = curve->errors[s].value, *bound = curve->errors[s].bound;
         print_field(file, error != NULL ? error[n] : (double)NAN);
         print_field(file, bound != NULL ? bound[n] : (double)NAN);
     }

@@ -30,10 +30,6 @@ static void put_numbers(struct bytes *bytes, size_t n, const double *numbers) {
         bytes_put_double(bytes, numbers[a]);
 }
 
-static size_t value_count(const struct curve *curve) {
-    return curve->columns > 0 ? curve->cell_count : curve->n;
-}
-
 static void put_attributes(struct bytes *bytes, const struct curve *curve) {
     for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT; a++) {
         const struct curve_attribute *row = &CURVE_ATTRIBUTES[a];
@@ -53,7 +49,7 @@ static void put_attributes(struct bytes *bytes, const struct curve *curve) {
 
 /* Puts cells as distances from one to the next, the first from -1. */
 static void put_values(struct bytes *bytes, const struct curve *curve) {
-    size_t count = value_count(curve);
+    size_t count = curve_value_count(curve);
     bytes_put_unsigned(bytes, curve->n);
     bytes_put_unsigned(bytes, curve->columns);
     put_numbers(bytes, curve->n, curve->x);
@@ -87,13 +83,13 @@ static void put_parts(struct bytes *bytes, const struct curve *curve) {
             continue;
         bytes_put_double(bytes, error->order);
         bytes_put_unsigned(bytes, error->order_observed);
-        put_numbers(bytes, curve->n, error->value);
-        put_numbers(bytes, curve->n, error->standard_error);
+        put_numbers(bytes, curve_value_count(curve), error->value);
+        put_numbers(bytes, curve_value_count(curve), error->standard_error);
         if (error->bound == NULL)
             continue;
         bytes_put_unsigned(bytes, PART_BOUND);
         put_text(bytes, ERROR_SOURCE_ROWS[s].name);
-        put_numbers(bytes, curve->n, error->bound);
+        put_numbers(bytes, curve_value_count(curve), error->bound);
     }
     for (size_t t = 0; t < curve->theory_count; t++) {
         const struct theory *theory = &curve->theories[t];
@@ -215,8 +211,8 @@ static void get_values(struct decoding *decoding, struct curve *curve) {
     curve->x = get_numbers(decoding, curve->n);
     if (curve->columns > 0)
         get_cells(decoding, curve);
-    curve->y = get_numbers(decoding, value_count(curve));
-    curve->standard_error = get_numbers(decoding, value_count(curve));
+    curve->y = get_numbers(decoding, curve_value_count(curve));
+    curve->standard_error = get_numbers(decoding, curve_value_count(curve));
     if (bytes_get_unsigned(reader) != 0)
         curve->valueless = get_numbers(decoding, curve->n);
     curve->counted = bytes_get_unsigned(reader) != 0;
@@ -237,7 +233,7 @@ static struct curve_error *get_source(struct decoding *decoding, struct curve *c
 static void get_error(struct decoding *decoding, struct curve *curve, enum part part) {
     struct curve_error unknown = {0}, *error = get_source(decoding, curve, &unknown);
     if (part == PART_BOUND) {
-        error->bound = get_numbers(decoding, curve->n);
+        error->bound = get_numbers(decoding, curve_value_count(curve));
         return;
     }
     *error = (struct curve_error){.applies = true, .order = NAN};
@@ -245,8 +241,8 @@ static void get_error(struct decoding *decoding, struct curve *curve, enum part 
         return;
     error->order = bytes_get_double(&decoding->reader);
     error->order_observed = bytes_get_unsigned(&decoding->reader) != 0;
-    error->value = get_numbers(decoding, curve->n);
-    error->standard_error = get_numbers(decoding, curve->n);
+    error->value = get_numbers(decoding, curve_value_count(curve));
+    error->standard_error = get_numbers(decoding, curve_value_count(curve));
 }
 
 static void get_theory(struct decoding *decoding, struct curve *curve) {

@@ -37,12 +37,8 @@ static double relative_size(size_t n, const double *above, const double *minus,
     return reference > 0 ? sqrt(squares / reference) : (double)NAN;
 }
 
-static size_t value_count(const struct curve *curve) {
-    return curve->columns > 0 ? curve->cell_count : curve->n;
-}
-
 static double statistical_error(const struct curve *curve) {
-    return relative_size(value_count(curve), curve->standard_error, NULL, curve->y);
+    return relative_size(curve_value_count(curve), curve->standard_error, NULL, curve->y);
 }
 
 /* --- which curve belongs to which --- */
@@ -67,7 +63,7 @@ static const struct curve *finest_with(const struct case_result *result, const s
 static void discretisation_sizes(const struct curve *finest, const struct curve *curve,
                                  double *limit, double *size) {
     const struct curve_error *error = &finest->errors[ERROR_DISCRETISATION];
-    for (size_t a = 0; a < curve->n; a++) {
+    for (size_t a = 0; a < curve_value_count(curve); a++) {
         limit[a] = finest->y[a] - error->value[a];
         size[a] = fabs(curve->y[a] - limit[a]) + (error->bound != NULL ? error->bound[a] : 0);
     }
@@ -79,20 +75,21 @@ static void discretisation_sizes(const struct curve *finest, const struct curve 
 static double source_error(const struct case_result *result, const struct curve *curve,
                            enum error_source source, double *scratch) {
     const struct curve *finest = finest_with(result, curve, source);
-    double *below = scratch, *size = scratch + curve->n;
-    if (finest == NULL || finest->n != curve->n || curve->columns > 0)
+    size_t n = curve_value_count(curve);
+    double *below = scratch, *size = scratch + n;
+    if (finest == NULL || finest->n != curve->n || (curve->columns > 0 && finest != curve))
         return NAN;
-    for (size_t a = 0; a < curve->n; a++)
+    for (size_t a = 0; a < n; a++)
         if (isnan(finest->errors[source].value[a]) && !isnan(finest->y[a]))
             return NAN;
     if (source == ERROR_DISCRETISATION) {
         discretisation_sizes(finest, curve, below, size);
-        return relative_size(curve->n, size, NULL, below);
+        return relative_size(n, size, NULL, below);
     }
     const struct curve_error *error = &finest->errors[source];
-    for (size_t a = 0; a < curve->n; a++)
+    for (size_t a = 0; a < n; a++)
         size[a] = fabs(error->value[a]) + (error->bound != NULL ? error->bound[a] : 0);
-    return relative_size(curve->n, size, NULL, finest->y);
+    return relative_size(n, size, NULL, finest->y);
 }
 
 /* --- cost --- */
@@ -236,7 +233,9 @@ static int make_scalars(struct case_report *report, const struct case_result *re
 static int make_curves(struct case_report *report, const struct case_result *result) {
     size_t longest = 1;
     for (size_t a = 0; a < result->curve_count; a++)
-        longest = result->curves[a].n > longest ? result->curves[a].n : longest;
+        longest = curve_value_count(&result->curves[a]) > longest
+                      ? curve_value_count(&result->curves[a])
+                      : longest;
     double *scratch = array_create(longest, 2 * sizeof *scratch);
     report->curves = result_room(&report->about, result->curve_count + 1, sizeof *report->curves);
     int status = scratch != NULL && report->curves != NULL ? 0 : ERROR_MEMORY;

@@ -37,9 +37,9 @@ struct error_source_row {
 };
 extern const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES];
 
-/* What a curve owes to one source, in the units of y and as long as it: what is told less what is
- * true lies within value +- bound, where value has the standard error. A bound alone has values of
- * 0. */
+/* What a curve owes to one source, in the units of y and as long as it (of a matrix, of its
+ * occupied cells): what is told less what is true lies within value +- bound, where value has the
+ * standard error. A bound alone has values of 0. */
 struct curve_error {
     bool applies;        /* the source bears on the curve; where it does not, the rest is empty */
     const double *value; /* NULL: not known */
@@ -104,6 +104,11 @@ struct curve curve_named(const char *quantity, const char *x_label, const char *
 /* Gives the curve n points; a matrix n rows, whose values are those of its cells. */
 void curve_set_points(struct curve *curve, size_t n, const double *x, const double *y,
                       const double *standard_error);
+
+/* Returns how many values it has: points, or the occupied cells of a matrix. */
+static inline size_t curve_value_count(const struct curve *curve) {
+    return curve->columns > 0 ? curve->cell_count : curve->n;
+}
 
 /* Tells whether some realisations may be left out where all are meant: a bin without things is none
  * of them. */

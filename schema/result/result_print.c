@@ -101,10 +101,10 @@ static bool put_error(FILE *file, bool *first, const struct curve *curve,
         return true;
     if (error->value == NULL)
         return put_number(file, first, row->key, NAN);
-    bool done = put_numbers(file, first, row->key, curve->n, error->value) &&
+    bool done = put_values(file, first, row->key, curve, error->value, NAN) &&
                 (error->bound == NULL ||
-                 put_numbers(file, first, row->bound_key, curve->n, error->bound)) &&
-                put_numbers(file, first, row->standard_error_key, curve->n, error->standard_error);
+                 put_values(file, first, row->bound_key, curve, error->bound, NAN)) &&
+                put_values(file, first, row->standard_error_key, curve, error->standard_error, NAN);
     if (done && row->order_key != NULL && !isnan(error->order))
         done = put_number(file, first, row->order_key, error->order) &&
                put_text(file, first, row->order_from_key,

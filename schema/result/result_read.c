@@ -114,6 +114,19 @@ int curve_read_attributes(struct case_result *result, const cJSON *object, struc
     return curve->series != NULL ? 0 : fault(&reading, "series", "a string");
 }
 
+/* Reads a number of each value: of all points, or of the occupied cells of a matrix. */
+static int read_values(const struct reading *reading, const cJSON *object, const char *key,
+                       const struct curve *curve, const double **out) {
+    double *dense = NULL;
+    if (curve->columns == 0)
+        return read_numbers(reading, object, key, curve->n, out);
+    int status = read_dense(reading, object, key, curve, &dense);
+    for (size_t a = 0; a < curve->cell_count && status == 0; a++)
+        dense[a] = dense[curve->cells[a]];
+    *out = dense;
+    return status;
+}
+
 static int read_error(const struct reading *reading, const cJSON *object, enum error_source source,
                       struct curve *curve) {
     const struct error_source_row *row = &ERROR_SOURCE_ROWS[source];
@@ -122,12 +135,12 @@ static int read_error(const struct reading *reading, const cJSON *object, enum e
     *error = (struct curve_error){.applies = values != NULL, .order = NAN};
     if (!cJSON_IsArray(values))
         return 0;
-    int status = read_numbers(reading, object, row->key, curve->n, &error->value);
+    int status = read_values(reading, object, row->key, curve, &error->value);
     if (status == 0 && field_at(object, row->bound_key) != NULL)
-        status = read_numbers(reading, object, row->bound_key, curve->n, &error->bound);
+        status = read_values(reading, object, row->bound_key, curve, &error->bound);
     if (status == 0)
-        status = read_numbers(reading, object, row->standard_error_key, curve->n,
-                              &error->standard_error);
+        status =
+            read_values(reading, object, row->standard_error_key, curve, &error->standard_error);
     if (row->order_key != NULL) {
         const char *from = cJSON_GetStringValue(field_at(object, row->order_from_key));
         error->order = field_number(object, row->order_key);

@@ -72,13 +72,13 @@ static int insert_points(struct store *store, int64_t row, const struct curve *c
                          struct error *err) {
     int status = 0;
     bool matrix = curve->columns > 0;
-    size_t count = matrix ? curve->cell_count : curve->n;
+    size_t count = curve_value_count(curve);
     for (size_t a = 0; a < count && status == 0; a++)
         status = insert_point(
             store, row, a, curve->x[matrix ? curve->cells[a] / curve->columns : a],
             matrix ? curve->x2[curve->cells[a] % curve->columns] : (double)NAN, curve, err);
     for (size_t s = 0; s < ERROR_SOURCES; s++)
-        for (size_t a = 0; a < curve->n && curve->errors[s].value != NULL && status == 0; a++)
+        for (size_t a = 0; a < count && curve->errors[s].value != NULL && status == 0; a++)
             status = insert_error(store, row, a, ERROR_SOURCE_ROWS[s].name, &curve->errors[s], err);
     return status;
 }

@@ -12,6 +12,7 @@ static inline void sample_result(struct case_result *out) {
     static const double x[] = {0.1, 2}, y[] = {3, NAN}, error[] = {0.1, NAN}, nayak[] = {1.5, 2.5};
     static const double x2[] = {7, 8, 9}, cell_y[] = {2, 6}, cell_error[] = {0.25, 1};
     static const uint32_t cells[] = {1, 5};
+    static const double cell_mesh[] = {-0.5, 1}, cell_bound[] = {0.75, 0};
     static const double area[] = {1e-300, 0.5}, zero[] = {0, 0}, persson[] = {3, 4};
     static const double mesh[] = {0.25, 0.5}, mesh_error[] = {0.01, 0.02}, bound[] = {0.125, 0};
     static const double model[] = {NAN, -2}, model_error[] = {0.03, 0.04}, valueless[] = {0, 3};
@@ -37,6 +38,8 @@ static inline void sample_result(struct case_result *out) {
     matrix.x2_label = "t";
     matrix.cells = cells;
     matrix.cell_count = 2;
+    matrix.errors[ERROR_DISCRETISATION] =
+        (struct curve_error){true, cell_mesh, cell_bound, cell_error, NAN, false};
     matrix.theories[matrix.theory_count++] = (struct theory){"nayak", NULL};
     curve_set_points(&full, 2, x, area, zero);
     full.series = "edges";

@@ -29,6 +29,9 @@ static const char PRINTED[] =
     "\"x_label\":\"z/\302\265m\",\"underflow\":4,\"overflow\":0,\"y_label\":\"density\"},"
     "{\"quantity\":\"joint\",\"series\":\"\",\"x\":[0.1,2],\"x2\":[7,8,9],"
     "\"y\":[[0,2,0],[0,0,6]],\"standard_error\":[[0,0.25,0],[0,0,1]],"
+    "\"discretisation_error\":[[null,-0.5,null],[null,null,1]],"
+    "\"discretisation_bound\":[[null,0.75,null],[null,null,0]],"
+    "\"discretisation_standard_error\":[[null,0.25,null],[null,null,1]],"
     "\"theory\":{},\"x_label\":\"z\",\"x2_label\":\"t\","
     "\"y_label\":\"density\"},"
     "{\"quantity\":\"area\",\"series\":\"edges\",\"model\":\"full\",\"level\":8,\"points\":64,"
@@ -164,8 +167,8 @@ static void csv_is_one_table(void **state) {
     static const char POINTS[] =
         "3,q,\"x, \"\"y\"\"\",,,,,0.1,,3,0.1,,,,,,,,,,,,,,,,1.5,\n"
         "3,q,\"x, \"\"y\"\"\",,,,,2,,,,,,,,,,,,,,,,,,,2.5,\n"
-        "3,joint,,,,,,0.1,8,2,0.25,,,,,,,,,,,,,,,,,\n"
-        "3,joint,,,,,,2,9,6,1,,,,,,,,,,,,,,,,,\n"
+        "3,joint,,,,,,0.1,8,2,0.25,-0.5,0.75,,,,,,,,,,,,,,,\n"
+        "3,joint,,,,,,2,9,6,1,1,0,,,,,,,,,,,,,,,\n"
         "3,area,edges,full,hencky,8,0.5,0.1,,1e-300,0,0.25,0.125,,,,,,,,,,,,,0,,3\n"
         "3,area,edges,full,hencky,8,0.5,2,,0.5,0,0.5,0,,,,,-2,,,,,,,,3,,4\n";
     struct case_result sample;
@@ -175,8 +178,8 @@ static void csv_is_one_table(void **state) {
     snprintf(expected, sizeof expected, "%s,theory_nayak,theory_persson\n%s", HEADING, POINTS);
     assert_string_equal(all, expected);
     snprintf(expected, sizeof expected,
-             "%s,theory_nayak\n3,joint,,,,,,0.1,8,2,0.25,,,,,,,,,,,,,,,,\n"
-             "3,joint,,,,,,2,9,6,1,,,,,,,,,,,,,,,,\n",
+             "%s,theory_nayak\n3,joint,,,,,,0.1,8,2,0.25,-0.5,0.75,,,,,,,,,,,,,,\n"
+             "3,joint,,,,,,2,9,6,1,1,0,,,,,,,,,,,,,,\n",
              HEADING);
     assert_string_equal(one, expected);
     free(all);
@@ -241,7 +244,10 @@ static void report_measures_and_comes_back(void **state) {
     assert_true(isnan(report.curves[2].errors[ERROR_MODEL]) &&
                 report.curves[2].applies[ERROR_MODEL]);
     assert_true(report.curves[2].applies[ERROR_BLOCK] && isnan(report.curves[2].total));
-    assert_true(report.curves[1].total == report.curves[1].statistical);
+    /* limits 2.5 and 5, from which the cells are 0.5 and 1; bounds 0.75 and 0 */
+    assert_true(fabs(report.curves[1].errors[ERROR_DISCRETISATION] -
+                     sqrt((1.25 * 1.25 + 1) / (2.5 * 2.5 + 25))) <= 1e-15);
+    assert_true(report.curves[1].total > report.curves[1].statistical);
     assert_false(report.curves[2].applies[ERROR_CELL]);
     assert_true(report.curves[2].valueless == 3);
     assert_true(isnan(report.curves[0].valueless));

@@ -418,7 +418,8 @@ static void results_and_views(void **state) {
     check_text("copy.db",
                "SELECT group_concat(x || source || value || ':' || coalesce(bound, 'none')) FROM "
                "curve_errors WHERE value IS NOT NULL ORDER BY x, source",
-               "0.1discretisation0.25:0.125,2.0discretisation0.5:0.0,2.0model-2.0:none");
+               "0.1discretisation-0.5:0.75,2.0discretisation1.0:0.0,0.1discretisation0.25:0.125,2."
+               "0discretisation0.5:0.0,2.0model-2.0:none");
     check_text("copy.db",
                "SELECT name || source || value || bound || standard_error FROM scalar_errors",
                "m0model-0.50.250.125");

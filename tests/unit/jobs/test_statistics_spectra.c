@@ -1,0 +1,129 @@
+/* Protects: the error of discretisation of spectral density and autocorrelation: none of the waves
+ * of a band; of means over rings at least what they are off the mean over circles; not known of
+ * heights that are placed point by point, nor told of what theory alone expects. */
+#include "jobs/statistics/statistics_case.h"
+#include "jobs/statistics/statistics_expectation.h"
+#include "tests/support/statistics_study.h"
+
+enum { DRAWN = 3 };
+
+static struct case_result result_of(const char *surface, cJSON **parameters) {
+    char text[400];
+    struct case_result out = {0};
+    struct error err = {0};
+    snprintf(text, sizeof text,
+             "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
+             " \"points_per_wavelength\": 8%s}}",
+             surface);
+    struct job_runner *runner = runner_of(text);
+    struct job_merger *merger = merger_of(text);
+    struct block_result block = run(runner, 0, DRAWN);
+    merge(merger, &block);
+    if (merger_result(merger, &out, &err) != 0)
+        fail_msg("%s", err.text);
+    *parameters = parse(text);
+    block_result_clear(&block);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
+    return out;
+}
+
+static const struct curve_error *error_of(const struct case_result *result, const char *quantity) {
+    const struct curve *curve = result_curve(result, quantity);
+    assert_non_null(curve);
+    assert_true(curve->errors[ERROR_DISCRETISATION].applies);
+    return &curve->errors[ERROR_DISCRETISATION];
+}
+
+/* Of each wave the mean over a circle of radius r is Bessel's function of k r. */
+static double circle_mean(const struct modes *modes, double r) {
+    const struct grid *grid = &modes->grid;
+    double sum = 0, all = 0;
+    for (size_t mx = 0; mx <= modes->mode_x; mx++)
+        for (long my = -(long)modes->mode_y; my <= (long)modes->mode_y; my++) {
+            double power = (mx > 0 ? 2 : 1) * modes_power(modes, mx, my);
+            double k = 2 * M_PI * hypot((double)mx / grid->lx, (double)my / grid->ly);
+            sum += power * j0(k * r);
+            all += power;
+        }
+    return sum / all;
+}
+
+static void check_circles(const char *surface, bool exact) {
+    struct statistics_case one_case;
+    struct modes *modes = NULL;
+    struct error err = {0};
+    cJSON *parameters;
+    struct case_result result = result_of(surface, &parameters);
+    assert_int_equal(statistics_case_read(&one_case, parameters, NULL, &err), 0);
+    assert_int_equal(modes_create(&modes, &one_case.surface.spectrum, &one_case.surface.grid, &err),
+                     0);
+    const struct curve *acf = result_curve(&result, "acf");
+    const struct curve_error *error = error_of(&result, "acf"), *psd = error_of(&result, "psd");
+    double off = 0, bound = 0, most = 0;
+    size_t within = 0;
+    for (size_t a = 0; a < acf->n; a++) {
+        double less = acf->theories[0].y[a] - circle_mean(modes, acf->x[a]);
+        assert_true(error->value[a] == 0 && error->bound[a] >= 0);
+        within += fabs(less) <= error->bound[a] + 1e-12;
+        off += less * less;
+        bound += error->bound[a] * error->bound[a];
+        most = fmax(most, fabs(less));
+    }
+    assert_true(exact == (acf->standard_error[1] == 0));
+    assert_true(error->bound[0] == 0 && most > 1e-3);
+    assert_true(bound > off && bound < 100 * off);
+    assert_true(10 * within >= 9 * acf->n);
+    for (size_t a = 0; a < result_curve(&result, "psd")->n; a++)
+        assert_true(psd->value[a] == 0 && psd->bound[a] == 0 && psd->standard_error[a] == 0);
+    modes_destroy(&modes);
+    statistics_case_clear(&one_case);
+    result_clear(&result);
+    cJSON_Delete(parameters);
+}
+
+static void rings_are_near_circles(void **state) {
+    (void)state;
+    check_circles("", true);
+    check_circles(", \"amplitudes\": \"random\"", false);
+}
+
+/* Rings of profiles are single lags. */
+static void profiles_have_no_rings(void **state) {
+    (void)state;
+    cJSON *parameters;
+    struct case_result result = result_of(", \"dimension\": 1", &parameters);
+    const struct curve_error *error = error_of(&result, "acf");
+    for (size_t a = 0; a < result_curve(&result, "acf")->n; a++)
+        check_close(error->bound[a], 0, 1e-14);
+    cJSON_Delete(parameters);
+    result_clear(&result);
+}
+
+static void where_nothing_is_known(void **state) {
+    (void)state;
+    cJSON *parameters;
+    struct error err = {0};
+    struct case_result result =
+        result_of(", \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 2, \"keep\":"
+                  " \"heights\"}",
+                  &parameters);
+    struct case_result expected = {0};
+    assert_null(error_of(&result, "psd")->value);
+    assert_null(error_of(&result, "acf")->value);
+    assert_int_equal(statistics_expectation(parameters, false, &expected, &err), 0);
+    for (size_t a = 0; a < expected.curve_count; a++)
+        assert_false(expected.curves[a].errors[ERROR_DISCRETISATION].applies);
+    cJSON_Delete(parameters);
+    result_clear(&result);
+    result_clear(&expected);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rings_are_near_circles),
+        cmocka_unit_test(profiles_have_no_rings),
+        cmocka_unit_test(where_nothing_is_known),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
