@@ -1,6 +1,8 @@
 #include "jobs/kind.h"
+#include "core/rugo.h"
 #include "jobs/fingerprint.h"
 #include "jobs/memory.h"
+#include "schema/result/bytes.h"
 #include "schema/study/study_reader.h"
 #include <stdlib.h>
 #include <string.h>
@@ -19,10 +21,20 @@ const struct job_kind *kind_find(const char *name) {
     return NULL;
 }
 
+/* A new version may compute other values in the same format. */
+uint64_t kind_edition(const struct job_kind *kind) {
+    const uint64_t marks[] = {kind->format, kind->format_version};
+    uint64_t hash = hash_bytes(HASH_START, strlen(RUGO_VERSION), RUGO_VERSION);
+    return hash_bytes(hash, sizeof marks, marks);
+}
+
 int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
                     struct fault_list *faults, struct error *err) {
-    return study_read(out, text, size, overrides, JOB_KINDS, MEMORY_PART * memory_available(),
-                      faults, err);
+    int status = study_read(out, text, size, overrides, JOB_KINDS, MEMORY_PART * memory_available(),
+                            faults, err);
+    if (status == 0)
+        (*out)->edition = kind_edition(kind_of((*out)->kind));
+    return status;
 }
 
 int kind_case_create(void **out, const struct job_kind *kind, const cJSON *parameters,

@@ -166,6 +166,8 @@ extern const struct study_kind *const JOB_KINDS[];
 /* These return the kind of a table's entry, and that of a name: NULL for an unknown one. */
 const struct job_kind *kind_of(const struct study_kind *study);
 const struct job_kind *kind_find(const char *name);
+/* Computes the mark of what this program computes of a kind (schema/study/study.h). */
+uint64_t kind_edition(const struct job_kind *kind);
 /* Reads a study of these kinds; a case may need as much memory as the machine has. */
 int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
                     struct fault_list *faults, struct error *err);

@@ -36,8 +36,10 @@ int store_begin(struct store *store, struct error *err);
 int store_commit(struct store *store, struct error *err);
 
 /* --- studies --- */
-/* Queues a study with its jobs. key (may be NULL): a second submission with the same key and the
- * same source gives the first one's id and *existing = true; another source under it: ERROR_STATE.
+/* Queues a study with its jobs. Where another has fewer realisations and is the same but for its
+ * name, its blocks are taken over, and only what they lack is queued. key (may be NULL): a second
+ * submission with the same key and the same source gives the first one's id and *existing = true;
+ * another source under it: ERROR_STATE.
  */
 int store_submit(struct store *store, const struct study *study, const char *key,
                  char id[STUDY_ID_SIZE], bool *existing, struct error *err);
@@ -75,6 +77,13 @@ int store_cancel(struct store *store, const char *id, struct error *err); /* ERR
 /* Failed and cancelled jobs wait again with fresh attempts, and so do the jobs of cases that could
  * not be published, whose results are given up: *count of them. */
 int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err);
+
+/* Queues what a study lacks to this many realisations of each case, with what failed or was
+ * cancelled: *jobs of them; none where it has as many. ERROR_STATE for fewer than it has, or
+ * for results of another edition than this (study.h); ERROR_INPUT for one that asks for an error,
+ * or above STUDY_REALISATIONS_MOST. */
+int store_extend(struct store *store, const char *id, uint64_t realisations, uint64_t edition,
+                 uint64_t *jobs, struct error *err);
 
 /* A job that failed, or a case that cannot be published. */
 struct failure {

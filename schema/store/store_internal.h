@@ -6,7 +6,7 @@
 #include <sqlite3.h>
 #include <time.h>
 
-enum { STATEMENTS = 96, BOOT_SIZE = 40, BUSY_MS = 30000 /* waited for a lock */ };
+enum { STATEMENTS = 128, BOOT_SIZE = 40, BUSY_MS = 30000 /* waited for a lock */ };
 
 struct store {
     sqlite3 *db;
@@ -60,6 +60,8 @@ int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 
 /* Finds the row of a study; ERROR_ABSENT with a sentence when there is none. */
 int study_row(struct store *store, const char *id, int64_t *row, struct error *err);
+/* Queues what failed or was cancelled again: *jobs of them. Within a change. */
+int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error *err);
 /* Ends the study when nothing of it waits or runs; raises its revision. */
 int study_settle(struct store *store, int64_t study, struct error *err);
 
@@ -78,6 +80,13 @@ struct job_row {
     bool running, done, cancelled;
     bool owned; /* the token given is that of its last lease */
 };
+/* Queues the realisations 0 .. count - 1 of a case that no job has, as jobs of at most `block`
+ * each, and adds these to *jobs. */
+int jobs_insert_missing(struct store *store, const struct job_row *all, int64_t block,
+                        int64_t *jobs, struct error *err);
+/* Gives a study whose cases have no jobs yet the blocks of another that is the same but for its
+ * name and has fewer realisations, the one that has most of them done; their number is *taken. */
+int study_take_blocks(struct store *store, int64_t study, int64_t *taken, struct error *err);
 /* Queues realisations of a case as jobs of `block` each; of all: study, case_number, first, count.
  * Counts nothing. */
 int jobs_insert(struct store *store, const struct job_row *all, int64_t block, struct error *err);

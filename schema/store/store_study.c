@@ -305,23 +305,27 @@ static int retry_jobs(struct store *store, int64_t row, struct error *err) {
     return status != 0 ? status : study_settle(store, row, err);
 }
 
+int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error *err) {
+    int64_t marks = 0;
+    int status = discard_results(store, study, err);
+    if (status == 0)
+        status = store_integer(store, jobs, err,
+                               "SELECT jobs_failed + jobs_cancelled FROM study WHERE id = ?", "i",
+                               study);
+    if (status == 0)
+        status = store_integer(store, &marks, err, "SELECT cases_failed FROM study WHERE id = ?",
+                               "i", study);
+    return status == 0 && *jobs + marks > 0 ? retry_jobs(store, study, err) : status;
+}
+
 int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err) {
-    int64_t row = 0, jobs = 0, marks = 0;
+    int64_t row = 0, jobs = 0;
     int status = change_begin(store, err);
     if (status != 0)
         return status;
     status = study_row(store, id, &row, err);
     if (status == 0)
-        status = discard_results(store, row, err);
-    if (status == 0)
-        status =
-            store_integer(store, &jobs, err,
-                          "SELECT jobs_failed + jobs_cancelled FROM study WHERE id = ?", "i", row);
-    if (status == 0)
-        status = store_integer(store, &marks, err, "SELECT cases_failed FROM study WHERE id = ?",
-                               "i", row);
-    if (status == 0 && jobs + marks > 0)
-        status = retry_jobs(store, row, err);
+        status = study_retry(store, row, &jobs, err);
     status = change_end(store, status, err);
     if (status == 0)
         *count = (uint64_t)jobs;

@@ -1,8 +1,10 @@
 /* Submission: a study with its cases, what these are made of, and their jobs. */
 #include "schema/program.h"
+#include "schema/result/bytes.h"
 #include "schema/store/store_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Where a case stands in its study. */
 struct case_place {
@@ -10,10 +12,6 @@ struct case_place {
     int64_t parent;      /* of a component: its case; else -1 */
     int64_t sequence;    /* of a component */
 };
-
-static uint64_t blocks_of(const struct study_case *one) {
-    return (one->realisations + one->block - 1) / one->block;
-}
 
 int jobs_insert(struct store *store, const struct job_row *all, int64_t block, struct error *err) {
     int status = 0;
@@ -28,79 +26,129 @@ int jobs_insert(struct store *store, const struct job_row *all, int64_t block, s
 static int insert_component(struct store *store, const struct study_case *one,
                             const struct case_place *place, struct error *err) {
     return store_run(store, err,
-                     "UPDATE study_case SET parent = ?, role = ?, sequence = ?, realisations = ?, "
-                     "result_bytes = ? WHERE study_id = ? AND number = ?",
-                     "itiidii", place->parent, one->role, place->sequence,
-                     (int64_t)one->realisations, one->cost.result_bytes, place->row, place->number);
+                     "UPDATE study_case SET parent = ?, role = ?, sequence = ?, realisations = ? "
+                     "WHERE study_id = ? AND number = ?",
+                     "itiiii", place->parent, one->role, place->sequence,
+                     (int64_t)one->realisations, place->row, place->number);
 }
 
-/* blocks: jobs of the case, or of its components. */
+/* Inserts a case without jobs, and hashes its parameters into *digest. */
 static int insert_case(struct store *store, const struct study_case *one,
-                       const struct case_place *place, int64_t blocks, struct error *err) {
-    struct job_row all = {
-        .study = place->row, .case_number = place->number, .count = (int64_t)one->realisations};
+                       const struct case_place *place, uint64_t *digest, struct error *err) {
     char *parameters = json_print(one->parameters);
     if (parameters == NULL)
         return error_memory(err, 0, "the parameters of a case");
-    int status = store_run(store, err,
-                           "INSERT INTO study_case (study_id, number, parameters, estimate, jobs, "
-                           "jobs_left) VALUES (?, ?, ?, ?, ?, ?)",
-                           "iitdii", place->row, place->number, parameters,
-                           one->component_count > 0 ? 0 : one->cost.seconds, blocks, blocks);
+    int status =
+        store_run(store, err,
+                  "INSERT INTO study_case (study_id, number, parameters, estimate, jobs, "
+                  "jobs_left, result_bytes) VALUES (?, ?, ?, ?, 0, 0, ?)",
+                  "iitdd", place->row, place->number, parameters,
+                  one->component_count > 0 ? 0 : one->cost.seconds, one->cost.result_bytes);
+    *digest = hash_bytes(*digest, strlen(parameters) + 1, parameters);
     free(parameters);
     if (status == 0 && place->parent >= 0)
         status = insert_component(store, one, place, err);
-    return status != 0 ? status : jobs_insert(store, &all, (int64_t)one->block, err);
+    return status;
 }
 
-static uint64_t jobs_of(const struct study_case *one) {
-    uint64_t jobs = one->component_count > 0 ? 0 : blocks_of(one);
-    for (size_t a = 0; a < one->component_count; a++)
-        jobs += blocks_of(&one->components[a]);
-    return jobs;
+/* The place of a case's component a; *next is the number that it takes. */
+static struct case_place component_place(const struct study *study, const struct case_place *of,
+                                         size_t a, int64_t *next) {
+    struct case_place place = {of->row, (*next)++, of->number, (int64_t)a};
+    if (study->random == RANDOM_INDEPENDENT)
+        place.sequence = place.number;
+    return place;
 }
 
-/* The cases, and behind them their components. */
+/* Inserts the cases, and behind them their components. */
 static int insert_cases(struct store *store, const struct study *study, int64_t row,
-                        struct error *err) {
+                        uint64_t *digest, struct error *err) {
     int status = 0;
     int64_t next = (int64_t)study->case_count;
     for (size_t c = 0; status == 0 && c < study->case_count; c++) {
         const struct study_case *one = &study->cases[c];
-        struct case_place place = {.row = row, .number = (int64_t)c, .parent = -1};
-        status = insert_case(store, one, &place, (int64_t)jobs_of(one), err);
+        const struct case_place of = {.row = row, .number = (int64_t)c, .parent = -1};
+        status = insert_case(store, one, &of, digest, err);
         for (size_t a = 0; status == 0 && a < one->component_count; a++) {
-            place = (struct case_place){row, next++, (int64_t)c, (int64_t)a};
-            if (study->random == RANDOM_INDEPENDENT)
-                place.sequence = place.number;
-            status = insert_case(store, &one->components[a], &place,
-                                 (int64_t)blocks_of(&one->components[a]), err);
+            const struct case_place place = component_place(study, &of, a, &next);
+            status = insert_case(store, &one->components[a], &place, digest, err);
         }
     }
     return status;
 }
 
-static int insert_study(struct store *store, const struct study *study, const char *key,
-                        const char *id, struct error *err) {
-    uint64_t jobs = 0;
-    for (size_t c = 0; c < study->case_count; c++)
-        jobs += jobs_of(&study->cases[c]);
+/* Queues what a case lacks, and counts it there; adds its jobs to *jobs. */
+static int queue_case(struct store *store, const struct study_case *one, int64_t row,
+                      int64_t number, int64_t *jobs, struct error *err) {
+    const struct job_row all = {
+        .study = row, .case_number = number, .count = (int64_t)one->realisations};
+    int64_t added = 0;
+    int status = jobs_insert_missing(store, &all, (int64_t)one->block, &added, err);
+    *jobs += added;
+    return status != 0 || added == 0
+               ? status
+               : store_run(store, err,
+                           "UPDATE study_case SET jobs = jobs + ?1, jobs_left = jobs_left + ?1 "
+                           "WHERE study_id = ?2 AND number IN (?3, (SELECT parent FROM study_case "
+                           "WHERE study_id = ?2 AND number = ?3))",
+                           "iii", added, row, number);
+}
+
+/* Queues what the cases lack, in the order of their numbers; components follow their case. */
+static int queue_cases(struct store *store, const struct study *study, int64_t row, int64_t *jobs,
+                       struct error *err) {
+    int status = 0;
+    int64_t next = (int64_t)study->case_count;
+    for (size_t c = 0; status == 0 && c < study->case_count; c++) {
+        const struct study_case *one = &study->cases[c];
+        if (one->component_count == 0)
+            status = queue_case(store, one, row, (int64_t)c, jobs, err);
+        for (size_t a = 0; status == 0 && a < one->component_count; a++)
+            status = queue_case(store, &one->components[a], row, next++, jobs, err);
+    }
+    return status;
+}
+
+static int insert_row(struct store *store, const struct study *study, const char *key,
+                      const char *id, int64_t *row, struct error *err) {
     char seed[24], program[PROGRAM_SIZE];
     program_write(program);
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
-    int status = store_run(store, err,
-                           "INSERT INTO study (public, name, kind, seed, random, realisations, "
-                           "submit_key, state, cases, jobs, jobs_waiting, created, program) VALUES "
-                           "(?, ?, ?, ?, ?, ?, ?, 'queued', ?, ?, ?, ?, ?)",
-                           "tttttitiiitt", id, study->name, study->kind->name, seed,
-                           choice_name(STUDY_RANDOM, (int)study->random),
-                           (int64_t)study->realisations, key, (int64_t)study->case_count,
-                           (int64_t)jobs, (int64_t)jobs, store_time(store), program);
-    int64_t row = sqlite3_last_insert_rowid(store->db);
+    int status =
+        store_run(store, err,
+                  "INSERT INTO study (public, name, kind, seed, random, realisations, "
+                  "submit_key, state, cases, jobs, jobs_waiting, created, program) VALUES "
+                  "(?, ?, ?, ?, ?, ?, ?, 'queued', ?, 0, 0, ?, ?)",
+                  "tttttititt", id, study->name, study->kind->name, seed,
+                  choice_name(STUDY_RANDOM, (int)study->random), (int64_t)study->realisations, key,
+                  (int64_t)study->case_count, store_time(store), program);
+    *row = sqlite3_last_insert_rowid(store->db);
+    return status != 0
+               ? status
+               : store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",
+                           "it", *row, study->source);
+}
+
+static int insert_study(struct store *store, const struct study *study, const char *key,
+                        const char *id, struct error *err) {
+    int64_t row = 0, jobs = 0, taken = 0;
+    bool shares = study->edition != 0 && study->realisations != 0;
+    uint64_t digest = HASH_START;
+    int status = insert_row(store, study, key, id, &row, err);
     if (status == 0)
-        status = store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",
-                           "it", row, study->source);
-    return status != 0 ? status : insert_cases(store, study, row, err);
+        status = insert_cases(store, study, row, &digest, err);
+    if (status == 0 && shares)
+        status = store_run(store, err, "UPDATE study SET digest = ?, edition = ? WHERE id = ?",
+                           "iii", (int64_t)digest, (int64_t)study->edition, row);
+    if (status == 0 && shares)
+        status = study_take_blocks(store, row, &taken, err);
+    if (status == 0)
+        status = queue_cases(store, study, row, &jobs, err);
+    return status != 0 ? status
+                       : store_run(store, err,
+                                   "UPDATE study SET jobs = jobs + ?1, jobs_waiting = ?1 WHERE id "
+                                   "= ?2",
+                                   "ii", jobs, row);
 }
 
 /* 1 and the id when the key was used for this very study, 0 when it was not used. */
@@ -109,10 +157,12 @@ static int find_key(struct store *store, const struct study *study, const char *
     if (key == NULL)
         return 0;
     sqlite3_stmt *statement = NULL;
-    int status = store_query(store, &statement, err,
-                             "SELECT public, source = ? FROM study JOIN study_source ON "
-                             "study_id = study.id WHERE submit_key = ?",
-                             "tt", study->source, key);
+    int status =
+        store_query(store, &statement, err,
+                    "SELECT public, source IN (?1, json_set(?1, '$.realisations', realisations)) "
+                    "FROM study JOIN study_source ON study_id = study.id WHERE submit_key "
+                    "= ?2",
+                    "tt", study->source, key);
     if (status == 0)
         status = store_step(store, statement, err);
     if (status <= 0)

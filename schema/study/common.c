@@ -41,7 +41,7 @@ static const struct parameter ROWS[] = {
     {.path = "/realisations",
      .type = PARAMETER_INTEGER,
      .minimum = 1,
-     .maximum = 1e7,
+     .maximum = STUDY_REALISATIONS_MOST,
      .example_json = "500",
      .help = "random surfaces of each case; the kind's own number unless given"},
 };

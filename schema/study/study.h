@@ -64,6 +64,9 @@ struct study {
     uint64_t seed;
     enum study_random random;
     uint64_t realisations; /* of each case; 0: as many as the error asked for takes */
+    /* Marks the program's results of this kind: those of different editions are not mixed. 0: of no
+     * edition, whose results are its own. */
+    uint64_t edition;
     size_t case_count;
     struct study_case *cases;
     char *source; /* the document as compact JSON, as it was given */
@@ -71,7 +74,7 @@ struct study {
     char **swept;
 };
 
-enum { STUDY_CASES_MOST = 10000 };
+enum { STUDY_CASES_MOST = 10000, STUDY_REALISATIONS_MOST = 10000000 };
 
 void study_destroy(struct study **study);
 

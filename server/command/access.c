@@ -296,6 +296,16 @@ int access_retry(struct access *access, const char *id, cJSON **out, struct erro
                                   : api_retry(access->store, id, out, err);
 }
 
+int access_extend(struct access *access, const char *id, uint64_t realisations, cJSON **out,
+                  struct error *err) {
+    char path[320], body[64];
+    if (access->client == NULL)
+        return api_extend(access->store, id, realisations, out, err);
+    snprintf(body, sizeof body, "{\"realisations\":%llu}", (unsigned long long)realisations);
+    int status = study_path(path, sizeof path, id, "/extend", err);
+    return status != 0 ? status : ask(access, "POST", path, body, out, err);
+}
+
 int access_snapshot(struct access *access, const char *path, struct error *err) {
     if (access->client == NULL)
         return store_snapshot(access->store, path, err);

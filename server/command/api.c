@@ -1,4 +1,5 @@
 #include "server/command/api.h"
+#include "jobs/kind.h"
 #include "schema/json/field.h"
 #include "worker/publish.h"
 #include <math.h>
@@ -23,7 +24,8 @@ static cJSON *submitted(const struct study_status *status, bool *complete) {
                 field_put(document, "name", cJSON_CreateString(status->name)) &&
                 field_put(document, "state", cJSON_CreateString(status->state)) &&
                 field_put_count(document, "cases", status->cases) &&
-                field_put_count(document, "jobs", status->jobs);
+                field_put_count(document, "jobs", status->jobs) &&
+                field_put_count(document, "realisations_done", status->realisations_done);
     return document;
 }
 
@@ -194,6 +196,32 @@ int api_retry(struct store *store, const char *id, cJSON **out, struct error *er
     if (status == 0)
         status = api_status(store, id, out, err);
     if (status == 0 && !field_put_count(*out, "retried", count)) {
+        cJSON_Delete(*out);
+        *out = NULL;
+        status = error_memory(err, 0, "a document");
+    }
+    return status;
+}
+
+/* Results of a kind that this program does not know would be of another edition. */
+static int extend(struct store *store, const char *id, uint64_t realisations, uint64_t *jobs,
+                  struct error *err) {
+    struct study_status now = {0};
+    int status = store_status(store, id, &now, err);
+    const struct job_kind *kind = status == 0 ? kind_find(now.kind) : NULL;
+    study_status_clear(&now);
+    return status != 0 ? status
+                       : store_extend(store, id, realisations,
+                                      kind != NULL ? kind_edition(kind) : 0, jobs, err);
+}
+
+int api_extend(struct store *store, const char *id, uint64_t realisations, cJSON **out,
+               struct error *err) {
+    uint64_t jobs = 0;
+    int status = extend(store, id, realisations, &jobs, err);
+    if (status == 0)
+        status = api_status(store, id, out, err);
+    if (status == 0 && !field_put_count(*out, "queued", jobs)) {
         cJSON_Delete(*out);
         *out = NULL;
         status = error_memory(err, 0, "a document");

@@ -5,12 +5,16 @@
 
 #include "schema/store/store.h"
 
-/* Queues a study: {id, name, state, cases, jobs}. ERROR_STATE: key used for another study. */
+/* Queues a study: {id, name, state, cases, jobs, realisations_done}. ERROR_STATE: key used for
+ * another study. */
 int api_submit(struct store *store, const struct study *study, const char *key, cJSON **out,
                bool *existing, struct error *err);
 int api_status(struct store *store, const char *id, cJSON **out, struct error *err);
 int api_list(struct store *store, const char *after, size_t limit, cJSON **out, struct error *err);
 int api_cancel(struct store *store, const char *id, cJSON **out, struct error *err);
 int api_retry(struct store *store, const char *id, cJSON **out, struct error *err);
+/* Progress with the number of jobs queued; see store_extend. */
+int api_extend(struct store *store, const char *id, uint64_t realisations, cJSON **out,
+               struct error *err);
 
 #endif

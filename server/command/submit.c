@@ -1,4 +1,5 @@
 /* `rugo submit`: queues a study and prints its id. */
+#include "schema/json/field.h"
 #include "server/command/access.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +17,11 @@ static int print_id(const cJSON *document, struct error *err) {
     const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(document, "id"));
     if (id == NULL)
         return error_set(err, ERROR_SYSTEM, "the server's answer has no id");
+    double taken = field_number(document, "realisations_done");
+    if (taken > 0)
+        fprintf(stderr,
+                "rugo submit: %.0f realisations were there already, of a study with fewer\n",
+                taken);
     puts(id);
     return output_flush(err);
 }

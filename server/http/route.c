@@ -17,6 +17,7 @@ static const struct route {
     {"DELETE", "/v1/studies/*", ROLE_SUBMIT, handle_study_cancel, {NULL}},
     {"GET", "/v1/studies/*/study", ROLE_READ, handle_document, {NULL}},
     {"POST", "/v1/studies/*/retry", ROLE_SUBMIT, handle_study_retry, {NULL}},
+    {"POST", "/v1/studies/*/extend", ROLE_SUBMIT, handle_study_extend, {NULL}},
     {"GET", "/v1/studies/*/curves", ROLE_READ, handle_curves, {"case", "quantity", "difference"}},
     {"GET", "/v1/studies/*/report", ROLE_READ, handle_report, {NULL}},
     {"GET",

@@ -1,5 +1,6 @@
 /* Studies over HTTP: submission, progress. */
 #include "jobs/kind.h"
+#include "schema/json/field.h"
 #include "server/command/api.h"
 #include "server/http/route.h"
 #include <stdio.h>
@@ -99,6 +100,35 @@ void handle_study_cancel(struct exchange *exchange, const char *id) {
 
 void handle_study_retry(struct exchange *exchange, const char *id) {
     answer_change(exchange, (struct study_change){.id = id, .api = api_retry});
+}
+
+struct extension {
+    const char *id;
+    uint64_t realisations;
+    cJSON *document;
+};
+
+static int extend_change(struct store *store, void *context, struct error *err) {
+    struct extension *extension = context;
+    return api_extend(store, extension->id, extension->realisations, &extension->document, err);
+}
+
+void handle_study_extend(struct exchange *exchange, const char *id) {
+    struct extension extension = {.id = id};
+    struct error err = {0};
+    cJSON *body = body_json(exchange);
+    if (body == NULL)
+        return;
+    int status = field_count(body, "realisations", &extension.realisations, &err);
+    cJSON_Delete(body);
+    if (status == 0)
+        status = writer_do(exchange->service->writer, extend_change, &extension, &err);
+    if (status == 0) {
+        answer_json(exchange, 200, extension.document);
+    } else {
+        cJSON_Delete(extension.document); /* made, but its commit failed */
+        answer_error(exchange, &err);
+    }
 }
 
 /* --- questions, to a reader --- */

@@ -7,6 +7,7 @@
 #include "tests/support/check.h"
 #include "tests/support/fake_kind.h"
 #include "tests/support/sample_result.h"
+#include "tests/support/store_text.h"
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -298,25 +299,6 @@ static void group_commit_keeps_its_members_apart(void **state) {
 }
 
 /* --- what people read --- */
-
-static char *read_text(const char *path, const char *sql) {
-    sqlite3 *db = NULL;
-    sqlite3_stmt *row = NULL;
-    assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
-    if (sqlite3_prepare_v2(db, sql, -1, &row, NULL))
-        print_error("%s\n", sqlite3_errmsg(db));
-    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
-    char *text = strdup((const char *)sqlite3_column_text(row, 0));
-    sqlite3_finalize(row);
-    sqlite3_close(db);
-    return text;
-}
-
-static void check_text(const char *path, const char *sql, const char *expected) {
-    char *text = read_text(path, sql);
-    assert_string_equal(text, expected);
-    free(text);
-}
 
 static int count_blocks(void *context, const struct block_result *result, struct error *err) {
     uint64_t *next = context;

@@ -1,0 +1,245 @@
+/* Extension: the realisations that a study lacks, behind those that it has. */
+#include "schema/store/store_internal.h"
+#include "schema/study/study_reader.h"
+#include <stdlib.h>
+
+int jobs_insert_missing(struct store *store, const struct job_row *all, int64_t block,
+                        int64_t *jobs, struct error *err) {
+    int64_t at = all->first, end = all->first + all->count, first = 0;
+    int status = 0;
+    while (status == 0 && at < end) {
+        status = store_integer(store, &first, err,
+                               "SELECT coalesce((SELECT first FROM job WHERE study_id = ?1 AND "
+                               "case_number = ?2 AND first >= ?3 ORDER BY first LIMIT 1), ?4)",
+                               "iiii", all->study, all->case_number, at, end);
+        if (status == 0 && first > at) {
+            struct job_row gap = *all;
+            gap.first = at;
+            gap.count = (first < end ? first : end) - at;
+            status = jobs_insert(store, &gap, block, err);
+            *jobs += (gap.count + block - 1) / block;
+        }
+        at = first;
+        if (status == 0 && at < end)
+            status = store_integer(store, &at, err,
+                                   "SELECT first + count FROM job WHERE study_id = ?1 AND "
+                                   "case_number = ?2 AND first = ?3",
+                                   "iii", all->study, all->case_number, first);
+    }
+    return status;
+}
+
+/* --- more realisations of a study --- */
+
+/* A case, and what a realisation of it costs: as measured where any was. */
+struct longer_case {
+    int64_t number;
+    struct study_cost cost;
+};
+
+/* *out has room for all cases of the study. */
+static int read_cases(struct store *store, int64_t study, struct longer_case *out, size_t count,
+                      struct error *err) {
+    sqlite3_stmt *row = NULL;
+    size_t n = 0;
+    int status = store_query(
+        store, &row, err,
+        "SELECT number, CASE WHEN seconds > 0 AND realisations_done > 0 THEN seconds / "
+        "realisations_done ELSE estimate END, coalesce(result_bytes, (SELECT max(1.0 * "
+        "length(r.data) / j.count) FROM job j JOIN result r ON r.job_id = j.id WHERE j.study_id = "
+        "study_case.study_id AND j.case_number = number), 0) FROM study_case WHERE study_id = ? "
+        "AND parent IS NULL ORDER BY number",
+        "i", study);
+    while (status == 0 && n < count && (status = store_step(store, row, err)) == 1) {
+        out[n++] = (struct longer_case){sqlite3_column_int64(row, 0),
+                                        {.seconds = sqlite3_column_double(row, 1),
+                                         .result_bytes = sqlite3_column_double(row, 2)}};
+        status = 0;
+    }
+    if (status == 0)
+        sqlite3_reset(row);
+    if (status == 0 && n != count)
+        return error_set(err, ERROR_SYSTEM, "a study counts %zu cases and has %zu", count, n);
+    return status;
+}
+
+static int extend_case(struct store *store, int64_t study, const struct longer_case *one,
+                       int64_t had, int64_t wanted, int64_t *jobs, struct error *err) {
+    const struct job_row all = {
+        .study = study, .case_number = one->number, .first = had, .count = wanted - had};
+    int64_t block = (int64_t)study_block((uint64_t)all.count, &one->cost);
+    int64_t added = (all.count + block - 1) / block;
+    int status = jobs_insert(store, &all, block, err);
+    *jobs += added;
+    return status != 0
+               ? status
+               : store_run(store, err,
+                           "UPDATE study_case SET jobs = jobs + ?, jobs_left = jobs_left + ? WHERE "
+                           "study_id = ? AND number = ?",
+                           "iiii", added, added, study, one->number);
+}
+
+/* had: the realisations that each case was to have. */
+static int extend_cases(struct store *store, int64_t study, int64_t had, int64_t wanted,
+                        int64_t *jobs, struct error *err) {
+    int64_t count = 0;
+    int status =
+        store_integer(store, &count, err, "SELECT cases FROM study WHERE id = ?", "i", study);
+    if (status != 0)
+        return status;
+    struct longer_case *cases = array_create((size_t)count, sizeof *cases);
+    if (cases == NULL)
+        return error_memory(err, (size_t)count * sizeof *cases, "cases");
+    status = read_cases(store, study, cases, (size_t)count, err);
+    for (int64_t c = 0; c < count && status == 0; c++)
+        status = extend_case(store, study, &cases[c], had, wanted, jobs, err);
+    free(cases);
+    return status;
+}
+
+static int extend(struct store *store, int64_t study, int64_t had, int64_t wanted, int64_t *jobs,
+                  struct error *err) {
+    int64_t again = 0, added = 0;
+    int status = study_retry(store, study, &again, err);
+    if (status == 0)
+        status = extend_cases(store, study, had, wanted, &added, err);
+    if (status == 0)
+        status = store_run(
+            store, err,
+            "UPDATE study SET realisations = ?, jobs = jobs + ?2, jobs_waiting = jobs_waiting + "
+            "?2, state = CASE WHEN jobs_running > 0 THEN 'running' ELSE 'queued' END, finished = "
+            "NULL, revision = revision + 1 WHERE id = ?3",
+            "iii", wanted, added, study);
+    if (status == 0)
+        status = store_run(store, err,
+                           "UPDATE study_source SET source = json_set(source, '$.realisations', "
+                           "?) WHERE study_id = ?",
+                           "ii", wanted, study);
+    *jobs = again + added;
+    return status;
+}
+
+/* Fails where the results that are there are of another edition; those of older programs tell none.
+ */
+static int check_edition(struct store *store, int64_t study, const char *id, uint64_t edition,
+                         struct error *err) {
+    int64_t other = 0;
+    int status = store_integer(
+        store, &other, err, "SELECT edition IS NOT NULL AND edition <> ? FROM study WHERE id = ?",
+        "ii", (int64_t)edition, study);
+    if (status == 0 && other != 0)
+        return error_set(err, ERROR_STATE,
+                         "study %s is of a version of the program whose results may differ from "
+                         "this one's: submit it anew with more realisations",
+                         id);
+    return status;
+}
+
+static int check_extension(const char *id, int64_t had, uint64_t wanted, struct error *err) {
+    if (had == 0)
+        return error_set(err, ERROR_INPUT,
+                         "study %s asks for an error and chooses its realisations itself: submit "
+                         "it anew with a smaller error",
+                         id);
+    if (wanted > STUDY_REALISATIONS_MOST)
+        return error_set(err, ERROR_INPUT, "%llu realisations are above the largest number, %d",
+                         (unsigned long long)wanted, STUDY_REALISATIONS_MOST);
+    if ((int64_t)wanted < had)
+        return error_set(err, ERROR_STATE,
+                         "study %s has %lld realisations of each case, which %llu would not extend",
+                         id, (long long)had, (unsigned long long)wanted);
+    return 0;
+}
+
+int store_extend(struct store *store, const char *id, uint64_t realisations, uint64_t edition,
+                 uint64_t *jobs, struct error *err) {
+    int64_t row = 0, had = 0, queued = 0;
+    int status = change_begin(store, err);
+    if (status != 0)
+        return status;
+    status = study_row(store, id, &row, err);
+    if (status == 0)
+        status = store_integer(store, &had, err, "SELECT realisations FROM study WHERE id = ?", "i",
+                               row);
+    if (status == 0)
+        status = check_extension(id, had, realisations, err);
+    if (status == 0)
+        status = check_edition(store, row, id, edition, err);
+    if (status == 0 && (int64_t)realisations > had)
+        status = extend(store, row, had, (int64_t)realisations, &queued, err);
+    status = change_end(store, status, err);
+    if (status == 0)
+        *jobs = (uint64_t)queued;
+    return status;
+}
+
+/* --- blocks of another study --- */
+
+/* Both have the same cases, parameter by parameter: a digest alone may be that of two studies. */
+#define SAME_STUDY                                                                                 \
+    "FROM study a JOIN study b ON b.digest = a.digest AND b.edition = a.edition AND b.kind = "     \
+    "a.kind AND b.seed = a.seed "                                                                  \
+    "AND b.random = a.random AND b.cases = a.cases WHERE a.id = ?1 AND b.id <> a.id AND "          \
+    "b.realisations < a.realisations AND b.realisations_done > 0 AND NOT EXISTS (SELECT 1 FROM "   \
+    "study_case c JOIN study_case d ON d.study_id = b.id AND d.number = c.number WHERE "           \
+    "c.study_id = a.id AND d.parameters <> c.parameters)"
+
+static int copy_blocks(struct store *store, int64_t from, int64_t to, struct error *err) {
+    int status = store_run(
+        store, err,
+        "INSERT INTO job (study_id, case_number, first, count, state, attempts, worker, host, "
+        "seconds, cpu_seconds, claimed, ended, program) SELECT ?2, j.case_number, j.first, "
+        "j.count, "
+        "'done', j.attempts, j.worker, j.host, j.seconds, j.cpu_seconds, j.claimed, j.ended, "
+        "j.program FROM "
+        "job j JOIN study_case c ON c.study_id = j.study_id AND c.number = j.case_number WHERE "
+        "j.study_id = ?1 AND j.state = 'done' AND c.publish_error IS NULL ORDER BY j.id",
+        "ii", from, to);
+    if (status == 0)
+        status = store_run(
+            store, err,
+            "INSERT INTO result (job_id, names_id, scalars, data) SELECT n.id, r.names_id, "
+            "r.scalars, r.data FROM job n JOIN job j ON j.study_id = ?1 AND j.case_number = "
+            "n.case_number AND j.first = n.first JOIN result r ON r.job_id = j.id WHERE "
+            "n.study_id = ?2",
+            "ii", from, to);
+    return status;
+}
+
+static int count_blocks(struct store *store, int64_t study, struct error *err) {
+    int status = store_run(
+        store, err,
+        "UPDATE study_case SET jobs = n, realisations_done = r, seconds = s, cpu_seconds = u, "
+        "jobs_without_cpu = w, revision = n FROM (SELECT case_number AS number_of, count(*) AS n, "
+        "sum(count) AS r, total(seconds) AS s, total(coalesce(cpu_seconds, seconds)) AS u, "
+        "sum(cpu_seconds IS NULL) AS w FROM job WHERE study_id = ?1 GROUP BY case_number) WHERE "
+        "study_id = ?1 AND number = number_of",
+        "i", study);
+    if (status == 0)
+        status = store_run(
+            store, err,
+            "UPDATE study SET jobs = n, jobs_done = n, realisations_done = r, seconds = s, "
+            "cpu_seconds = u, jobs_without_cpu = w FROM (SELECT sum(jobs) AS n, "
+            "sum(realisations_done) AS r, total(seconds) AS s, total(cpu_seconds) AS u, "
+            "sum(jobs_without_cpu) AS w FROM study_case WHERE study_id = ?1) WHERE id = ?1",
+            "i", study);
+    return status;
+}
+
+int study_take_blocks(struct store *store, int64_t study, int64_t *taken, struct error *err) {
+    int64_t from = 0;
+    *taken = 0;
+    int status = store_integer(store, &from, err,
+                               "SELECT b.id " SAME_STUDY " ORDER BY b.realisations_done DESC, b.id "
+                               "DESC LIMIT 1",
+                               "i", study);
+    if (status != 0)
+        return status == ERROR_ABSENT ? 0 : status;
+    status = copy_blocks(store, from, study, err);
+    if (status == 0)
+        status = count_blocks(store, study, err);
+    if (status == 0)
+        status = store_integer(store, taken, err,
+                               "SELECT realisations_done FROM study WHERE id = ?", "i", study);
+    return status;
+}
