@@ -59,8 +59,9 @@ static int realise(void *workspace, const struct realisation *realisation, void 
     struct contact_workspace *work = workspace;
     struct contact_tally *contact = tally;
     contact->realisation = realisation->key.realisation;
-    int status = contact_scene_solve(work->scene, realisation->key, realisation->z, contact,
-                                     realisation->stop, realisation->stop_context, err);
+    const struct contact_surface surface = {realisation->key, realisation->z, &realisation->report};
+    int status = contact_scene_solve(work->scene, &surface, contact, realisation->stop,
+                                     realisation->stop_context, err);
     if (status != 0)
         return status;
     status =
@@ -180,7 +181,7 @@ const struct job_kind CONTACT_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x434f, /* "CO" */
-    .format_version = 12,
+    .format_version = 13,
     .put = put,
     .get = get,
     .adds_up = adds_up,

@@ -21,7 +21,7 @@ static const char *const ROLE_NAMES[ROLES] = {[ROLE_MESH] = "mesh",
 /* What the error is made of at the load where it is largest. Loads without a value are left out:
  * their curve says so. */
 struct reached {
-    double all, chance, mesh, cell, model;
+    double all, chance, mesh, cell, model, generation;
 };
 
 static struct reached error_reached(const struct contact_answer *answer,
@@ -29,11 +29,14 @@ static struct reached error_reached(const struct contact_answer *answer,
     struct reached most = {0};
     for (size_t k = 0; k < answer->loads; k++) {
         double y = fabs(sum->value[k]);
-        double all = hypot(sum->width[k], contact_sum_bounds(answer, sum, k)) / y;
+        double all = hypot(sum->width[k], contact_sum_bounds(answer, sum, k, true)) / y;
         if (!isnan(y) && !(all <= most.all))
-            most = (struct reached){isnan(all) ? INFINITY : all, sum->width[k] / y,
-                                    answer->named_mesh ? 0 : sum->mesh[k] / y, sum->cell[k] / y,
-                                    sum->model[k] / y};
+            most = (struct reached){isnan(all) ? INFINITY : all,
+                                    sum->width[k] / y,
+                                    answer->named_mesh ? 0 : sum->mesh[k] / y,
+                                    sum->cell[k] / y,
+                                    sum->model[k] / y,
+                                    sum->generation[k] / y};
     }
     return most;
 }
@@ -77,6 +80,9 @@ static int put_curve(const struct contact_answer *answer, const struct contact_s
         put_bound(answer, sum->cell, &curve.errors[ERROR_CELL]);
     if (answer->of[ROLE_MODEL] != NULL && !answer->named_mesh)
         put_bound(answer, sum->model, &curve.errors[ERROR_MODEL]);
+    curve.errors[ERROR_GENERATION].applies = surface_paths_apply(&one_case->surface);
+    if (contact_case_has_paths(component_case(answer->of[ROLE_BASE])))
+        put_bound(answer, sum->generation, &curve.errors[ERROR_GENERATION]);
     return result_add_curve(answer->result, &curve, err);
 }
 
@@ -143,8 +149,8 @@ static double kurtosis(const struct contact_answer *answer, enum contact_measure
 
 /* What plain sampling would take for the same error: of the model that is asked for, on the finest
  * mesh where it was solved, and on the cells of the base. Their own errors, which remain, are those
- * of the cell alone here: that of the mesh is left out in favour of plain sampling. It takes two
- * realisations at least, since one tells no error. */
+ * of the cell and of generation alone here: that of the mesh is left out in favour of plain
+ * sampling. It takes two realisations at least, since one tells no error. */
 static double plain_work(const struct contact_answer *answer, const struct contact_sum *sum,
                          double error) {
     const struct target_component *base = answer->of[ROLE_BASE];
@@ -157,7 +163,8 @@ static double plain_work(const struct contact_answer *answer, const struct conta
     double quantile = gsl_cdf_ugaussian_Pinv((1 + answer->target.confidence) / 2);
     double realisations = 2, work = 0;
     for (size_t k = 0; k < answer->loads; k++) {
-        double all = error * fabs(sum->value[k]), left = all * all - sum->cell[k] * sum->cell[k];
+        double all = error * fabs(sum->value[k]), left = all * all - sum->cell[k] * sum->cell[k] -
+                                                         sum->generation[k] * sum->generation[k];
         realisations = fmax(realisations, sum->variance[ROLE_BASE][k] * quantile * quantile / left);
         work += contact_tally_total(component_tally(from), MEASURE_WORK, first + k) /
                 (double)from->done * (double)grid_points(&contact_case_finest(one_case)->grid);
@@ -186,6 +193,7 @@ static int put_scalars(const struct contact_answer *answer, const struct contact
                    {"error_mesh", reached.mesh},
                    {"error_cell", reached.cell},
                    {"error_model", reached.model},
+                   {"error_generation", reached.generation},
                    {"length_ratio", component_case(answer->of[ROLE_BASE])->surface.length_ratio},
                    {"work", work},
                    {"plain_work", plain_work(answer, sum, error)},

@@ -9,7 +9,7 @@
 #include "jobs/contact/contact_parameters.h"
 #include "jobs/contact/model.h"
 #include "jobs/kind.h"
-#include "jobs/surface_case.h"
+#include "jobs/surface_paths.h"
 #include "schema/study/fault.h"
 
 /* Tables of the kind: CONTACT_PARAMETERS, then SURFACE_PARAMETERS. */
@@ -34,6 +34,14 @@ struct contact_surfaces {
     uint64_t interval;           /* of realisations, one of which is beside such a surface; 2^n */
 };
 
+/* Surfaces found in other ways (contact_generation.h). */
+struct contact_paths {
+    struct contact_level level; /* that of the probe; no points: there are none */
+    uint64_t interval;          /* of realisations, one of which is found again; 2^n */
+};
+/* Series of loads: the own surface, then one a path. */
+enum { PATHS_OWN, PATHS_FOUND, PATHS_SERIES = PATHS_FOUND + SURFACE_PATHS };
+
 struct contact_case {
     struct surface_case surface; /* and its own grid, on which realisations are generated */
     struct surface_band band;    /* of a realisation on its own grid */
@@ -50,6 +58,7 @@ struct contact_case {
     bool low_blocks;            /* the heights of blocks are probed */
     uint64_t probe_interval;    /* else: of realisations, one of which is probed; 2^n */
     struct contact_surfaces lengths[CONTACT_LENGTHS]; /* no points: there are none */
+    struct contact_paths paths;
     size_t load_count;
     double *loads;                /* owned: p/(E* h'), rising, > 0 */
     bool nodes, edges, perimeter; /* estimators shown */
@@ -90,9 +99,10 @@ static inline size_t contact_case_probe_cell(const struct contact_case *one_case
                                              size_t load) {
     return contact_case_cells(one_case) + block * one_case->load_count + load;
 }
-/* And behind these, of the surfaces of another length, by load; and how many cells there are in
- * all.
- */
+static inline bool contact_case_has_paths(const struct contact_case *one_case) {
+    return one_case->paths.level.grid.nx > 0;
+}
+/* Behind these, of the surfaces of another length, by load. */
 static inline size_t contact_case_length_cell(const struct contact_case *one_case,
                                               enum contact_length length, size_t load) {
     size_t series = contact_case_probe_blocks(one_case);
@@ -100,8 +110,15 @@ static inline size_t contact_case_length_cell(const struct contact_case *one_cas
         series += contact_case_has_length(one_case, other);
     return contact_case_probe_cell(one_case, series, load);
 }
+/* And behind these, of the surfaces found in other ways and of the own one beside them, by load;
+ * and how many cells there are in all. */
+static inline size_t contact_case_path_cell(const struct contact_case *one_case, size_t series,
+                                            size_t load) {
+    return contact_case_length_cell(one_case, CONTACT_LENGTHS, 0) + series * one_case->load_count +
+           load;
+}
 static inline size_t contact_case_all_cells(const struct contact_case *one_case) {
-    return contact_case_length_cell(one_case, CONTACT_LENGTHS, 0);
+    return contact_case_path_cell(one_case, contact_case_has_paths(one_case) ? PATHS_SERIES : 0, 0);
 }
 
 /* By how much the height of a model's block changes what is measured, relative to it, at most:
@@ -126,6 +143,9 @@ int contact_case_scale(const struct contact_case *one_case, double *rms_height, 
 /* Returns whether the areas of a model are told as they are under load. */
 bool contact_case_stretches(const struct contact_case *one_case, size_t model);
 
+/* CPU seconds that a realisation takes at least, without what stands beside it: a choice that
+ * changes values must not depend on whether there is memory for a better estimate. */
+double contact_case_least_seconds(const struct contact_case *one_case);
 /* Estimates memory, time and error of one realisation before anything ran. */
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out);
 

@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_cell.h"
+#include "jobs/contact/contact_generation.h"
 #include "jobs/contact/contact_loads.h"
 #include "jobs/contact/contact_probe.h"
 #include <math.h>
@@ -247,14 +248,17 @@ static int read_contact(struct contact_case *out, struct values *values, struct 
     return status;
 }
 
-/* What low blocks and the length of the cell change is told on a mesh as coarse as will do. */
+/* What low blocks, the length of the cell and the way to the surface change is told on a mesh as
+ * coarse as will do. */
 static void choose_probes(struct contact_case *out, struct values *values) {
     for (size_t m = 0; m < out->model_count; m++)
         out->low_blocks = out->low_blocks || contact_case_block_bound(out, m) > CONTACT_BLOCK_LOW;
     if (out->low_blocks)
-        contact_probe_choose(out);
+        out->probe = contact_probe_level(out);
     if (values_choice(values, "/contact/cell_error") == CELL_ERROR_PROBED)
         contact_cell_choose(out);
+    if (values_choice(values, "/contact/generation_error") == GENERATION_ERROR_PROBED)
+        contact_generation_choose(out);
 }
 
 int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,

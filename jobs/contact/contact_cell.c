@@ -11,7 +11,6 @@ static const uint64_t OWN_SEQUENCE[CONTACT_LENGTHS] = {
  * case's own ones. */
 static const double TIME_SHARE[CONTACT_LENGTHS] = {[LENGTH_LONGER] = 0.06, [LENGTH_SHORTER] = 0.06};
 static const double PROBE_SHARE = 0.02;
-static const uint64_t INTERVAL_MOST = 1 << 20;
 /* These surfaces may take as much memory as the case's own on a half-space on its finest mesh, or
  * this where that is more. */
 static const double BYTES_LEAST = 1e9;
@@ -73,31 +72,10 @@ static double surface_seconds(const struct contact_case *one_case, enum contact_
            contact_coarse_seconds(one_case, &surfaces->level.grid);
 }
 
-/* What the case takes without these surfaces at least: a choice that changes values must not depend
- * on whether there is memory for a better estimate. */
-static double case_seconds(const struct contact_case *one_case) {
-    const struct surface_case *surface = &one_case->surface;
-    double seconds =
-        1e-9 * cost_generation(&surface->options) * (double)grid_points(&surface->grid);
-    for (size_t l = 0; l < one_case->level_count; l++)
-        for (size_t m = 0; m < one_case->model_count; m++)
-            seconds += fmax(1, one_case->models[m]->times_linear) *
-                       contact_coarse_seconds(one_case, &one_case->levels[l].grid);
-    return seconds;
-}
-
 static double surface_bytes(const struct contact_surfaces *surfaces) {
     const struct grid *grid = &surfaces->level.grid;
     return surface_case_bytes(&surfaces->surface) + 8 * (double)grid_points(grid) +
            contact_coarse_bytes(grid);
-}
-
-/* Returns the least power of two, at least `least`, as many times less than which it may take. */
-static uint64_t interval_of(double seconds, double allowed, uint64_t least) {
-    uint64_t interval = least;
-    while (interval < INTERVAL_MOST && !(seconds <= (double)interval * allowed))
-        interval *= 2;
-    return interval;
 }
 
 static bool holds_waves(const struct contact_case *one_case, double length) {
@@ -125,14 +103,15 @@ static void choose_length(struct contact_case *one_case, enum contact_length len
         surface_bytes(&surfaces) > fmax(BYTES_LEAST, own))
         return;
     one_case->lengths[length] = surfaces;
-    one_case->lengths[length].interval = interval_of(
-        surface_seconds(one_case, length), TIME_SHARE[length] * case_seconds(one_case), least);
+    one_case->lengths[length].interval =
+        contact_probe_interval(surface_seconds(one_case, length),
+                               TIME_SHARE[length] * contact_case_least_seconds(one_case), least);
 }
 
 void contact_cell_choose(struct contact_case *one_case) {
     bool probed = contact_case_is_probed(one_case);
     if (!probed)
-        contact_probe_choose(one_case);
+        one_case->probe = contact_probe_level(one_case);
     choose_length(one_case, LENGTH_LONGER, 2, one_case->surface.dimension == 1 ? 2 : 4);
     choose_length(one_case, LENGTH_SHORTER, shorter_length(one_case), 1);
     if (!probed && !has_any(one_case)) {
@@ -140,8 +119,8 @@ void contact_cell_choose(struct contact_case *one_case) {
         return;
     }
     one_case->probe_interval = 1;
-    one_case->probe_interval =
-        interval_of(contact_probe_seconds(one_case), PROBE_SHARE * case_seconds(one_case), 1);
+    one_case->probe_interval = contact_probe_interval(
+        contact_probe_seconds(one_case), PROBE_SHARE * contact_case_least_seconds(one_case), 1);
 }
 
 bool contact_cell_due(const struct contact_case *one_case, enum contact_length length,

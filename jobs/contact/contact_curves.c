@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_curves.h"
 #include "jobs/contact/contact_errors.h"
+#include "jobs/contact/contact_generation_errors.h"
 #include "jobs/contact/contact_mean.h"
 #include "jobs/contact/contact_theory.h"
 #include <math.h>
@@ -213,6 +214,23 @@ static int append_own(struct contact_curve_maker *maker, size_t m, struct error 
     return status;
 }
 
+/* What the density of pressures, x and y of the curve, owes to its surfaces. */
+static int put_generation(struct contact_curve_maker *maker, size_t model, size_t at,
+                          struct curve *curve, struct error *err) {
+    size_t n = curve->n;
+    double *none = result_numbers(maker->result, 3 * n);
+    if (none == NULL)
+        return no_room(err);
+    if (contact_generation_pressures(maker->tally, model, at, curve->x, curve->y, maker->errors,
+                                     none + n, none + 2 * n))
+        curve->errors[ERROR_GENERATION] = (struct curve_error){.applies = true,
+                                                               .value = none,
+                                                               .bound = none + n,
+                                                               .standard_error = none + 2 * n,
+                                                               .order = NAN};
+    return 0;
+}
+
 /* Density over the nominal area: its integral is the fraction in contact by edges, its first moment
  * the load. Under- and overflow in undeformed areas of nodes. */
 static int append_pressures(struct contact_curve_maker *maker, size_t model, size_t at,
@@ -256,7 +274,8 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     curve.counted = true;
     curve.underflow = (double)count[0] / parts;
     curve.overflow = (double)count[n + 1] / parts;
-    return result_add_curve(maker->result, &curve, err);
+    int status = put_generation(maker, model, at, &curve, err);
+    return status != 0 ? status : result_add_curve(maker->result, &curve, err);
 }
 
 int contact_curves(const struct contact_case *one_case, const struct modes *modes,

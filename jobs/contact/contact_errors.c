@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_errors.h"
 #include "core/statistics/richardson.h"
 #include "jobs/contact/contact_cell_errors.h"
+#include "jobs/contact/contact_generation_errors.h"
 #include "jobs/contact/contact_mean.h"
 #include <math.h>
 
@@ -229,7 +230,8 @@ bool contact_errors(const struct contact_tally *tally, enum contact_measure meas
     static errors_of *const SOURCES[ERROR_SOURCES] = {
         [ERROR_DISCRETISATION] = mesh_errors, [ERROR_CELL] = contact_cell_errors,
         [ERROR_BLOCK] = block_errors,         [ERROR_MODEL] = model_errors,
-        [ERROR_SOLVER] = solver_errors,       [ERROR_MISSING] = missing_errors,
+        [ERROR_SOLVER] = solver_errors,       [ERROR_GENERATION] = contact_generation_errors,
+        [ERROR_MISSING] = missing_errors,
     };
     return SOURCES[source] != NULL &&
            contact_error_applies(tally, measure, model, finest_of(tally->one_case), source) &&
@@ -264,8 +266,8 @@ bool contact_error_applies(const struct contact_tally *tally, enum contact_measu
                       contact_tally_valueless(tally, measure,
                                               contact_case_cell(one_case, model, level, k)) > 0;
         return missing && one_case->models[model]->may_fail;
-    case ERROR_GENERATION: /* of the surfaces, not of their contact: it is not measured here */
-        return false;
+    case ERROR_GENERATION:
+        return surface_paths_apply(&one_case->surface);
     default:
         return true;
     }

@@ -13,6 +13,8 @@ static const struct choice HEIGHT_UNITS[] = {
 static const struct choice WEIGHTINGS[] = {{"standard", GAP_STANDARD}, {"dual", GAP_DUAL}, {0}};
 static const struct choice CELL_ERRORS[] = {
     {"probed", CELL_ERROR_PROBED}, {"none", CELL_ERROR_NONE}, {0}};
+static const struct choice GENERATION_ERRORS[] = {
+    {"probed", GENERATION_ERROR_PROBED}, {"none", GENERATION_ERROR_NONE}, {0}};
 static const struct choice ESTIMATORS[] = {
     {"nodes", AREA_NODES}, {"edges", AREA_EDGES}, {"perimeter", AREA_PERIMETER}, {0}};
 
@@ -161,6 +163,14 @@ static const struct parameter ROWS[] = {
      .help =
          "what the length of the cell changes: probed (unless given) on some longer and shorter "
          "surfaces, for about a tenth of the time; or none, and it is not known"},
+    {.path = "/contact/generation_error",
+     .type = PARAMETER_CHOICE,
+     .choices = GENERATION_ERRORS,
+     .later = true,
+     .example_json = "\"none\"",
+     .help = "what contact owes to the way in which surfaces with other than Gaussian heights are "
+             "found: probed (unless given) on some surfaces found in other ways, for less than a "
+             "tenth of the time; or none, and it is not known"},
     {.path = "/contact/pressure_pdf/at",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,

@@ -11,6 +11,8 @@ enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS };
 enum area_estimator { AREA_NODES, AREA_EDGES, AREA_PERIMETER, AREA_ESTIMATORS };
 /* Whether the error of the cell is probed (contact_cell.h). */
 enum cell_error { CELL_ERROR_PROBED, CELL_ERROR_NONE };
+/* Whether the error of generation is (contact_generation.h). */
+enum generation_error { GENERATION_ERROR_PROBED, GENERATION_ERROR_NONE };
 
 enum stiffness_choice { STIFFNESS_MEASURED, STIFFNESS_OMITTED };
 

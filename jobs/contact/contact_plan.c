@@ -39,16 +39,18 @@ struct planning {
 
 /* How far chance may go at each load if a bound (NULL: none) were `times` what it is: what the
  * bounds leave of the error, at least CHANCE_LEAST of it. Returns whether they leave that at every
- * load. */
+ * load but for what the surfaces owe to the way they are found, which no plan lessens. */
 static bool allow(const struct planning *planning, const double *bound, double times) {
     const struct contact_answer *answer = planning->answer;
     bool enough = true;
     for (size_t k = 0; k < answer->loads; k++) {
         double asked = asked_at(answer, planning->sum, k);
-        double all = contact_sum_bounds(answer, planning->sum, k);
+        double all = contact_sum_bounds(answer, planning->sum, k, true);
+        double planned = contact_sum_bounds(answer, planning->sum, k, false);
         double less = bound != NULL ? bound[k] * bound[k] * (1 - times * times) : 0;
         double left = left_by(asked, sqrt(fmax(0, all * all - less)));
-        enough = enough && !(left < CHANCE_LEAST * asked);
+        enough = enough &&
+                 !(left_by(asked, sqrt(fmax(0, planned * planned - less))) < CHANCE_LEAST * asked);
         planning->allowed[k] = fmax(left, CHANCE_LEAST * asked);
     }
     return enough;

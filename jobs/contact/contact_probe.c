@@ -6,6 +6,7 @@
 
 enum { PROBE_POINTS = 4, ALWAYS = 16, INTERVAL = 4 };
 enum { FIRST = 32, FIRST_INTERVAL = 8 };
+static const uint64_t INTERVAL_MOST = 1 << 20;
 /* The half-space, and a layer a model. */
 enum { BLOCKS_MOST = CONTACT_MODELS_MOST + 1 };
 
@@ -17,19 +18,24 @@ struct contact_probe {
     double *z;
 };
 
-void contact_probe_choose(struct contact_case *one_case) {
-    const struct contact_level *coarsest = &one_case->levels[0];
-    struct contact_level *probe = &one_case->probe;
-    *probe = *coarsest;
-    bool even = coarsest->grid.nx % 2 == 0 &&
-                (grid_is_profile(&coarsest->grid) || coarsest->grid.ny % 2 == 0);
-    if (coarsest->stride == 0 || !even || coarsest->points < 2 * PROBE_POINTS)
-        return;
-    probe->points /= 2;
-    probe->stride *= 2;
-    probe->grid.nx /= 2;
-    if (!grid_is_profile(&probe->grid))
-        probe->grid.ny /= 2;
+struct contact_level contact_probe_level(const struct contact_case *one_case) {
+    struct contact_level level = one_case->levels[0];
+    bool even = level.grid.nx % 2 == 0 && (grid_is_profile(&level.grid) || level.grid.ny % 2 == 0);
+    if (level.stride == 0 || !even || level.points < 2 * PROBE_POINTS)
+        return level;
+    level.points /= 2;
+    level.stride *= 2;
+    level.grid.nx /= 2;
+    if (!grid_is_profile(&level.grid))
+        level.grid.ny /= 2;
+    return level;
+}
+
+uint64_t contact_probe_interval(double seconds, double allowed, uint64_t least) {
+    uint64_t interval = least;
+    while (interval < INTERVAL_MOST && !(seconds <= (double)interval * allowed))
+        interval *= 2;
+    return interval;
 }
 
 bool contact_probe_turn(uint64_t interval, uint64_t realisation) {

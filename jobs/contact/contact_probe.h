@@ -1,7 +1,8 @@
 /* The cheap model on a coarse mesh, on some realisations: what tells errors that are too dear to be
  * told on every one. The same surface is pressed on a half-space and, where blocks of the case are
  * low, on exact layers of their heights: the pairs see the same surface, and so differ by the
- * height alone. Beside the half-space stand surfaces of a longer cell (contact_cell.h).
+ * height alone. Beside the half-space stand surfaces of a longer cell (contact_cell.h), and those
+ * that are found in other ways (contact_generation.h).
  *
  * Some realisations are enough, since the differences scatter less than the values. */
 #ifndef RUGO_JOBS_CONTACT_CONTACT_PROBE_H
@@ -9,8 +10,12 @@
 
 #include "jobs/contact/contact_coarse.h"
 
-/* Chooses the mesh of the probe, once the case has its levels. */
-void contact_probe_choose(struct contact_case *one_case);
+/* The mesh of the probe of a case that has its levels: half as fine as the coarsest one where that
+ * leaves 4 points a shortest wave, else that one. */
+struct contact_level contact_probe_level(const struct contact_case *one_case);
+/* How seldom what takes so many seconds may be done to take no more than is allowed a realisation:
+ * a power of two, `least` or more. */
+uint64_t contact_probe_interval(double seconds, double allowed, uint64_t least);
 /* Returns the position of the model by which the half-space of the probe is solved already, on the
  * coarsest level; model_count without one. */
 size_t contact_probe_twin(const struct contact_case *one_case);

@@ -18,8 +18,9 @@ struct contact_scene {
     double *shares;                                                        /* of pressures */
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
     struct contact_probe *probe; /* NULL: none is needed */
-    struct contact_cell *cell;   /* likewise */
-    double *z;                   /* a level's sampling; room for the finest */
+    struct contact_cell *cell;   /* likewise, as the next */
+    struct contact_generation *generation;
+    double *z; /* a level's sampling; room for the finest */
 };
 
 int contact_compliances_create(struct contact_compliances *out, const struct contact_case *one_case,
@@ -83,6 +84,8 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
         status = contact_probe_create(&scene->probe, one_case, moments, err);
     if (status == 0)
         status = contact_cell_create(&scene->cell, one_case, err);
+    if (status == 0)
+        status = contact_generation_create(&scene->generation, one_case, moments, err);
     if (status != 0)
         contact_scene_destroy(&scene);
     *out = scene;
@@ -104,6 +107,7 @@ void contact_scene_destroy(struct contact_scene **scene) {
     }
     contact_probe_destroy(&s->probe);
     contact_cell_destroy(&s->cell);
+    contact_generation_destroy(&s->generation);
     free(s->z);
     free(s->shares);
     free(s);
@@ -231,20 +235,22 @@ static int solve_model(struct contact_scene *scene, size_t m, size_t level,
     return error_set(err, status, "%s", why.text);
 }
 
-int contact_scene_solve(struct contact_scene *scene, struct random_key key, const double *z,
+int contact_scene_solve(struct contact_scene *scene, const struct contact_surface *surface,
                         struct contact_tally *tally, int (*stop)(void *context), void *context,
                         struct error *err) {
     const struct contact_case *one_case = scene->one_case;
     const struct contact_stopper stopper = {stop, context};
     int status = 0;
     for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
-        status = contact_level_sample(one_case, &one_case->levels[l], z, scene->z, err);
+        status = contact_level_sample(one_case, &one_case->levels[l], surface->z, scene->z, err);
         for (size_t m = 0; m < one_case->model_count && status == 0; m++)
             status = solve_model(scene, m, l, tally, &stopper, err);
     }
-    if (status == 0 && contact_probe_due(one_case, key.realisation))
-        status = contact_probe_solve(scene->probe, z, tally, &stopper, err);
+    if (status == 0 && contact_probe_due(one_case, surface->key.realisation))
+        status = contact_probe_solve(scene->probe, surface->z, tally, &stopper, err);
     if (status == 0 && scene->cell != NULL)
-        status = contact_cell_solve(scene->cell, key, tally, &stopper, err);
+        status = contact_cell_solve(scene->cell, surface->key, tally, &stopper, err);
+    if (status == 0 && scene->generation != NULL)
+        status = contact_generation_solve(scene->generation, surface, tally, &stopper, err);
     return status;
 }

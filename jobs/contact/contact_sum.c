@@ -129,6 +129,23 @@ static void tell_mesh(const struct contact_answer *answer, enum contact_measure 
             sum->mesh[k] = fabs(error[k].value) + error[k].bound;
 }
 
+/* What the surfaces owe to the way they are found: a share of the value, by the longest cells that
+ * have enough of them found again. */
+static void bound_generation(const struct contact_answer *answer, enum contact_measure measure,
+                             struct contact_error *error, struct contact_sum *sum) {
+    bool probed = contact_case_has_paths(component_case(answer->of[ROLE_BASE]));
+    bool known = false;
+    for (size_t a = answer->length_count; a > 0 && probed && !known; a--) {
+        const struct contact_tally *tally = component_tally(answer->lengths[a - 1]);
+        known = contact_errors(tally, measure, 0, ERROR_GENERATION, error);
+        for (size_t k = 0; k < answer->loads && known; k++)
+            sum->generation[k] =
+                fabs(sum->value[k] / contact_tally_mean(tally, measure, k).value) * error[k].bound;
+    }
+    for (size_t k = 0; k < answer->loads && probed && !known; k++)
+        sum->generation[k] = NAN;
+}
+
 static int add_all(const struct contact_answer *answer, enum contact_measure measure,
                    struct contact_sum *sum, struct error *err) {
     struct contact_error *error = array_create(answer->loads, sizeof *error);
@@ -149,6 +166,7 @@ static int add_all(const struct contact_answer *answer, enum contact_measure mea
         add_models(answer, measure, error, sum);
     if (answer->named_mesh)
         tell_mesh(answer, measure, error, sum);
+    bound_generation(answer, measure, error, sum);
     free(error);
     return 0;
 }
@@ -158,9 +176,10 @@ static int add_all(const struct contact_answer *answer, enum contact_measure mea
 static int sum_create(const struct contact_answer *answer, struct contact_sum *out,
                       struct error *err) {
     size_t n = answer->loads;
-    double **const arrays[] = {&out->base,   &out->value,        &out->standard_error, &out->width,
-                               &out->mesh,   &out->cell,         &out->model,          &out->solver,
-                               &out->length, &out->length_chance};
+    double **const arrays[] = {&out->base,          &out->value,     &out->standard_error,
+                               &out->width,         &out->mesh,      &out->cell,
+                               &out->model,         &out->solver,    &out->length,
+                               &out->length_chance, &out->generation};
     const size_t own = sizeof arrays / sizeof *arrays;
     double *room = result_numbers(answer->result, (own + ROLES) * n);
     if (room == NULL)
@@ -197,9 +216,10 @@ size_t contact_sum_parts(const struct contact_answer *answer, const struct conta
 }
 
 double contact_sum_bounds(const struct contact_answer *answer, const struct contact_sum *sum,
-                          size_t load) {
+                          size_t load, bool generation) {
     double mesh = answer->named_mesh ? 0 : sum->mesh[load];
-    return hypot(hypot(mesh, sum->solver[load]), hypot(sum->cell[load], sum->model[load]));
+    double bounds = hypot(hypot(mesh, sum->solver[load]), hypot(sum->cell[load], sum->model[load]));
+    return generation ? hypot(bounds, sum->generation[load]) : bounds;
 }
 
 /* The interval counts what chance does to the bound of the cell; the standard error is that of the

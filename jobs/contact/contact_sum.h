@@ -22,6 +22,7 @@ struct contact_sum {
     double *value, *standard_error, *width; /* width: of the interval at the confidence, half */
     double *base;                           /* of the base alone */
     double *mesh, *cell, *model, *solver;   /* bounds; 0 where the source has no component */
+    double *generation;                     /* likewise; 0 where it is not probed */
     double *length, *length_chance; /* of the bound of the cell: what the change between the two
                                        lengths tells, and how far chance may bring it */
     double *variance[ROLES];        /* of one realisation */
@@ -96,9 +97,10 @@ size_t contact_sum_parts(const struct contact_answer *answer, const struct conta
 /* Work of one realisation: points x transforms of all its loads, levels and models. */
 double contact_sum_work(const struct target_component *component);
 /* What the bounds of the sources that the target counts come to at a load: of what the study names
- * none. Sources are independent of each other and of chance, so that they add up by their squares
- * (JCGM 100 2008, section 5.1), those of one source as they are. */
+ * none. generation: with that of the surfaces, which no realisations lessen. Sources are
+ * independent of each other and of chance, so that they add up by their squares (JCGM 100 2008,
+ * section 5.1), those of one source as they are. */
 double contact_sum_bounds(const struct contact_answer *answer, const struct contact_sum *sum,
-                          size_t load);
+                          size_t load, bool generation);
 
 #endif

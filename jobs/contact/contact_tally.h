@@ -2,10 +2,10 @@
  * realisation, encoded into a partial result.
  *
  * Each realisation is solved for every model, level and load (a cell of contact_case_cell; some
- * for those of the probe and of other lengths, too) and gives a value of each measure there, or
- * none (NaN): a measure that is not defined there, or any where a model found no answer.
- * Differences between levels and between models are summed on their own: both see the same surface,
- * so that their errors are those of pairs. */
+ * for those of the probe, of other lengths and found in other ways, too) and gives a value of each
+ * measure there, or none (NaN): a measure that is not defined there, or any where a model found no
+ * answer. Differences between levels and between models are summed on their own: both see the same
+ * surface, so that their errors are those of pairs. */
 #ifndef RUGO_JOBS_CONTACT_CONTACT_TALLY_H
 #define RUGO_JOBS_CONTACT_CONTACT_TALLY_H
 
@@ -20,16 +20,20 @@ struct contact_sums {
 };
 /* Which sums: those of each measure, by cell; then differences of the paired measures. */
 enum {
-    SUMS_LEVELS = MEASURE_COUNT,                /* a level less the next coarser one; by model,
-                                                   level but the coarsest, and load */
-    SUMS_MODELS = SUMS_LEVELS + MEASURE_PAIRED, /* a model less the most complete one: on the
-                                                   finest level, and its changes between levels; by
-                                                   model, these and load */
-    SUMS_BLOCKS = SUMS_MODELS + MEASURE_PAIRED, /* probe: a model's block less the half-space; by
-                                                   model and load */
-    SUMS_PROBE = SUMS_BLOCKS + MEASURE_PAIRED,  /* coarsest level of the control: that less the
-                                                   half-space of the probe; by load */
-    CONTACT_SUMS = SUMS_PROBE + MEASURE_PAIRED
+    SUMS_LEVELS = MEASURE_COUNT,                 /* a level less the next coarser one; by model,
+                                                    level but the coarsest, and load */
+    SUMS_MODELS = SUMS_LEVELS + MEASURE_PAIRED,  /* a model less the most complete one: on the
+                                                    finest level, and its changes between levels; by
+                                                    model, these and load */
+    SUMS_BLOCKS = SUMS_MODELS + MEASURE_PAIRED,  /* probe: a model's block less the half-space; by
+                                                    model and load */
+    SUMS_PROBE = SUMS_BLOCKS + MEASURE_PAIRED,   /* coarsest level of the control: that less the
+                                                    half-space of the probe; by load */
+    SUMS_PATHS = SUMS_PROBE + MEASURE_PAIRED,    /* the surface found by a path less the own one: by
+                                                    path and load */
+    SUMS_HALVINGS = SUMS_PATHS + MEASURE_PAIRED, /* log2 of eps_h over that after longer iterations:
+                                                    one sum, if any surface is found again */
+    CONTACT_SUMS
 };
 struct contact_tally {
     const struct contact_case *one_case; /* borrowed */
@@ -45,6 +49,7 @@ struct contact_tally {
     uint64_t realisation;      /* the one under way, for these */
     double *values;            /* owned: the realisation under way, by measure and cell */
     double facts[CONTACT_MODELS_MOST][MODEL_FACTS_MOST]; /* the same, on the finest level */
+    double halvings;                                     /* the same, of SUMS_HALVINGS */
 };
 int contact_tally_create(struct contact_tally *out, const struct contact_case *one_case,
                          struct error *err);
@@ -100,6 +105,11 @@ struct estimate contact_tally_own_length(const struct contact_tally *tally,
 struct estimate contact_tally_other_length(const struct contact_tally *tally,
                                            enum contact_measure measure, enum contact_length length,
                                            size_t load);
+/* Likewise of the surface found by a path less the own one; and by how many powers of two eps_h
+ * falls with longer iterations, in the mean. */
+struct estimate contact_tally_path(const struct contact_tally *tally, enum contact_measure measure,
+                                   enum surface_path path, size_t load);
+double contact_tally_halvings(const struct contact_tally *tally);
 /* Areas of all bins, without under- and overflow, over that of the cell, over the realisations with
  * values there. */
 void contact_tally_pressure_shares(const struct contact_tally *tally, size_t model, size_t level,

@@ -46,6 +46,7 @@ struct variant {
     bool both;           /* models, else the cheap one */
     size_t first, count; /* of the ladder */
     double length_ratio;
+    bool generation; /* tells what the surfaces owe to the way they are found */
 };
 
 /* --- parameters --- */
@@ -136,6 +137,8 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
         status = put(all, "contact", "tolerance", cJSON_CreateNumber(tolerance_of(choices)));
     if (status == 0) /* components tell it together */
         status = put(all, "contact", "cell_error", cJSON_CreateString("none"));
+    if (status == 0 && !variant->generation)
+        status = put(all, "contact", "generation_error", cJSON_CreateString("none"));
     if (status == 0)
         status = put_height(all, choices, variant);
     if (status == 0)
@@ -296,9 +299,9 @@ static int add_models(struct study_case *one, const struct choices *choices) {
     const double length = choices->model_length_ratio;
     const double mesh_length = fmax(length / 2, fmin(4, length));
     const struct variant mesh = {"model_mesh", MODEL_MESH_FIRST, 0.01, true, first,
-                                 count,        mesh_length};
-    const struct variant model = {"model", MODEL_FIRST,       0.05,  true,
-                                  first,   split ? 1 : count, length};
+                                 count,        mesh_length,      false};
+    const struct variant model = {"model", MODEL_FIRST,       0.05,   true,
+                                  first,   split ? 1 : count, length, false};
     int status = split ? add(one, choices, &mesh) : 0;
     return status == 0 ? add(one, choices, &model) : status;
 }
@@ -307,13 +310,14 @@ static int add_models(struct study_case *one, const struct choices *choices) {
 static int add_all(struct study_case *one, const struct choices *choices) {
     const size_t levels = choices->levels, pair = levels > 1 ? 2 : 1;
     const struct variant fine = {
-        "fine", FINE_FIRST, 0.01, false, 0, levels, choices->fine_length_ratio};
+        "fine", FINE_FIRST, 0.01, false, 0, levels, choices->fine_length_ratio, false};
     const struct variant mesh = {
-        "mesh", MESH_FIRST, 0.1, false, 0, pair, choices->mesh_length_ratio};
-    const struct variant cell = {"cell", CELL_FIRST, 0.3, false, 0, 1, choices->length_ratio / 4};
-    const struct variant base = {"base", BASE_FIRST, 1, false, 0, 1, choices->length_ratio};
-    const struct variant longer = {"longer", 0, 1, false, 0, 1, 4 * choices->length_ratio};
-    const struct variant longest = {"longest", 0, 1, false, 0, 1, 16 * choices->length_ratio};
+        "mesh", MESH_FIRST, 0.1, false, 0, pair, choices->mesh_length_ratio, false};
+    const struct variant cell = {"cell", CELL_FIRST, 0.3, false, 0, 1, choices->length_ratio / 4,
+                                 false};
+    const struct variant base = {"base", BASE_FIRST, 1, false, 0, 1, choices->length_ratio, true};
+    const struct variant longer = {"longer", 0, 1, false, 0, 1, 4 * choices->length_ratio, true};
+    const struct variant longest = {"longest", 0, 1, false, 0, 1, 16 * choices->length_ratio, true};
     int status = 0;
     if (!is_halfspace(choices))
         status = add_models(one, choices);

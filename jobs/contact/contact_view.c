@@ -14,7 +14,8 @@ static const struct quantity_table TABLE = {
     .legend =
         "load: p/(E* h'_rms); area: A/A0, +- one standard error; errors in percent of it, what is "
         "told less what is true: mesh, from the limit of the levels; cell, from a very long one; "
-        "block, from an infinitely high one; model, from the limit of the most complete one",
+        "block, from an infinitely high one; model, from the limit of the most complete one; "
+        "generation, from surfaces found in other ways",
     .scalars = SCALARS,
     .left_out = LEFT_OUT,
 };

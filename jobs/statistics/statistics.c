@@ -138,7 +138,8 @@ static int realise(void *workspace, const struct realisation *realisation, void 
                                                   .summits = work->summits,
                                                   .report = &realisation->report};
     statistics_scalars_measure(work->one_case, &work->moments, &measures, scalars);
-    return statistics_generation_measure(work->generation, realisation->key, scalars, err);
+    return statistics_generation_measure(work->generation, realisation->key, &realisation->report,
+                                         scalars, err);
 }
 
 /* --- the tally --- */

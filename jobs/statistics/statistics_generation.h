@@ -1,8 +1,6 @@
-/* The error "generation": many surfaces have one spectrum and nearly the heights, and each way of
- * iterating finds its own kind (FORMULAS.md, F5.7). On some realisations the surface is found
- * again, from the same start and with the same heights, twice: by another iteration, to the same
- * error; and by iterations that go on. What summits, pits and heights change in these pairs is what
- * a surface owes to the way it was found. */
+/* The error "generation": on some realisations the surface is found again in other ways
+ * (surface_paths.h). What summits, pits and heights change in these pairs is what a surface owes to
+ * the way it was found. */
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_GENERATION_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_GENERATION_H
 
@@ -20,9 +18,10 @@ int statistics_generation_create(struct statistics_generation **out,
                                  struct error *err);
 void statistics_generation_destroy(struct statistics_generation **generation);
 /* Fills the other scalars of this realisation where it is one of those that are measured again;
- * scalars holds its own. */
+ * own: what its own generation did. */
 int statistics_generation_measure(struct statistics_generation *generation, struct random_key key,
-                                  double scalars[SCALAR_COUNT], struct error *err);
+                                  const struct surface_report *own, double scalars[SCALAR_COUNT],
+                                  struct error *err);
 /* Of this object; and CPU seconds a realisation in the mean of many, on a 3 GHz core. */
 double statistics_generation_bytes(const struct statistics_case *one_case);
 double statistics_generation_seconds(const struct statistics_case *one_case);

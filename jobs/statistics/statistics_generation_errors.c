@@ -1,12 +1,9 @@
 /* From pairs of surfaces to the errors of scalars and curves. */
 #include "jobs/statistics/statistics_generation.h"
+#include "jobs/surface_paths.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A change that was seen while eps_h fell is taken to go on with its logarithm until half of it,
- * but by no more than this. */
-static const double FACTOR_MOST = 4;
 
 /* Bound and chance of a change; NaN: not known. */
 struct change {
@@ -38,8 +35,7 @@ static double drift_factor(const struct realisations *realisations, double *scra
     realisations_column(realisations, SCALAR_EPS_H, scratch + n);
     for (size_t r = 0; r < n; r++)
         scratch[r] = log2(scratch[n + r] / scratch[r]);
-    double halvings = estimate_mean(n, scratch).value;
-    return halvings > 1 / FACTOR_MOST ? 1 / halvings : FACTOR_MOST;
+    return surface_paths_drift(estimate_mean(n, scratch).value);
 }
 
 static int changes_measure(const struct realisations *realisations, struct changes *out,

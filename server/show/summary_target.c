@@ -12,12 +12,15 @@ static double scalar_of(const struct case_result *one, const char *name) {
 /* Tells which source keeps the answer from the error asked for, and what more sampling would take:
  * sources add up by their squares, and that of chance falls as the work grows. */
 static void print_left(const struct case_result *one, FILE *file) {
-    static const char *const SOURCES[] = {"error_mesh", "error_cell", "error_model"};
-    static const char *const NAMES[] = {"mesh", "cell", "model"};
+    static const char *const SOURCES[] = {"error_mesh", "error_cell", "error_model",
+                                          "error_generation"};
+    static const char *const NAMES[] = {"mesh", "cell", "model",
+                                        "generation of the surfaces (/surface/heights)"};
+    enum { COUNT = sizeof SOURCES / sizeof *SOURCES };
     double asked = scalar_of(one, "error_asked"), chance = scalar_of(one, "error_chance");
     double bounds = 0;
     size_t most = 0;
-    for (size_t a = 0; a < 3; a++) {
+    for (size_t a = 0; a < COUNT; a++) {
         if (result_scalar(one, SOURCES[a]) != NULL)
             bounds = hypot(bounds, scalar_of(one, SOURCES[a]));
         if (scalar_of(one, SOURCES[a]) > scalar_of(one, SOURCES[most]))
@@ -53,6 +56,8 @@ void summary_of_target(const struct case_result *one, FILE *file) {
         fprintf(file, ": chance %.2g, mesh %.2g, cell %.2g, model %.2g %%",
                 100 * scalar_of(one, "error_chance"), 100 * scalar_of(one, "error_mesh"),
                 100 * scalar_of(one, "error_cell"), 100 * scalar_of(one, "error_model"));
+    if (scalar_of(one, "error_generation") > 0)
+        fprintf(file, ", generation %.2g %%", 100 * scalar_of(one, "error_generation"));
     fputc('\n', file);
     if (result_scalar(one, "plain_work") != NULL)
         print_work(scalar_of(one, "plain_work") / scalar_of(one, "work"),
