@@ -4,6 +4,16 @@
 
 /* --- the components --- */
 
+double contact_heights_cell(const struct heights *heights) {
+    static const double KURTOSIS = 9, ROUNDING = 1e-9;
+    struct height_moments moments;
+    if (heights_moments(heights, &moments, NULL) != 0)
+        return (double)NAN;
+    return moments.kurtosis > KURTOSIS + ROUNDING
+               ? HEIGHTS_CELL * sqrt((moments.kurtosis - 1) / (KURTOSIS - 1))
+               : HEIGHTS_CELL;
+}
+
 /* What the heights of a non-Gaussian profile of this cell leave to that of a long one, at least: 0
  * for others, whose lengths alone tell it. */
 static double heights_bound(const struct target_component *base, double value, size_t load) {
@@ -11,7 +21,8 @@ static double heights_bound(const struct target_component *base, double value, s
     if (surface->dimension != 1 || surface->options.heights.type == HEIGHTS_GAUSSIAN)
         return 0;
     double area = contact_tally_mean(component_tally(base), MEASURE_EDGES, load).value;
-    return HEIGHTS_CELL / (surface->grid.lx * sqrt(area)) /* lambda_s is 1 */ * fabs(value);
+    return contact_heights_cell(&surface->options.heights) /
+           (surface->grid.lx * sqrt(area)) /* lambda_s is 1 */ * fabs(value);
 }
 
 /* The change between the cells is taken without what chance adds to its square; chance itself

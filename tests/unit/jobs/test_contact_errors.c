@@ -5,6 +5,7 @@
 #include "jobs/contact/contact_errors.h"
 #include "jobs/contact/contact_mean.h"
 #include "jobs/contact/contact_probe.h"
+#include "jobs/contact/contact_sum.h"
 #include "tests/support/check.h"
 
 #define STUDY(contact)                                                                             \
@@ -252,6 +253,25 @@ static void missing_realisations_bias_no_mean(void **state) {
     fixture_close(&f);
 }
 
+/* Up to the kurtosis that the bound was measured at it is the same for all; of longer tails more.
+ */
+static void long_tails_need_longer_cells(void **state) {
+    (void)state;
+    static const double P[] = {0, 0.02, 0.1, 0.4, 0.7, 1}, PLATEAU[] = {-8, -5, -2, -0.2, 0, 0};
+    const struct heights skewed = {.type = HEIGHTS_WEIBULL_MIN, .shape = 1};
+    const struct heights less = {.type = HEIGHTS_WEIBULL_MAX, .shape = 2};
+    const struct heights more = {.type = HEIGHTS_WEIBULL_MIN, .shape = 0.5}; /* kurtosis 87.72 */
+    struct heights own = {.type = HEIGHTS_TABLE};
+    struct height_table *table = NULL;
+    assert_int_equal(height_table_of_quantiles(&table, 6, P, PLATEAU, NULL), 0);
+    own.table = table;
+    assert_true(contact_heights_cell(&skewed) == HEIGHTS_CELL);
+    assert_true(contact_heights_cell(&less) == HEIGHTS_CELL);
+    check_close(contact_heights_cell(&more), 1.4 * sqrt(86.72 / 8), 1e-3);
+    check_close(contact_heights_cell(&own), 1.4 * sqrt(12.514 / 8), 1e-3);
+    height_table_destroy(&table);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(limits_of_meshes_come_out),
@@ -261,6 +281,7 @@ int main(void) {
         cmocka_unit_test(a_short_cell_is_told),
         cmocka_unit_test(the_lesser_bound_is_told),
         cmocka_unit_test(missing_realisations_bias_no_mean),
+        cmocka_unit_test(long_tails_need_longer_cells),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
