@@ -146,6 +146,25 @@ static int fill(struct study *study, const cJSON *document, struct axis *axes, s
     return status;
 }
 
+/* Values that all cases may have together; each is a small object in memory. */
+static const size_t VALUES_MOST = 20000000;
+
+/* Counts values, those in lists and objects too. */
+static size_t count_values(const cJSON *value) {
+    size_t count = 1;
+    for (const cJSON *item = value->child; item != NULL; item = item->next)
+        count += count_values(item);
+    return count;
+}
+
+/* Returns how many values of the document each case has: of what is swept one. */
+static size_t case_values(const cJSON *document, const struct axis *axes, size_t count) {
+    size_t values = count_values(document);
+    for (size_t a = 0; a < count; a++)
+        values -= count_values(axes[a].list) - count_values(axes[a].list->child);
+    return values;
+}
+
 int sweep_open(struct study *study, const cJSON *document, struct fault_list *faults,
                struct error *err) {
     size_t rows = parameter_count(study->kind->tables);
@@ -154,10 +173,13 @@ int sweep_open(struct study *study, const cJSON *document, struct fault_list *fa
         return error_memory(err, rows * sizeof *axes, "sweeps");
     size_t cases, count = find_axes(study->kind, document, "", axes, 0);
     int status = 0;
-    if (set_strides(axes, count, &cases))
-        status = fill(study, document, axes, count, cases, err);
-    else
+    if (!set_strides(axes, count, &cases))
         fault_add(faults, "", "the lists make more than %d cases", STUDY_CASES_MOST);
+    else if (cases > VALUES_MOST / case_values(document, axes, count))
+        fault_add(faults, "", "%zu cases of %zu values each are too many: %zu values at most",
+                  cases, case_values(document, axes, count), VALUES_MOST);
+    else
+        status = fill(study, document, axes, count, cases, err);
     free(axes);
     return status;
 }

@@ -103,6 +103,35 @@ static void faults_have_a_pointer(void **state) {
     assert_int_equal(process_wait(&server, 20), 0);
 }
 
+/* Writes a list of so many rising numbers. */
+static void put_list(FILE *file, const char *name, int count, double step) {
+    fprintf(file, ",\"%s\":[", name);
+    for (int n = 1; n <= count; n++)
+        fprintf(file, "%s%.6g", n > 1 ? "," : "", n * step);
+    fputc(']', file);
+}
+
+/* Each case has its own copy of the samples: 3000 cases of the most of them are refused before any
+ * of them is made. */
+static void many_cases_of_many_samples_are_refused(void **state) {
+    (void)state;
+    FILE *file = fopen("many.json", "w");
+    assert_non_null(file);
+    fprintf(file, "{\"name\":\"many\",\"kind\":\"statistics\",\"surface\":{\"dimension\":1");
+    put_list(file, "hurst", 50, 0.02);
+    put_list(file, "wavelength_ratio", 60, 2);
+    fprintf(file, ",\"heights\":{\"distribution\":\"samples\"");
+    put_list(file, "samples", 10000, 1);
+    fprintf(file, "}}}");
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(shell("$RUGO check many.json"), 2);
+    assert_true(contains("shell.err", "3000 cases of 100"));
+    assert_true(contains("shell.err", "values each are too many: 20000000 values at most"));
+    assert_int_equal(shell("$RUGO check many.json --set 'surface/hurst=[0.5,0.8]' --set "
+                           "surface/wavelength_ratio=8"),
+                     0);
+}
+
 static double number_in(const char *path, const char *group, const char *name) {
     char *text = slurp(path);
     cJSON *document = cJSON_Parse(text);
@@ -152,6 +181,7 @@ int main(void) {
         cmocka_unit_test(near_and_over_http),
         cmocka_unit_test(lists_are_shown_short),
         cmocka_unit_test(faults_have_a_pointer),
+        cmocka_unit_test(many_cases_of_many_samples_are_refused),
         cmocka_unit_test(heights_of_a_map_are_heights_of_a_study),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
