@@ -30,8 +30,9 @@ int height_quantiles_measure(const struct measured_map *map, size_t n, double *p
         if (!isnan(map->z[i]))
             sorted[taken++] = map->z[i];
     qsort(sorted, n, sizeof *sorted, compare);
+    double beside = (double)steps_beside(n);
     for (size_t a = 0; a < count; a++) {
-        double score = ((double)a - (double)(count / 2)) * SCORE_STEP;
+        double score = ((double)a - beside) * SCORE_STEP;
         probability[a] = gsl_cdf_ugaussian_P(score);
         double place = probability[a] * (double)n - 0.5; /* number a is the quantile (a + 1/2)/n */
         size_t below = (size_t)place;
