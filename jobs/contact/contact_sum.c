@@ -10,7 +10,7 @@ double contact_heights_cell(const struct heights *heights) {
     if (heights_moments(heights, &moments, NULL) != 0)
         return (double)NAN;
     return moments.kurtosis > KURTOSIS + ROUNDING
-               ? HEIGHTS_CELL * sqrt((moments.kurtosis - 1) / (KURTOSIS - 1))
+               ? HEIGHTS_CELL * (moments.kurtosis - 1) / (KURTOSIS - 1)
                : HEIGHTS_CELL;
 }
 

@@ -7,6 +7,7 @@
 #include "core/statistics/summits.h"
 #include "core/surface/surface.h"
 #include "tests/support/failing/each_allocation.h"
+#include <gsl/gsl_errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -74,6 +75,22 @@ static int resample(void *context, struct error *err) {
     if (status == 0)
         check_close(out[16], -1, 1e-12);
     return status;
+}
+
+static int make_table(void *context, struct error *err) {
+    static const double SAMPLES[] = {3, 1, 4, 1.5, 9, 2.6, 5, 3.5};
+    struct height_table *table = NULL;
+    (void)context;
+    int status = height_table_of_samples(&table, sizeof SAMPLES / sizeof *SAMPLES, SAMPLES, err);
+    if (status == 0)
+        assert_true(height_table_quantile(table, 0.9) > height_table_quantile(table, 0.1));
+    height_table_destroy(&table);
+    return status;
+}
+
+static void tables_of_heights(void **state) {
+    (void)state;
+    each_allocation(&(struct failing_call){.name = "a table of heights", make_table, NULL});
 }
 
 static void resampling(void **state) {
@@ -167,9 +184,11 @@ static void files(void **state) {
 }
 
 int main(void) {
+    gsl_set_error_handler_off(); /* as the program does */
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(surfaces),  cmocka_unit_test(resampling), cmocka_unit_test(summits),
-        cmocka_unit_test(roughness), cmocka_unit_test(files),
+        cmocka_unit_test(surfaces),   cmocka_unit_test(tables_of_heights),
+        cmocka_unit_test(resampling), cmocka_unit_test(summits),
+        cmocka_unit_test(roughness),  cmocka_unit_test(files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
