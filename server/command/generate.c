@@ -4,9 +4,9 @@
 #include "jobs/kind.h"
 #include "jobs/surface_case.h"
 #include "server/command/command.h"
+#include "server/command/output_file.h"
 #include "server/show/characterisation.h"
 #include "server/show/plot_map.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,38 +80,21 @@ static int read_order(struct generate_order *order, const struct generate_option
     return choose_format(order);
 }
 
-static int open_file(FILE **file, const char *path, struct error *err) {
-    *file = fopen(path, "wb");
-    return *file != NULL
-               ? 0
-               : error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
-}
-
-/* Returns the status of what was written, or that of the file, which may be full. */
-static int close_file(FILE *file, const char *path, int status, struct error *err) {
-    bool failed = ferror(file) != 0;
-    if ((fclose(file) != 0 || failed) && status == 0)
-        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
-    return status;
-}
-
 static int write_output(const struct generate_order *order, const struct grid *grid,
                         const double *z, struct error *err) {
     FILE *file;
     if (order->output == NULL)
         return height_map_write(stdout, order->format, grid, z, err);
-    int status = open_file(&file, order->output, err);
+    int status = output_file_open(&file, order->output, err);
     if (status != 0)
         return status;
     status = height_map_write(file, order->format, grid, z, err);
-    return close_file(file, order->output, status, err);
+    return output_file_close(file, order->output, status, err);
 }
 
 static int write_picture(const struct generate_order *order, const struct study *study,
                          const struct grid *grid, const double *z, struct error *err) {
-    const char *path = order->options->picture;
     char subject[80];
-    FILE *file;
     snprintf(subject, sizeof subject, "case %lld, realisation %lld",
              (long long)order->options->case_number, (long long)order->options->realisation);
     const struct map_picture picture = {.name = study->name,
@@ -121,11 +104,7 @@ static int write_picture(const struct generate_order *order, const struct study 
                                         .z_label = "z",
                                         .grid = grid,
                                         .z = z};
-    int status = open_file(&file, path, err);
-    if (status != 0)
-        return status;
-    status = plot_map(&picture, file, err);
-    return close_file(file, path, status, err);
+    return output_file_picture(order->options->picture, &picture, err);
 }
 
 static const char *end_name(enum surface_end end) {

@@ -182,13 +182,15 @@ static int add_correlated(struct characterisation *out, const struct measured_ma
 }
 
 int map_characterise(struct characterisation *out, struct height_map *map,
-                     const struct map_request *request, struct error *err) {
+                     const struct map_request *request, enum boundary *boundary,
+                     struct error *err) {
     struct decision decision;
     const struct grid *grid = &map->grid;
     int status = decide(&decision, map, request, err);
     if (status != 0)
         return status;
     const struct measured_map measured = {grid, map->z, decision.boundary};
+    *boundary = decision.boundary;
     add_decision(out, &decision, grid_is_profile(grid));
     if (decision.boundary == BOUNDARY_OPEN)
         status = characterise_open(out, &measured, err);

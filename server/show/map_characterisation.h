@@ -16,10 +16,11 @@ struct map_request {
     int boundary, detrend;
 };
 
-/* Takes the trend out of the map and fills *out, {0} at first, which the caller clears either way.
+/* Takes the trend out of the map and fills *out, {0} at first, which the caller clears either way;
+ * *boundary tells what the map was taken as.
  * ERROR_INPUT where the map has no heights, is to be
  * periodic with holes, or has too few heights for its trend. */
 int map_characterise(struct characterisation *out, struct height_map *map,
-                     const struct map_request *request, struct error *err);
+                     const struct map_request *request, enum boundary *boundary, struct error *err);
 
 #endif

@@ -1,5 +1,5 @@
 #include "server/show/plot_map.h"
-#include "core/statistics/summits.h"
+#include "core/statistics/open_summits.h"
 #include "server/show/plot_heat.h"
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +19,7 @@ static int higher(const void *a, const void *b) {
     return (one < other) - (one > other);
 }
 
-static int find_summits(struct map_plot *plot, struct error *err) {
+static int find_periodic_summits(struct map_plot *plot, struct error *err) {
     const struct grid *grid = plot->picture->grid;
     struct summit_finder *finder = NULL;
     int status = summit_finder_create(&finder, grid, SUMMITS_NINE_POINT,
@@ -27,6 +27,16 @@ static int find_summits(struct map_plot *plot, struct error *err) {
     if (status == 0)
         status = summits_find(finder, plot->picture->z, &plot->summits, err);
     summit_finder_destroy(&finder);
+    return status;
+}
+
+static int find_summits(struct map_plot *plot, struct error *err) {
+    const struct map_picture *picture = plot->picture;
+    const struct measured_map map = {picture->grid, picture->z, picture->boundary};
+    double searched;
+    int status = picture->boundary == BOUNDARY_OPEN
+                     ? open_summits_find(&map, SUMMITS_NINE_POINT, &plot->summits, &searched, err)
+                     : find_periodic_summits(plot, err);
     if (plot->summits.count > 0)
         qsort(plot->summits.summits, plot->summits.count, sizeof *plot->summits.summits, higher);
     return status;
@@ -67,15 +77,16 @@ static void range_of(const struct map_picture *picture, double range[2]) {
 
 /* --- a profile --- */
 
-/* Two points of each group of neighbours: its lowest and highest, in their order. */
+/* Two points of each group of neighbours: its lowest and highest, in their order; of one that has
+ * holes alone a hole. */
 static size_t trace_of(const struct map_picture *picture, double *x, double *y) {
     size_t nx = picture->grid->nx, step = (nx + GROUPS_MOST - 1) / GROUPS_MOST, count = 0;
     double dx = grid_dx(picture->grid);
     for (size_t first = 0; first < nx; first += step) {
         size_t low = first, high = first;
         for (size_t i = first; i < nx && i < first + step; i++) {
-            low = picture->z[i] < picture->z[low] ? i : low;
-            high = picture->z[i] > picture->z[high] ? i : high;
+            low = picture->z[i] < picture->z[low] || isnan(picture->z[low]) ? i : low;
+            high = picture->z[i] > picture->z[high] || isnan(picture->z[high]) ? i : high;
         }
         const size_t ends[2] = {low < high ? low : high, low < high ? high : low};
         for (size_t e = ends[0] == ends[1]; e < 2; e++) {
@@ -83,8 +94,10 @@ static size_t trace_of(const struct map_picture *picture, double *x, double *y) 
             y[count++] = picture->z[ends[e]];
         }
     }
-    x[count] = picture->grid->lx; /* where the profile begins anew */
-    y[count++] = picture->z[0];
+    if (picture->boundary == BOUNDARY_PERIODIC) {
+        x[count] = picture->grid->lx; /* where the profile begins anew */
+        y[count++] = picture->z[0];
+    }
     return count;
 }
 
@@ -115,13 +128,11 @@ static void join_points(const struct map_picture *picture, size_t step,
     const struct grid *grid = picture->grid;
     for (size_t row = 0; row < cells->ny; row++)
         for (size_t column = 0; column < cells->nx; column++) {
-            double sum = 0;
-            size_t count = 0;
+            struct average mean = {0};
             for (size_t j = row * step; j < grid->ny && j < (row + 1) * step; j++)
-                for (size_t i = column * step; i < grid->nx && i < (column + 1) * step;
-                     i++, count++)
-                    sum += picture->z[j * grid->nx + i];
-            out[row * cells->nx + column] = sum / (double)count;
+                for (size_t i = column * step; i < grid->nx && i < (column + 1) * step; i++)
+                    average_add(&mean, picture->z[j * grid->nx + i]);
+            out[row * cells->nx + column] = average_value(&mean);
         }
 }
 

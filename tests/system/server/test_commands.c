@@ -331,6 +331,12 @@ static void a_measured_map_does_not_repeat(void **state) {
         shell("$RUGO characterise map0.csv --boundary periodic --detrend mean && grep -q "
               "'^spectral' shell.out"),
         0);
+    assert_int_equal(shell("$RUGO characterise map1.csv --picture map1.svg && grep -q '^map' "
+                           "shell.out && grep -q 'map1.csv: open' map1.svg && grep -q summit "
+                           "map1.svg"),
+                     0);
+    assert_int_equal(shell("$RUGO characterise map0.csv --picture none/map.svg"), 1);
+    assert_true(contains("shell.err", "cannot open none/map.svg"));
     assert_int_equal(shell("$RUGO characterise map1.csv --boundary periodic"), 2);
     assert_true(contains("shell.err",
                          "1 of 2000 heights are holes (NaN), the first in row 11, column "

@@ -8,14 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static char *draw(const struct grid *grid, const double *z) {
+static char *draw_map(const struct grid *grid, const double *z, enum boundary boundary) {
     const struct map_picture picture = {.name = "a & b",
                                         .subject = "case 1",
                                         .x_label = "along",
                                         .y_label = "across",
                                         .z_label = "height",
                                         .grid = grid,
-                                        .z = z};
+                                        .z = z,
+                                        .boundary = boundary};
     char *text = NULL;
     size_t size = 0;
     struct error err = {0};
@@ -26,6 +27,10 @@ static char *draw(const struct grid *grid, const double *z) {
     assert_null(strstr(text, "nan"));
     assert_non_null(strstr(text, "</svg>"));
     return text;
+}
+
+static char *draw(const struct grid *grid, const double *z) {
+    return draw_map(grid, z, BOUNDARY_PERIODIC);
 }
 
 /* Returns a cosine of `waves` waves along x, one along y where the grid has rows; the caller frees.
@@ -97,6 +102,40 @@ static void extremes_of_long_traces_are_seen(void **state) {
     free(z);
 }
 
+/* Summits that lie on the side of an open map, or beside a hole, may be none; a hole stays blank,
+ * in a trace a gap, which ends where the map does. */
+static void open_maps_end_and_have_holes(void **state) {
+    (void)state;
+    const struct grid surface = {.nx = 32, .ny = 16, .lx = 8, .ly = 8};
+    const struct grid profile = {.nx = 64, .ny = 1, .lx = 8, .ly = 1};
+    double *z = waves_of(&surface, 4), *trace = waves_of(&profile, 4);
+    for (size_t j = 0; j < 16; j++) /* the ridge of each wave is highest in the middle */
+        for (size_t i = 0; i < 32; i++)
+            z[j * 32 + i] -= 2 * cos(2 * M_PI * (double)j / 16);
+    char *whole = draw_map(&surface, z, BOUNDARY_OPEN), *periodic = draw(&surface, z);
+    z[8 * 32 + 17] = trace[33] = NAN;
+    char *hole = draw_map(&surface, z, BOUNDARY_OPEN);
+    char *gap = draw_map(&profile, trace, BOUNDARY_OPEN);
+    assert_int_equal(count_of(periodic, "class=\"summit\""), 4);
+    assert_int_equal(count_of(whole, "class=\"summit\""), 3); /* without the one at i = 0 */
+    assert_int_equal(count_of(hole, "class=\"summit\""), 2);
+    assert_int_equal(count_of(gap, "class=\"summit\""), 2); /* of peaks at 0, 16, 32 and 48 */
+    const char *path = strstr(gap, "class=\"curve\""), *end = strstr(path, "/>");
+    size_t moves = 0, points = 0;
+    for (const char *at = strstr(path, "d=\""); at < end; at++) {
+        moves += *at == 'M';
+        points += *at == 'M' || *at == 'L';
+    }
+    assert_int_equal(moves, 2);
+    assert_int_equal(points, 63);
+    free(z);
+    free(trace);
+    free(whole);
+    free(periodic);
+    free(hole);
+    free(gap);
+}
+
 /* A flat surface has neither summits nor a range. */
 static void flat_surfaces_are_drawn(void **state) {
     (void)state;
@@ -116,6 +155,7 @@ int main(void) {
         cmocka_unit_test(a_trace_has_its_peaks),
         cmocka_unit_test(a_surface_has_its_summits),
         cmocka_unit_test(extremes_of_long_traces_are_seen),
+        cmocka_unit_test(open_maps_end_and_have_holes),
         cmocka_unit_test(flat_surfaces_are_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,26 @@
+#include "server/command/output_file.h"
+#include <errno.h>
+#include <string.h>
+
+int output_file_open(FILE **file, const char *path, struct error *err) {
+    *file = fopen(path, "wb");
+    return *file != NULL
+               ? 0
+               : error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
+}
+
+int output_file_close(FILE *file, const char *path, int status, struct error *err) {
+    bool failed = ferror(file) != 0;
+    if ((fclose(file) != 0 || failed) && status == 0)
+        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
+    return status;
+}
+
+int output_file_picture(const char *path, const struct map_picture *picture, struct error *err) {
+    FILE *file;
+    int status = output_file_open(&file, path, err);
+    if (status != 0)
+        return status;
+    status = plot_map(picture, file, err);
+    return output_file_close(file, path, status, err);
+}

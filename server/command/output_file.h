@@ -1,0 +1,16 @@
+/* Files that commands write beside standard output. */
+#ifndef RUGO_SERVER_COMMAND_OUTPUT_FILE_H
+#define RUGO_SERVER_COMMAND_OUTPUT_FILE_H
+
+#include "server/show/plot_map.h"
+#include <stdio.h>
+
+/* ERROR_SYSTEM with the path and the reason. */
+int output_file_open(FILE **file, const char *path, struct error *err);
+/* Closes the file, and returns the status of what was written, or that of the file, which may be
+ * full. */
+int output_file_close(FILE *file, const char *path, int status, struct error *err);
+/* Writes a picture into a file of its own. */
+int output_file_picture(const char *path, const struct map_picture *picture, struct error *err);
+
+#endif
