@@ -50,10 +50,15 @@ static int local_claim(void *self, const struct claim *claim, struct claimed_job
     return status;
 }
 
+/* A job that is not there was of a study that is deleted: it is lost. */
+static int lost(int status, struct error *err) {
+    return status == ERROR_ABSENT ? (err->code = ERROR_STATE) : status;
+}
+
 static int local_heartbeat(void *self, const struct claimed_job *job, uint64_t done,
                            struct error *err) {
     struct local *local = self;
-    return store_heartbeat(local->store, job->id, job->token, done, err);
+    return lost(store_heartbeat(local->store, job->id, job->token, done, err), err);
 }
 
 /* What the worker did is safe by now: a case that is not published stays due. */
@@ -74,7 +79,7 @@ static int local_complete(void *self, const struct claimed_job *job,
         store_complete(local->store, job->id, job->token, result, &first_time, &case_done, err);
     if (status == 0 && case_done)
         local_publish(local, job);
-    return status;
+    return lost(status, err);
 }
 
 static int local_fail(void *self, const struct claimed_job *job, const char *reason, int permanent,
@@ -83,12 +88,12 @@ static int local_fail(void *self, const struct claimed_job *job, const char *rea
     int status = store_fail(local->store, job->id, job->token, reason, permanent != 0, err);
     if (status == 0)
         local_publish(local, job);
-    return status;
+    return lost(status, err);
 }
 
 static int local_release(void *self, const struct claimed_job *job, struct error *err) {
     struct local *local = self;
-    return store_release(local->store, job->id, job->token, err);
+    return lost(store_release(local->store, job->id, job->token, err), err);
 }
 
 /* What is due may be a round of a case that asks for an error, which queues jobs. */

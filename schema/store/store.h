@@ -85,6 +85,16 @@ int store_retry(struct store *store, const char *id, uint64_t *count, struct err
 int store_extend(struct store *store, const char *id, uint64_t realisations, uint64_t edition,
                  uint64_t *jobs, struct error *err);
 
+/* Deletes a study that has ended, with all that is stored of it: nobody finds it from here on, and
+ * store_purge gives its space back. ERROR_STATE before it has ended. */
+int store_delete(struct store *store, const char *id, struct error *err);
+/* Takes the rows of deleted studies out of the file, and then what pages are free, in short
+ * transactions with pauses between them, so that others get on. Asks stop before each (may be
+ * NULL): ERROR_STOPPED. What is left waits for the next call, of any process. A file that was made
+ * before single pages could be given back is written anew as a whole where it is not large; else
+ * its free pages are used again. */
+int store_purge(struct store *store, bool (*stop)(void *context), void *context, struct error *err);
+
 /* A job that failed, or a case that cannot be published. */
 struct failure {
     int64_t job; /* 0: the case, with all realisations that it has */

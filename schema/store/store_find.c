@@ -9,8 +9,9 @@ enum { CANDIDATES_SHOWN = 5 };
 static int query_candidates(struct store *store, const char *given, sqlite3_stmt **row,
                             struct error *err) {
     return store_query(store, row, err,
-                       "SELECT public, name, state, created FROM study WHERE name = ?1 OR "
-                       "substr(public, 1, length(?1)) = ?1 ORDER BY id DESC",
+                       "SELECT public, name, state, created FROM study WHERE (name = ?1 OR "
+                       "substr(public, 1, length(?1)) = ?1) AND id NOT IN " DELETED_STUDIES
+                       " ORDER BY id DESC",
                        "t", given);
 }
 

@@ -16,7 +16,8 @@ struct store {
     time_t time;          /* of time_text */
     char time_text[24];   /* "" at first */
     bool claim_failed_jobs;
-    int batch; /* inside store_begin .. store_commit */
+    bool shrinks; /* a study was purged, and its pages are not given back yet */
+    int batch;    /* inside store_begin .. store_commit */
     /* Statements are prepared once, and found by the address of their text. */
     struct {
         const char *sql;
@@ -58,6 +59,8 @@ enum study_random column_random(sqlite3_stmt *row, int column);
 /* Reads a JSON text that this program stored, whatever its size; caller deletes *out. */
 int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 
+/* What the queries of studies leave out. */
+#define DELETED_STUDIES "(SELECT id FROM deleted_study WHERE purged = 0)"
 /* Finds the row of a study; ERROR_ABSENT with a sentence when there is none. */
 int study_row(struct store *store, const char *id, int64_t *row, struct error *err);
 /* Queues what failed or was cancelled again: *jobs of them. Within a change. */

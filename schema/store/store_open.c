@@ -81,7 +81,13 @@ static int void_old_leases(struct store *store, struct error *err) {
 
 static int configure(struct store *store, struct error *err) {
     set_limits(store->db);
-    int status = version_bring_up(store, err);
+    /* Of a file without tables yet, which then gives single pages back; of others when written
+     * anew. */
+    int status = store->options.read_only
+                     ? 0
+                     : store_execute(store, "PRAGMA auto_vacuum = INCREMENTAL", err);
+    if (status == 0)
+        status = version_bring_up(store, err);
     if (status == 0 && !store->options.read_only)
         status = store_execute(store,
                                "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"

@@ -171,10 +171,17 @@ static void free_list(struct study_status *list, size_t count) {
     free(list);
 }
 
+/* Where a list goes on: also behind a study that was deleted meanwhile. */
+static int listed_row(struct store *store, const char *id, int64_t *row, struct error *err) {
+    int status =
+        store_integer(store, row, err, "SELECT id FROM deleted_study WHERE public = ?", "t", id);
+    return status == ERROR_ABSENT ? study_row(store, id, row, err) : status;
+}
+
 int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
                size_t *count, struct error *err) {
     int64_t row = 0;
-    int status = after != NULL && *after != '\0' ? study_row(store, after, &row, err) : 0;
+    int status = after != NULL && *after != '\0' ? listed_row(store, after, &row, err) : 0;
     if (status != 0)
         return status;
     struct study_status *list = array_create(limit, sizeof *list);
@@ -184,10 +191,11 @@ int store_list(struct store *store, const char *after, size_t limit, struct stud
     if (list == NULL || rows == NULL)
         status = error_memory(err, limit * sizeof *list, "a list of studies");
     if (status == 0)
-        status =
-            store_query(store, &statement, err,
-                        "SELECT " STATUS_COLUMNS " FROM study WHERE id > ? ORDER BY id LIMIT ?",
-                        "ii", row, (int64_t)limit);
+        status = store_query(store, &statement, err,
+                             "SELECT " STATUS_COLUMNS
+                             " FROM study WHERE id > ? AND id NOT IN " DELETED_STUDIES
+                             " ORDER BY id LIMIT ?",
+                             "ii", row, (int64_t)limit);
     while (status == 0 && n < limit && (status = store_step(store, statement, err)) == 1) {
         rows[n] = sqlite3_column_int64(statement, 19);
         status = read_status(statement, &list[n++], err);

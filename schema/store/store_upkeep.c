@@ -26,7 +26,8 @@ int store_metrics(struct store *store, struct store_metrics *out, struct error *
     int status =
         store_query(store, &row, err,
                     "SELECT count(*), total(jobs_waiting), total(jobs_running), "
-                    "total(jobs_done), total(jobs_failed), total(jobs_cancelled) FROM study",
+                    "total(jobs_done), total(jobs_failed), total(jobs_cancelled) FROM study "
+                    "WHERE id NOT IN " DELETED_STUDIES,
                     "");
     if (status == 0)
         status = store_step(store, row, err);

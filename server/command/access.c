@@ -296,6 +296,17 @@ int access_retry(struct access *access, const char *id, cJSON **out, struct erro
                                   : api_retry(access->store, id, out, err);
 }
 
+int access_delete(struct access *access, const char *id, cJSON **out, struct error *err) {
+    if (access->client != NULL)
+        return ask_study(access, "DELETE", id, "?results=true", out, err);
+    int status = api_delete(access->store, id, out, err);
+    if (status == 0 && (status = store_purge(access->store, NULL, NULL, err)) != 0) {
+        cJSON_Delete(*out);
+        *out = NULL;
+    }
+    return status;
+}
+
 int access_extend(struct access *access, const char *id, uint64_t realisations, cJSON **out,
                   struct error *err) {
     char path[320], body[64];

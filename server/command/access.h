@@ -45,6 +45,8 @@ int access_document(struct access *access, const char *id, cJSON **out, struct e
 int access_list(struct access *access, cJSON **out, struct error *err); /* of all studies */
 int access_cancel(struct access *access, const char *id, cJSON **out, struct error *err);
 int access_retry(struct access *access, const char *id, cJSON **out, struct error *err);
+/* Of a local store, this gives the space back before it returns. */
+int access_delete(struct access *access, const char *id, cJSON **out, struct error *err);
 int access_extend(struct access *access, const char *id, uint64_t realisations, cJSON **out,
                   struct error *err);
 /* These give results, differences and reports, whose theories a server completes in any case. */

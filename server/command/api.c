@@ -228,3 +228,19 @@ int api_extend(struct store *store, const char *id, uint64_t realisations, cJSON
     }
     return status;
 }
+
+int api_delete(struct store *store, const char *id, cJSON **out, struct error *err) {
+    struct study_status now = {0};
+    int status = store_status(store, id, &now, err);
+    if (status == 0)
+        status = store_delete(store, id, err);
+    if (status == 0) {
+        cJSON *document = cJSON_CreateObject();
+        bool complete = document != NULL && field_put_text(document, "id", id) &&
+                        field_put_text(document, "name", now.name) &&
+                        field_put_text(document, "state", "deleted");
+        status = finish(document, complete, out, err);
+    }
+    study_status_clear(&now);
+    return status;
+}

@@ -12,6 +12,8 @@ int api_submit(struct store *store, const struct study *study, const char *key, 
 int api_status(struct store *store, const char *id, cJSON **out, struct error *err);
 int api_list(struct store *store, const char *after, size_t limit, cJSON **out, struct error *err);
 int api_cancel(struct store *store, const char *id, cJSON **out, struct error *err);
+/* {id, name, state: "deleted"}; its rows are left to store_purge. */
+int api_delete(struct store *store, const char *id, cJSON **out, struct error *err);
 int api_retry(struct store *store, const char *id, cJSON **out, struct error *err);
 /* Progress with the number of jobs queued; see store_extend. */
 int api_extend(struct store *store, const char *id, uint64_t realisations, cJSON **out,

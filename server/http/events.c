@@ -46,7 +46,7 @@ static char *read_event(struct event_stream *stream) {
     service_give_back(stream->service, reader);
     if (code != 0) {
         stream->ended = true;
-        return NULL;
+        return code == ERROR_ABSENT ? strdup("event: deleted\ndata: {}\n\n") : NULL;
     }
     double revision = cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(status, "revision"));
     if (revision != stream->revision && (text = json_print(status)) != NULL) {

@@ -33,6 +33,24 @@ static bool publish_all(struct publisher *publisher) {
     return status != 0 || counts.postponed > 0;
 }
 
+static bool has_work(void *context) {
+    struct publisher *publisher = context;
+    pthread_mutex_lock(&publisher->mutex);
+    bool work = publisher->work || publisher->stopping;
+    pthread_mutex_unlock(&publisher->mutex);
+    return work;
+}
+
+/* Takes deleted studies out of the file, until there is something to publish; returns true where
+ * that failed, and is to be tried again. */
+static bool purge(struct publisher *publisher) {
+    struct error err = {0};
+    int status = store_purge(publisher->store, has_work, publisher, &err);
+    if (status != 0 && status != ERROR_STOPPED)
+        log_line(LEVEL_ERROR, NULL, "deleting: %s", err.text);
+    return status != 0 && status != ERROR_STOPPED;
+}
+
 /* Sleeps until there is work; with cases left, at most until the time to try them again. */
 static void wait_for_work(struct publisher *publisher, int64_t retry_ms) {
     pthread_mutex_lock(&publisher->mutex);
@@ -50,6 +68,7 @@ static void *publisher_thread(void *context) {
     int64_t pause_ms = RETRY_FIRST_MS;
     while (!is_stopping(publisher)) {
         bool left = publish_all(publisher);
+        left = purge(publisher) || left;
         wait_for_work(publisher, left ? clock_ms() + pause_ms : INT64_MAX);
         pause_ms = !left                          ? RETRY_FIRST_MS
                    : pause_ms < RETRY_MOST_MS / 2 ? 2 * pause_ms

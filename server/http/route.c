@@ -14,7 +14,7 @@ static const struct route {
     {"POST", "/v1/studies", ROLE_SUBMIT, handle_study_create, {NULL}},
     {"GET", "/v1/studies", ROLE_READ, handle_study_list, {"limit", "after"}},
     {"GET", "/v1/studies/*", ROLE_READ, handle_study, {NULL}},
-    {"DELETE", "/v1/studies/*", ROLE_SUBMIT, handle_study_cancel, {NULL}},
+    {"DELETE", "/v1/studies/*", ROLE_SUBMIT, handle_study_cancel, {"results"}},
     {"GET", "/v1/studies/*/study", ROLE_READ, handle_document, {NULL}},
     {"POST", "/v1/studies/*/retry", ROLE_SUBMIT, handle_study_retry, {NULL}},
     {"POST", "/v1/studies/*/extend", ROLE_SUBMIT, handle_study_extend, {NULL}},

@@ -42,8 +42,9 @@ void service_give_back(struct service *service, struct store *reader);
 /* Makes the Prometheus text; the caller frees it. */
 int service_metrics(struct service *service, char **out, struct error *err);
 
-/* The publisher merges and publishes, on a thread of its own, every case that is due; the store
- * itself says which. It begins with what an earlier process left, and sleeps until it is woken. */
+/* The publisher merges and publishes, on a thread of its own, every case that is due, and takes
+ * deleted studies out of the file when none is; the store itself says which. It begins with what an
+ * earlier process left, and sleeps until it is woken. */
 int publisher_create(struct publisher **out, const char *database, struct error *err);
 void publisher_destroy(struct publisher **publisher);
 void publisher_wake(struct publisher *publisher);

@@ -109,7 +109,7 @@ static void every_command_has_help(void **state) {
     static const char *const COMMANDS[] = {"run",    "check", "submit",   "status",       "curves",
                                            "report", "wait",  "snapshot", "cancel",       "retry",
                                            "serve",  "work",  "generate", "characterise", "press",
-                                           "theory", "plot",  "extend",   "help"};
+                                           "theory", "plot",  "extend",   "delete",       "help"};
     for (size_t c = 0; c < sizeof COMMANDS / sizeof *COMMANDS; c++) {
         char line[120], usage[80];
         snprintf(line, sizeof line, "$RUGO %s --help && $RUGO help %s | cmp - shell.out",
