@@ -82,8 +82,9 @@ static inline double component_variance(const struct target_component *component
 /* Returns that of heights of any kurtosis K: up to 9, that of C = 1, the above; from there on times
  * (K - 1)/8, as what so few heights change in their root mean square grows with K - 1. Measured on
  * tables of quantiles, H = 0.8, ratios 2 and 8, cells of 8 to 64 longest waves against 256 (ratio
- * 8) and 1024, loads of 0.01 to 0.3: up to 8.2 +- 0.8 for high peaks (Weibull minimum, C = 0.5; K =
- * 71, 12.3 is counted), 1.3 +- 0.2 for plateaus with deep valleys (K = 14, 2.2). */
+ * 8) and 1024, loads of 0.01 to 0.3: up to 8.2 +- 0.8 for high peaks and 5.3 +- 0.4 for deep
+ * valleys (Weibull, C = 0.5; K = 71, 12.3 is counted), 1.3 +- 0.2 for plateaus with valleys (K =
+ * 14, 2.2). */
 double contact_heights_cell(const struct heights *heights);
 
 /* What is added on a cell of L longest waves a side (its shorter one), over its value on a long
