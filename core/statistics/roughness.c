@@ -248,7 +248,7 @@ int ring_average(const struct grid *grid, const double *field, double *lag, doub
 /* correlation: of the field on all points. */
 static int changes_fill(const struct grid *grid, const double *field, const double *correlation,
                         double *change, struct error *err) {
-    size_t lags = grid->nx / 4 + 1;
+    size_t lags = (acf_lags(grid) + 1) / 2; /* as many as the coarser grid has */
     struct grid coarse = *grid;
     for (size_t r = 0; r < lags; r++)
         change[r] = NAN;

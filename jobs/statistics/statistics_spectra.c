@@ -121,21 +121,30 @@ static bool density_is_exact(const struct statistics_case *one_case) {
            one_case->surface.spectrum.type != SPECTRUM_EXPONENTIAL_ACF;
 }
 
+/* What twice as wide rings change, as a bound, at every second lag. */
+static double ring_bound(const double *change, size_t n, size_t lag) {
+    if (2 * lag >= n)
+        return 0;
+    const struct mesh_changes changes = {
+        .fine = change[lag], .coarse = NAN, .fine_ratio = 2, .coarse_ratio = NAN};
+    return mesh_error(&changes, RING_ORDER).bound;
+}
+
 /* Means over rings as wide as the grid's spacing are not those over circles. What rings twice as
- * wide change bounds that, at the lags of theirs; between these the larger bound of both sides. */
+ * wide change bounds that, at the lags of theirs and near them: where points of a ring lie happens
+ * to suit one lag and not the next. The origin is a ring of its own. */
 static int correlation_error(const struct statistics_case *one_case, const double *change, size_t n,
                              struct case_result *result, struct curve *curve, struct error *err) {
     double *bound;
     if (!surface_case_band_limited(&one_case->surface) || isnan(change[0]))
         return 0;
     int status = error_create(result, curve, n, &bound, err);
-    for (size_t a = 0; a < n && status == 0; a += 2) {
-        const struct mesh_changes changes = {
-            .fine = change[a / 2], .coarse = NAN, .fine_ratio = 2, .coarse_ratio = NAN};
-        bound[a] = mesh_error(&changes, RING_ORDER).bound;
+    for (size_t a = 1; a < n && status == 0; a++) {
+        size_t lag = a / 2; /* of those below a */
+        bound[a] = fmax(ring_bound(change, n, lag), ring_bound(change, n, lag + 1));
+        if (a % 2 == 0)
+            bound[a] = fmax(bound[a], ring_bound(change, n, lag - 1));
     }
-    for (size_t a = 1; a < n && status == 0; a += 2)
-        bound[a] = fmax(bound[a - 1], a + 1 < n ? bound[a + 1] : 0);
     return status;
 }
 

@@ -12,8 +12,8 @@ static struct case_result result_of(const char *surface, cJSON **parameters) {
     struct case_result out = {0};
     struct error err = {0};
     snprintf(text, sizeof text,
-             "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
-             " \"points_per_wavelength\": 8%s}}",
+             "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4,"
+             " \"points_per_wavelength\": 8, \"length_ratio\": %s}}",
              surface);
     struct job_runner *runner = runner_of(text);
     struct job_merger *merger = merger_of(text);
@@ -84,15 +84,16 @@ static void check_circles(const char *surface, bool exact) {
 
 static void rings_are_near_circles(void **state) {
     (void)state;
-    check_circles("", true);
-    check_circles(", \"amplitudes\": \"random\"", false);
+    check_circles("2", true);
+    check_circles("4, \"length_ratio_y\": 1", true);
+    check_circles("2, \"amplitudes\": \"random\"", false);
 }
 
 /* Rings of profiles are single lags. */
 static void profiles_have_no_rings(void **state) {
     (void)state;
     cJSON *parameters;
-    struct case_result result = result_of(", \"dimension\": 1", &parameters);
+    struct case_result result = result_of("2, \"dimension\": 1", &parameters);
     const struct curve_error *error = error_of(&result, "acf");
     for (size_t a = 0; a < result_curve(&result, "acf")->n; a++)
         check_close(error->bound[a], 0, 1e-14);
@@ -105,7 +106,7 @@ static void where_nothing_is_known(void **state) {
     cJSON *parameters;
     struct error err = {0};
     struct case_result result =
-        result_of(", \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 2, \"keep\":"
+        result_of("2, \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 2, \"keep\":"
                   " \"heights\"}",
                   &parameters);
     struct case_result expected = {0};
