@@ -5,7 +5,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-enum { HEARTBEAT_MS_MOST = 5000, RETRY_PART = 4 };
+enum { REPORT_MS = 5000, RETRY_PART = 4 };
 static const int64_t NEVER = INT64_MAX;
 
 /* The keeper's lock protects all fields but the atomic ones. */
@@ -25,6 +25,7 @@ struct lease_keeper {
     bool closing;
     bool away; /* the last heartbeat had no answer; used by the keeper's thread alone */
     const char *worker;
+    int64_t report_ms; /* most time between two heartbeats of a job */
     pthread_t handle;
     unsigned slot_count;
     struct slot slots[];
@@ -38,9 +39,9 @@ static struct slot *slot_due_first(struct lease_keeper *keeper) {
     return first;
 }
 
-static int64_t interval_ms(const struct claimed_job *job) {
+static int64_t interval_ms(const struct lease_keeper *keeper, const struct claimed_job *job) {
     int64_t third = job->lease_ms / 3;
-    return third < 1 ? 1 : third > HEARTBEAT_MS_MOST ? HEARTBEAT_MS_MOST : third;
+    return third < 1 ? 1 : third > keeper->report_ms ? keeper->report_ms : third;
 }
 
 /* Logs the first of several heartbeats without an answer. */
@@ -71,8 +72,8 @@ static void beat(struct lease_keeper *keeper, struct slot *slot) {
         atomic_store(&slot->lost, true);
         slot->due_ms = NEVER;
     } else {
-        slot->due_ms =
-            clock_ms() + (status != 0 ? interval_ms(&job) / RETRY_PART + 1 : interval_ms(&job));
+        slot->due_ms = clock_ms() + (status != 0 ? interval_ms(keeper, &job) / RETRY_PART + 1
+                                                 : interval_ms(keeper, &job));
     }
 }
 
@@ -116,6 +117,7 @@ int lease_keeper_create(struct lease_keeper **out, const struct source_options *
         return error_memory(err, size, "leases");
     keeper->slot_count = slots;
     keeper->worker = options->worker;
+    keeper->report_ms = options->report_ms > 0 ? options->report_ms : REPORT_MS;
     for (unsigned n = 0; n < slots; n++) {
         keeper->slots[n].due_ms = NEVER;
         atomic_init(&keeper->slots[n].lost, false);
@@ -155,7 +157,7 @@ void lease_keeper_hold(struct lease_keeper *keeper, unsigned slot, const struct 
     held->job.kind = NULL;
     held->job.parameters = NULL;
     held->hold++;
-    held->due_ms = clock_ms() + interval_ms(job);
+    held->due_ms = clock_ms() + interval_ms(keeper, job);
     held->give_back = false;
     atomic_store(&held->lost, false);
     atomic_store(&held->done, 0);

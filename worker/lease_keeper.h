@@ -3,8 +3,8 @@
  *
  * Each worker thread owns one slot: it calls lease_keeper_hold, then lease_keeper_progress while
  * the job runs, then lease_keeper_let_go. A heartbeat goes out after a third of the lease, and
- * after 5 s at the latest: it also reports progress, and its answer says whether the study was
- * cancelled.
+ * after options->report_ms at the latest: it also reports progress, and its answer says whether the
+ * study was cancelled.
  */
 #ifndef RUGO_WORKER_LEASE_KEEPER_H
 #define RUGO_WORKER_LEASE_KEEPER_H

@@ -11,6 +11,9 @@ struct source_options {
     const char *study; /* claims jobs of this study only; NULL: of any (store only) */
     const char *worker, *host;
     int64_t lease_ms; /* of jobs claimed here (store only); 0: the store's default */
+    /* Most time between two reports of how far a job is; 0: 5 s. A third of the lease is the most
+     * in any case. */
+    int64_t report_ms;
 };
 
 #endif

@@ -60,9 +60,11 @@ struct study_status {
     uint64_t realisations_total, realisations_done,
         realisations_failed; /* done includes running jobs' reports */
     struct work_time time;   /* of completed jobs */
-    double seconds_left;     /* estimate of work left, one worker; NaN before anything is known */
-    uint64_t workers;        /* distinct workers with a live lease */
-    uint64_t revision;       /* rises with every change of results or state */
+    double share;        /* of the work of its jobs, that is done: by time, not by realisations */
+    double seconds_left; /* by the clock, with those who work now, and behind what is older where
+                            none works on it yet; NaN where nobody works */
+    uint64_t workers;    /* distinct workers with a live lease */
+    uint64_t revision;   /* rises with every change of results or state */
     char created[32], finished[32]; /* UTC, ISO 8601; "" if not yet */
 };
 void study_status_clear(struct study_status *status);

@@ -101,9 +101,10 @@ static int lease_job(struct store *store, const struct claim *claim,
     return store_run(
         store, err,
         "UPDATE job SET state = 'running', attempts = attempts + 1, token = ?, worker = ?, "
-        "host = ?, program = ?, lease_until = ?, reported = 0, claimed = ? WHERE id = ?",
-        "ttttiti", job->token, claim->worker, claim->host, claim->program,
-        store_now(store) + store->options.lease_ms, store_time(store), job->id);
+        "host = ?, program = ?, claimed_ms = ?5, lease_until = ?5 + ?6, reported = 0, reported_ms "
+        "= 0, claimed = ?7 WHERE id = ?8",
+        "ttttiiti", job->token, claim->worker, claim->host, claim->program, store_now(store),
+        store->options.lease_ms, store_time(store), job->id);
 }
 
 static int copy_parameters(struct store *store, int64_t study, struct claimed_job *job,

@@ -68,6 +68,17 @@ int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error 
 /* Ends the study when nothing of it waits or runs; raises its revision. */
 int study_settle(struct store *store, int64_t study, struct error *err);
 
+/* What is left of a study of which something waits or runs. */
+struct work_left {
+    double work;    /* seconds of one worker */
+    double share;   /* of all work, done or not, that is done: 0 to 1 */
+    double seconds; /* by the clock, until the workers are through; NaN without a worker */
+};
+/* workers: those that work on it, where these are more than those that do now. realisations: of
+ * each case; 0 where each has its own. */
+int study_left(struct store *store, int64_t study, uint64_t realisations, size_t workers,
+               struct work_left *out, struct error *err);
+
 /* The results of this revision are published: takes the mark off that they cannot be. */
 int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t revision,
                 struct error *err);

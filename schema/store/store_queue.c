@@ -110,8 +110,11 @@ int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_
     status = read_leased(store, job, token, &row, err);
     if (status == 0) {
         int64_t reported = done < (uint64_t)row.count ? (int64_t)done : row.count;
-        status = store_run(store, err, "UPDATE job SET lease_until = ?, reported = ? WHERE id = ?",
-                           "iii", store_now(store) + store->options.lease_ms, reported, job);
+        status = store_run(store, err,
+                           "UPDATE job SET lease_until = ?1 + ?2, reported_ms = CASE WHEN reported "
+                           "< ?3 THEN ?1 - coalesce(claimed_ms, ?1) ELSE reported_ms END, reported "
+                           "= ?3 WHERE id = ?4",
+                           "iiii", store_now(store), store->options.lease_ms, reported, job);
     }
     return change_end(store, status, err);
 }

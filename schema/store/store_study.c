@@ -95,29 +95,63 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     return 0;
 }
 
-/* Time left: the estimates of what is undone, corrected by how they did on what is done. */
-static int time_left(struct store *store, int64_t row, struct study_status *out,
+/* What waits in front of a study: the work of older ones, added up as one goes from study to study.
+ */
+struct queue_ahead {
+    int64_t before; /* studies older than this one are in it */
+    double work;    /* seconds of one worker */
+};
+
+static int add_ahead(struct store *store, int64_t row, struct queue_ahead *ahead,
                      struct error *err) {
-    out->seconds_left = NAN;
-    if (out->jobs_waiting + out->jobs_running == 0) {
-        out->seconds_left = 0;
-        return 0;
+    while (ahead->before < row) {
+        struct work_left left;
+        int64_t next = 0, realisations = 0;
+        int status = store_integer(store, &next, err,
+                                   "SELECT coalesce(min(id), ?2) FROM study WHERE state IN "
+                                   "('queued', 'running') AND id >= ?1 AND id < ?2",
+                                   "ii", ahead->before, row);
+        if (status == 0 && next < row)
+            status = store_integer(store, &realisations, err,
+                                   "SELECT realisations FROM study WHERE id = ?", "i", next);
+        if (status == 0 && next < row)
+            status = study_left(store, next, (uint64_t)realisations, 0, &left, err);
+        if (status != 0)
+            return status;
+        ahead->work += next < row ? left.work : 0;
+        ahead->before = next + (next < row);
     }
-    sqlite3_stmt *statement = NULL;
-    int status = store_query(store, &statement, err,
-                             "SELECT sum(estimate * realisations_done), sum(estimate * "
-                             "(coalesce(realisations, ?2) - realisations_done)), sum(seconds) FROM "
-                             "study_case WHERE study_id = ?1 AND (parent IS NOT NULL OR ?2 > 0)",
-                             "ii", row, (int64_t)out->realisations);
-    if (status == 0)
-        status = store_step(store, statement, err);
-    if (status <= 0)
-        return status;
-    double done = sqlite3_column_double(statement, 0), left = sqlite3_column_double(statement, 1);
-    double spent = sqlite3_column_double(statement, 2);
-    out->seconds_left = done > 0 && spent > 0 ? left * spent / done : left;
-    sqlite3_reset(statement);
     return 0;
+}
+
+/* Whoever works now will come to what is queued, in the order of studies. */
+static int queue_left(struct store *store, int64_t row, struct study_status *out,
+                      struct queue_ahead *ahead, struct work_left *left, struct error *err) {
+    int64_t workers = 0;
+    int status = store_integer(
+        store, &workers, err, "SELECT count(DISTINCT worker) FROM job WHERE state = 'running'", "");
+    if (status == 0)
+        status = study_left(store, row, out->realisations, (size_t)workers, left, err);
+    if (status == 0 && workers > 0)
+        status = add_ahead(store, row, ahead, err);
+    if (status == 0 && workers > 0)
+        left->seconds += ahead->work / (double)workers;
+    return status;
+}
+
+static int time_left(struct store *store, int64_t row, struct study_status *out,
+                     struct queue_ahead *ahead, struct error *err) {
+    struct work_left left = {0};
+    int status = 0;
+    if (out->jobs_running > 0)
+        status = study_left(store, row, out->realisations, 0, &left, err);
+    else if (out->jobs_waiting > 0)
+        status = queue_left(store, row, out, ahead, &left, err);
+    else if (out->realisations_total > 0)
+        left.share = (double)out->realisations_done / (double)out->realisations_total;
+    out->seconds_left = left.seconds;
+    out->share = left.share;
+    return status;
 }
 
 void study_status_clear(struct study_status *status) {
@@ -129,6 +163,7 @@ void study_status_clear(struct study_status *status) {
 int store_status(struct store *store, const char *id, struct study_status *out, struct error *err) {
     sqlite3_stmt *statement = NULL;
     struct study_status read = {0};
+    struct queue_ahead ahead = {0};
     int status = store_query(store, &statement, err,
                              "SELECT " STATUS_COLUMNS " FROM study WHERE public = ?", "t", id);
     if (status == 0)
@@ -141,7 +176,7 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
     status = read_status(statement, &read, err);
     sqlite3_reset(statement);
     if (status == 0)
-        status = time_left(store, row, &read, err);
+        status = time_left(store, row, &read, &ahead, err);
     if (status != 0)
         study_status_clear(&read);
     else
@@ -186,6 +221,7 @@ int store_list(struct store *store, const char *after, size_t limit, struct stud
         return status;
     struct study_status *list = array_create(limit, sizeof *list);
     int64_t *rows = array_create(limit, sizeof *rows);
+    struct queue_ahead ahead = {0};
     size_t n = 0;
     sqlite3_stmt *statement = NULL;
     if (list == NULL || rows == NULL)
@@ -203,7 +239,7 @@ int store_list(struct store *store, const char *after, size_t limit, struct stud
     if (status >= 0 && n != 0)
         sqlite3_reset(statement);
     for (size_t i = 0; status >= 0 && i < n; i++)
-        status = time_left(store, rows[i], &list[i], err);
+        status = time_left(store, rows[i], &list[i], &ahead, err);
     free(rows);
     if (status < 0) {
         free_list(list, n);

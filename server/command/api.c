@@ -68,11 +68,6 @@ static bool put_time(cJSON *object, const char *name, const char *time) {
     return field_put(object, name, *time != '\0' ? cJSON_CreateString(time) : cJSON_CreateNull());
 }
 
-/* Time left of a study nobody works on is what one worker would need. */
-static double time_left(const struct study_status *status) {
-    return status->seconds_left / (double)(status->workers != 0 ? status->workers : 1);
-}
-
 /* Whether a round of a study that asks for an error has ended, and the next may follow. */
 static bool is_planning(const struct study_status *status) {
     return status->realisations == 0 && strcmp(status->state, "running") == 0 &&
@@ -100,7 +95,8 @@ static cJSON *progress(const struct study_status *status, bool *complete) {
                 field_put(document, "seconds", json_number(status->time.seconds)) &&
                 field_put(document, "cpu_seconds", json_number(status->time.cpu_seconds)) &&
                 field_put_count(document, "jobs_without_cpu", status->time.jobs_without_cpu) &&
-                field_put(document, "seconds_left", json_number(time_left(status))) &&
+                field_put(document, "share", json_number(status->share)) &&
+                field_put(document, "seconds_left", json_number(status->seconds_left)) &&
                 field_put_count(document, "revision", status->revision) &&
                 put_time(document, "created", status->created) &&
                 put_time(document, "finished", status->finished);

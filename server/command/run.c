@@ -14,8 +14,8 @@
 #include <string.h>
 
 /* A run that was killed is started again soon: its blocks need not wait for the usual minute.
- * Heartbeats come every 5 s. */
-enum { LEASE_MS = 20000 };
+ */
+enum { LEASE_MS = 20000, REPORT_MS = 1000 /* for the bar */ };
 
 struct options {
     const char *database, *folder;
@@ -62,9 +62,13 @@ static int submit(struct run *run, struct error *err) {
 
 /* Works until the study has ended; with others at work on it, waits for them too. */
 static int work(struct run *run, struct error *err) {
-    struct study_progress progress = {.store = run->store, .study = run->id};
+    struct study_progress progress = {
+        .store = run->store, .study = run->id, .bar = {.command = "run"}};
     struct worker_options options = {
-        .source = {.database = run->database, .study = run->id, .lease_ms = LEASE_MS},
+        .source = {.database = run->database,
+                   .study = run->id,
+                   .lease_ms = LEASE_MS,
+                   .report_ms = REPORT_MS},
         .threads = run->threads,
         .drain = true,
         .stop = &stop_requested,
@@ -73,7 +77,11 @@ static int work(struct run *run, struct error *err) {
         .quiet = true,
     };
     int status = workers_run(&options, err);
-    progress_end(&progress);
+    if (progress.bar.shown) { /* as it is at the end */
+        progress.bar.next_ms = progress.bar.next_ms > 0 ? 1 : 0;
+        progress_tick(&progress);
+    }
+    progress_end(&progress.bar);
     return status;
 }
 

@@ -17,7 +17,7 @@ static const struct option_row OPTIONS[] = {
     ACCESS_ROWS(struct options),
     {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
     {"watch", 'w', OPTION_FLAG, 0, 0, AT(watch), NULL, NULL,
-     "look again each second, until the study has ended; print what has changed"},
+     "look again twice a second, until the study has ended; print what has changed"},
     {0}};
 
 static int print(const cJSON *document, const char *id, const struct options *options,

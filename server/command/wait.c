@@ -1,6 +1,7 @@
 /* `rugo wait`: returns when a study has ended. */
 #include "server/command/question.h"
 #include "server/command/watch.h"
+#include "server/show/progress.h"
 #include "server/show/summary_status.h"
 #include "worker/clock.h"
 #include <stdio.h>
@@ -17,11 +18,13 @@ static const struct option_row OPTIONS[] = {ACCESS_ROWS(struct options),
                                             {0}};
 
 /* Looks until the study has ended, until the time is over or until a signal comes. */
-static int wait_for_end(struct watch *watch, unsigned timeout_s, cJSON **progress,
-                        struct error *err) {
+static int wait_for_end(struct watch *watch, unsigned timeout_s, struct progress_bar *bar,
+                        cJSON **progress, struct error *err) {
     int64_t until_ms = clock_ms() + 1000 * (int64_t)timeout_s;
     for (bool first = true;; first = false) {
         int status = watch_look(watch, first, progress, err);
+        if (status == 0 && *progress != NULL)
+            progress_of_document(bar, *progress);
         if (status != 0 || (*progress != NULL && watch_has_ended(*progress)))
             return status;
         cJSON_Delete(*progress);
@@ -38,8 +41,11 @@ static int ask(struct access *access, const char *id, const void *values, cJSON 
                struct error *err) {
     const struct options *options = values;
     struct watch watch = {.command = "wait", .access = access, .id = id};
+    struct progress_bar bar = {.command = "wait"};
     signals_catch();
-    return wait_for_end(&watch, options->timeout_s, out, err);
+    int status = wait_for_end(&watch, options->timeout_s, &bar, out, err);
+    progress_end(&bar);
+    return status;
 }
 
 /* A study that did not get done, or has nothing to tell, is no success. */

@@ -4,7 +4,7 @@
 
 #include "server/command/access.h"
 
-enum { WATCH_MS = 1000 }; /* between two looks */
+enum { WATCH_MS = 500 }; /* between two looks */
 
 /* Sleeps for WATCH_MS; false where a signal asked to stop (signals_catch). */
 bool watch_pause(void);

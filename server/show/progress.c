@@ -1,4 +1,5 @@
 #include "server/show/progress.h"
+#include "schema/json/field.h"
 #include "server/show/summary_cells.h"
 #include "worker/clock.h"
 #include <math.h>
@@ -7,70 +8,75 @@
 
 enum { BAR = 20, TERMINAL_MS = 500, PLAIN_MS = 10000 };
 
-/* The store's estimate, which knows what the cases cost; between two jobs' ends it runs down with
- * the clock. */
-static double estimate_left(struct study_progress *progress, const struct study_status *now,
-                            int64_t clock) {
-    double estimate = now->seconds_left / (double)(now->workers > 0 ? now->workers : 1);
-    if (!(fabs(estimate - progress->estimate) <= 0)) { /* also the first, or a NaN */
-        progress->estimate = estimate;
-        progress->estimate_ms = clock;
-    }
-    double left = estimate - (double)(clock - progress->estimate_ms) / 1000;
-    return left < 0 ? 0 : left;
+bool progress_is_due(const struct progress_bar *bar) {
+    return clock_ms() >= bar->next_ms;
 }
 
-/* Estimates what is left at the pace so far, as if all realisations cost the same. */
-static double seconds_left(struct study_progress *progress, const struct study_status *now,
-                           int64_t clock) {
-    double elapsed = (double)(clock - progress->start_ms) / 1000;
-    double done = (double)(now->realisations_done - progress->start_done);
-    double left = (double)(now->realisations_total - now->realisations_done);
-    return done > 0 && now->cases == 1 ? left * elapsed / done
-                                       : estimate_left(progress, now, clock);
-}
-
-static void print_bar(const struct study_status *now, double share, const char *left) {
-    char bar[BAR + 1];
+/* With the time since it began, which moves whatever else stands still. */
+static void print_bar(const struct progress_bar *bar, const struct progress_state *state,
+                      const char *left, int64_t now_ms) {
+    long long seconds = (now_ms - bar->start_ms) / 1000;
+    char text[BAR + 1];
     for (int i = 0; i < BAR; i++)
-        bar[i] = i < (int)(share * BAR) ? '#' : '.';
-    bar[BAR] = '\0';
-    fprintf(stderr, "\r[%s] %5.1f %%  %llu of %llu realisations, %s left   ", bar, 100 * share,
-            (unsigned long long)now->realisations_done, (unsigned long long)now->realisations_total,
-            left);
+        text[i] = i < (int)(state->share * BAR) ? '#' : '.';
+    text[BAR] = '\0';
+    fprintf(stderr, "\r[%s] %5.1f %%  %.0f of %.0f realisations, %lld:%02lld:%02lld, %s left\033[K",
+            text, 100 * state->share, state->done, state->total, seconds / 3600, seconds / 60 % 60,
+            seconds % 60, left);
+}
+
+void progress_draw(struct progress_bar *bar, const struct progress_state *state) {
+    int64_t now_ms = clock_ms();
+    bool terminal = isatty(STDERR_FILENO);
+    char left[48];
+    if (bar->next_ms == 0)
+        bar->start_ms = now_ms;
+    bar->next_ms = now_ms + (terminal ? TERMINAL_MS : PLAIN_MS);
+    duration_text(state->seconds_left, left, sizeof left);
+    if (terminal)
+        print_bar(bar, state, left, now_ms);
+    else
+        fprintf(stderr, "rugo %s: %s %.1f %%, %s left\n", bar->command, state->study,
+                100 * state->share, left);
+    fflush(stderr);
+    bar->shown = terminal;
+}
+
+void progress_end(struct progress_bar *bar) {
+    if (bar->shown)
+        fputc('\n', stderr);
+    bar->shown = false;
 }
 
 int progress_tick(void *context) {
     struct study_progress *progress = context;
-    int64_t clock = clock_ms();
-    if (clock < progress->next_ms)
-        return 0;
-    bool terminal = isatty(STDERR_FILENO);
     struct study_status now;
-    if (store_status(progress->store, progress->study, &now, NULL) != 0)
+    if (!progress_is_due(&progress->bar) ||
+        store_status(progress->store, progress->study, &now, NULL) != 0)
         return 0; /* the next tick may find it unlocked */
-    if (progress->next_ms == 0) {
-        progress->start_ms = clock;
-        progress->start_done = now.realisations_done;
-    }
-    progress->next_ms = clock + (terminal ? TERMINAL_MS : PLAIN_MS);
-    double share = (double)now.realisations_done / (double)now.realisations_total;
-    char left[48];
-    duration_text(seconds_left(progress, &now, clock), left, sizeof left);
-    if (terminal)
-        print_bar(&now, share, left);
-    else
-        fprintf(stderr, "rugo run: %s %.1f %%, %s left\n", progress->study, 100 * share, left);
-    fflush(stderr);
-    progress->shown = terminal;
+    const struct progress_state state = {.study = progress->study,
+                                         .share = now.share,
+                                         .seconds_left = now.seconds_left,
+                                         .done = (double)now.realisations_done,
+                                         .total = (double)now.realisations_total};
+    progress_draw(&progress->bar, &state);
     study_status_clear(&now);
     return 0;
 }
 
-void progress_end(struct study_progress *progress) {
-    progress->next_ms = 0;
-    if (progress->shown) {
-        progress_tick(progress);
-        fputc('\n', stderr);
-    }
+static double number_of(const cJSON *object, const char *key) {
+    const cJSON *number = field_at(object, key);
+    return cJSON_IsNumber(number) ? number->valuedouble : (double)NAN;
+}
+
+void progress_of_document(struct progress_bar *bar, const cJSON *progress) {
+    const cJSON *realisations = field_at(progress, "realisations");
+    const char *id = cJSON_GetStringValue(field_at(progress, "id"));
+    const struct progress_state state = {.study = id != NULL ? id : "?",
+                                         .share = number_of(progress, "share"),
+                                         .seconds_left = number_of(progress, "seconds_left"),
+                                         .done = number_of(realisations, "done"),
+                                         .total = number_of(realisations, "total")};
+    if (progress_is_due(bar))
+        progress_draw(bar, &state);
 }

@@ -2,6 +2,7 @@
 #include "schema/json/field.h"
 #include "server/show/summary_cells.h"
 #include <math.h>
+#include <string.h>
 
 static const char *text_of(const cJSON *object, const char *key) {
     const char *text = cJSON_GetStringValue(field_at(object, key));
@@ -27,16 +28,32 @@ static void print_failure(const cJSON *failure, FILE *file) {
             text_of(failure, "worker"), reason);
 }
 
+/* Writes the time left, and what it is with. */
+static void print_left(const cJSON *status, char *text, size_t size) {
+    double seconds = number_of(status, "seconds_left");
+    char duration[48];
+    duration_text(seconds, duration, sizeof duration);
+    const char *state = text_of(status, "state");
+    bool ahead = strcmp(state, "queued") == 0;
+    if (isnan(seconds) && (ahead || strcmp(state, "running") == 0))
+        snprintf(text, size, "not known, as nobody works");
+    else
+        snprintf(text, size, "%s%s", duration, ahead ? " with what is in front of it" : "");
+}
+
 void summary_of_status(const cJSON *status, FILE *file) {
     const cJSON *jobs = field_at(status, "jobs"), *realisations = field_at(status, "realisations");
     struct work_time time;
-    char left[48], spent[112];
+    char left[96], spent[112];
     work_time_read(status, (uint64_t)fmax(number_of(jobs, "done"), 0), &time);
-    duration_text(number_of(status, "seconds_left"), left, sizeof left);
+    print_left(status, left, sizeof left);
     work_time_text(&time, spent, sizeof spent);
     fprintf(file, "%s  %s  %s  %s\n", text_of(status, "id"), text_of(status, "name"),
             text_of(status, "kind"), text_of(status, "state"));
-    fprintf(file, "  realisations %.0f of %.0f, jobs %.0f of %.0f (%.0f running, %.0f failed)\n",
+    fputc(' ', file);
+    if (!isnan(number_of(status, "share")))
+        fprintf(file, " %.1f %% of the work,", 100 * number_of(status, "share"));
+    fprintf(file, " realisations %.0f of %.0f, jobs %.0f of %.0f (%.0f running, %.0f failed)\n",
             number_of(realisations, "done"), number_of(realisations, "total"),
             number_of(jobs, "done"), number_of(jobs, "total"), number_of(jobs, "running"),
             number_of(jobs, "failed"));
@@ -68,11 +85,9 @@ void summary_of_list(const cJSON *studies, FILE *file) {
     const cJSON *study;
     cJSON_ArrayForEach(study, field_at(studies, "studies")) {
         static const char *const TEXTS[] = {"id", "name", "kind", "state"};
-        const cJSON *realisations = field_at(study, "realisations");
         for (size_t n = 0; n < sizeof TEXTS / sizeof *TEXTS; n++)
             table_cell(&table, "%s", text_of(study, TEXTS[n]));
-        table_cell(&table, "%.1f",
-                   100 * number_of(realisations, "done") / number_of(realisations, "total"));
+        table_cell(&table, "%.1f", 100 * number_of(study, "share"));
         table_cell(&table, "%s", text_of(study, "created"));
     }
     table_print(&table, file);

@@ -51,7 +51,7 @@ function show(studies) {
     cell(row, name);
     cell(row, study.kind);
     cell(row, study.state, study.state);
-    cell(row, bar(done / total));
+    cell(row, bar(study.share));
     cell(row, `${done} / ${total}`, "number");
     cell(row, ["queued", "running"].includes(study.state) ? duration(study.seconds_left) : "–", "number");
     cell(row, study.created.replace("T", " ").replace("Z", ""));

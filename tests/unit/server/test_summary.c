@@ -198,7 +198,7 @@ static void failures_are_told(void **state) {
         "{\"id\":\"12\",\"name\":\"pressed\",\"kind\":\"contact\",\"state\":\"done\",\"jobs\":{"
         "\"done\":3,\"total\":5,\"running\":0,\"failed\":1},\"realisations\":{\"done\":30,"
         "\"total\":50},\"workers\":0,\"seconds\":12,\"cpu_seconds\":5,\"jobs_without_cpu\":1,"
-        "\"seconds_left\":null,\"failures\":[{\"job\":4,"
+        "\"share\":0.625,\"seconds_left\":null,\"failures\":[{\"job\":4,"
         "\"case\":1,\"first\":10,\"count\":10,\"attempts\":3,\"worker\":\"w\",\"reason\":\"lost\"},"
         "{\"case\":2,\"reason\":\"of another program\"}]}";
     cJSON *document = cJSON_Parse(DOCUMENT), *empty = cJSON_Parse("{}");
@@ -212,7 +212,7 @@ static void failures_are_told(void **state) {
     check_shown(
         text,
         (const char *[]){
-            "12  pressed  contact  done\n  realisations 30 of 50, jobs 3 "
+            "12  pressed  contact  done\n  62.5 % of the work, realisations 30 of 50, jobs 3 "
             "of 5 (0 running, 1 failed)\n  workers 0, spent 5 s of CPU time in 12 s, left -\nJobs "
             "whose CPU time is not known, so that the clock stands for it: 1.\n",
             "  failed: case 1, realisations 10 to 19, 3 attempts, "

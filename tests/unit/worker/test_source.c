@@ -120,7 +120,7 @@ static void lost_leases_are_told_apart(void **state) {
 static void result_arrives(void **state) {
     (void)state;
     const struct job_kind *kind = kind_of(JOB_KINDS[0]);
-    double scalars[64];
+    double scalars[256];
     unsigned char data[3] = {0, 255, 7};
     struct block_result result = {.first = 10,
                                   .count = 1,
@@ -128,7 +128,7 @@ static void result_arrives(void **state) {
                                   .scalars = scalars,
                                   .data = data,
                                   .size = sizeof data};
-    const char *names[64];
+    const char *names[256];
     result.names = names;
     while (kind->scalar(result.scalar_count) != NULL) {
         names[result.scalar_count] = kind->scalar(result.scalar_count);

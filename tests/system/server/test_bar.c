@@ -1,0 +1,87 @@
+/* Protects: on a terminal the bar of a run moves each second, to its end; elsewhere there are
+ * lines, and never a word that a queued study has no time left. */
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include <pty.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Some seconds of one worker: few realisations, which take long. */
+static const char STUDY[] =
+    "{\"name\":\"slow\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":6,\"surface\":{"
+    "\"hurst\":0.8,\"wavelength_ratio\":32,\"length_ratio\":8,\"points_per_wavelength\":8}}";
+
+static double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+enum { TEXT_MOST = 1 << 20 };
+
+/* Runs the study on a terminal of its own; what came, and its exit status. */
+static char *run_on_terminal(int *status) {
+    int terminal = -1;
+    size_t size = 0;
+    char *text = calloc(1, TEXT_MOST);
+    assert_non_null(text);
+    pid_t child = forkpty(&terminal, NULL, NULL, NULL);
+    assert_true(child >= 0);
+    if (child == 0) {
+        execl(rugo(), "rugo", "run", "--workers", "1", "--db", "bar.db", "slow.json", (char *)NULL);
+        _exit(127);
+    }
+    ssize_t got;
+    while (size < TEXT_MOST - 1 && (got = read(terminal, text + size, TEXT_MOST - 1 - size)) > 0)
+        size += (size_t)got;
+    close(terminal);
+    assert_int_equal(waitpid(child, status, 0), child);
+    return text;
+}
+
+static void the_bar_moves(void **state) {
+    (void)state;
+    int status = -1;
+    spit("slow.json", STUDY);
+    double start = seconds_now();
+    char *text = run_on_terminal(&status);
+    double seconds = seconds_now() - start;
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    assert_non_null(strstr(text, "100.0 %"));
+    assert_non_null(strstr(text, "6 of 6 realisations"));
+    char *rest = NULL, last[200] = "";
+    double moves = 0;
+    for (char *bar = strtok_r(text, "\r", &rest); bar != NULL; bar = strtok_r(NULL, "\r", &rest)) {
+        if (*bar != '[' || strncmp(bar, last, sizeof last - 1) == 0)
+            continue;
+        snprintf(last, sizeof last, "%s", bar);
+        moves++;
+    }
+    /* the time that passed is told in seconds; set-up, and the table, take some without a bar */
+    if (!(moves >= seconds - 3 && moves >= 2))
+        fail_msg("%g moves in %g s", moves, seconds);
+    free(text);
+}
+
+static void nobody_is_told_of_no_time(void **state) {
+    (void)state;
+    spit("slow.json", STUDY);
+    assert_int_equal(
+        run_rugo("submit", (const char *[]){"submit", "--db", "queue.db", "slow.json", NULL}), 0);
+    assert_int_equal(
+        run_rugo("status", (const char *[]){"status", "--db", "queue.db", "slow", NULL}), 0);
+    assert_true(contains("status.out", "0.0 % of the work"));
+    assert_true(contains("status.out", "left not known, as nobody works"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_bar_moves),
+        cmocka_unit_test(nobody_is_told_of_no_time),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
