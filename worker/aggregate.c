@@ -1,5 +1,6 @@
 #include "worker/aggregate.h"
 #include "schema/result/result_json.h"
+#include "schema/study/sweep.h"
 #include "worker/case_merge.h"
 #include "worker/target.h"
 #include <stdio.h>
@@ -80,16 +81,6 @@ int aggregate_begin(struct store *store, const char *study, struct aggregate *ou
 void aggregate_end(struct aggregate *aggregate) {
     study_status_clear(&aggregate->about);
     aggregate->kind = NULL;
-}
-
-struct study_result aggregate_head(const struct aggregate *aggregate) {
-    const struct study_status *about = &aggregate->about;
-    /* the struct owns its texts elsewhere: here they are lent, and never freed through it */
-    return (struct study_result){.id = (char *)about->id,
-                                 .name = about->name,
-                                 .kind = about->kind,
-                                 .state = (char *)about->state,
-                                 .random = (char *)choice_name(STUDY_RANDOM, (int)about->random)};
 }
 
 /* --- a case --- */
@@ -279,17 +270,31 @@ int aggregate_case_report(struct store *store, const struct aggregate *aggregate
 
 /* --- whole studies --- */
 
-int aggregate_copy_head(const struct aggregate *aggregate, struct study_result *out,
-                        struct error *err) {
-    const struct study_result head = aggregate_head(aggregate);
-    out->id = strdup(head.id);
-    out->name = strdup(head.name);
-    out->kind = strdup(head.kind);
-    out->state = strdup(head.state);
-    out->random = strdup(head.random);
+/* Reads what the study sweeps, and how it came about. */
+static int read_origin(struct store *store, const struct aggregate *aggregate,
+                       struct study_result *out, struct error *err) {
+    cJSON *document = NULL;
+    int status = store_provenance(store, aggregate->about.id, &out->provenance, err);
+    if (status == 0)
+        status = store_document(store, aggregate->about.id, &document, err);
+    if (status == 0 && (out->swept = sweep_pointers(&aggregate->kind->study, document)) == NULL)
+        status = error_memory(err, 0, "the swept parameters of a study");
+    cJSON_Delete(document);
+    return status;
+}
+
+int aggregate_head(struct store *store, const struct aggregate *aggregate, struct study_result *out,
+                   struct error *err) {
+    const struct study_status *about = &aggregate->about;
+    out->id = strdup(about->id);
+    out->name = strdup(about->name);
+    out->kind = strdup(about->kind);
+    out->state = strdup(about->state);
+    out->random = strdup(choice_name(STUDY_RANDOM, (int)about->random));
     bool done = out->id != NULL && out->name != NULL && out->kind != NULL && out->state != NULL &&
                 out->random != NULL;
-    return done ? 0 : error_memory(err, STUDY_ID_SIZE, "the head of a study");
+    return done ? read_origin(store, aggregate, out, err)
+                : error_memory(err, STUDY_ID_SIZE, "the head of a study");
 }
 
 int aggregate_refuse(const struct case_result *result, struct error *err) {
@@ -304,7 +309,7 @@ static int read_cases(struct store *store, const struct aggregate *aggregate,
     uint64_t end = one ? first + 1 : aggregate->about.cases;
     bool answered = false;
     study->cases = array_create((size_t)(end - first), sizeof *study->cases);
-    int status = aggregate_copy_head(aggregate, study, err);
+    int status = aggregate_head(store, aggregate, study, err);
     if (status == 0 && study->cases == NULL)
         status = error_memory(err, (size_t)(end - first) * sizeof *study->cases, "results");
     for (uint64_t c = first; c < end && status == 0; c++) {
@@ -345,12 +350,14 @@ int aggregate_report(struct store *store, const char *study, struct study_report
         return status;
     report.time = aggregate.about.time;
     report.cases = array_create((size_t)aggregate.about.cases, sizeof *report.cases);
-    status = aggregate_copy_head(&aggregate, &head, err);
+    status = aggregate_head(store, &aggregate, &head, err);
     report.id = head.id;
     report.name = head.name;
     report.kind = head.kind;
     report.state = head.state;
     report.random = head.random;
+    report.swept = head.swept;
+    report.provenance = head.provenance;
     if (status == 0 && report.cases == NULL)
         status = error_memory(err, (size_t)aggregate.about.cases * sizeof *report.cases, "reports");
     for (uint64_t c = 0; c < aggregate.about.cases && status == 0; c++) {

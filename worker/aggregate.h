@@ -17,12 +17,10 @@ struct aggregate {
 int aggregate_begin(struct store *store, const char *study, struct aggregate *out,
                     struct error *err);
 void aggregate_end(struct aggregate *aggregate);
-/* What a document of the study begins with (study_print_head); borrows from the aggregate. */
-struct study_result aggregate_head(const struct aggregate *aggregate);
-
-/* Copies it into an empty document, which the caller clears, also after a failure. */
-int aggregate_copy_head(const struct aggregate *aggregate, struct study_result *out,
-                        struct error *err);
+/* Fills what a document of the study begins with (study_print_head) into an empty one, which the
+ * caller clears, also after a failure. */
+int aggregate_head(struct store *store, const struct aggregate *aggregate, struct study_result *out,
+                   struct error *err);
 
 /* A filter says which cases are asked for, and what of them. */
 struct result_filter {

@@ -92,7 +92,7 @@ static int make(struct store *store, const struct aggregate *aggregate,
     bool common = aggregate->about.random == RANDOM_COMMON;
     struct compared a = {0}, b = {0};
     out->cases = array_create(1, sizeof *out->cases);
-    int status = aggregate_copy_head(aggregate, out, err);
+    int status = aggregate_head(store, aggregate, out, err);
     if (status == 0 && out->cases == NULL)
         status = error_memory(err, sizeof *out->cases, "a difference");
     if (status != 0)

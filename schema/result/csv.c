@@ -1,5 +1,7 @@
 #include "schema/result/csv.h"
 #include "schema/json/json.h"
+#include "schema/result/provenance.h"
+#include "schema/result/swept.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +12,7 @@ struct columns {
     size_t count;       /* of theories */
     const char **names; /* owned: room for every theory of every curve */
     bool difference;
+    const struct study_result *study;
 };
 
 static void collect_theories(struct columns *columns, const struct curve *curve) {
@@ -44,8 +47,20 @@ static void print_field(FILE *file, double number) {
         json_print_number(file, number);
 }
 
-static void print_labels(FILE *file, uint64_t case_number, const struct curve *curve) {
-    fprintf(file, "%llu,", (unsigned long long)case_number);
+/* The parameter of a case in a column of what is swept; empty where the case has none. */
+static void print_parameter(FILE *file, const struct result_parameter *value) {
+    print_field(file, value != NULL && value->text == NULL ? value->number : (double)NAN);
+    if (value != NULL && value->text != NULL)
+        print_text(file, value->text);
+}
+
+static void print_labels(FILE *file, const struct study_result *study,
+                         const struct case_result *one, const struct curve *curve) {
+    const char *pointer;
+    fprintf(file, "%llu", (unsigned long long)one->case_number);
+    for (size_t n = 0; (pointer = swept_pointer(study, n)) != NULL; n++)
+        print_parameter(file, result_parameter(one, pointer));
+    fputc(',', file);
     print_text(file, curve->quantity);
     const struct curve_attribute *row;
     for (size_t n = 0; (row = curve_column(n)) != NULL; n++) {
@@ -78,7 +93,7 @@ static void print_line(FILE *file, const struct case_result *one, const struct c
                        size_t n, const struct columns *columns) {
     bool matrix = curve->columns > 0;
     size_t at = matrix ? curve->cells[n] : n;
-    print_labels(file, one->case_number, curve);
+    print_labels(file, columns->study, one, curve);
     print_field(file, curve->x[matrix ? at / curve->columns : n]);
     print_field(file, matrix ? curve->x2[at % curve->columns] : (double)NAN);
     print_field(file, curve->y[n]);
@@ -96,9 +111,27 @@ static void print_line(FILE *file, const struct case_result *one, const struct c
     fputc('\n', file);
 }
 
-static void print_heading(FILE *file, const struct columns *columns) {
-    fputs("case,quantity", file);
+/* Returns whether a column of every table has this name. */
+static bool is_fixed(const char *name) {
+    static const char *const NAMES[] = {"case", "quantity", "x", "x2", "y"};
     const struct curve_attribute *row;
+    for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
+        if (strcmp(NAMES[n], name) == 0)
+            return true;
+    for (size_t n = 0; (row = curve_column(n)) != NULL; n++)
+        if (strcmp(row->key, name) == 0)
+            return true;
+    return false;
+}
+
+static void print_heading(FILE *file, const struct columns *columns) {
+    const struct study_result *study = columns->study;
+    const struct curve_attribute *row;
+    const char *name;
+    fputs("case", file);
+    for (size_t n = 0; (name = swept_name(study, n)) != NULL; n++)
+        fprintf(file, ",%s", is_fixed(name) ? swept_pointer(study, n) + 1 : name);
+    fputs(",quantity", file);
     for (size_t n = 0; (row = curve_column(n)) != NULL; n++)
         fprintf(file, ",%s", row->key);
     fputs(",x,x2,y,standard_error", file);
@@ -120,24 +153,29 @@ static size_t theories_most(size_t case_count, const struct case_result *cases) 
     return most;
 }
 
-bool csv_print(FILE *file, size_t case_count, const struct case_result *cases,
-               const struct curve *only) {
+static void print_case(FILE *file, const struct case_result *one, const struct columns *columns) {
+    for (size_t a = 0; a < one->curve_count; a++) {
+        const struct curve *curve = &one->curves[a];
+        size_t count = curve->columns > 0 ? curve->cell_count : curve->n;
+        for (size_t n = 0; n < count; n++)
+            print_line(file, one, curve, n, columns);
+    }
+}
+
+bool csv_print(FILE *file, const struct study_result *study) {
+    const struct case_result *cases = study->cases;
     struct columns columns = {
-        .names = array_create(theories_most(case_count, cases), sizeof *columns.names)};
+        .names = array_create(theories_most(study->case_count, cases), sizeof *columns.names),
+        .study = study};
     if (columns.names == NULL)
         return false;
-    for (size_t c = 0; c < case_count; c++)
+    for (size_t c = 0; c < study->case_count; c++)
         for (size_t a = 0; a < cases[c].curve_count; a++)
-            if (only == NULL || only == &cases[c].curves[a])
-                collect_theories(&columns, &cases[c].curves[a]);
+            collect_theories(&columns, &cases[c].curves[a]);
+    provenance_comment(file, study);
     print_heading(file, &columns);
-    for (size_t c = 0; c < case_count; c++)
-        for (size_t a = 0; a < cases[c].curve_count; a++) {
-            const struct curve *curve = &cases[c].curves[a];
-            size_t count = curve->columns > 0 ? curve->cell_count : curve->n;
-            for (size_t n = 0; n < count && (only == NULL || only == curve); n++)
-                print_line(file, &cases[c], curve, n, &columns);
-        }
+    for (size_t c = 0; c < study->case_count; c++)
+        print_case(file, &cases[c], &columns);
     free(columns.names);
     return true;
 }

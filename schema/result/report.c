@@ -17,6 +17,8 @@ void study_report_clear(struct study_report *report) {
     free(report->kind);
     free(report->state);
     free(report->random);
+    cJSON_Delete(report->swept);
+    cJSON_Delete(report->provenance);
     *report = (struct study_report){0};
 }
 

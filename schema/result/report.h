@@ -46,7 +46,8 @@ struct case_report {
     const struct curve_report *main; /* one of the curves, or NULL */
 };
 struct study_report {
-    char *id, *name, *kind, *state, *random; /* owned; random as in study_result */
+    char *id, *name, *kind, *state, *random; /* these and the next two as in study_result */
+    cJSON *swept, *provenance;
     struct work_time time;
     size_t case_count;
     struct case_report *cases; /* owned */

@@ -119,7 +119,9 @@ bool study_report_print(FILE *file, const struct study_report *report) {
                                       .name = report->name,
                                       .kind = report->kind,
                                       .state = report->state,
-                                      .random = report->random};
+                                      .random = report->random,
+                                      .swept = report->swept,
+                                      .provenance = report->provenance};
     bool done = study_print_head(file, &head, &report->time);
     for (size_t c = 0; c < report->case_count && done; c++) {
         fputs(c > 0 ? "," : "", file);
@@ -265,6 +267,8 @@ int study_report_read(const cJSON *document, struct study_report *out, struct er
     report.kind = head.kind;
     report.state = head.state;
     report.random = head.random;
+    report.swept = head.swept;
+    report.provenance = head.provenance;
     if (status != 0) {
         study_report_clear(&report);
         return status;

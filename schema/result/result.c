@@ -1,4 +1,5 @@
 #include "schema/result/result.h"
+#include <cjson/cJSON.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -164,6 +165,8 @@ void study_result_clear(struct study_result *study) {
     free(study->kind);
     free(study->state);
     free(study->random);
+    cJSON_Delete(study->swept);
+    cJSON_Delete(study->provenance);
     *study = (struct study_result){0};
 }
 

@@ -162,6 +162,7 @@ struct result_parameter {
 };
 
 struct arena; /* private */
+struct cJSON;
 struct case_result {
     uint64_t case_number, realisations;
     size_t parameter_count, scalar_count, curve_count, note_count; /* notes that are kept */
@@ -180,6 +181,8 @@ struct case_result {
 struct study_result {
     char *id, *name, *kind, *state;
     char *random; /* "common": cases share random numbers, their errors go together; or NULL */
+    struct cJSON *swept; /* pointers of what the study sweeps, an array; owned; NULL: not known */
+    struct cJSON *provenance; /* provenance.h; owned; NULL: not known */
     size_t case_count;
     struct case_result *cases;
 };

@@ -2,7 +2,7 @@
  * which prints a case after another without making a tree of it, and one reader, for results that
  * come from a server. What is printed reads back to the same numbers, and prints again the same.
  *
- *     {"study", "name", "kind", "state", "random"?, "cases": [
+ *     {"study", "name", "kind", "state", "random"?, "swept"?, "provenance"?, "cases": [
  *       {"case", "parameters": {pointer: value}, "realisations",
  *        "scalars": {name: {"value", "standard_error", "theory"?}},
  *        "curves": [{"quantity", attributes, "x", "y", "standard_error", errors, "theory", ...}],
@@ -16,6 +16,10 @@
 #include "schema/result/result.h"
 #include "schema/result/work_time.h"
 
+/* {"study": ..., "provenance": ... ; what follows is more members, or "}". False when out of
+ * memory.
+ */
+bool study_print_about(FILE *file, const struct study_result *study);
 /* {"study": ..., "cases":[ ; what follows is case after case, with commas between, and "]}".
  * time: NULL where the document has none. False when out of memory; write errors are left to the
  * file's own flag, here and below. */

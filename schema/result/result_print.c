@@ -1,5 +1,6 @@
 #include "schema/result/result_json.h"
 #include <math.h>
+#include <stdlib.h>
 
 /* Prints "key": with a comma in front of all but an object's first member. */
 static bool put_key(FILE *file, bool *first, const char *key) {
@@ -271,14 +272,29 @@ bool result_print(FILE *file, const struct case_result *result) {
 
 /* --- a study --- */
 
-bool study_print_head(FILE *file, const struct study_result *study, const struct work_time *time) {
+static bool put_value(FILE *file, bool *first, const char *key, const cJSON *value) {
+    char *text = json_print(value);
+    bool done = text != NULL && put_key(file, first, key);
+    if (done)
+        fputs(text, file);
+    free(text);
+    return done;
+}
+
+bool study_print_about(FILE *file, const struct study_result *study) {
     bool first = true;
     fputc('{', file);
-    bool done = put_text(file, &first, "study", study->id) &&
-                put_text(file, &first, "name", study->name) &&
-                put_text(file, &first, "kind", study->kind) &&
-                put_text(file, &first, "state", study->state) &&
-                (study->random == NULL || put_text(file, &first, "random", study->random));
+    return put_text(file, &first, "study", study->id) &&
+           put_text(file, &first, "name", study->name) &&
+           put_text(file, &first, "kind", study->kind) &&
+           put_text(file, &first, "state", study->state) &&
+           (study->random == NULL || put_text(file, &first, "random", study->random)) &&
+           (study->swept == NULL || put_value(file, &first, "swept", study->swept)) &&
+           (study->provenance == NULL || put_value(file, &first, "provenance", study->provenance));
+}
+
+bool study_print_head(FILE *file, const struct study_result *study, const struct work_time *time) {
+    bool done = study_print_about(file, study);
     if (time != NULL) {
         fputc(',', file);
         work_time_print(file, time);

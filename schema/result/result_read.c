@@ -383,6 +383,12 @@ int study_head_read(const cJSON *document, struct study_result *out, struct erro
         if (*texts[t].text == NULL)
             return error_memory(err, strlen(text) + 1, "a text of a study");
     }
+    const cJSON *swept = field_at(document, "swept");
+    const cJSON *provenance = field_at(document, "provenance"); /* neither is of older programs */
+    if (cJSON_IsArray(swept) && (out->swept = cJSON_Duplicate(swept, true)) == NULL)
+        return error_memory(err, 0, "the swept parameters of a study");
+    if (cJSON_IsObject(provenance) && (out->provenance = cJSON_Duplicate(provenance, true)) == NULL)
+        return error_memory(err, 0, "the provenance of a study");
     return 0;
 }
 

@@ -69,6 +69,9 @@ struct study_status {
 };
 void study_status_clear(struct study_status *status);
 int store_status(struct store *store, const char *id, struct study_status *out, struct error *err);
+/* Who computed the study, when and where, as schema/result/provenance.h has it; the caller deletes
+ * it. */
+int store_provenance(struct store *store, const char *id, cJSON **out, struct error *err);
 /* The document that was submitted, with the changes of --set; the caller deletes it. */
 int store_document(struct store *store, const char *id, cJSON **out, struct error *err);
 /* Up to limit studies created after study `after` ("" from the start), oldest first; frees by

@@ -184,13 +184,14 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
     return status;
 }
 
-int store_document(struct store *store, const char *id, cJSON **out, struct error *err) {
+/* Reads the one JSON text that a query of a study gives. */
+static int read_json(struct store *store, const char *id, const char *sql, cJSON **out,
+                     struct error *err) {
     sqlite3_stmt *row = NULL;
     int64_t study = 0;
     int status = study_row(store, id, &study, err);
     if (status == 0)
-        status = store_query(store, &row, err, "SELECT source FROM study_source WHERE study_id = ?",
-                             "i", study);
+        status = store_query(store, &row, err, sql, "i", study);
     if (status == 0)
         status = store_step(store, row, err);
     if (status <= 0)
@@ -198,6 +199,21 @@ int store_document(struct store *store, const char *id, cJSON **out, struct erro
     status = column_json(row, 0, out, err);
     sqlite3_reset(row);
     return status;
+}
+
+int store_provenance(struct store *store, const char *id, cJSON **out, struct error *err) {
+    return read_json(
+        store, id,
+        "SELECT json_object('seed', seed, 'program', program, 'created', created, 'finished', "
+        "finished, 'runs', json((SELECT json_group_array(json_object('host', host, 'program', "
+        "program, 'jobs', jobs, 'first', first, 'last', last)) FROM (SELECT host, program, "
+        "count(*) AS jobs, min(claimed) AS first, max(ended) AS last FROM job WHERE study_id = ?1 "
+        "AND state = 'done' GROUP BY host, program)))) FROM study WHERE id = ?1",
+        out, err);
+}
+
+int store_document(struct store *store, const char *id, cJSON **out, struct error *err) {
+    return read_json(store, id, "SELECT source FROM study_source WHERE study_id = ?1", out, err);
 }
 
 static void free_list(struct study_status *list, size_t count) {

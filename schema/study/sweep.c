@@ -183,3 +183,21 @@ int sweep_open(struct study *study, const cJSON *document, struct fault_list *fa
     free(axes);
     return status;
 }
+
+cJSON *sweep_pointers(const struct study_kind *kind, const cJSON *document) {
+    struct axis *axes = array_create(parameter_count(kind->tables), sizeof *axes);
+    cJSON *pointers = axes != NULL ? cJSON_CreateArray() : NULL;
+    bool done = pointers != NULL;
+    size_t count = done ? find_axes(kind, document, "", axes, 0) : 0;
+    for (size_t a = 0; a < count && done; a++) {
+        cJSON *pointer = cJSON_CreateString(axes[a].parameter->path);
+        done = cJSON_AddItemToArray(pointers, pointer);
+        if (!done)
+            cJSON_Delete(pointer);
+    }
+    free(axes);
+    if (done)
+        return pointers;
+    cJSON_Delete(pointers);
+    return NULL;
+}

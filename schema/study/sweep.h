@@ -10,4 +10,7 @@
 int sweep_open(struct study *study, const cJSON *document, struct fault_list *faults,
                struct error *err);
 
+/* Makes the array of the pointers that a document sweeps, in its order; NULL when out of memory. */
+cJSON *sweep_pointers(const struct study_kind *kind, const cJSON *document);
+
 #endif

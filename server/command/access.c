@@ -1,22 +1,16 @@
-#include "server/command/access.h"
 #include "jobs/kind.h"
 #include "schema/result/result_json.h"
 #include "schema/study/override.h"
+#include "server/command/access_internal.h"
 #include "server/command/api.h"
 #include "server/command/command.h"
 #include "server/command/token_file.h"
-#include "worker/client.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { GIVEN_MOST = 255 }; /* bytes of what may stand for a study in a path */
-
-struct access {
-    struct store *store; /* one of the two */
-    struct client *client;
-};
 
 int access_options_check(const char *command, const struct access_options *options) {
     if (options->database != NULL && options->server != NULL)

@@ -7,6 +7,7 @@
 #include "server/command/command.h"
 #include "worker/aggregate.h"
 #include "worker/comparison.h"
+#include <stdio.h>
 
 struct access_options {
     const char *database, *server, *token_file; /* as given; database NULL: DATABASE */
@@ -54,6 +55,10 @@ int access_results(struct access *access, const char *id, const struct result_fi
                    struct study_result *out, struct error *err);
 int access_difference(struct access *access, const char *id, const struct comparison *comparison,
                       struct study_result *out, struct error *err);
+/* Prints the table of a study (case_table.h), which a server makes itself. */
+struct table_request;
+int access_table(struct access *access, const char *id, const struct table_request *request,
+                 int format, FILE *file, struct error *err);
 int access_report(struct access *access, const char *id, struct study_report *out,
                   struct error *err);
 /* Copies the store to a file; path must not exist. */

@@ -24,7 +24,7 @@ static const struct option_row OPTIONS[] = {
      "case A less case B, by pairs of realisations where they share their random numbers"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "json|csv|table", "json", "what to print"},
     {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
-     "write curves.json, a CSV a curve and an SVG a quantity instead"},
+     "write curves.json, curves.csv and an SVG a quantity instead"},
     {0}};
 
 static int show(const struct study_result *study, const struct options *options,
@@ -33,7 +33,7 @@ static int show(const struct study_result *study, const struct options *options,
     if (options->folder != NULL)
         return output_write(study, options->folder, err);
     if (options->format == FORMAT_CSV)
-        done = csv_print(stdout, study->case_count, study->cases, NULL);
+        done = csv_print(stdout, study);
     else if (options->format == FORMAT_TABLE && options->difference[0] >= 0)
         summary_of_difference(study, stdout);
     else if (options->format == FORMAT_TABLE)

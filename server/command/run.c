@@ -29,7 +29,7 @@ static const struct option_row OPTIONS[] = {
      "threads; 0: as many as processors"},
     {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
     {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
-     "write curves.json, a CSV a curve and an SVG a quantity"},
+     "write curves.json, curves.csv and an SVG a quantity"},
     {0}};
 
 struct run {

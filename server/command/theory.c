@@ -1,6 +1,7 @@
 /* `rugo theory`: what theory expects of the surfaces of a study; makes none. */
 #include "jobs/kind.h"
 #include "jobs/statistics/statistics_expectation.h"
+#include "schema/program.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/command/command.h"
@@ -26,10 +27,25 @@ static const struct option_row OPTIONS[] = {
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|csv|svg", "text",
      "what to print; svg: a picture of --quantity (summit_height_pdf)"},
     {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
-     "write curves.json, a CSV a curve and an SVG a quantity instead"},
+     "write curves.json, curves.csv and an SVG a quantity instead"},
     {0}};
 
 static const char JOINT[] = "summit_joint_pdf";
+
+/* Says what the study sweeps, and which program computed its theories. */
+static int tell_origin(const struct study *study, struct study_result *out, struct error *err) {
+    char program[PROGRAM_SIZE];
+    int count = 0;
+    while (study->swept[count] != NULL)
+        count++;
+    program_write(program);
+    out->swept = cJSON_CreateStringArray((const char *const *)study->swept, count);
+    out->provenance = cJSON_CreateObject();
+    return out->swept != NULL && out->provenance != NULL &&
+                   cJSON_AddStringToObject(out->provenance, "program", program) != NULL
+               ? 0
+               : error_memory(err, sizeof program, "the provenance of theories");
+}
 
 /* Fills the cases with what theory expects of them. */
 static int expect(const struct study *study, const char *quantity, struct study_result *out,
@@ -44,6 +60,7 @@ static int expect(const struct study *study, const char *quantity, struct study_
     if (out->id == NULL || out->state == NULL || out->name == NULL || out->kind == NULL ||
         out->cases == NULL)
         return error_memory(err, study->case_count * sizeof *out->cases, "cases");
+    status = tell_origin(study, out, err);
     for (size_t c = 0; c < study->case_count && status == 0; c++) {
         struct case_result *one = &out->cases[c];
         status = statistics_expectation(study->cases[c].parameters, joint, one, err);
@@ -62,7 +79,7 @@ static int show(const struct study_result *study, const struct options *options,
     if (options->folder != NULL)
         return output_write(study, options->folder, err);
     if (options->format == FORMAT_CSV)
-        done = csv_print(stdout, study->case_count, study->cases, NULL);
+        done = csv_print(stdout, study);
     else if (options->format == FORMAT_JSON)
         done = study_print(stdout, study) && putchar('\n') != EOF;
     else if (options->format == FORMAT_SVG)

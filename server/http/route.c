@@ -25,6 +25,7 @@ static const struct route {
      ROLE_READ,
      handle_plot,
      {"quantity", "x", "colour", "case", "difference"}},
+    {"GET", "/v1/studies/*/table", ROLE_READ, handle_table, {"columns", "where", "format"}},
     {"GET", "/v1/studies/*/events", ROLE_READ, handle_events, {NULL}},
     {"POST", "/v1/jobs/claim", ROLE_WORK, handle_claim, {NULL}},
     {"POST", "/v1/jobs/*/heartbeat", ROLE_WORK, handle_heartbeat, {NULL}},

@@ -10,7 +10,7 @@ typedef void route_handler(struct exchange *exchange, const char *id);
 
 route_handler handle_study_create, handle_study_list, handle_study, handle_document,
     handle_study_cancel, handle_study_retry, handle_study_extend, handle_curves, handle_report,
-    handle_plot, handle_events;
+    handle_plot, handle_table, handle_events;
 route_handler handle_claim, handle_heartbeat, handle_complete, handle_fail, handle_release;
 route_handler handle_health, handle_metrics, handle_snapshot, handle_openapi, handle_schema,
     handle_page, handle_script, handle_style;

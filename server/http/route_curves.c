@@ -67,13 +67,18 @@ static int printing_end(struct printing *printing, bool done, struct error *err)
     return error_set(err, ERROR_MEMORY, "no memory left for an answer");
 }
 
-static int print_head(struct stream *stream, struct error *err) {
-    const struct study_result head = aggregate_head(&stream->study);
+static int print_head(struct stream *stream, struct store *reader, struct error *err) {
+    struct study_result head = {0};
     const struct work_time *time = stream->report ? &stream->study.about.time : NULL;
     struct printing printing;
-    bool done =
-        printing_begin(&printing, stream) && study_print_head(printing.memory.file, &head, time);
-    return printing_end(&printing, done, err);
+    int status = aggregate_head(reader, &stream->study, &head, err);
+    if (status == 0) {
+        bool done = printing_begin(&printing, stream) &&
+                    study_print_head(printing.memory.file, &head, time);
+        status = printing_end(&printing, done, err);
+    }
+    study_result_clear(&head);
+    return status;
 }
 
 /* The next case behind what waits, with the end of the document behind the last one. */
@@ -154,6 +159,8 @@ static int open_stream(struct stream *stream, const char *id, const struct resul
     int status = service_reader(service, &reader, err);
     if (status == 0)
         status = aggregate_begin(reader, id, &stream->study, err);
+    if (status == 0)
+        status = print_head(stream, reader, err);
     service_give_back(service, reader);
     if (status != 0)
         return status;
@@ -163,7 +170,6 @@ static int open_stream(struct stream *stream, const char *id, const struct resul
     stream->quantity = quantity != NULL ? strdup(quantity) : NULL;
     if (quantity != NULL && stream->quantity == NULL)
         return error_memory(err, strlen(quantity), "an answer");
-    status = print_head(stream, err);
     do {
         if (status == 0)
             status = read_case(stream, err);
@@ -212,8 +218,7 @@ int answer_study(struct exchange *exchange, const struct study_result *study, bo
     char *text = NULL;
     bool printed = false;
     if (memory_file_open(&file)) {
-        printed = csv ? csv_print(file.file, study->case_count, study->cases, NULL)
-                      : study_print(file.file, study);
+        printed = csv ? csv_print(file.file, study) : study_print(file.file, study);
         text = memory_file_close(&file, NULL);
     }
     if (!printed || text == NULL) {

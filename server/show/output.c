@@ -29,24 +29,28 @@ static int close_file(FILE *file, const char *folder, const char *name, struct e
     return 0;
 }
 
-static int write_json(const struct study_result *study, const char *folder, struct error *err) {
-    static const char NAME[] = "curves.json";
-    FILE *file;
-    int status = open_file(&file, folder, NAME, err);
-    if (status != 0)
-        return status;
-    if (!study_print(file, study))
-        status = error_memory(err, 0, "a document of curves");
-    fputc('\n', file);
-    int closed = close_file(file, folder, NAME, err);
-    return status != 0 ? status : closed;
+static bool print_json(FILE *file, const struct study_result *study) {
+    return study_print(file, study) && fputc('\n', file) != EOF;
 }
 
-/* --- curves --- */
+/* Writes a file of all curves; print is false when out of memory. */
+static int write_curves(const struct study_result *study, const char *folder, const char *name,
+                        bool (*print)(FILE *file, const struct study_result *study),
+                        struct error *err) {
+    FILE *file;
+    int status = open_file(&file, folder, name, err);
+    if (status != 0)
+        return status;
+    bool printed = print(file, study) || ferror(file) != 0;
+    status = close_file(file, folder, name, err);
+    return status != 0 || printed ? status : error_memory(err, 0, "a document of curves");
+}
 
-/* Writes a name such as "case-3-contact_area-edges-full-hencky-8.csv". */
-static void curve_name(const struct case_result *one, const struct curve *curve, const char *ending,
-                       char *name, size_t size) {
+/* --- pictures --- */
+
+/* Writes a name such as "case-3-summit_joint_pdf.svg". */
+static void picture_name(const struct case_result *one, const struct curve *curve, char *name,
+                         size_t size) {
     const char *const parts[] = {curve->series, curve->model, curve->kinematics};
     size_t used = (size_t)snprintf(name, size, "case-%llu", (unsigned long long)one->case_number);
     if (one->difference)
@@ -60,7 +64,7 @@ static void curve_name(const struct case_result *one, const struct curve *curve,
         used += (size_t)snprintf(name + used, size - used, "-%g", curve->level);
     if (!isnan(curve->pressure))
         used += (size_t)snprintf(name + used, size - used, "-at-%g", curve->pressure);
-    snprintf(name + used, size - used, ".%s", ending);
+    snprintf(name + used, size - used, ".svg");
 }
 
 /* A matrix has a picture of its own, where it has values. */
@@ -70,7 +74,7 @@ static int write_density(const struct study_result *study, const struct case_res
     FILE *file;
     if (curve->columns == 0 || curve->cell_count == 0)
         return 0;
-    curve_name(one, curve, "svg", name, sizeof name);
+    picture_name(one, curve, name, sizeof name);
     int status = open_file(&file, folder, name, err);
     if (status != 0)
         return status;
@@ -79,27 +83,15 @@ static int write_density(const struct study_result *study, const struct case_res
     return status != 0 ? status : closed;
 }
 
-static int write_case(const struct study_result *study, const struct case_result *one,
-                      const char *folder, struct error *err) {
-    for (size_t a = 0; a < one->curve_count; a++) {
-        char name[256];
-        FILE *file;
-        curve_name(one, &one->curves[a], "csv", name, sizeof name);
-        int status = open_file(&file, folder, name, err);
-        if (status != 0)
-            return status;
-        bool printed = csv_print(file, 1, one, &one->curves[a]);
-        status = close_file(file, folder, name, err);
-        if (status != 0 || !printed)
-            return status != 0 ? status : error_memory(err, 0, "a table");
-        status = write_density(study, one, &one->curves[a], folder, err);
-        if (status != 0)
-            return status;
-    }
-    return 0;
+static int write_densities(const struct study_result *study, const char *folder,
+                           struct error *err) {
+    int status = 0;
+    for (size_t c = 0; c < study->case_count; c++)
+        for (size_t a = 0; a < study->cases[c].curve_count && status == 0; a++)
+            status =
+                write_density(study, &study->cases[c], &study->cases[c].curves[a], folder, err);
+    return status;
 }
-
-/* --- pictures --- */
 
 static int write_plot(const struct study_result *study, const struct plot_request *request,
                       const char *folder, const char *name, struct error *err) {
@@ -173,8 +165,10 @@ int output_prepare(const char *folder, struct error *err) {
 int output_write(const struct study_result *study, const char *folder, struct error *err) {
     int status = output_prepare(folder, err);
     if (status == 0)
-        status = write_json(study, folder, err);
-    for (size_t c = 0; status == 0 && c < study->case_count; c++)
-        status = write_case(study, &study->cases[c], folder, err);
+        status = write_curves(study, folder, "curves.json", print_json, err);
+    if (status == 0)
+        status = write_curves(study, folder, "curves.csv", csv_print, err);
+    if (status == 0)
+        status = write_densities(study, folder, err);
     return status != 0 ? status : write_plots(study, folder, err);
 }

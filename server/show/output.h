@@ -1,4 +1,4 @@
-/* The files of `rugo run --out`: curves.json, a CSV a curve, an SVG a quantity, and one for each
+/* The files of `rugo run --out`: curves.json, curves.csv, an SVG a quantity, and one for each
  * density of a case. */
 #ifndef RUGO_SERVER_SHOW_OUTPUT_H
 #define RUGO_SERVER_SHOW_OUTPUT_H

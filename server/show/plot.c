@@ -257,6 +257,7 @@ int plot_quantity(const struct study_result *study, const struct plot_request *r
         return error_set(err, ERROR_ABSENT, "no case has the quantity \"%.60s\"",
                          request->quantity);
     pen_head(&plot.pen, width_of(&plot.choice));
+    pen_study(&plot.pen, study);
     pen_title(&plot.pen, study->name, request->quantity);
     if (fit(&plot, request, picture != NULL && picture->suffix == NULL)) {
         const struct curve *first = plot.choice.lines[0].curve;

@@ -155,6 +155,13 @@ int plot_cost(const struct study_report *report, FILE *file, struct error *err) 
         return error_set(err, ERROR_ABSENT,
                          "study %s has no model whose cost and error are known yet", report->id);
     pen_head(&pen, PEN_WIDTH + 80);
+    pen_study(&pen, &(const struct study_result){.id = report->id,
+                                                 .name = report->name,
+                                                 .kind = report->kind,
+                                                 .state = report->state,
+                                                 .random = report->random,
+                                                 .swept = report->swept,
+                                                 .provenance = report->provenance});
     pen_title(&pen, report->name, subject);
     draw(&pen, report, count, laws);
     fputs("</svg>\n", file);

@@ -198,6 +198,7 @@ static void draw(struct density *density, const struct study_result *study,
              serial ? ", " : "", serial ? curve->series : "", (unsigned long long)one->case_number);
     frame_set(&pen->frame, cells.x, cells.y, false);
     pen_head(pen, PEN_WIDTH);
+    pen_study(pen, study);
     pen_title(pen, study->name, subject);
     heat_draw(pen, &cells, &scale);
     frame_draw(pen->file, &pen->frame, curve->x_label, curve->x2_label);

@@ -1,5 +1,8 @@
 #include "server/show/plot_pen.h"
+#include "core/memory_file.h"
+#include "schema/result/result_json.h"
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { HEIGHT = 570 };
 
@@ -29,6 +32,20 @@ void pen_head(const struct plot_pen *pen, int width) {
             ".bar{stroke-width:1.4;stroke-opacity:.45}.partial{fill:#fff}</style>\n"
             "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
             width, HEIGHT, width, HEIGHT, width, HEIGHT);
+}
+
+void pen_study(const struct plot_pen *pen, const struct study_result *study) {
+    struct memory_file memory;
+    if (study->provenance == NULL || !memory_file_open(&memory))
+        return;
+    bool done = study_print_about(memory.file, study) && fputc('}', memory.file) != EOF;
+    char *text = memory_file_close(&memory, NULL);
+    if (done && text != NULL) {
+        fputs("<metadata>", pen->file);
+        svg_text(pen->file, text);
+        fputs("</metadata>\n", pen->file);
+    }
+    free(text);
 }
 
 bool pen_reaches(const struct plot_pen *pen, double x, double y) {

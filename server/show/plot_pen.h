@@ -17,6 +17,9 @@ struct plot_pen {
 };
 /* Begins the SVG; its end, "</svg>", is the caller's. */
 void pen_head(const struct plot_pen *pen, int width);
+/* Says in the file which study the picture is of, and how it came about: one line, <metadata>, of
+ * the JSON that a document of curves begins with. Nothing where that is not known. */
+void pen_study(const struct plot_pen *pen, const struct study_result *study);
 /* Draws "name: subject" for readers of the file and for those of the picture. */
 void pen_title(const struct plot_pen *pen, const char *name, const char *subject);
 /* Returns whether a point lies within the frame. */

@@ -277,6 +277,7 @@ int plot_sweep(const struct study_result *study, const struct sweep_request *req
     choose_styles(&plot);
     snprintf(subject, sizeof subject, "%.60s over %.60s", request->scalar, last_name(plot.sweep.x));
     pen_head(&plot.pen, width_of(&plot));
+    pen_study(&plot.pen, study);
     pen_title(&plot.pen, study->name, subject);
     fit(&plot);
     frame_draw(file, &plot.pen.frame, last_name(plot.sweep.x), request->scalar);

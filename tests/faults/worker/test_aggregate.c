@@ -22,7 +22,7 @@ static int print_table(const struct study_result *study, struct error *err) {
     struct memory_file memory;
     if (!memory_file_open(&memory))
         return error_memory(err, sizeof memory, "a table");
-    bool done = csv_print(memory.file, study->case_count, study->cases, NULL);
+    bool done = csv_print(memory.file, study);
     char *text = memory_file_close(&memory, NULL);
     done = done && text != NULL;
     if (done)

@@ -21,7 +21,9 @@ static char *print(const struct case_result *result) {
 static void tabulate(const struct case_result *result) {
     struct memory_file memory;
     MUST(memory_file_open(&memory));
-    (void)csv_print(memory.file, 1, result, NULL);
+    struct case_result one = *result;
+    const struct study_result study = {.case_count = 1, .cases = &one};
+    (void)csv_print(memory.file, &study);
     char *text = memory_file_close(&memory, NULL);
     MUST(text != NULL);
     free(text);

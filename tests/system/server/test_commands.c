@@ -230,7 +230,8 @@ static void a_finished_run_only_prints(void **state) {
     free(told);
     assert_int_equal(
         shell("$RUGO run --db done.db --out out one.json && test -s out/curves.json && test -s "
-              "out/case-0-psd.csv && grep -q '</svg>' out/summit_height_pdf.svg"),
+              "out/curves.csv && grep -q '<metadata>.*0.1.0+' out/psd.svg && grep -q '</svg>' "
+              "out/summit_height_pdf.svg"),
         0);
     assert_int_equal(
         shell("id=$($RUGO status --db done.db | awk 'NR == 2 {print $1}'); $RUGO report --db "
@@ -244,6 +245,15 @@ static void a_finished_run_only_prints(void **state) {
               "$id > shown.json && $RUGO run --db done.db shown.json"),
         0); /* the same study: nothing is computed again */
     char *again = slurp("shell.out");
+    assert_int_equal(
+        shell(
+            "$RUGO table --db done.db one --columns summit_density --where hurst=0.8 --format csv "
+            "> table.csv && grep -q '^# study: one, statistics ' table.csv && grep -q "
+            "'^case,realisations,summit_density,summit_density_standard_error,' table.csv && "
+            "grep -q '^0,5,0' table.csv"),
+        0);
+    assert_int_equal(shell("$RUGO table --db done.db one --where hurst=0.7"), 2);
+    assert_true(contains("shell.err", "no case has /surface/hurst = 0.7; there is 0.8"));
     assert_string_equal(again, second_table);
     free(again);
     free(second_table);

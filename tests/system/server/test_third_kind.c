@@ -57,7 +57,7 @@ static void is_run_and_shown(void **state) {
     assert_true(contains("schema.out", "needles a realisation"));
     assert_true(contains("schema.out", "\"maximum\": 9007199254740992\n"));
     assert_true(contains("out/curves.json", "\"crossings\""));
-    assert_true(contains("out/case-0-crossings.csv", "buffon"));
+    assert_true(contains("out/curves.csv", "buffon"));
     assert_true(contains("out/crossings.svg", "</svg>"));
 }
 

@@ -210,7 +210,9 @@ static char *print(const struct case_result *result, bool csv) {
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
-    assert_true(csv ? csv_print(file, 1, result, NULL) : result_print(file, result));
+    struct case_result one = *result;
+    const struct study_result study = {.case_count = 1, .cases = &one};
+    assert_true(csv ? csv_print(file, &study) : result_print(file, result));
     assert_int_equal(fclose(file), 0);
     return text;
 }

@@ -146,12 +146,18 @@ static void damaged_bytes_are_refused(void **state) {
     result_clear(&again);
 }
 
-static char *table_of(const struct case_result *result, const struct curve *only) {
+static char *table_of(const struct case_result *result, struct curve *only) {
     char *text = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
-    assert_true(csv_print(file, 1, result, only));
+    struct case_result one = *result;
+    struct study_result study = {.case_count = 1, .cases = &one};
+    if (only != NULL) {
+        one.curves = only;
+        one.curve_count = 1;
+    }
+    assert_true(csv_print(file, &study));
     assert_int_equal(fclose(file), 0);
     return text;
 }
@@ -210,6 +216,48 @@ static void csv_has_all_theories(void **state) {
     assert_non_null(strstr(text, last));
     assert_non_null(strstr(text, ",theory_t16,theory_t17,"));
     free(text);
+    result_clear(&result);
+}
+
+/* Lines of comment in front, a column for each swept parameter, whose name is no other column's. */
+static void csv_tells_the_study(void **state) {
+    (void)state;
+    static const double one[] = {0.06};
+    struct case_result result = {0};
+    struct curve curve = curve_named("q", "x", "y");
+    cJSON *parameters = cJSON_Parse("{\"s\":{\"hurst\":0.8,\"x\":\"a,b\"},\"t\":{\"n\":[1,2]},"
+                                    "\"u\":{\"n\":3}}");
+    struct study_result study = {
+        .id = (char *)"0123456789abcdef",
+        .name = (char *)"two\nlines",
+        .kind = (char *)"contact",
+        .state = (char *)"done",
+        .swept = cJSON_Parse("[\"/s/hurst\",\"/s/x\",\"/t/n\",\"/u/n\",\"/s/gone\"]"),
+        .provenance = cJSON_Parse(
+            "{\"seed\":\"7\",\"program\":null,\"created\":\"2026-01-02T03:04:05Z\",\"finished\":"
+            "null,\"runs\":[{\"host\":\"h\",\"program\":\"0.1.0+c0ffee\",\"jobs\":3,\"first\":"
+            "\"2026-01-02T03:04:06Z\",\"last\":\"2026-01-02T03:05:00Z\"}]}"),
+        .case_count = 1,
+        .cases = &result};
+    assert_int_equal(result_set_parameters(&result, parameters, NULL), 0);
+    curve_set_points(&curve, 1, one, one, one);
+    assert_int_equal(result_add_curve(&result, &curve, NULL), 0);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_true(file != NULL && csv_print(file, &study));
+    assert_int_equal(fclose(file), 0);
+    static const char HEAD[] = "# study: two lines, contact 0123456789abcdef, done, seed 7\n"
+                               "# queued: 2026-01-02T03:04:05Z\n"
+                               "# computed: 3 jobs on h by rugo 0.1.0+c0ffee, 2026-01-02T03:04:06Z "
+                               "to 2026-01-02T03:05:00Z\n"
+                               "case,hurst,s/x,t/n,u/n,gone,quantity,series,";
+    assert_memory_equal(text, HEAD, sizeof HEAD - 1);
+    assert_non_null(strstr(text, "\n0,0.8,\"a,b\",\"[1,2]\",3,,q,,,,,,0.06,,0.06,0.06,"));
+    free(text);
+    cJSON_Delete(parameters);
+    cJSON_Delete(study.swept);
+    cJSON_Delete(study.provenance);
     result_clear(&result);
 }
 
@@ -308,6 +356,7 @@ int main(void) {
         cmocka_unit_test(damaged_bytes_are_refused),
         cmocka_unit_test(csv_is_one_table),
         cmocka_unit_test(csv_has_all_theories),
+        cmocka_unit_test(csv_tells_the_study),
         cmocka_unit_test(report_measures_and_comes_back),
         cmocka_unit_test(parameters_are_told_by_pointer),
     };

@@ -44,14 +44,10 @@ static void check_text(const char *file, const char *expected) {
     free(text);
 }
 
-static void every_curve_has_a_file(void **state) {
+static void every_curve_has_its_lines(void **state) {
     (void)state;
     static const char *const FILES[] = {
-        "out/case-1-contact_area-edges-full-small-8.csv",
-        "out/case-1-contact_area-edges-full-small-4.csv",
-        "out/case-1-patch_count-cell-full-small-8.csv",
-        "out/case-1-patch_count-wave-full-small-8.csv",
-        "out/case-1-contact_pressure_pdf-at-0.25.csv",
+        "out/curves.csv",
         "out/contact_area.svg",
         "out/contact_area-light.svg", /* the view of the kind asks for it */
         "out/patch_count.svg",
@@ -69,7 +65,15 @@ static void every_curve_has_a_file(void **state) {
                          "missing_error,missing_bound,valueless,"
                          "theory_line\n"
                          "1,contact_area,edges,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
-                         "1,contact_area,edges,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n");
+                         "1,contact_area,edges,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n"
+                         "1,contact_area,edges,full,small,4,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
+                         "1,contact_area,edges,full,small,4,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n"
+                         "1,patch_count,cell,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
+                         "1,patch_count,cell,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n"
+                         "1,patch_count,wave,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
+                         "1,patch_count,wave,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n"
+                         "1,contact_pressure_pdf,,,,,0.25,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
+                         "1,contact_pressure_pdf,,,,,0.25,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n");
     char *text = slurp("out/curves.json");
     struct study_result read = {0};
     cJSON *document = NULL;
@@ -98,7 +102,7 @@ static void a_folder_that_cannot_be_is_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_curve_has_a_file),
+        cmocka_unit_test(every_curve_has_its_lines),
         cmocka_unit_test(a_folder_that_cannot_be_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
