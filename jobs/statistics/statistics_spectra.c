@@ -201,22 +201,30 @@ static size_t correlation_side(size_t side, size_t band) {
     return needed > ACF_GRID ? needed : ACF_GRID;
 }
 
-/* The grid that the prescribed autocorrelation is sampled on. Both sides of a rectangle are
- * coarsened alike, as far as both have enough. */
+/* Both sides of a rectangle are coarsened alike, to as many points as a square has in all. */
+static void coarsen_rectangle(struct grid *grid, struct surface_band band) {
+    double nx = (double)grid->nx, ny = (double)grid->ny;
+    double needed = fmax((2 * (double)band.x + 2) / nx, (2 * (double)band.y + 2) / ny);
+    double part = fmax(ACF_GRID / sqrt(nx * ny), needed);
+    if (part >= 1)
+        return;
+    grid->nx = (size_t)ceil(part * nx);
+    grid->ny = (size_t)ceil(part * ny);
+}
+
+/* The grid that the prescribed autocorrelation is sampled on. */
 static struct grid correlation_grid(const struct surface_case *surface) {
     const struct surface_band band = surface_case_band(surface);
     struct grid grid = surface->grid;
-    size_t nx = correlation_side(grid.nx, band.x), ny = correlation_side(grid.ny, band.y);
-    if (!surface_case_exact(surface) || nx == grid.nx)
+    bool profile = grid_is_profile(&grid);
+    if (!surface_case_exact(surface))
         return grid;
-    if (grid_is_profile(&grid) || grid.nx == grid.ny) {
-        grid.nx = nx;
-        grid.ny = grid_is_profile(&grid) ? 1 : nx;
-        return grid;
+    if (profile || grid.nx == grid.ny) {
+        grid.nx = correlation_side(grid.nx, band.x);
+        grid.ny = profile ? 1 : grid.nx;
+    } else {
+        coarsen_rectangle(&grid, band);
     }
-    double part = fmax((double)nx / (double)grid.nx, (double)ny / (double)grid.ny);
-    grid.nx = (size_t)ceil(part * (double)grid.nx);
-    grid.ny = (size_t)ceil(part * (double)grid.ny);
     return grid;
 }
 

@@ -56,6 +56,22 @@ static const struct hard_case CASES[] = {
      "'points_per_wavelength': 5, 'heights': {'distribution': 'weibull_min', 'shape': 1.5, "
      "'keep': 'heights'}}, 'statistics': {'curvature': 'spectral'}}",
      NULL},
+    {"a strip one wave wide",
+     "{'surface': {'hurst': 0.8, 'wavelength_ratio': 1, 'length_ratio': 16, 'length_ratio_y': 1, "
+     "'points_per_wavelength': 2}}",
+     NULL},
+    {"a strip, refined, levels, kept heights",
+     "{'surface': {'hurst': 0.8, 'wavelength_ratio': 2, 'length_ratio': 1, 'length_ratio_y': 16, "
+     "'heights': {'distribution': 'weibull_min', 'shape': 1.5, 'keep': 'heights'}}, "
+     "'statistics': {'summits': 'refined', 'levels': [2, 4, 8]}}",
+     NULL},
+    {"sides of odd points in an odd ratio",
+     "{'surface': {'hurst': 0.8, 'wavelength_ratio': 5, 'length_ratio': 3, 'length_ratio_y': 1.4, "
+     "'points_per_wavelength': 5, 'heights': {'distribution': 'weibull_min', 'shape': 1.5}}}",
+     NULL},
+    {"sides in no ratio",
+     "{'surface': {'hurst': 0.8, 'wavelength_ratio': 5, 'length_ratio_y': 3.14159}}",
+     "simple ratio"},
     {"Nyquist", "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, 'points_per_wavelength': 2}}",
      NULL},
     {"shape 0.5",
