@@ -201,15 +201,16 @@ static size_t correlation_side(size_t side, size_t band) {
     return needed > ACF_GRID ? needed : ACF_GRID;
 }
 
-/* Both sides of a rectangle are coarsened alike, to as many points as a square has in all. */
+/* Both sides of a rectangle are coarsened alike, to as many points as a square has in all, and even
+ * numbers, whose halves tell an error. */
 static void coarsen_rectangle(struct grid *grid, struct surface_band band) {
     double nx = (double)grid->nx, ny = (double)grid->ny;
     double needed = fmax((2 * (double)band.x + 2) / nx, (2 * (double)band.y + 2) / ny);
     double part = fmax(ACF_GRID / sqrt(nx * ny), needed);
     if (part >= 1)
         return;
-    grid->nx = (size_t)ceil(part * nx);
-    grid->ny = (size_t)ceil(part * ny);
+    grid->nx = 2 * (size_t)ceil(part * nx / 2);
+    grid->ny = 2 * (size_t)ceil(part * ny / 2);
 }
 
 /* The grid that the prescribed autocorrelation is sampled on. */

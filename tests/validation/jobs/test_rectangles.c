@@ -170,7 +170,8 @@ static void a_turned_cell_is_the_same(void **state) {
     }
 }
 
-/* An autocorrelation in rings has lags up to half of the shorter side, all of their directions. */
+/* An autocorrelation in rings has lags up to half of the shorter side, all of their directions, and
+ * an error at each. */
 static void lags_end_with_the_shorter_side(void **state) {
     (void)state;
     for (size_t turned = 0; turned < 2; turned++)
@@ -187,6 +188,8 @@ static void lags_end_with_the_shorter_side(void **state) {
                 assert_int_equal(points(curve), 33); /* 64 points of 1/8 along the shorter side */
                 check_within("lag", at(curve, "/x", 32), 4, 1e-12);
                 check_within("acf", at(curve, "/y", 0), 1, 1e-12);
+                for (int k = 0; k < 33; k++)
+                    assert_true(at(curve, "/discretisation_bound", k) >= 0);
             }
             assert_int_equal(found, 1);
             cJSON_Delete(cell);
