@@ -38,19 +38,20 @@ struct planning {
 };
 
 /* How far chance may go at each load if a bound (NULL: none) were `times` what it is: what the
- * bounds leave of the error, at least CHANCE_LEAST of it. Returns whether they leave that at every
- * load but for what the surfaces owe to the way they are found, which no plan lessens. */
+ * bounds leave of the error, at least CHANCE_LEAST of it. What the surfaces owe to the way they are
+ * found no plan lessens: where it is the whole error or more, chance goes as far as without it.
+ * Returns whether the other bounds leave CHANCE_LEAST at every load. */
 static bool allow(const struct planning *planning, const double *bound, double times) {
     const struct contact_answer *answer = planning->answer;
     bool enough = true;
     for (size_t k = 0; k < answer->loads; k++) {
         double asked = asked_at(answer, planning->sum, k);
-        double all = contact_sum_bounds(answer, planning->sum, k, true);
-        double planned = contact_sum_bounds(answer, planning->sum, k, false);
+        double found = planning->sum->generation[k];
+        double all = contact_sum_bounds(answer, planning->sum, k, false);
         double less = bound != NULL ? bound[k] * bound[k] * (1 - times * times) : 0;
-        double left = left_by(asked, sqrt(fmax(0, all * all - less)));
-        enough = enough &&
-                 !(left_by(asked, sqrt(fmax(0, planned * planned - less))) < CHANCE_LEAST * asked);
+        double planned = sqrt(fmax(0, all * all - less)), without = left_by(asked, planned);
+        double left = found >= asked ? without : left_by(asked, hypot(planned, found));
+        enough = enough && !(without < CHANCE_LEAST * asked);
         planning->allowed[k] = fmax(left, CHANCE_LEAST * asked);
     }
     return enough;

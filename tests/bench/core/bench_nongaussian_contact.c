@@ -3,7 +3,7 @@
  *
  *   bench_nongaussian_contact [n [points]]
  *
- * n (16) surfaces of 128 x 128 and 4 n profiles of `points` (512) points a case: Weibull minimum
+ * n (4) surfaces of 128 x 128 and 4 n profiles of `points` (512) points a case: Weibull minimum
  * and maximum, C = 1 and 3.602, H = 0.8, ratio 4 and 8, 8 points a shortest wave. Other points:
  * profiles alone.
  *
@@ -177,7 +177,7 @@ static int bench_case(int dimension, size_t points, double ratio, const struct h
 
 int main(int argc, char **argv) {
     struct error err = {0};
-    size_t n = argc > 1 ? strtoul(argv[1], NULL, 10) : 16;
+    size_t n = argc > 1 ? strtoul(argv[1], NULL, 10) : 4;
     size_t points = argc > 2 ? strtoul(argv[2], NULL, 10) : 0;
     int status = 0;
     printf("change of the area in percent of the default's: other, longer, plain (standard "

@@ -24,7 +24,9 @@ static const char WEIBULL[] =
     " \"statistics\": {\"bins\": {\"height\": [0, 2, 10], \"curvature\": [-9, -1, 16]}}}";
 static const char LINEAR[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\": 1,"
-    " \"points_per_wavelength\": 4}, \"contact\": {\"model\": [\"layered\", \"halfspace\"],"
+    " \"points_per_wavelength\": 4, \"heights\": {\"distribution\": \"weibull_min\", \"shape\": "
+    "2}},"
+    " \"contact\": {\"model\": [\"layered\", \"halfspace\"],"
     " \"levels\": [2, 4], \"block_height\": {\"lengths\": 1}, \"pressures\": {\"values\": [0.1]},"
     " \"pressure_pdf\": {\"at\": [0.1], \"bins\": [0.2, 1, 4]}}}";
 static const char FULL[] =
