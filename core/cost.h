@@ -8,9 +8,10 @@
 #include "core/statistics/summits.h"
 #include "core/surface/surface.h"
 
-/* Nanoseconds a point and realisation: to generate a surface, to find its summits, and to measure
- * its spectral density and autocorrelation. */
-double cost_generation(const struct surface_options *options);
+/* Nanoseconds a point and realisation: to generate a surface (non-Gaussian ones in as many
+ * iterations as their tolerance and heights are expected to take), to find its summits, and to
+ * measure its spectral density and autocorrelation. */
+double cost_generation(const struct surface_options *options, const struct grid *grid);
 double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature);
 double cost_spectra(void);
 /* By how much work on so many points slows down beyond the processor's caches. */

@@ -79,7 +79,7 @@ double surface_paths_bytes(const struct surface_case *surface) {
 double surface_paths_seconds(const struct surface_case *surface) {
     const struct surface_options options = fast_options(surface);
     double points = (double)grid_points(&surface->grid);
-    return 4e-9 * cost_generation(&options) * points * cost_caches(points);
+    return 4e-9 * cost_generation(&options, NULL) * points * cost_caches(points);
 }
 
 double surface_paths_drift(double halvings) {

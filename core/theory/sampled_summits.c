@@ -153,9 +153,9 @@ static int heights_take(const struct summit_integrand *f, const struct lattice_s
         return error_memory(err, edges * 4 * sizeof *room, "bins of theory");
     struct height_edges out = {room, room + edges, room + 2 * edges, room + 3 * edges};
     double rest = f->height.variance;
-    height_cells_spread(sums->cells, sums->moments, rest, rest > 0 ? f->common / rest : 0,
-                        bins->height, &out);
-    for (size_t b = 0; b + 1 < edges; b++) {
+    int status = height_cells_spread(sums->cells, sums->moments, rest,
+                                     rest > 0 ? f->common / rest : 0, bins->height, &out, err);
+    for (size_t b = 0; b + 1 < edges && status == 0; b++) {
         double weight = height_edges_within(out.below, out.above, b);
         bool lower = out.below[b] < out.above[b + 1];
         double moment = lower ? out.below_moment[b + 1] - out.below_moment[b]
@@ -165,7 +165,7 @@ static int heights_take(const struct summit_integrand *f, const struct lattice_s
         bins->curvature[b] = weight > SHARE_LEAST * sums->weight ? moment / weight : (double)NAN;
     }
     free(room);
-    return 0;
+    return status;
 }
 
 static int joint_take(const struct summit_integrand *f, const struct lattice_sums *sums,
@@ -177,13 +177,15 @@ static int joint_take(const struct summit_integrand *f, const struct lattice_sum
     struct height_edges out = {.below = room, .above = room + edges};
     double rest = fmax(f->height.variance - f->common * height_by_curvature(f), 0);
     double cell = bins_width(bins->height) * bins_width(bins->t1) * sums->weight;
-    for (size_t column = 0; column < columns; column++) {
-        height_cells_spread(sums->joint + column * HEIGHT_CELLS, NULL, rest, 0, bins->height, &out);
-        for (size_t b = 0; b + 1 < edges; b++)
+    int status = 0;
+    for (size_t column = 0; column < columns && status == 0; column++) {
+        status = height_cells_spread(sums->joint + column * HEIGHT_CELLS, NULL, rest, 0,
+                                     bins->height, &out, err);
+        for (size_t b = 0; b + 1 < edges && status == 0; b++)
             bins->joint[b * columns + column] = height_edges_within(out.below, out.above, b) / cell;
     }
     free(room);
-    return 0;
+    return status;
 }
 
 static int take(const struct summit_integrand *f, const struct sampled_surface *surface,

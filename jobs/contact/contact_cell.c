@@ -67,7 +67,7 @@ static bool choose_grids(const struct contact_case *one_case, struct contact_sur
 
 static double surface_seconds(const struct contact_case *one_case, enum contact_length length) {
     const struct contact_surfaces *surfaces = &one_case->lengths[length];
-    return 1e-9 * cost_generation(&surfaces->surface.options) *
+    return 1e-9 * cost_generation(&surfaces->surface.options, NULL) *
                (double)grid_points(&surfaces->surface.grid) +
            contact_coarse_seconds(one_case, &surfaces->level.grid);
 }

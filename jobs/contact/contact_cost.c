@@ -27,7 +27,7 @@ static double case_seconds(const struct contact_case *one_case) {
 double contact_case_least_seconds(const struct contact_case *one_case) {
     const struct surface_case *surface = &one_case->surface;
     double seconds =
-        1e-9 * cost_generation(&surface->options) * (double)grid_points(&surface->grid);
+        1e-9 * cost_generation(&surface->options, NULL) * (double)grid_points(&surface->grid);
     for (size_t l = 0; l < one_case->level_count; l++)
         for (size_t m = 0; m < one_case->model_count; m++)
             seconds += fmax(1, one_case->models[m]->times_linear) *
@@ -44,8 +44,8 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
                         contact_probe_bytes(one_case) + contact_cell_bytes(one_case) +
                         contact_generation_bytes(one_case) + contact_tally_bytes(one_case) +
                         PROCESS_BYTES;
-    out->seconds =
-        1e-4 + 1e-9 * cost_generation(&surface->options) * (double)grid_points(&surface->grid);
+    out->seconds = 1e-4 + 1e-9 * cost_generation(&surface->options, &surface->grid) *
+                              (double)grid_points(&surface->grid);
     for (size_t l = 0; l < one_case->level_count; l++)
         for (size_t m = 0; m < one_case->model_count; m++)
             out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);

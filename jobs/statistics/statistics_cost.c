@@ -10,7 +10,7 @@
 /* Returns the CPU seconds of one realisation. */
 static double expected_seconds(const struct statistics_case *one_case) {
     double points = (double)grid_points(&one_case->surface.grid);
-    double nanoseconds = cost_generation(&one_case->surface.options);
+    double nanoseconds = cost_generation(&one_case->surface.options, &one_case->surface.grid);
     if (!surface_case_exact(&one_case->surface))
         nanoseconds += cost_spectra();
     double summits = 2 * cost_summits(one_case->stencil, one_case->curvature); /* and pits */

@@ -2,6 +2,7 @@
  * load: in profiles whose means fall with the length (Gaussian) and fall and rise again (Weibull),
  * and in surfaces. */
 #include "tests/support/contact_document.h"
+#include "tests/support/effort.h"
 #include <stdio.h>
 
 struct scene {
@@ -21,7 +22,7 @@ static cJSON *solve_length(const struct scene *scene, int length, const char *co
              " \"tolerance\": 1e-6, \"pressures\": {\"values\": [0.003, 0.01, 0.02, 0.03, 0.05,"
              " 0.1, 0.2, 0.3]}}}",
              scene->dimension, scene->dimension == 1 ? 8 : 4, length, scene->heights, contact);
-    return solve(study, realisations);
+    return solve(study, realisations * effort());
 }
 
 struct coverage {
@@ -53,10 +54,10 @@ static void count_curve(const struct scene *scene, const cJSON *curve, const cJS
 static void errors_of_cells_cover(void **state) {
     (void)state;
     static const struct scene SCENES[] = {
-        {1, "gaussian", 1, 32, 2048, 1024},    {1, "gaussian", 2, 32, 2048, 1024},
-        {1, "gaussian", 4, 32, 1024, 1024},    {1, "weibull_min", 1, 32, 2048, 1024},
-        {1, "weibull_min", 2, 32, 2048, 1024}, {1, "weibull_min", 4, 32, 1024, 1024},
-        {2, "gaussian", 1, 4, 512, 64},        {2, "weibull_min", 1, 4, 512, 64},
+        {1, "gaussian", 1, 32, 512, 256},    {1, "gaussian", 2, 32, 512, 256},
+        {1, "gaussian", 4, 32, 256, 256},    {1, "weibull_min", 1, 32, 512, 256},
+        {1, "weibull_min", 2, 32, 512, 256}, {1, "weibull_min", 4, 32, 256, 256},
+        {2, "gaussian", 1, 4, 128, 16},      {2, "weibull_min", 1, 4, 128, 16},
     };
     static const char *const CURVES[][2] = {
         {"contact_area", "edges"}, {"contact_area", "edges_stretched"},

@@ -1,6 +1,7 @@
 /* Told errors cover the truth, against meshes, blocks and solvers that are far better, on the same
  * realisations: by source, at every load, for both weightings, in profiles and surfaces. */
 #include "tests/support/contact_document.h"
+#include "tests/support/effort.h"
 #include <stdio.h>
 
 struct scene {
@@ -21,7 +22,7 @@ static cJSON *solve_levels(const struct scene *scene, const char *levels) {
              " {\"at\": [0.01, 0.1, 0.3]}}}",
              scene->dimension, profile ? 8 : 4, profile ? 4 : 2, profile ? 64 : 32, scene->heights,
              scene->weighting, levels);
-    return solve(study, scene->realisations);
+    return solve(study, scene->realisations * effort());
 }
 
 /* A number at a load of an array that may be absent or null: 0 then. */
@@ -138,11 +139,11 @@ static void count_densities(const struct scene *scene, const char *levels, const
  * which fall into them by chance. */
 static void errors_of_pressures_cover(void **state) {
     (void)state;
-    static const struct scene SCENES[] = {{1, "gaussian", "standard", 48},
-                                          {1, "gaussian", "dual", 48},
-                                          {1, "weibull_min", "standard", 48},
-                                          {2, "gaussian", "standard", 6},
-                                          {2, "weibull_min", "dual", 6}};
+    static const struct scene SCENES[] = {{1, "gaussian", "standard", 24},
+                                          {1, "gaussian", "dual", 24},
+                                          {1, "weibull_min", "standard", 24},
+                                          {2, "gaussian", "standard", 3},
+                                          {2, "weibull_min", "dual", 3}};
     struct coverage lowest = {0}, others = {0};
     for (size_t s = 0; s < sizeof SCENES / sizeof *SCENES; s++) {
         cJSON *reference =
@@ -160,8 +161,8 @@ static void errors_of_pressures_cover(void **state) {
  * nodes alone have 2 to 3 times as much in the first. */
 static void lowest_pressures_are_near_their_limit(void **state) {
     (void)state;
-    static const struct scene SCENES[] = {{1, "gaussian", "dual", 100},
-                                          {1, "weibull_min", "standard", 100}};
+    static const struct scene SCENES[] = {{1, "gaussian", "dual", 50},
+                                          {1, "weibull_min", "standard", 50}};
     static const char *const MODELS[] = {"halfspace", "layered"};
     for (size_t s = 0; s < 2; s++) {
         cJSON *coarse = solve_levels(&SCENES[s], "[8]"), *fine = solve_levels(&SCENES[s], "[64]");

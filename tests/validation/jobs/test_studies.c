@@ -6,6 +6,7 @@
 #include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "schema/json/json.h"
+#include "tests/support/effort.h"
 #include "tests/support/result_tree.h"
 #include <math.h>
 #include <setjmp.h>
@@ -76,7 +77,8 @@ static void assert_near(const char *what, double got, double expected, double to
         fail_msg("%s is %.6g, not within %.3g of %.6g", what, got, tolerance, expected);
 }
 
-/* Table 3.1 and the two cases of H = 0.2 in its figures; half of the last printed digit. */
+/* Table 3.1 and the two cases of H = 0.2 in its figures; half of the last printed digit. Alpha is a
+ * sum over waves, which 2.5 points a shortest wave hold as well as 8 at a tenth of the cost. */
 static void table_3_1(void **state) {
     (void)state;
     static const struct {
@@ -84,9 +86,10 @@ static void table_3_1(void **state) {
     } table[] = {{0.8, 8, 5.34},     {0.8, 16, 11.89}, {0.8, 32, 29.11}, {0.8, 64, 75.88},
                  {0.8, 128, 206.45}, {0.2, 8, 3.76},   {0.2, 16, 5.61}};
     for (size_t a = 0; a < sizeof table / sizeof *table; a++) {
-        cJSON *curves =
-            study(table[a].ratio > 32 ? 1 : 2, "{'surface': {'hurst': %g, 'wavelength_ratio': %g}}",
-                  table[a].hurst, table[a].ratio);
+        cJSON *curves = study(2,
+                              "{'surface': {'hurst': %g, 'wavelength_ratio': %g,"
+                              " 'points_per_wavelength': %g}}",
+                              table[a].hurst, table[a].ratio, table[a].ratio > 8 ? 2.5 : 8);
         assert_near("alpha", scalar(curves, "nayak_alpha", "value"), table[a].alpha, 0.00501);
         assert_true(scalar(curves, "nayak_alpha", "standard_error") == 0);
         cJSON_Delete(curves);
@@ -162,7 +165,7 @@ static void density_of_summits(void **state) {
                  {"refined", 4, 0, 0.02},           {"refined", 8, 0, 0.01},
                  {"refined", 16, 0, 0.005}};
     for (size_t a = 0; a < sizeof cases / sizeof *cases; a++) {
-        cJSON *curves = study(60,
+        cJSON *curves = study(20 * effort(),
                               "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, "
                               "'points_per_wavelength': %g}, 'statistics': {'summits': '%s'}}",
                               cases[a].points, cases[a].summits);
@@ -189,9 +192,10 @@ static void nayak_curves(void **state) {
     (void)state;
     static const char *const quantities[] = {"summit_height_pdf", "summit_height_cdf",
                                              "summit_mean_curvature", "summit_curvature_pdf"};
-    cJSON *curves = study(150, "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, "
-                               "'points_per_wavelength': 16}, 'statistics': {'summits': 'refined', "
-                               "'bins': {'height': [-2, 4, 40], 'curvature': [-8, 0, 40]}}}");
+    cJSON *curves =
+        study(50 * effort(), "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, "
+                             "'points_per_wavelength': 16}, 'statistics': {'summits': 'refined', "
+                             "'bins': {'height': [-2, 4, 40], 'curvature': [-8, 0, 40]}}}");
     const cJSON *pdf = curve_of(curves, "summit_height_pdf");
     for (int q = 0; q < 4; q++) {
         const cJSON *curve = curve_of(curves, quantities[q]);
@@ -231,9 +235,10 @@ static void profiles(void **state) {
     static const char *const names[] = {"summit_density",         "summit_height_mean",
                                         "summit_height_variance", "summit_height_skewness",
                                         "summit_height_kurtosis", "summit_curvature_mean"};
-    cJSON *curves = study(400, "{'surface': {'dimension': 1, 'hurst': 0.8, 'wavelength_ratio': 16, "
-                               "'length_ratio': 64, 'points_per_wavelength': 16}, "
-                               "'statistics': {'summits': 'refined'}}");
+    cJSON *curves =
+        study(200 * effort(), "{'surface': {'dimension': 1, 'hurst': 0.8, 'wavelength_ratio': 16, "
+                              "'length_ratio': 64, 'points_per_wavelength': 16}, "
+                              "'statistics': {'summits': 'refined'}}");
     for (int a = 0; a < 6; a++)
         assert_near(names[a], scalar(curves, names[a], "value"), scalar(curves, names[a], "theory"),
                     4 * scalar(curves, names[a], "standard_error") +
@@ -260,17 +265,17 @@ static double curvature_at(const cJSON *curves, double z) {
 
 /* The reference's findings (sections 3.2.4, 3.2.5): C = 1 maximum has its summits near the bound, 1
  * deviation above the mean, and flatter ones the higher they are; the minimum the opposite; C
- * = 3.602 is near Gaussian; more summits for the maximum. 40 surfaces: differences of many standard
+ * = 3.602 is near Gaussian; more summits for the maximum. 10 surfaces: differences of many standard
  * errors. */
 static void weibull_findings(void **state) {
     (void)state;
     const char *format = "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, 'heights': "
                          "{'distribution': '%s', 'shape': %g}}, 'statistics': {'bins': {'height': "
                          "[-3, 5, 40], 'curvature': [-16, 0, 40]}}}";
-    cJSON *highest = study(40, format, "weibull_max", 1.0);
-    cJSON *lowest = study(40, format, "weibull_min", 1.0);
-    cJSON *near = study(40, format, "weibull_max", 3.602);
-    cJSON *gaussian = study(40, format, "gaussian", 1.0);
+    cJSON *highest = study(10 * effort(), format, "weibull_max", 1.0);
+    cJSON *lowest = study(10 * effort(), format, "weibull_min", 1.0);
+    cJSON *near = study(10 * effort(), format, "weibull_max", 3.602);
+    cJSON *gaussian = study(10 * effort(), format, "gaussian", 1.0);
     double mode = mode_of(curve_of(highest, "summit_height_pdf"));
     assert_true(mode > 0.6 && mode < 1.2);
     assert_true(mode_of(curve_of(lowest, "summit_height_pdf")) < 0.6);

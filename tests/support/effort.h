@@ -1,0 +1,17 @@
+/* How long tests of chance take: RUGO_EFFORT=n makes n times as many realisations, which makes
+ * their standard errors, and with them their tolerances, smaller. `make test` takes 1. */
+#ifndef RUGO_TESTS_SUPPORT_EFFORT_H
+#define RUGO_TESTS_SUPPORT_EFFORT_H
+
+#include <stdint.h>
+#include <stdlib.h>
+
+enum { EFFORT_MOST = 100 };
+
+static inline uint64_t effort(void) {
+    const char *text = getenv("RUGO_EFFORT");
+    long n = text != NULL ? strtol(text, NULL, 10) : 1;
+    return n < 1 ? 1 : n > EFFORT_MOST ? EFFORT_MOST : (uint64_t)n;
+}
+
+#endif

@@ -1,0 +1,79 @@
+/* What surfaces are said to cost before they run, beside what they take. */
+#include "core/cost.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+
+/* Tells the iterations that an estimate stands for by what one iteration more adds to it. */
+static double expected_iterations(const struct surface_options *options, const struct grid *grid) {
+    struct surface_options few = *options;
+    few.max_iterations = 1;
+    double one = cost_generation(&few, grid);
+    few.max_iterations = 4; /* of these 1 or 3 are exact ones at the end */
+    double four = cost_generation(&few, grid), all = cost_generation(options, grid);
+    few.max_iterations = 5;
+    double each = cost_generation(&few, grid) - four;
+    assert_true(each > 0 && four > one && all >= four);
+    return 4 + (all - four) / each;
+}
+
+/* A tolerance that ends an iteration early is seen by the estimate: within 2 of what surfaces take,
+ * which is what estimates promise. Fitted to the same kinds of surface, here of another seed. */
+static void tolerances_cost_what_they_take(void **state) {
+    (void)state;
+    static const struct heights HEIGHTS[] = {{.type = HEIGHTS_WEIBULL_MIN, .shape = 1},
+                                             {.type = HEIGHTS_WEIBULL_MAX, .shape = 2},
+                                             {.type = HEIGHTS_WEIBULL_MIN, .shape = 3.602},
+                                             {.type = HEIGHTS_LOGNORMAL, .shape = 0.25}};
+    static const double TOLERANCES[] = {0, 0.01, 0.03};
+    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                      .hurst = 0.8,
+                                      .wavelength_long = 4,
+                                      .wavelength_rolloff = 4,
+                                      .wavelength_short = 1};
+    const struct grid grid = {256, 256, 32, 32};
+    double *z = malloc(grid_points(&grid) * sizeof *z);
+    assert_non_null(z);
+    for (size_t h = 0; h < sizeof HEIGHTS / sizeof *HEIGHTS; h++) {
+        struct surface_options options = SURFACE_DEFAULTS;
+        struct generator *generator = NULL;
+        options.heights = HEIGHTS[h];
+        assert_int_equal(generator_create(&generator, &spectrum, &grid, &options, NULL), 0);
+        for (size_t t = 0; t < sizeof TOLERANCES / sizeof *TOLERANCES; t++) {
+            struct surface_report report;
+            options.tolerance = TOLERANCES[t];
+            const struct surface_aim aim = {options.iteration, options.tolerance,
+                                            options.stall_iterations, options.max_iterations};
+            generator_aim(generator, &aim);
+            assert_int_equal(
+                generator_run(generator, (struct random_key){7, 0, 0}, z, &report, NULL), 0);
+            double ratio = expected_iterations(&options, &grid) / (double)report.iterations;
+            if (!(ratio > 0.5 && ratio < 2))
+                fail_msg("heights %zu, tolerance %g: expected %g times the %zu iterations taken", h,
+                         TOLERANCES[t], ratio, report.iterations);
+        }
+        generator_destroy(&generator);
+    }
+    free(z);
+}
+
+/* Choices of contact are made for whatever tolerance: without one the size does not matter. */
+static void sizes_do_not_matter_without_a_tolerance(void **state) {
+    (void)state;
+    struct surface_options options = SURFACE_DEFAULTS;
+    const struct grid small = {64, 64, 8, 8}, large = {4096, 4096, 512, 512};
+    options.heights = (struct heights){.type = HEIGHTS_WEIBULL_MIN, .shape = 1};
+    options.tolerance = 0;
+    double cost = cost_generation(&options, &small);
+    assert_true(cost > 0 && cost == cost_generation(&options, &large));
+    options.tolerance = 0.01;
+    assert_true(cost_generation(&options, &large) < cost / 2);
+    assert_true(cost_generation(&options, NULL) == cost);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tolerances_cost_what_they_take),
+        cmocka_unit_test(sizes_do_not_matter_without_a_tolerance),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
