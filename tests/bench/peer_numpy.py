@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The same work in vectorised NumPy, one core, as a peer for `make bench`: CPU time, medians.
 
-peer_numpy.py gaussian N REPEATS      a Gaussian surface with its nine-point summits
+peer_numpy.py gaussian N REPEATS      a Gaussian surface with its nine-point summits, and with the
+                                      statistics of a study
 peer_numpy.py weibull N ITERATIONS    plain alternation, C = 1 maximum (Perez-Rafols & Almqvist 2019)
 peer_numpy.py contact N LOAD...       half-space contact by the textbook solver (Polonsky & Keer 1999)
 
@@ -58,6 +59,18 @@ def summits(z):
     return z[top], curvature[top]
 
 
+def statistics(z):
+    """What a study counts of a surface: heights, their powers, summits and pits by height, curvature and both."""
+    shape = [(z**power).mean() for power in (2, 3, 4)]
+    heights = np.histogram(z, 240, (-4, 8))[0]
+    sides = []
+    for side in (z, -z):
+        height, curvature = summits(side)
+        sides.append((len(height), height.mean(), height.var(), curvature.mean(),
+                      np.histogram2d(height, curvature, (240, 160), ((-4, 8), (0, 16)))[0]))
+    return shape, heights, sides
+
+
 def timed(function, repeats):
     times = []
     for _ in range(repeats):
@@ -72,6 +85,8 @@ def run_gaussian(n, repeats):
     for name, band_only in (("plain", False), ("tuned", True)):
         middle, low, high, found = timed(lambda: summits(gaussian(amplitude, rng, band_only)), repeats)
         print(f"peer gaussian-{name} {n} {middle:.1f} {low:.1f} {high:.1f} summits {len(found[0])}")
+        middle, low, high, found = timed(lambda: statistics(gaussian(amplitude, rng, band_only)), repeats)
+        print(f"peer gaussian-{name}-statistics {n} {middle:.1f} {low:.1f} {high:.1f} summits {found[2][0][0]}")
 
 
 def alternate(amplitude, rng, iterations, tuned):
@@ -105,9 +120,10 @@ def run_weibull(n, iterations):
     amplitude = spectrum(n)
     for name, tuned in (("plain", False), ("tuned", True)):
         middle, _, _, z = timed(lambda: alternate(amplitude, np.random.default_rng(1), iterations, tuned), 1)
+        measured, _, _, _ = timed(lambda: statistics(z), 3)
         skewness = (z**3).mean() / (z**2).mean() ** 1.5
         print(f"peer weibull-{name} {n} {middle / iterations:.1f} ms an iteration, {middle / 1e3:.2f} s for "
-              f"{iterations}, summits {len(summits(z)[0])}, skewness {skewness:.4f}")
+              f"{iterations}, statistics {measured:.0f} ms, summits {len(summits(z)[0])}, skewness {skewness:.4f}")
 
 
 def press(z, load, p, tolerance):

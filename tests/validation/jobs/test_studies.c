@@ -97,19 +97,20 @@ static void table_3_1(void **state) {
 }
 
 /* Table 3.3. The theory to its printed digits (half of the last). Runs that keep the heights, drawn
- * as exact quantiles: skewness within 0.02 (validation of the generator), kurtosis within 2 %: a
- * grid of 2^18 points cuts the tail of C = 1 at 13 deviations. */
+ * as exact quantiles, whatever their places: skewness within 0.02 (validation of the generator),
+ * kurtosis within 2 %: a grid of 2^18 points cuts the tail of C = 1 at 13 deviations. */
 static void table_3_3(void **state) {
     (void)state;
     static const double table[5][3] = {
         {1, 2, 9}, {1.2, 1.52, 6.24}, {1.5, 1.07, 4.39}, {2, 0.63, 3.25}, {3.602, 0, 2.72}};
     for (int a = 0; a < 5; a++) {
         for (int side = 0; side < 2; side++) {
-            cJSON *curves = study(
-                2,
-                "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, 'heights': {"
-                "'distribution': '%s', 'shape': %g, 'keep': 'heights', 'draw': 'quantiles'}}}",
-                side ? "weibull_max" : "weibull_min", table[a][0]);
+            cJSON *curves =
+                study(2,
+                      "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, 'heights': {"
+                      "'distribution': '%s', 'shape': %g, 'keep': 'heights', 'draw': 'quantiles', "
+                      "'tolerance': 0.5}}}",
+                      side ? "weibull_max" : "weibull_min", table[a][0]);
             double skewness = side ? -table[a][1] : table[a][1];
             assert_near("theory", scalar(curves, "skewness", "theory"), skewness, 0.00501);
             assert_near("theory", scalar(curves, "kurtosis", "theory"), table[a][2], 0.00501);

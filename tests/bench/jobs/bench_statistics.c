@@ -1,0 +1,131 @@
+/* A realisation of a study of statistics, 1024 x 1024, with all that it measures, beside generation
+ * with nine-point summits alone: CPU time, one core, medians, taken in turn so that other work on
+ * the machine is the same for all. Weibull surfaces are those without pairs for the error
+ * `generation`, which one in 64 has. */
+#include "core/statistics/summits.h"
+#include "jobs/runner.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum { SIDE = 1024, REPEATS_MOST = 15 };
+#define SURFACE                                                                                    \
+    "\"dimension\":2,\"hurst\":0.8,\"wavelength_ratio\":16,\"length_ratio\":8,"                    \
+    "\"points_per_wavelength\":8"
+
+struct statistics_bench {
+    const char *name, *parameters;
+    struct surface_options options;
+    size_t repeats;
+    uint64_t block; /* realisations, 7 at most: pairs are those of number 0 and 8 */
+};
+
+static double cpu_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
+}
+
+static int by_value(const void *a, const void *b) {
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/* What is measured. */
+struct work {
+    struct generator *generator;
+    struct summit_finder *finder;
+    struct summit_list summits;
+    struct job_runner *runner;
+    cJSON *parameters;
+    double *z;
+};
+
+static int work_create(struct work *work, const struct statistics_bench *bench, struct error *err) {
+    const struct grid grid = {SIDE, SIDE, SIDE / 8.0, SIDE / 8.0};
+    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                      .hurst = 0.8,
+                                      .wavelength_long = SIDE / 64.0,
+                                      .wavelength_rolloff = SIDE / 64.0,
+                                      .wavelength_short = 1};
+    work->z = array_create((size_t)SIDE * SIDE, sizeof *work->z);
+    work->parameters = cJSON_Parse(bench->parameters);
+    if (work->z == NULL || work->parameters == NULL)
+        return error_memory(err, (size_t)SIDE * SIDE * sizeof *work->z, "heights");
+    int status = generator_create(&work->generator, &spectrum, &grid, &bench->options, err);
+    if (status == 0)
+        status = summit_finder_create(&work->finder, &grid, SUMMITS_NINE_POINT,
+                                      CURVATURE_FINITE_DIFFERENCE, SIDE / 8, SIDE / 8, err);
+    if (status == 0)
+        status = runner_create(&work->runner, kind_find("statistics"), work->parameters, NULL, 1, 0,
+                               err);
+    return status;
+}
+
+static void work_clear(struct work *work) {
+    generator_destroy(&work->generator);
+    summit_finder_destroy(&work->finder);
+    summit_list_clear(&work->summits);
+    runner_destroy(&work->runner);
+    cJSON_Delete(work->parameters);
+    free(work->z);
+}
+
+/* Fills the times a realisation of generation with summits, and of the same block of a study. */
+static int work_measure(struct work *work, uint64_t block, double *alone, double *study,
+                        struct error *err) {
+    struct block_result result = {0};
+    double start = cpu_ms();
+    int status = 0;
+    for (uint64_t r = 1; r <= block && status == 0; r++) {
+        status = generator_run(work->generator, (struct random_key){1, 0, r}, work->z, NULL, err);
+        if (status == 0)
+            status = summits_find(work->finder, work->z, &work->summits, err);
+    }
+    double middle = cpu_ms();
+    if (status == 0)
+        status = runner_run(work->runner, 1, block, NULL, &result, err);
+    *alone = (middle - start) / (double)block;
+    *study = (cpu_ms() - middle) / (double)block;
+    block_result_clear(&result);
+    return status;
+}
+
+static int bench_run(const struct statistics_bench *bench, struct error *err) {
+    struct work work = {0};
+    double alone[REPEATS_MOST], study[REPEATS_MOST], first[2];
+    int status = work_create(&work, bench, err);
+    if (status == 0) /* touches all memory */
+        status = work_measure(&work, bench->block, &first[0], &first[1], err);
+    for (size_t r = 0; r < bench->repeats && status == 0; r++)
+        status = work_measure(&work, bench->block, &alone[r], &study[r], err);
+    work_clear(&work);
+    if (status != 0)
+        return status;
+    qsort(alone, bench->repeats, sizeof *alone, by_value);
+    qsort(study, bench->repeats, sizeof *study, by_value);
+    size_t last = bench->repeats - 1, half = bench->repeats / 2;
+    printf("%12s  %9.2f (%.2f-%.2f)  %9.2f (%.2f-%.2f)  %6.2f\n", bench->name, alone[half],
+           alone[0], alone[last], study[half], study[0], study[last], study[half] / alone[half]);
+    return 0;
+}
+
+int main(void) {
+    struct statistics_bench benches[] = {
+        {"gaussian", "{\"surface\":{" SURFACE "}}", SURFACE_DEFAULTS, 15, 7},
+        {"weibull_max",
+         "{\"surface\":{" SURFACE ",\"heights\":{\"distribution\":\"weibull_max\",\"shape\":1}}}",
+         SURFACE_DEFAULTS, 5, 1},
+    };
+    struct error err = {0};
+    benches[1].options.heights = (struct heights){.type = HEIGHTS_WEIBULL_MAX, .shape = 1};
+    printf("%12s  %s  %s  %s\n", "heights", "generation, summits ms (spread)",
+           "realisation of a study ms (spread)", "ratio");
+    for (size_t b = 0; b < sizeof benches / sizeof *benches; b++)
+        if (bench_run(&benches[b], &err) != 0) {
+            fprintf(stderr, "bench_statistics: %s\n", err.text);
+            return 1;
+        }
+    return 0;
+}
