@@ -61,6 +61,10 @@ enum { REALISATIONS = 9, SEED = 5 };
     " \"length_ratio\": 2, \"rms_slope\": 0.1}, \"contact\": {\"model\": [\"layered\","            \
     " \"halfspace\"], \"levels\": [4, 8], \"pressures\": {\"values\": " loads "},"                 \
     " \"pressure_pdf\": {\"at\": [0.1], \"bins\": [0, 1, 4]}}}"
+#define SKEWED(hurst)                                                                              \
+    "{\"surface\": {\"hurst\": " hurst ", \"wavelength_ratio\": 4, \"length_ratio\": 2,"           \
+    " \"points_per_wavelength\": 4, \"heights\": {\"distribution\": \"weibull_max\", \"shape\":"   \
+    " 2}}, \"statistics\": {\"bins\": {\"height\": [-2, 4, 12], \"curvature\": [-9, -1, 8]}}}"
 #define STATISTICS(hurst)                                                                          \
     "{\"surface\": {\"dimension\": 1, \"hurst\": " hurst ", \"wavelength_ratio\": 4,"              \
     " \"length_ratio\": 4}, \"statistics\": {\"bins\": {\"height\": [-4, 8, 12]}}}"
@@ -273,6 +277,45 @@ static void densities_by_groups(void **state) {
     side_clear(&b);
 }
 
+/* Curves of pits are known by pairs as those of summits are, with errors that add up to less than
+ * those of two cases apart. */
+static void pits_go_by_pairs(void **state) {
+    (void)state;
+    static const char one[] = SKEWED("0.8"), other[] = SKEWED("0.75");
+    static const char *const QUANTITIES[] = {"summit_height_pdf", "summit_height_cdf",
+                                             "summit_mean_curvature", "summit_curvature_pdf"};
+    struct error err = {0};
+    struct side a = {.merger = merger_of("statistics", one)};
+    struct side b = {.merger = merger_of("statistics", other)};
+    add_block(a.merger, "statistics", one, 0, 32);
+    add_block(b.merger, "statistics", other, 0, 32);
+    assert_int_equal(merger_result(a.merger, &a.result, &err), 0);
+    assert_int_equal(merger_result(b.merger, &b.result, &err), 0);
+    struct case_result out = subtract(&a, &b, true), apart = subtract(&a, &b, false);
+    size_t paired = 0;
+    for (size_t c = 0; c < out.curve_count; c++) {
+        const struct curve *curve = &out.curves[c];
+        double by_pairs = 0, not_by_pairs = 0;
+        if (strcmp(curve->series, "pits") != 0)
+            continue;
+        assert_true(curve->paired && !curve_like(&apart, curve)->paired);
+        for (size_t q = 0; q < sizeof QUANTITIES / sizeof *QUANTITIES; q++)
+            paired += strcmp(curve->quantity, QUANTITIES[q]) == 0;
+        for (size_t k = 0; k < curve->n; k++) {
+            double error = curve->standard_error[k];
+            by_pairs += isnan(error) ? 0 : error;
+            not_by_pairs += isnan(error) ? 0 : curve_like(&apart, curve)->standard_error[k];
+        }
+        assert_true(by_pairs > 0 && by_pairs < not_by_pairs);
+    }
+    assert_int_equal(paired, 4);
+    assert_true(scalar_of(&out, "pit_height_skewness")->paired);
+    result_clear(&out);
+    result_clear(&apart);
+    side_clear(&a);
+    side_clear(&b);
+}
+
 static void cases_without_a_pair_are_refused(void **state) {
     (void)state;
     struct error err = {0};
@@ -287,13 +330,10 @@ static void cases_without_a_pair_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_pairs),
-        cmocka_unit_test(weighed_pairs),
-        cmocka_unit_test(pairs_of_groups),
-        cmocka_unit_test(contact_by_its_realisations),
-        cmocka_unit_test(densities_by_groups),
-        cmocka_unit_test(scalars_are_those_told),
-        cmocka_unit_test(cases_without_a_pair_are_refused),
+        cmocka_unit_test(plain_pairs),         cmocka_unit_test(weighed_pairs),
+        cmocka_unit_test(pairs_of_groups),     cmocka_unit_test(contact_by_its_realisations),
+        cmocka_unit_test(densities_by_groups), cmocka_unit_test(scalars_are_those_told),
+        cmocka_unit_test(pits_go_by_pairs),    cmocka_unit_test(cases_without_a_pair_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
