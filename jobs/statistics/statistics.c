@@ -146,8 +146,8 @@ static int realise(void *workspace, const struct realisation *realisation, void 
 
 static int sums_create(void *tally, const void *one_case, const struct surface_basis *basis,
                        struct error *err) {
-    return statistics_levels_create(tally, one_case, &basis->moments, spectra_densities(one_case),
-                                    spectra_correlations(one_case), err);
+    const struct spectra_sizes sizes = spectra_sizes(one_case);
+    return statistics_levels_create(tally, one_case, &basis->moments, &sizes, err);
 }
 
 static void sums_clear(void *tally) {
@@ -238,7 +238,7 @@ const struct job_kind STATISTICS_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x5354, /* "ST" */
-    .format_version = 4,
+    .format_version = 5,
     .put = put,
     .get = get,
     .adds_up = adds_up,

@@ -7,12 +7,16 @@
 #include "jobs/statistics/statistics_levels.h"
 #include <math.h>
 
+/* Spectra of every second point come beside those of all. */
+static const double CHANGES_COST = 1.25;
+
 /* Returns the CPU seconds of one realisation. */
 static double expected_seconds(const struct statistics_case *one_case) {
     double points = (double)grid_points(&one_case->surface.grid);
     double nanoseconds = cost_generation(&one_case->surface.options, &one_case->surface.grid);
     if (!surface_case_exact(&one_case->surface))
-        nanoseconds += cost_spectra();
+        nanoseconds +=
+            cost_spectra() * (surface_case_band_limited(&one_case->surface) ? 1 : CHANGES_COST);
     double summits = 2 * cost_summits(one_case->stencil, one_case->curvature); /* and pits */
     nanoseconds += summits;
     for (size_t l = 0; l < one_case->level_count; l++) {
@@ -65,7 +69,7 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
         surface_case_bytes(surface) + statistics_generation_bytes(one_case) +
         summit_finder_bytes(grid, one_case->stencil, one_case->curvature, own.x, own.y) +
         statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
-        6 * summits * sizeof(struct summit) + (exact ? 0 : 24 * points) + 6e6;
+        6 * summits * sizeof(struct summit) + (exact ? 0 : 26 * points) + 6e6;
     out->seconds = expected_seconds(one_case);
     out->case_seconds = expected_case_seconds(one_case, summits);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */

@@ -15,14 +15,14 @@ struct statistics_case statistics_level_case(const struct statistics_case *one_c
 /* --- the tallies --- */
 
 int statistics_levels_create(struct statistics_levels *out, const struct statistics_case *one_case,
-                             const struct moments *moments, size_t densities, size_t correlations,
+                             const struct moments *moments, const struct spectra_sizes *sizes,
                              struct error *err) {
+    static const struct spectra_sizes NONE = {0, 0, 0, 0};
     *out = (struct statistics_levels){0};
-    int status =
-        statistics_tally_create(&out->own, one_case, moments, densities, correlations, err);
+    int status = statistics_tally_create(&out->own, one_case, moments, sizes, err);
     for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
         out->cases[l] = statistics_level_case(one_case, l);
-        status = statistics_tally_create(&out->tallies[l], &out->cases[l], moments, 0, 0, err);
+        status = statistics_tally_create(&out->tallies[l], &out->cases[l], moments, &NONE, err);
         out->count += status == 0;
     }
     for (size_t l = 0; one_case->level_count > 0 && l <= one_case->level_count && status == 0; l++)

@@ -21,7 +21,7 @@ struct statistics_levels {
     struct statistics_groups moments[1 + STATISTICS_LEVELS_MOST];
 };
 int statistics_levels_create(struct statistics_levels *out, const struct statistics_case *one_case,
-                             const struct moments *moments, size_t densities, size_t correlations,
+                             const struct moments *moments, const struct spectra_sizes *sizes,
                              struct error *err);
 void statistics_levels_clear(struct statistics_levels *levels);
 /* As job_kind has them. */

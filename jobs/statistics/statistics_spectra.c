@@ -1,30 +1,47 @@
 #include "jobs/statistics/statistics_spectra.h"
-#include "core/statistics/prescribed.h"
-#include "core/statistics/richardson.h"
 #include "core/statistics/roughness.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum {
-    ACF_GRID = 1024
-}; /* points a side that the prescribed autocorrelation is sampled on, at most
-    * unless the band needs more: a long case would cost a transform of its grid */
-
-/* Of means over rings in their width. */
-static const double RING_ORDER = 2;
-
-size_t spectra_densities(const struct statistics_case *one_case) {
-    return surface_case_exact(&one_case->surface) ? 0 : radial_bins(&one_case->surface.grid);
+/* Every second point of a grid; *halved: its sides have even numbers of them. */
+static struct grid coarser(const struct grid *grid, bool *halved) {
+    struct grid out = *grid;
+    *halved = grid->nx % 2 == 0 && (grid_is_profile(grid) || grid->ny % 2 == 0);
+    out.nx = grid->nx / 2;
+    out.ny = grid_is_profile(grid) ? 1 : grid->ny / 2;
+    return out;
 }
 
-size_t spectra_correlations(const struct statistics_case *one_case) {
-    return surface_case_exact(&one_case->surface) ? 0 : acf_lags(&one_case->surface.grid);
+/* Rings whose waves a grid has in all directions. */
+static size_t whole_rings(const struct grid *grid) {
+    double side = grid_is_profile(grid) ? grid->lx : fmin(grid->lx, grid->ly);
+    double most = floor((double)grid->nx / 2) * side / grid->lx;
+    if (!grid_is_profile(grid))
+        most = fmin(most, floor((double)grid->ny / 2) * side / grid->ly);
+    return (size_t)most;
 }
 
-/* What measured densities are divided by before they are summed, so that the sums are exact. */
-static void reference_of(size_t n, double *density) {
+/* Changes are measured where surfaces have waves beyond the grid's. */
+struct spectra_sizes spectra_sizes(const struct statistics_case *one_case) {
+    const struct grid *grid = &one_case->surface.grid;
+    struct spectra_sizes out = {0, 0, 0, 0};
+    bool halved;
+    const struct grid coarse = coarser(grid, &halved);
+    if (surface_case_exact(&one_case->surface))
+        return out;
+    out.densities = radial_bins(grid);
+    out.correlations = acf_lags(grid);
+    if (halved && !surface_case_band_limited(&one_case->surface)) {
+        out.density_changes = whole_rings(&coarse);
+        out.correlation_changes = acf_lags(&coarse);
+    }
+    return out;
+}
+
+void spectra_reference(const struct modes *modes, double *wave_number, double *density) {
+    size_t n = radial_bins(&modes->grid), used = 0;
     double sum = 0;
-    size_t used = 0;
+    psd_of_modes(modes, wave_number, density);
     for (size_t a = 0; a < n; a++) {
         sum += density[a];
         used += density[a] > 0;
@@ -34,23 +51,32 @@ static void reference_of(size_t n, double *density) {
             density[a] = sum / (double)used;
 }
 
-int spectra_create(struct spectra *out, const struct statistics_case *one_case,
-                   const struct modes *modes, struct error *err) {
-    *out = (struct spectra){.densities = spectra_densities(one_case),
-                            .correlations = spectra_correlations(one_case)};
-    if (out->densities == 0)
-        return 0;
-    size_t most = out->densities > out->correlations ? out->densities : out->correlations;
+static bool scratch_create(struct spectra *out, size_t most) {
+    size_t samples = out->sizes.density_changes > 0 ? grid_points(&out->coarse) : 1;
     out->abscissa = array_create(most, sizeof(double));
     out->measured = array_create(most, sizeof(double));
     out->reference = array_create(most, sizeof(double));
-    if (out->abscissa == NULL || out->measured == NULL || out->reference == NULL) {
+    out->changed = array_create(most, sizeof(double));
+    out->samples = array_create(samples, sizeof(double));
+    return out->abscissa != NULL && out->measured != NULL && out->reference != NULL &&
+           out->changed != NULL && out->samples != NULL;
+}
+
+int spectra_create(struct spectra *out, const struct statistics_case *one_case,
+                   const struct modes *modes, struct error *err) {
+    bool halved;
+    *out = (struct spectra){.sizes = spectra_sizes(one_case),
+                            .coarse = coarser(&one_case->surface.grid, &halved)};
+    size_t densities = out->sizes.densities, correlations = out->sizes.correlations;
+    if (densities == 0)
+        return 0;
+    size_t most = densities > correlations ? densities : correlations;
+    if (!scratch_create(out, most)) {
         spectra_clear(out);
-        error_memory(err, 3 * most * sizeof(double), "spectra");
-        return ERROR_MEMORY;
+        return error_memory(err, (4 * most + grid_points(&modes->grid) / 2) * sizeof(double),
+                            "spectra");
     }
-    psd_of_modes(modes, out->abscissa, out->reference);
-    reference_of(out->densities, out->reference);
+    spectra_reference(modes, out->abscissa, out->reference);
     return 0;
 }
 
@@ -58,238 +84,54 @@ void spectra_clear(struct spectra *spectra) {
     free(spectra->abscissa);
     free(spectra->measured);
     free(spectra->reference);
-    *spectra = (struct spectra){0};
+    free(spectra->samples);
+    free(spectra->changed);
+    *spectra = (struct spectra){.coarse = {0}};
+}
+
+static void sample(const struct grid *grid, const double *z, const struct grid *to, double *out) {
+    for (size_t j = 0; j < to->ny; j++)
+        for (size_t i = 0; i < to->nx; i++)
+            out[j * to->nx + i] = z[2 * j * grid->nx + 2 * i];
+}
+
+static int measure_density(struct spectra *spectra, const struct grid *grid, const double *z,
+                           struct statistics_tally *tally, struct error *err) {
+    const double *measured = spectra->measured, *reference = spectra->reference;
+    size_t changes = spectra->sizes.density_changes;
+    int status = psd_measure(grid, z, spectra->abscissa, spectra->measured, err);
+    for (size_t a = 0; a < spectra->sizes.densities && status == 0; a++)
+        tally_sums_add(&tally->density, a, measured[a] / reference[a], 1);
+    if (status == 0 && changes > 0)
+        status = psd_measure(&spectra->coarse, spectra->samples, spectra->abscissa,
+                             spectra->changed, err);
+    for (size_t a = 0; a < changes && status == 0; a++)
+        tally_sums_add(&tally->density_change, a,
+                       (measured[a] - spectra->changed[a]) / reference[a], 1);
+    return status;
+}
+
+static int measure_correlation(struct spectra *spectra, const struct grid *grid, const double *z,
+                               struct statistics_tally *tally, struct error *err) {
+    const double *measured = spectra->measured;
+    size_t changes = spectra->sizes.correlation_changes;
+    int status = acf_measure(grid, z, spectra->abscissa, spectra->measured, err);
+    for (size_t a = 0; a < spectra->sizes.correlations && status == 0; a++)
+        tally_sums_add(&tally->correlation, a, measured[a], 1);
+    if (status == 0 && changes > 0)
+        status = acf_measure(&spectra->coarse, spectra->samples, spectra->abscissa,
+                             spectra->changed, err);
+    for (size_t a = 0; a < changes && status == 0; a++)
+        tally_sums_add(&tally->correlation_change, a, measured[2 * a] - spectra->changed[a], 1);
+    return status;
 }
 
 int spectra_measure(struct spectra *spectra, const struct grid *grid, const double *z,
                     struct statistics_tally *tally, struct error *err) {
-    if (spectra->densities == 0)
+    if (spectra->sizes.densities == 0)
         return 0;
-    int status = psd_measure(grid, z, spectra->abscissa, spectra->measured, err);
-    if (status != 0)
-        return status;
-    for (size_t a = 0; a < spectra->densities; a++)
-        tally_sums_add(&tally->density, a, spectra->measured[a] / spectra->reference[a], 1);
-    status = acf_measure(grid, z, spectra->abscissa, spectra->measured, err);
-    for (size_t a = 0; a < spectra->correlations && status == 0; a++)
-        tally_sums_add(&tally->correlation, a, spectra->measured[a], 1);
-    return status;
-}
-
-/* Columns of a curve, in the result's arena. */
-struct spectrum_columns {
-    double *x, *y, *standard_error, *theory;
-    double *change; /* of an autocorrelation, at every second lag (roughness.h) */
-};
-static int columns_create(struct case_result *result, struct spectrum_columns *out, size_t n,
-                          struct error *err) {
-    double *x = result_numbers(result, 5 * n);
-    if (x == NULL)
-        return error_memory(err, n * 5 * sizeof *x, "a curve");
-    *out = (struct spectrum_columns){x, x + n, x + 2 * n, x + 3 * n, x + 4 * n};
-    return 0;
-}
-
-static int add_curve(struct case_result *result, struct curve *curve, const double *theory,
-                     struct error *err) {
-    curve->theories[curve->theory_count++] = (struct theory){"prescribed", theory};
-    return result_add_curve(result, curve, err);
-}
-
-/* --- the error of discretisation --- */
-
-/* Rows of the error of a curve of n points, zeros in the result's arena. */
-static int error_create(struct case_result *result, struct curve *curve, size_t n, double **bound,
-                        struct error *err) {
-    double *rows = result_numbers(result, 3 * n);
-    if (rows == NULL)
-        return error_memory(err, 3 * n * sizeof *rows, "errors of a curve");
-    curve->errors[ERROR_DISCRETISATION] = (struct curve_error){.applies = true,
-                                                               .value = rows,
-                                                               .bound = rows + n,
-                                                               .standard_error = rows + 2 * n,
-                                                               .order = NAN};
-    *bound = rows + n;
-    return 0;
-}
-
-/* Waves of a band below the grid's own are told without error: points of the surface are samples
- * of it, which no wave is folded into. Of an exponential autocorrelation the spectrum itself goes
- * as far as the grid's, and heights that are placed point by point have waves beyond. */
-static bool density_is_exact(const struct statistics_case *one_case) {
-    return surface_case_band_limited(&one_case->surface) &&
-           one_case->surface.spectrum.type != SPECTRUM_EXPONENTIAL_ACF;
-}
-
-/* What twice as wide rings change, as a bound, at every second lag. */
-static double ring_bound(const double *change, size_t n, size_t lag) {
-    if (2 * lag >= n)
-        return 0;
-    const struct mesh_changes changes = {
-        .fine = change[lag], .coarse = NAN, .fine_ratio = 2, .coarse_ratio = NAN};
-    return mesh_error(&changes, RING_ORDER).bound;
-}
-
-/* Means over rings as wide as the grid's spacing are not those over circles. What rings twice as
- * wide change bounds that, at the lags of theirs and near them: where points of a ring lie happens
- * to suit one lag and not the next. The origin is a ring of its own. */
-static int correlation_error(const struct statistics_case *one_case, const double *change, size_t n,
-                             struct case_result *result, struct curve *curve, struct error *err) {
-    double *bound;
-    if (!surface_case_band_limited(&one_case->surface) || isnan(change[0]))
-        return 0;
-    int status = error_create(result, curve, n, &bound, err);
-    for (size_t a = 1; a < n && status == 0; a++) {
-        size_t lag = a / 2; /* of those below a */
-        bound[a] = fmax(ring_bound(change, n, lag), ring_bound(change, n, lag + 1));
-        if (a % 2 == 0)
-            bound[a] = fmax(bound[a], ring_bound(change, n, lag - 1));
-    }
-    return status;
-}
-
-/* --- curves --- */
-
-static int density_curve(const struct statistics_case *one_case, const struct modes *modes,
-                         const struct statistics_tally *tally, struct case_result *result,
-                         struct error *err) {
-    size_t n = radial_bins(&modes->grid), last = n - 1;
-    bool exact = surface_case_exact(&one_case->surface);
-    struct curve curve = curve_named("psd", "k lambda_s", "power spectral density");
-    struct spectrum_columns columns, reference;
-    int status = columns_create(result, &columns, n, err);
-    if (status == 0)
-        status = columns_create(result, &reference, n, err);
-    if (status != 0)
-        return status;
-    psd_of_modes(modes, reference.x, reference.y);
-    reference_of(n, reference.y);
-    psd_of_band(modes, reference.x, reference.theory);
-    /* Measured densities are of all waves of a ring; of surfaces that have none but those of the
-     * band they are told over these. */
-    for (size_t a = 0; a < n && surface_case_band_limited(&one_case->surface); a++)
-        reference.y[a] = reference.theory[a];
-    status = psd_prescribed(&one_case->surface.spectrum, modes, columns.x, columns.theory, err);
-    if (status != 0)
-        return status;
-    for (size_t a = 0; a < n; a++) {
-        struct estimate estimate = {reference.theory[a], 0};
-        if (!exact) {
-            estimate = tally_sums_mean(&tally->density, a, tally->points.realisations);
-            estimate.value *= reference.y[a];
-            estimate.standard_error *= reference.y[a];
-        }
-        columns.y[a] = estimate.value;
-        columns.standard_error[a] = estimate.standard_error;
-    }
-    while (exact && last > 1 && !(columns.y[last] > 0))
-        last--;
-    /* ring 0 is the mean height */
-    curve_set_points(&curve, last, columns.x + 1, columns.y + 1, columns.standard_error + 1);
-    double *zeros;
-    if (density_is_exact(one_case))
-        status = error_create(result, &curve, last, &zeros, err);
-    if (status != 0)
-        return status;
-    return add_curve(result, &curve, columns.theory + 1, err);
-}
-
-static size_t correlation_side(size_t side, size_t band) {
-    size_t needed = 2 * band + 2;
-    if (side <= ACF_GRID || side <= needed)
-        return side;
-    return needed > ACF_GRID ? needed : ACF_GRID;
-}
-
-/* Both sides of a rectangle are coarsened alike, to as many points as a square has in all, and even
- * numbers, whose halves tell an error. */
-static void coarsen_rectangle(struct grid *grid, struct surface_band band) {
-    double nx = (double)grid->nx, ny = (double)grid->ny;
-    double needed = fmax((2 * (double)band.x + 2) / nx, (2 * (double)band.y + 2) / ny);
-    double part = fmax(ACF_GRID / sqrt(nx * ny), needed);
-    if (part >= 1)
-        return;
-    grid->nx = 2 * (size_t)ceil(part * nx / 2);
-    grid->ny = 2 * (size_t)ceil(part * ny / 2);
-}
-
-/* The grid that the prescribed autocorrelation is sampled on. */
-static struct grid correlation_grid(const struct surface_case *surface) {
-    const struct surface_band band = surface_case_band(surface);
-    struct grid grid = surface->grid;
-    bool profile = grid_is_profile(&grid);
-    if (!surface_case_exact(surface))
-        return grid;
-    if (profile || grid.nx == grid.ny) {
-        grid.nx = correlation_side(grid.nx, band.x);
-        grid.ny = profile ? 1 : grid.nx;
-    } else {
-        coarsen_rectangle(&grid, band);
-    }
-    return grid;
-}
-
-/* Computes the autocorrelation at *n lags: y is that of the discrete spectrum, theory what it was
- * made from. */
-static int prescribed_correlation(const struct statistics_case *one_case, const struct modes *modes,
-                                  struct case_result *result, struct spectrum_columns *out,
-                                  size_t *n, struct error *err) {
-    struct modes *coarse = NULL;
-    struct grid grid = correlation_grid(&one_case->surface);
-    int status = 0;
-    *n = acf_lags(&grid);
-    if (grid.nx != modes->grid.nx) {
-        status = modes_create(&coarse, &one_case->surface.spectrum, &grid, err);
-        modes = coarse;
-    }
-    if (status == 0)
-        status = columns_create(result, out, *n, err);
-    if (status == 0)
-        status = acf_of_modes_changes(modes, out->x, out->y, out->change, err);
-    if (status == 0)
-        status = acf_prescribed(&one_case->surface.spectrum, modes, out->x, out->theory, err);
-    modes_destroy(&coarse);
-    return status;
-}
-
-static int correlation_curve(const struct statistics_case *one_case, const struct modes *modes,
-                             const struct statistics_tally *tally, struct case_result *result,
-                             struct error *err) {
-    bool exact = surface_case_exact(&one_case->surface);
-    struct curve curve = curve_named("acf", "lag/lambda_s", "autocorrelation");
-    struct spectrum_columns columns;
-    size_t n;
-    int status = prescribed_correlation(one_case, modes, result, &columns, &n, err);
-    if (status != 0)
-        return status;
-    for (size_t a = 0; a < n; a++) {
-        struct estimate estimate = {columns.y[a], 0};
-        if (!exact)
-            estimate = tally_sums_mean(&tally->correlation, a, tally->points.realisations);
-        columns.y[a] = estimate.value;
-        columns.standard_error[a] = estimate.standard_error;
-    }
-    curve_set_points(&curve, n, columns.x, columns.y, columns.standard_error);
-    status = correlation_error(one_case, columns.change, n, result, &curve, err);
-    if (status != 0)
-        return status;
-    return add_curve(result, &curve, columns.theory, err);
-}
-
-int spectra_curves(const struct statistics_case *one_case, const struct modes *modes,
-                   const struct statistics_tally *tally, struct case_result *result,
-                   struct error *err) {
-    int status = density_curve(one_case, modes, tally, result, err);
-    return status != 0 ? status : correlation_curve(one_case, modes, tally, result, err);
-}
-
-int spectra_prescribed(const struct statistics_case *one_case, const struct modes *modes,
-                       struct case_result *result, struct error *err) {
-    struct statistics_case exact = *one_case; /* borrows what it points to */
-    exact.surface.options.keep = KEEP_SPECTRUM;
-    exact.surface.options.amplitudes = AMPLITUDES_FIXED;
-    int status = spectra_curves(&exact, modes, NULL, result, err);
-    for (size_t a = 0; a < result->curve_count && status == 0; a++) /* nothing was measured */
-        result->curves[a].errors[ERROR_DISCRETISATION] = (struct curve_error){.applies = false};
-    return status;
+    if (spectra->sizes.density_changes > 0)
+        sample(grid, z, &spectra->coarse, spectra->samples);
+    int status = measure_density(spectra, grid, z, tally, err);
+    return status != 0 ? status : measure_correlation(spectra, grid, z, tally, err);
 }

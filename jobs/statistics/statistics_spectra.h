@@ -6,16 +6,19 @@
 #include "jobs/statistics/statistics_tally.h"
 #include "schema/result/result.h"
 
-/* These count the entries of the two tallies: 0 where nothing is measured. */
-size_t spectra_densities(const struct statistics_case *one_case);
-size_t spectra_correlations(const struct statistics_case *one_case);
+struct spectra_sizes spectra_sizes(const struct statistics_case *one_case);
 
 /* Workspace for measuring, made once a case. */
 struct spectra {
-    size_t densities, correlations;
+    struct spectra_sizes sizes;
     double *abscissa, *measured; /* owned, scratch */
+    struct grid coarse;          /* of every second point, where changes are measured */
+    double *samples, *changed;   /* owned, scratch: its heights, what is measured on it */
     double *reference; /* owned, densities: prescribed density, its mean where that is 0 */
 };
+/* Fills what measured densities are divided by before they are summed, so that the sums are exact:
+ * radial_bins prescribed densities, their mean where that is 0. */
+void spectra_reference(const struct modes *modes, double *wave_number, double *density);
 int spectra_create(struct spectra *out, const struct statistics_case *one_case,
                    const struct modes *modes, struct error *err);
 void spectra_clear(struct spectra *spectra);

@@ -15,7 +15,7 @@ struct group_place statistics_group_place(const struct statistics_case *one_case
 }
 
 int statistics_tally_create(struct statistics_tally *out, const struct statistics_case *one_case,
-                            const struct moments *moments, size_t densities, size_t correlations,
+                            const struct moments *moments, const struct spectra_sizes *sizes,
                             struct error *err) {
     size_t heights = cells_of(&one_case->height);
     double third = one_case->surface.dimension == 2 ? sqrt(3) : 1;
@@ -31,10 +31,16 @@ int statistics_tally_create(struct statistics_tally *out, const struct statistic
         status = tally_create(&out->height_below, heights - 1, heights - 1, err);
     for (size_t side = 0; side < out->sides && status == 0; side++)
         status = summit_tally_create(&out->summits[side], one_case, err);
-    if (status == 0 && densities > 0)
-        status = tally_sums_create(&out->density, densities, err);
-    if (status == 0 && correlations > 0)
-        status = tally_sums_create(&out->correlation, correlations, err);
+    const struct {
+        size_t size;
+        struct tally_sums *sums;
+    } SPECTRA[] = {{sizes->densities, &out->density},
+                   {sizes->correlations, &out->correlation},
+                   {sizes->density_changes, &out->density_change},
+                   {sizes->correlation_changes, &out->correlation_change}};
+    for (size_t a = 0; a < sizeof SPECTRA / sizeof *SPECTRA && status == 0; a++)
+        if (SPECTRA[a].size > 0)
+            status = tally_sums_create(SPECTRA[a].sums, SPECTRA[a].size, err);
     if (status == 0)
         status = statistics_groups_create(&out->groups, place.counts, place.sums, err);
     if (status != 0)
@@ -49,6 +55,8 @@ void statistics_tally_clear(struct statistics_tally *tally) {
         summit_tally_clear(&tally->summits[side]);
     tally_sums_clear(&tally->density);
     tally_sums_clear(&tally->correlation);
+    tally_sums_clear(&tally->density_change);
+    tally_sums_clear(&tally->correlation_change);
     statistics_groups_clear(&tally->groups);
     summit_counts_clear(&tally->counts);
     *tally = (struct statistics_tally){0};
@@ -94,6 +102,8 @@ void statistics_tally_put(struct bytes *bytes, const struct statistics_tally *ta
         summit_tally_put(bytes, &tally->summits[side]);
     tally_sums_put(bytes, &tally->density);
     tally_sums_put(bytes, &tally->correlation);
+    tally_sums_put(bytes, &tally->density_change);
+    tally_sums_put(bytes, &tally->correlation_change);
     statistics_groups_put(bytes, &tally->groups);
 }
 
@@ -110,6 +120,8 @@ void statistics_tally_get(struct byte_reader *reader, struct statistics_tally *t
         summit_tally_get(reader, &tally->summits[side]);
     tally_sums_get(reader, &tally->density);
     tally_sums_get(reader, &tally->correlation);
+    tally_sums_get(reader, &tally->density_change);
+    tally_sums_get(reader, &tally->correlation_change);
     statistics_groups_get(reader, &tally->groups);
 }
 
@@ -145,5 +157,7 @@ void statistics_tally_merge(struct statistics_tally *into, const struct statisti
         summit_tally_merge(&into->summits[side], &from->summits[side]);
     tally_sums_merge(&into->density, &from->density);
     tally_sums_merge(&into->correlation, &from->correlation);
+    tally_sums_merge(&into->density_change, &from->density_change);
+    tally_sums_merge(&into->correlation_change, &from->correlation_change);
     statistics_groups_merge(&into->groups, &from->groups);
 }

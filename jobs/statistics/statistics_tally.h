@@ -18,13 +18,19 @@ struct statistics_tally {
     struct summit_tally summits[SIDES];
     /* Where the spectrum is not exact: measured density over the prescribed one, and correlation */
     struct tally_sums density, correlation;
+    /* What they are more than of every second point, at rings and every second lag that both have
+     */
+    struct tally_sums density_change, correlation_change;
     struct statistics_groups groups; /* of the histograms, in the order of statistics_group_at */
     struct summit_counts counts;     /* scratch */
 };
 
-/* densities, correlations: sizes of psd and acf, 0 where the spectrum is exact. */
+/* Sizes of psd and acf, and of their changes: 0 where nothing is measured. */
+struct spectra_sizes {
+    size_t densities, correlations, density_changes, correlation_changes;
+};
 int statistics_tally_create(struct statistics_tally *out, const struct statistics_case *one_case,
-                            const struct moments *moments, size_t densities, size_t correlations,
+                            const struct moments *moments, const struct spectra_sizes *sizes,
                             struct error *err);
 void statistics_tally_clear(struct statistics_tally *tally);
 double statistics_tally_bytes(const struct statistics_case *one_case);

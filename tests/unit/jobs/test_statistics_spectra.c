@@ -1,6 +1,6 @@
 /* Protects: the error of discretisation of spectral density and autocorrelation: none of the waves
- * of a band; of means over rings at least what they are off the mean over circles; not known of
- * heights that are placed point by point, nor told of what theory alone expects. */
+ * of a band; of means over rings at least what they are off the mean over circles; of heights
+ * that are placed point by point what every second point changes; none of what theory expects. */
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_expectation.h"
 #include "tests/support/statistics_study.h"
@@ -101,7 +101,7 @@ static void profiles_have_no_rings(void **state) {
     result_clear(&result);
 }
 
-static void where_nothing_is_known(void **state) {
+static void waves_beyond_the_grid_are_folded(void **state) {
     (void)state;
     cJSON *parameters;
     struct error err = {0};
@@ -110,8 +110,19 @@ static void where_nothing_is_known(void **state) {
                   " \"heights\"}",
                   &parameters);
     struct case_result expected = {0};
-    assert_null(error_of(&result, "psd")->value);
-    assert_null(error_of(&result, "acf")->value);
+    const struct curve *psd = result_curve(&result, "psd"), *acf = result_curve(&result, "acf");
+    const struct curve_error *folded = error_of(&result, "psd"), *rings = error_of(&result, "acf");
+    size_t known = 0;
+    for (size_t a = 0; a < psd->n; a++) {
+        bool below = a + 1 < 16; /* of 64 points: rings of every second one */
+        assert_true(isnan(folded->value[a]) == !below && isnan(folded->bound[a]) == !below);
+        known += folded->bound[a] > 0 && folded->standard_error[a] > 0;
+    }
+    assert_int_equal(known, 15);
+    for (size_t a = 1; a < acf->n; a++)
+        assert_true(rings->value[a] == 0 && rings->bound[a] > 0 && rings->standard_error[a] > 0);
+    /* heights jump between points no more than waves of the band do: nearly nothing is folded */
+    assert_true(folded->bound[2] < 0.1 * psd->y[2]);
     assert_int_equal(statistics_expectation(parameters, false, &expected, &err), 0);
     for (size_t a = 0; a < expected.curve_count; a++)
         assert_false(expected.curves[a].errors[ERROR_DISCRETISATION].applies);
@@ -124,7 +135,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rings_are_near_circles),
         cmocka_unit_test(profiles_have_no_rings),
-        cmocka_unit_test(where_nothing_is_known),
+        cmocka_unit_test(waves_beyond_the_grid_are_folded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
