@@ -2,6 +2,7 @@
 #include "schema/result/result_json.h"
 #include "schema/study/sweep.h"
 #include "worker/case_merge.h"
+#include "worker/realisation_values.h"
 #include "worker/target.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -195,6 +196,22 @@ int aggregate_case(struct store *store, const struct aggregate *aggregate, uint6
     return status;
 }
 
+/* Publishes what the blocks of a case come to, with what single realisations have. */
+static int publish_merged(struct store *store, const struct aggregate *aggregate,
+                          uint64_t case_number, const struct case_info *info,
+                          struct case_result *result, struct error *err) {
+    struct job_merger *merger = NULL;
+    int status =
+        aggregate_merge(store, aggregate, case_number, info->parameters, &merger, result, err);
+    if (status == 0) {
+        const struct point_texts texts = realisation_values(merger);
+        status = store_publish_points(store, aggregate->about.id, case_number, info->revision,
+                                      result, &texts, err);
+    }
+    merger_destroy(&merger);
+    return status;
+}
+
 int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
                       struct error *err) {
     struct aggregate aggregate;
@@ -208,8 +225,8 @@ int aggregate_publish(struct store *store, const char *study, uint64_t case_numb
     if (status == 0)
         status = answer_case(store, &aggregate, case_number, &info, &result, &found, &grown, err);
     if (status == 0 && !found)
-        status = merge_case(store, &aggregate, case_number, info.parameters, &result, err);
-    if (status == 0 && !grown)
+        status = publish_merged(store, &aggregate, case_number, &info, &result, err);
+    else if (status == 0 && !grown)
         status = store_publish(store, study, case_number, info.revision, &result, err);
     result_clear(&result);
     case_info_clear(&info);

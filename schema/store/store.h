@@ -193,6 +193,18 @@ int store_results(struct store *store, const char *study, uint64_t case_number, 
  * case_info when it was read; an older one than published is ignored. */
 int store_publish(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
                   const struct case_result *result, struct error *err);
+/* What single realisations have at a point of a curve, for the view realisation_points. */
+struct point_texts {
+    const void *context;
+    /* Makes a JSON array of numbers, from realisation 0 on, null where there is none; the caller
+     * frees it. NULL, and 0, where the values of single realisations are not kept. */
+    int (*make)(const void *context, const struct curve *curve, size_t at, char **out,
+                struct error *err);
+};
+/* store_publish, with these texts. */
+int store_publish_points(struct store *store, const char *study, uint64_t case_number,
+                         uint64_t revision, const struct case_result *result,
+                         const struct point_texts *texts, struct error *err);
 /* What is published of a case at this revision, without its parameters. *found: whether anything
  * is; *out is untouched where nothing is, and on failure. */
 struct published_part {

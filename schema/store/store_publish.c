@@ -10,6 +10,7 @@
 struct target {
     struct store *store;
     int64_t study, case_number;
+    const struct point_texts *points; /* NULL: none */
 };
 
 /* Runs a prepared statement with what was bound. */
@@ -83,6 +84,24 @@ static int insert_points(struct store *store, int64_t row, const struct curve *c
     return status;
 }
 
+/* What realisations have at the points, where that is kept; of no matrix. */
+static int insert_realisations(const struct target *target, int64_t row, const struct curve *curve,
+                               struct error *err) {
+    const struct point_texts *points = target->points;
+    int status = 0;
+    for (size_t a = 0; a < curve->n && curve->columns == 0 && points != NULL && status == 0; a++) {
+        char *text = NULL;
+        status = points->make(points->context, curve, a, &text, err);
+        if (status == 0 && text != NULL)
+            status = store_run(target->store, err,
+                               "INSERT INTO point_realisations (curve_id, number, y) VALUES (?, ?, "
+                               "?)",
+                               "iit", row, (int64_t)a, text);
+        free(text);
+    }
+    return status;
+}
+
 static int insert_curve(const struct target *target, const struct curve *curve, struct error *err) {
     sqlite3_stmt *statement = NULL;
     unsigned char *data = NULL;
@@ -101,7 +120,9 @@ static int insert_curve(const struct target *target, const struct curve *curve, 
     free(data);
     if (status != 0)
         return status;
-    return insert_points(target->store, sqlite3_last_insert_rowid(target->store->db), curve, err);
+    int64_t row = sqlite3_last_insert_rowid(target->store->db);
+    status = insert_points(target->store, row, curve, err);
+    return status != 0 ? status : insert_realisations(target, row, curve, err);
 }
 
 static int clear_case(const struct target *target, struct error *err) {
@@ -188,9 +209,10 @@ static int publish(struct target *target, const char *study, const struct case_t
     return status;
 }
 
-int store_publish(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
-                  const struct case_result *result, struct error *err) {
-    struct target target = {store, 0, (int64_t)case_number};
+int store_publish_points(struct store *store, const char *study, uint64_t case_number,
+                         uint64_t revision, const struct case_result *result,
+                         const struct point_texts *points, struct error *err) {
+    struct target target = {store, 0, (int64_t)case_number, points};
     struct case_texts texts = {.revision = revision, .result = result};
     int status = case_texts_print(&texts, err);
     if (status == 0)
@@ -202,4 +224,9 @@ int store_publish(struct store *store, const char *study, uint64_t case_number, 
     free(texts.document);
     free(texts.report);
     return status;
+}
+
+int store_publish(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
+                  const struct case_result *result, struct error *err) {
+    return store_publish_points(store, study, case_number, revision, result, NULL, err);
 }

@@ -1,8 +1,10 @@
 /* Curves and report of a study: complete, partial, filtered, empty. */
+#include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "tests/support/result_tree.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/aggregate.h"
+#include "worker/realisation_values.h"
 #include "worker/source.h"
 #include "worker/worker.h"
 
@@ -407,6 +409,85 @@ static void cases_not_begun_are_empty(void **state) {
     fixture_close(&fixture);
 }
 
+static double number_of(const struct fixture *fixture, const char *sql) {
+    sqlite3 *db = NULL;
+    sqlite3_stmt *row = NULL;
+    assert_int_equal(sqlite3_open(fixture->database, &db), SQLITE_OK);
+    if (sqlite3_prepare_v2(db, sql, -1, &row, NULL) != SQLITE_OK)
+        fail_msg("%s: %s", sql, sqlite3_errmsg(db));
+    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
+    double number = sqlite3_column_double(row, 0);
+    sqlite3_finalize(row);
+    sqlite3_close(db);
+    return number;
+}
+
+/* Areas, gaps and stiffnesses of single realisations on the finest level, whose means are the
+ * curves; loads are found as a person writes them. */
+static void realisations_are_told_at_each_load(void **state) {
+    (void)state;
+    struct fixture fixture;
+    fixture_open(&fixture);
+    fixture_submit(&fixture, CONTACT_STUDY, 2, NULL, 0);
+    run_all(&fixture);
+    double count = number_of(&fixture, "SELECT count(DISTINCT realisation) FROM realisation_points "
+                                       "WHERE \"case\" = 1 AND x = 0.15 AND model = 'layered' AND "
+                                       "quantity = 'stiffness'");
+    assert_true(count ==
+                number_of(&fixture, "SELECT max(realisation) + 1 FROM realisation_scalars"));
+    assert_true(count > 2);
+    assert_true(number_of(&fixture,
+                          "SELECT count(DISTINCT quantity || series || model || \"case\" || "
+                          "x) FROM realisation_points WHERE level = 16") == 4 * 2 * 2 * 4);
+    assert_true(
+        number_of(&fixture,
+                  "SELECT max(abs(c.y / r.mean - 1)) FROM curve_points c JOIN (SELECT \"case\", "
+                  "quantity, series, model, level, x, avg(y) AS mean FROM realisation_points GROUP "
+                  "BY 1, 2, 3, 4, 5, 6) r USING (\"case\", quantity, series, model, level, x)") <
+        1e-9);
+    fixture_close(&fixture);
+}
+
+/* Of a block whose first realisation is not 0: those before it are null. */
+static void missing_realisations_are_null(void **state) {
+    (void)state;
+    struct fault_list faults = {0};
+    struct error err = {0};
+    struct study *study = NULL;
+    struct job_runner *runner = NULL;
+    struct job_merger *merger = NULL;
+    struct block_result block = {0};
+    struct case_result result = {0};
+    char *text = NULL;
+    double value;
+    assert_int_equal(
+        kind_read_study(&study, CONTACT_STUDY, strlen(CONTACT_STUDY), NULL, &faults, &err), 0);
+    const struct job_kind *kind = kind_of(study->kind);
+    const cJSON *parameters = study->cases[0].parameters;
+    assert_int_equal(runner_create(&runner, kind, parameters, NULL, study->seed, 0, &err), 0);
+    assert_int_equal(runner_run(runner, 2, 1, NULL, &block, &err), 0);
+    assert_int_equal(merger_create(&merger, kind, parameters, &err), 0);
+    assert_int_equal(merger_add(merger, &block, &err), 0);
+    assert_int_equal(merger_result(merger, &result, &err), 0);
+    const struct point_texts texts = realisation_values(merger);
+    const struct curve *gap = result_curve(&result, "mean_gap");
+    while (gap->level < 16)
+        gap++; /* curves of one quantity follow each other */
+    assert_int_equal(texts.make(texts.context, gap, 1, &text, &err), 0);
+    assert_int_equal(sscanf(text, "[null,null,%lf]", &value), 1);
+    assert_true(fabs(value / gap->y[1] - 1) < 1e-9);
+    free(text);
+    text = NULL;
+    assert_int_equal(
+        texts.make(texts.context, result_curve(&result, "patch_count"), 1, &text, &err), 0);
+    assert_null(text); /* which no realisation keeps */
+    result_clear(&result);
+    merger_destroy(&merger);
+    block_result_clear(&block);
+    runner_destroy(&runner);
+    study_destroy(&study);
+}
+
 /* Gives the blocks of a case, or of all (-1), the scalars of another program, unpublished. */
 static void spoil(struct fixture *fixture, int case_number) {
     char sql[600], *fault = NULL;
@@ -480,6 +561,8 @@ int main(void) {
         cmocka_unit_test(report_agrees_with_the_curves),
         cmocka_unit_test(report_of_an_empty_study_is_null),
         cmocka_unit_test(report_tells_levels_and_models_apart),
+        cmocka_unit_test(realisations_are_told_at_each_load),
+        cmocka_unit_test(missing_realisations_are_null),
         cmocka_unit_test(cases_not_begun_are_empty),
         cmocka_unit_test(a_case_that_cannot_be_merged_is_told),
     };
