@@ -4,7 +4,7 @@
 #   SAN=address,undefined | SAN=thread   sanitizers      COV=1 coverage      DEBUG=1 no optimisation
 #   CI=1             warnings are errors
 # CC, AR, CPPFLAGS, CFLAGS, LDFLAGS and LDLIBS are the user's, from the command line or the environment; so are
-# DESTDIR, PREFIX, bindir, libdir, includedir, mandir and INSTALL_PROGRAM (`install` keeps symbols) of `make install`.
+# DESTDIR, PREFIX, bindir, libdir, includedir, mandir, pythondir and INSTALL_PROGRAM (`install` keeps symbols) of `make install`.
 BUILD  ?= build
 PREFIX ?= /usr/local
 bindir     ?= $(PREFIX)/bin
@@ -12,6 +12,7 @@ libdir     ?= $(PREFIX)/lib
 includedir ?= $(PREFIX)/include
 mandir     ?= $(PREFIX)/share/man
 completion ?= $(PREFIX)/share/bash-completion/completions
+pythondir  ?= $(PREFIX)/share/rugo/python
 INSTALL         ?= install
 INSTALL_PROGRAM ?= $(INSTALL) -s
 INSTALL_DATA    ?= $(INSTALL) -m 644
@@ -48,7 +49,7 @@ LIBS_worker = -lcurl $(LIBS_jobs)
 LIBS_server = -lmicrohttpd -lnettle -lz $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
-embedded = $(wildcard $(1)/web/* $(1)/http/*.yaml)
+embedded = $(wildcard $(1)/web/* $(1)/http/*.yaml $(1)/python/*.py)
 # The migrations of the store as one piece of data in the order of their names, each ended by a NUL.
 MIGRATIONS = $(sort $(wildcard schema/store/migrations/*.sql))
 DATA_schema = $(BUILD)/schema/store/migrations.data.o
@@ -274,7 +275,8 @@ check-circles:
 .PHONY: check-layers check-circles
 
 INSTALLED = $(bindir)/rugo $(libdir)/$(SHARED) $(libdir)/$(SONAME) $(libdir)/librugo.so $(libdir)/librugo.a \
-            $(libdir)/pkgconfig/rugo.pc $(includedir)/rugo.h $(mandir)/man1/rugo.1 $(completion)/rugo
+            $(libdir)/pkgconfig/rugo.pc $(includedir)/rugo.h $(mandir)/man1/rugo.1 $(completion)/rugo \
+            $(pythondir)/rugo.py
 install: all
 	$(INSTALL) -d $(sort $(dir $(addprefix $(DESTDIR),$(INSTALLED))))
 	$(INSTALL_PROGRAM) $(BUILD)/rugo $(DESTDIR)$(bindir)/rugo
@@ -286,6 +288,7 @@ install: all
 	$(INSTALL_DATA) core/rugo.h $(DESTDIR)$(includedir)/rugo.h
 	$(INSTALL_DATA) $(BUILD)/rugo.1 $(DESTDIR)$(mandir)/man1/rugo.1
 	$(INSTALL_DATA) $(BUILD)/rugo.bash $(DESTDIR)$(completion)/rugo
+	$(INSTALL_DATA) server/python/rugo.py $(DESTDIR)$(pythondir)/rugo.py
 uninstall:
 	rm -f $(addprefix $(DESTDIR),$(INSTALLED))
 

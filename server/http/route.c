@@ -40,6 +40,7 @@ static const struct route {
     {"GET", "/", ROLE_NONE, handle_page, {NULL}},
     {"GET", "/app.js", ROLE_NONE, handle_script, {NULL}},
     {"GET", "/style.css", ROLE_NONE, handle_style, {NULL}},
+    {"GET", "/rugo.py", ROLE_NONE, handle_client, {NULL}},
 };
 enum { ROUTE_COUNT = sizeof ROUTES / sizeof *ROUTES };
 

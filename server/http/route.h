@@ -13,7 +13,7 @@ route_handler handle_study_create, handle_study_list, handle_study, handle_docum
     handle_plot, handle_table, handle_events;
 route_handler handle_claim, handle_heartbeat, handle_complete, handle_fail, handle_release;
 route_handler handle_health, handle_metrics, handle_snapshot, handle_openapi, handle_schema,
-    handle_page, handle_script, handle_style;
+    handle_page, handle_script, handle_style, handle_client;
 
 /* Returns whether there is a body; false after a 400. */
 bool check_body(struct exchange *exchange);

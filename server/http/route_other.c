@@ -16,6 +16,7 @@ EMBEDDED(http_openapi_yaml);
 EMBEDDED(web_index_html);
 EMBEDDED(web_app_js);
 EMBEDDED(web_style_css);
+EMBEDDED(python_rugo_py);
 
 #define ANSWER_EMBEDDED(exchange, type, name)                                                      \
     answer_static(exchange, type, _binary_server_##name##_start,                                   \
@@ -39,6 +40,11 @@ void handle_script(struct exchange *exchange, const char *id) {
 void handle_style(struct exchange *exchange, const char *id) {
     (void)id;
     ANSWER_EMBEDDED(exchange, "text/css; charset=utf-8", web_style_css);
+}
+
+void handle_client(struct exchange *exchange, const char *id) {
+    (void)id;
+    ANSWER_EMBEDDED(exchange, "text/x-python; charset=utf-8", python_rugo_py);
 }
 
 void handle_schema(struct exchange *exchange, const char *id) {

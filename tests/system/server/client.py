@@ -1,0 +1,123 @@
+"""What test_python.c runs: rugo.py against a real service. Arguments: the URL, and a folder with first.json
+and what `rugo run --out results` makes of it."""
+
+import contextlib
+import io
+import json
+import os
+import pathlib
+import re
+import sys
+
+import rugo
+
+URL, FOLDER = sys.argv[1], sys.argv[2]
+STUDY = {"name": "again", "kind": "statistics", "seed": 1, "realisations": 8,
+         "surface": {"hurst": [0.2, 0.8], "wavelength_ratio": 4, "length_ratio": 4}}
+
+
+def refused(call, status, *words):
+    try:
+        call()
+    except rugo.RugoError as error:
+        assert error.status == status, error
+        assert all(word in str(error) for word in words), error
+        return error
+    raise AssertionError(f"not refused: {words}")
+
+
+def a_study_from_submission_to_tables(server):
+    study = server.submit(json.dumps(STUDY), key="a-key")
+    assert server.submit(STUDY, key="other").id != study.id
+    assert server.submit(json.dumps(STUDY), key="a-key").id == study.id
+    with contextlib.redirect_stderr(io.StringIO()) as told:
+        assert study.wait(timeout=60, progress=True) is study
+    assert "again: done, 100.0 %" in told.getvalue()
+    assert study.status()["realisations"]["done"] == 16
+    assert study.document()["surface"] == STUDY["surface"]
+    rows = study.curves("summit_height_pdf")
+    assert {row["case"] for row in rows} == {0, 1} and {row["quantity"] for row in rows} == {"summit_height_pdf"}
+    document = study.results("summit_height_pdf")
+    points = [y for case in document["cases"] for curve in case["curves"] for y in curve["y"]]
+    assert [row["y"] for row in rows] == points and len(points) > 100
+    assert study.curves("summit_height_pdf", case=1) == [row for row in rows if row["case"] == 1]
+    slopes = [row for row in study.scalars() if row["name"] == "rms_slope"]
+    assert [row["hurst"] for row in slopes] == [0.2, 0.8] and slopes[0]["value"] > slopes[1]["value"]
+    table = study.table(["rms_slope"])
+    assert [row["hurst"] for row in table] == [0.2, 0.8]
+    assert [row["rms_slope"] for row in table] == [row["value"] for row in slopes]
+    assert [row["hurst"] for row in study.table(where={"hurst": 0.8})] == [0.8]
+    assert study.plot("summit_height_pdf").startswith(("<?xml", "<svg"))
+    assert len(study.report()["cases"]) == 2
+    try:
+        frame = rows.frame()
+        assert list(frame.columns) == list(rows[0]) and len(frame) == len(rows)
+    except ImportError:
+        print("SKIP frame(): there is no pandas")
+    return study
+
+
+def studies_are_found_and_changed(server, study):
+    assert server.study(study.id[:9]).id == study.id
+    refused(lambda: server.study("again"), 422, "may be each of 2 studies")
+    refused(lambda: server.study("no / such"), 404)
+    assert study.id in [row["id"] for row in server.studies()]
+    assert study.extend(10).wait(timeout=60).status()["realisations"]["done"] == 20
+    assert study.retry().status()["state"] == "done"
+    refused(study.cancel, 409, "already ended")
+    large = server.submit(dict(STUDY, name="large", realisations=100000))
+    large.cancel()
+    refused(large.wait, None, "cancelled")
+    large.delete()
+    refused(large.status, 404)
+
+
+def faults_are_told(server):
+    faults = refused(lambda: server.submit({"kind": "statistics", "surface": {"hurst": 1.4}}), 422, "1.4 is not in")
+    assert "/surface/hurst" in [error["pointer"] for error in faults.errors]
+    refused(lambda: rugo.Server("http://127.0.0.1:1").studies(), None, "127.0.0.1:1")
+
+
+def many_cases_are_asked_for_one_by_one(server):
+    many = dict(STUDY, name="many", realisations=1)
+    many["surface"] = dict(STUDY["surface"], length_ratio=2, points_per_wavelength=2,
+                           hurst=[round(0.1 + c / 100, 3) for c in range(65)])
+    rows = server.submit(many).wait(timeout=100).curves("summit_height_pdf")
+    assert {row["case"] for row in rows} == set(range(65))
+
+
+def tokens_are_read_as_commands_do():
+    path = pathlib.Path(FOLDER, "client-tokens")
+    for text, token in (("# ours\nread:aaaa\nsubmit:bb:b\nwork:cccc\n", "bb:b"), ("\nread:aaaa\nwork:cc\n", "aaaa"),
+                        ("alone\n", "alone")):
+        path.write_text(text)
+        assert rugo.Server(URL, token_file=path).token == token
+    path.unlink()
+
+
+def what_the_page_claims():
+    """The blocks of the page, one after the other, where there is pandas."""
+    page = pathlib.Path(rugo.__file__).with_name("README.md").read_text(encoding="utf-8")
+    try:
+        import pandas
+    except ImportError:
+        print("SKIP the page: there is no pandas")
+        return
+    blocks = re.findall("```python\n(.*?)```", page, re.S)
+    assert len(blocks) == 4
+    names = {}
+    for block in blocks:
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            exec(block.replace("http://127.0.0.1:8080", URL), names)
+    assert isinstance(names["table"], pandas.DataFrame) and len(names["table"]) == 2
+
+
+os.chdir(FOLDER)
+here = rugo.Server(URL)
+what_the_page_claims()
+one = a_study_from_submission_to_tables(here)
+studies_are_found_and_changed(here, one)
+faults_are_told(here)
+many_cases_are_asked_for_one_by_one(here)
+tokens_are_read_as_commands_do()
+print("client: all as it should be")

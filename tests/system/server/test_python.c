@@ -1,0 +1,69 @@
+/* Protects: the client in Python, against a real service, and what its page claims (client.py). */
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char FIRST[] =
+    "{\"name\":\"first\",\"kind\":\"statistics\",\"seed\":1,\"realisations\":8,\"surface\":{"
+    "\"hurst\":[0.2,0.8],\"wavelength_ratio\":4,\"length_ratio\":4}}";
+
+static const char *source(void) {
+    const char *folder = getenv("RUGO_SOURCE");
+    return folder != NULL ? folder : ".";
+}
+
+static void the_client_and_its_page(void **state) {
+    (void)state;
+    struct process server = {0};
+    char line[1200];
+    if (system("python3 -c 'import sys; sys.exit(sys.version_info < (3, 8))' 2>/dev/null") != 0) {
+        print_message("SKIP: there is no python3 of version 3.8 or later\n");
+        skip();
+    }
+    unsigned port = serve_start(&server, (const char *[]){"--workers", "1", NULL});
+    spit("first.json", FIRST);
+    assert_int_equal(run_rugo("run", (const char *[]){"run", "--db", "own.db", "first.json",
+                                                      "--out", "results", NULL}),
+                     0);
+    snprintf(
+        line, sizeof line,
+        "env -u RUGO_TOKEN PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=\"%s/server/python:$PYTHONPATH\" "
+        "timeout 200 python3 %s/tests/system/server/client.py http://127.0.0.1:%u . "
+        ">client.out 2>&1",
+        source(), source(), port);
+    int status = system(line);
+    char *told = slurp("client.out");
+    print_message("%s", told);
+    assert_non_null(strstr(told, "client: all as it should be"));
+    free(told);
+    assert_int_equal(status, 0);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 15), 0);
+}
+
+/* The service gives away the file that is in the tree. */
+static void the_service_gives_it_away(void **state) {
+    (void)state;
+    struct process server = {0};
+    char path[600], *answer;
+    snprintf(path, sizeof path, "%s/server/python/rugo.py", source());
+    char *file = slurp(path);
+    unsigned port = serve_start(&server, NULL);
+    assert_int_equal(http_exchange(port, "GET", "/rugo.py", NULL, NULL, &answer), 200);
+    assert_string_equal(answer, file);
+    free(answer);
+    free(file);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 15), 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_client_and_its_page),
+        cmocka_unit_test(the_service_gives_it_away),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
