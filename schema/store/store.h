@@ -16,7 +16,7 @@
 #include "schema/study/study.h"
 #include <stdbool.h>
 
-enum { STUDY_ID_SIZE = 17, TOKEN_SIZE = 33, ATTEMPTS_MOST = 3 };
+enum { STUDY_ID_SIZE = 17, TOKEN_SIZE = 33, ATTEMPTS_MOST = 3, OWNER_SIZE = 41 };
 
 struct store;
 struct store_options {
@@ -65,6 +65,12 @@ struct study_status {
                             none works on it yet; NaN where nobody works */
     uint64_t workers;    /* distinct workers with a live lease */
     uint64_t revision;   /* rises with every change of results or state */
+    char *owner;         /* owned; "" for a study of nobody */
+    int64_t priority;    /* among the studies of its owner */
+    /* Of a queued study: its place among the queued, from 1 on (else 0), and when its first job
+     * starts, as estimated, in seconds; NaN where that is not known: no worker is at work. */
+    uint64_t place;
+    double starts_in;
     char created[32], finished[32]; /* UTC, ISO 8601; "" if not yet */
 };
 void study_status_clear(struct study_status *status);
@@ -142,11 +148,16 @@ struct claim {
     bool independent_only;
 };
 /* Hands out waiting jobs and those whose lease ran out (which count an attempt; the last failed
- * attempt fails the job with "lease ran out ..."). Oldest study first. *count may be 0. */
+ * attempt fails the job with "lease ran out ..."). Owners take turns, so that each gets its share
+ * of the workers' time; of an owner the study of highest priority is first, then the oldest. *count
+ * may be 0. */
 int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs,
                 size_t *count, struct error *err);
 /* Returns whether the last claim failed a job for good, which may have left its case due. */
 bool store_claim_failed_jobs(const struct store *store);
+/* Sets the weight of an owner, above 0: its share of the workers' time beside those of others. It
+ * is 1 unless set. */
+int store_share(struct store *store, const char *owner, double weight, struct error *err);
 /* Renews the lease; done: realisations so far. ERROR_STATE when the lease is lost or the study
  * cancelled (the text says which). */
 int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_t done,

@@ -28,47 +28,77 @@ static int expire_one(struct store *store, struct error *err) {
     return status != 0 ? status : 1;
 }
 
-static bool is_wanted(const char *const *kinds, const char *kind) {
-    for (; kinds != NULL && *kinds != NULL; kinds++)
-        if (strcmp(*kinds, kind) == 0)
-            return true;
-    return kinds == NULL;
-}
-
 struct found_study {
     int64_t id;
     bool queued;
     enum study_random random;
+    char owner[OWNER_SIZE];
+    double start; /* of its next job, on the clock of its owner (store_line.c) */
 };
 
-/* The oldest study with a job that waits and is wanted; only: 0, or the one that may be. Fills
- * job's study, kind and seed. 1, or 0 when there is none. */
+/* The kinds of a claim as " one two ", the caller's to free; *out is NULL for any. */
+static int kinds_text(const char *const *kinds, char **out, struct error *err) {
+    size_t size = 2;
+    *out = NULL;
+    for (size_t k = 0; kinds != NULL && kinds[k] != NULL; k++)
+        size += strlen(kinds[k]) + 1;
+    char *text = kinds != NULL ? array_create(size, 1) : NULL;
+    if (kinds != NULL && text == NULL)
+        return error_memory(err, size, "the kinds of a claim");
+    for (size_t k = 0, used = 0; text != NULL && (k == 0 || kinds[k - 1] != NULL); k++)
+        used += (size_t)snprintf(text + used, size - used, "%s ", k > 0 ? kinds[k - 1] : "");
+    *out = text;
+    return 0;
+}
+
+/* Studies that a worker may have: ?1 those of independent cases alone, ?2 of these kinds. */
+#define CLAIMABLE                                                                                  \
+    "state IN ('queued', 'running') AND jobs_waiting > 0 AND (NOT ?1 OR random = 'independent' "   \
+    "OR (cases = 1 AND realisations > 0)) AND (?2 IS NULL OR instr(?2, ' ' || kind || ' ') > 0)"
+#define FOUND_COLUMNS                                                                              \
+    "s.id, s.public, s.kind, s.seed, s.state = 'queued', s.random, s.owner, max(h.served, "        \
+    "(SELECT "                                                                                     \
+    "max(begun) FROM share)) AS start"
+
+/* The next study of the owner whose turn it is, or the one that is asked for. */
+static int query_study(struct store *store, const struct claim *claim, int64_t only,
+                       const char *kinds, sqlite3_stmt **row, struct error *err) {
+    if (only != 0)
+        return store_query(store, row, err,
+                           "SELECT " FOUND_COLUMNS " FROM study s JOIN share h ON h.owner = "
+                           "s.owner WHERE " CLAIMABLE " AND s.id = ?3",
+                           "iti", (int64_t)claim->independent_only, kinds, only);
+    return store_query(store, row, err,
+                       "SELECT " FOUND_COLUMNS " FROM share h JOIN study s ON s.id = (SELECT id "
+                       "FROM study INDEXED BY study_line WHERE owner = h.owner AND " CLAIMABLE
+                       " ORDER BY priority DESC, id LIMIT 1) ORDER BY start, h.begun, h.owner "
+                       "LIMIT 1",
+                       "it", (int64_t)claim->independent_only, kinds);
+}
+
+/* Fills job's study, kind and seed. 1, or 0 when there is none. */
 static int find_study(struct store *store, const struct claim *claim, int64_t only,
                       struct found_study *found, struct claimed_job *job, struct error *err) {
     sqlite3_stmt *row = NULL;
-    int status = store_query(
-        store, &row, err,
-        "SELECT id, public, kind, seed, state = 'queued', random FROM study WHERE "
-        "state IN ('queued', 'running') AND jobs_waiting > 0 AND (?1 = 0 OR id = ?1) "
-        "AND (NOT ?2 OR random = 'independent' OR (cases = 1 AND realisations > 0)) ORDER "
-        "BY id",
-        "ii", only, (int64_t)claim->independent_only);
-    while (status == 0 && (status = store_step(store, row, err)) == 1) {
-        const char *kind = (const char *)sqlite3_column_text(row, 2);
-        status = 0;
-        if (!is_wanted(claim->kinds, kind))
-            continue;
-        *found = (struct found_study){.id = sqlite3_column_int64(row, 0),
-                                      .queued = sqlite3_column_int(row, 4),
-                                      .random = column_random(row, 5)};
-        snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 1));
-        job->seed = strtoull((const char *)sqlite3_column_text(row, 3), NULL, 10);
-        job->kind = strdup(kind);
-        status = job->kind != NULL ? 1 : error_memory(err, 0, "a kind");
-        sqlite3_reset(row);
-        break;
-    }
-    return status;
+    char *kinds = NULL;
+    int status = kinds_text(claim->kinds, &kinds, err);
+    if (status == 0)
+        status = query_study(store, claim, only, kinds, &row, err);
+    free(kinds); /* which was copied */
+    if (status == 0)
+        status = store_step(store, row, err);
+    if (status <= 0)
+        return status;
+    *found = (struct found_study){.id = sqlite3_column_int64(row, 0),
+                                  .queued = sqlite3_column_int(row, 4),
+                                  .random = column_random(row, 5),
+                                  .start = sqlite3_column_double(row, 7)};
+    snprintf(found->owner, sizeof found->owner, "%s", (const char *)sqlite3_column_text(row, 6));
+    snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 1));
+    job->seed = strtoull((const char *)sqlite3_column_text(row, 3), NULL, 10);
+    job->kind = column_copy(row, 2);
+    sqlite3_reset(row);
+    return job->kind != NULL ? 1 : error_memory(err, 0, "a kind");
 }
 
 /* Leases the study's first job that waits. */
@@ -107,12 +137,14 @@ static int lease_job(struct store *store, const struct claim *claim,
         store->options.lease_ms, store_time(store), job->id);
 }
 
-static int copy_parameters(struct store *store, int64_t study, struct claimed_job *job,
-                           struct error *err) {
+/* *seconds: that the job takes, as measured of its case or, before, as estimated. */
+static int copy_case(struct store *store, int64_t study, struct claimed_job *job, double *seconds,
+                     struct error *err) {
     sqlite3_stmt *row = NULL;
     int status = store_query(store, &row, err,
-                             "SELECT parameters, sequence FROM study_case WHERE study_id = ? AND "
-                             "number = ?",
+                             "SELECT parameters, sequence, CASE WHEN seconds > 0 AND "
+                             "realisations_done > 0 THEN seconds / realisations_done ELSE estimate "
+                             "END FROM study_case WHERE study_id = ? AND number = ?",
                              "ii", study, (int64_t)job->case_number);
     if (status == 0)
         status = store_step(store, row, err);
@@ -122,9 +154,20 @@ static int copy_parameters(struct store *store, int64_t study, struct claimed_jo
                    : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
     if (sqlite3_column_type(row, 1) != SQLITE_NULL)
         job->sequence = (uint64_t)sqlite3_column_int64(row, 1);
+    *seconds = sqlite3_column_double(row, 2) * (double)job->count;
     status = column_json(row, 0, &job->parameters, err);
     sqlite3_reset(row);
     return status;
+}
+
+/* Moves the clock of the study's owner on. Jobs that take no time count a little, so that owners of
+ * such take turns, too. */
+static int count_share(struct store *store, const struct found_study *study, double seconds,
+                       struct error *err) {
+    static const double LEAST = 1e-3;
+    return store_run(store, err,
+                     "UPDATE share SET begun = ?1, served = ?1 + ?2 / weight WHERE owner = ?3",
+                     "ddt", study->start, seconds > LEAST ? seconds : LEAST, study->owner);
 }
 
 /* The counters change with every claim; the state only with the first, as it is indexed. */
@@ -143,6 +186,7 @@ static int count_claim(struct store *store, const struct found_study *study, str
 static int claim_one(struct store *store, const struct claim *claim, int64_t only,
                      struct claimed_job *job, struct error *err) {
     struct found_study study = {0};
+    double seconds = 0;
     int status = find_study(store, claim, only, &study, job, err);
     if (status <= 0)
         return status;
@@ -150,7 +194,9 @@ static int claim_one(struct store *store, const struct claim *claim, int64_t onl
     if (status == 0)
         status = count_claim(store, &study, err);
     if (status == 0)
-        status = copy_parameters(store, study.id, job, err);
+        status = copy_case(store, study.id, job, &seconds, err);
+    if (status == 0)
+        status = count_share(store, &study, seconds, err);
     return status != 0 ? status : 1;
 }
 

@@ -116,7 +116,7 @@ static int extend(struct store *store, int64_t study, int64_t had, int64_t wante
                            "?) WHERE study_id = ?",
                            "ii", wanted, study);
     *jobs = again + added;
-    return status;
+    return status != 0 ? status : study_count_work(store, study, err);
 }
 
 /* Fails where the results that are there are of another edition; those of older programs tell none.

@@ -63,6 +63,12 @@ int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 #define DELETED_STUDIES "(SELECT id FROM deleted_study WHERE purged = 0)"
 /* Finds the row of a study; ERROR_ABSENT with a sentence when there is none. */
 int study_row(struct store *store, const char *id, int64_t *row, struct error *err);
+/* Counts the work of a study anew, when it has got jobs. */
+int study_count_work(struct store *store, int64_t study, struct error *err);
+/* Tells the place of a study with jobs that wait among those that are queued, from 1 on, and in how
+ * many seconds the next of its jobs starts: NaN where nobody works. */
+int study_line(struct store *store, int64_t study, uint64_t *place, double *starts_in,
+               struct error *err);
 /* Queues what failed or was cancelled again: *jobs of them. Within a change. */
 int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error *err);
 /* Ends the study when nothing of it waits or runs; raises its revision. */

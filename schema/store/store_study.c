@@ -51,7 +51,7 @@ static const char *state_name(const unsigned char *text) {
     "CASE WHEN realisations > 0 THEN cases * realisations ELSE (SELECT sum(c.realisations) FROM "  \
     "study_case c WHERE c.study_id = study.id) END, "                                              \
     "CASE WHEN realisations = 0 THEN (SELECT max(c.error_reached) FROM study_case c WHERE "        \
-    "c.study_id = study.id) END"
+    "c.study_id = study.id) END, owner, priority"
 
 static uint64_t column_count(sqlite3_stmt *row, int column) {
     return (uint64_t)sqlite3_column_int64(row, column);
@@ -90,63 +90,39 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     out->time.jobs_without_cpu = column_count(row, 25);
     out->error_reached =
         sqlite3_column_type(row, 27) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(row, 27);
-    if (out->name == NULL || out->kind == NULL)
+    out->owner = column_copy(row, 28);
+    out->priority = sqlite3_column_int64(row, 29);
+    if (out->name == NULL || out->kind == NULL || out->owner == NULL)
         return error_memory(err, 0, "a study's name");
     return 0;
 }
 
-/* What waits in front of a study: the work of older ones, added up as one goes from study to study.
- */
-struct queue_ahead {
-    int64_t before; /* studies older than this one are in it */
-    double work;    /* seconds of one worker */
-};
-
-static int add_ahead(struct store *store, int64_t row, struct queue_ahead *ahead,
-                     struct error *err) {
-    while (ahead->before < row) {
-        struct work_left left;
-        int64_t next = 0, realisations = 0;
-        int status = store_integer(store, &next, err,
-                                   "SELECT coalesce(min(id), ?2) FROM study WHERE state IN "
-                                   "('queued', 'running') AND id >= ?1 AND id < ?2",
-                                   "ii", ahead->before, row);
-        if (status == 0 && next < row)
-            status = store_integer(store, &realisations, err,
-                                   "SELECT realisations FROM study WHERE id = ?", "i", next);
-        if (status == 0 && next < row)
-            status = study_left(store, next, (uint64_t)realisations, 0, &left, err);
-        if (status != 0)
-            return status;
-        ahead->work += next < row ? left.work : 0;
-        ahead->before = next + (next < row);
-    }
-    return 0;
-}
-
-/* Whoever works now will come to what is queued, in the order of studies. */
+/* Whoever works now will come to what is queued when it is its turn. */
 static int queue_left(struct store *store, int64_t row, struct study_status *out,
-                      struct queue_ahead *ahead, struct work_left *left, struct error *err) {
+                      struct work_left *left, struct error *err) {
     int64_t workers = 0;
     int status = store_integer(
         store, &workers, err, "SELECT count(DISTINCT worker) FROM job WHERE state = 'running'", "");
     if (status == 0)
         status = study_left(store, row, out->realisations, (size_t)workers, left, err);
-    if (status == 0 && workers > 0)
-        status = add_ahead(store, row, ahead, err);
-    if (status == 0 && workers > 0)
-        left->seconds += ahead->work / (double)workers;
+    if (status == 0)
+        status = study_line(store, row, &out->place, &out->starts_in, err);
+    left->seconds += out->starts_in;
+    if (strcmp(out->state, "queued") != 0)
+        out->place = 0;
     return status;
 }
 
-static int time_left(struct store *store, int64_t row, struct study_status *out,
-                     struct queue_ahead *ahead, struct error *err) {
+/* What other rows tell of it: the time left, and its place in line. */
+static int read_outlook(struct store *store, int64_t row, struct study_status *out,
+                        struct error *err) {
     struct work_left left = {0};
     int status = 0;
+    out->starts_in = NAN;
     if (out->jobs_running > 0)
         status = study_left(store, row, out->realisations, 0, &left, err);
     else if (out->jobs_waiting > 0)
-        status = queue_left(store, row, out, ahead, &left, err);
+        status = queue_left(store, row, out, &left, err);
     else if (out->realisations_total > 0)
         left.share = (double)out->realisations_done / (double)out->realisations_total;
     out->seconds_left = left.seconds;
@@ -157,13 +133,13 @@ static int time_left(struct store *store, int64_t row, struct study_status *out,
 void study_status_clear(struct study_status *status) {
     free(status->name);
     free(status->kind);
+    free(status->owner);
     *status = (struct study_status){0};
 }
 
 int store_status(struct store *store, const char *id, struct study_status *out, struct error *err) {
     sqlite3_stmt *statement = NULL;
     struct study_status read = {0};
-    struct queue_ahead ahead = {0};
     int status = store_query(store, &statement, err,
                              "SELECT " STATUS_COLUMNS " FROM study WHERE public = ?", "t", id);
     if (status == 0)
@@ -176,7 +152,7 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
     status = read_status(statement, &read, err);
     sqlite3_reset(statement);
     if (status == 0)
-        status = time_left(store, row, &read, &ahead, err);
+        status = read_outlook(store, row, &read, err);
     if (status != 0)
         study_status_clear(&read);
     else
@@ -237,7 +213,6 @@ int store_list(struct store *store, const char *after, size_t limit, struct stud
         return status;
     struct study_status *list = array_create(limit, sizeof *list);
     int64_t *rows = array_create(limit, sizeof *rows);
-    struct queue_ahead ahead = {0};
     size_t n = 0;
     sqlite3_stmt *statement = NULL;
     if (list == NULL || rows == NULL)
@@ -255,7 +230,7 @@ int store_list(struct store *store, const char *after, size_t limit, struct stud
     if (status >= 0 && n != 0)
         sqlite3_reset(statement);
     for (size_t i = 0; status >= 0 && i < n; i++)
-        status = time_left(store, rows[i], &list[i], &ahead, err);
+        status = read_outlook(store, rows[i], &list[i], err);
     free(rows);
     if (status < 0) {
         free_list(list, n);

@@ -112,17 +112,22 @@ static int queue_cases(struct store *store, const struct study *study, int64_t r
 static int insert_row(struct store *store, const struct study *study, const char *key,
                       const char *id, int64_t *row, struct error *err) {
     char seed[24], program[PROGRAM_SIZE];
+    const char *owner = study->owner != NULL ? study->owner : "";
     program_write(program);
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
     int status =
         store_run(store, err,
                   "INSERT INTO study (public, name, kind, seed, random, realisations, "
-                  "submit_key, state, cases, jobs, jobs_waiting, created, program) VALUES "
-                  "(?, ?, ?, ?, ?, ?, ?, 'queued', ?, 0, 0, ?, ?)",
-                  "tttttititt", id, study->name, study->kind->name, seed,
+                  "submit_key, state, cases, jobs, jobs_waiting, created, program, owner, "
+                  "priority) VALUES "
+                  "(?, ?, ?, ?, ?, ?, ?, 'queued', ?, 0, 0, ?, ?, ?, ?)",
+                  "tttttitittti", id, study->name, study->kind->name, seed,
                   choice_name(STUDY_RANDOM, (int)study->random), (int64_t)study->realisations, key,
-                  (int64_t)study->case_count, store_time(store), program);
+                  (int64_t)study->case_count, store_time(store), program, owner, study->priority);
     *row = sqlite3_last_insert_rowid(store->db);
+    if (status == 0)
+        status =
+            store_run(store, err, "INSERT OR IGNORE INTO share (owner) VALUES (?)", "t", owner);
     return status != 0
                ? status
                : store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",
@@ -144,11 +149,11 @@ static int insert_study(struct store *store, const struct study *study, const ch
         status = study_take_blocks(store, row, &taken, err);
     if (status == 0)
         status = queue_cases(store, study, row, &jobs, err);
-    return status != 0 ? status
-                       : store_run(store, err,
-                                   "UPDATE study SET jobs = jobs + ?1, jobs_waiting = ?1 WHERE id "
-                                   "= ?2",
-                                   "ii", jobs, row);
+    if (status == 0)
+        status = store_run(store, err,
+                           "UPDATE study SET jobs = jobs + ?1, jobs_waiting = ?1 WHERE id = ?2",
+                           "ii", jobs, row);
+    return status != 0 ? status : study_count_work(store, row, err);
 }
 
 /* 1 and the id when the key was used for this very study, 0 when it was not used. */

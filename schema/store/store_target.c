@@ -98,7 +98,7 @@ static int grow(struct store *store, int64_t study, uint64_t case_number,
                            "UPDATE study SET jobs = jobs + ?, jobs_waiting = jobs_waiting + ?, "
                            "revision = revision + 1 WHERE id = ?",
                            "iii", *jobs, *jobs, study);
-    return status;
+    return status != 0 ? status : study_count_work(store, study, err);
 }
 
 int store_grow(struct store *store, const char *study, uint64_t case_number,

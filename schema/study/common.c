@@ -44,6 +44,13 @@ static const struct parameter ROWS[] = {
      .maximum = STUDY_REALISATIONS_MOST,
      .example_json = "500",
      .help = "random surfaces of each case; the kind's own number unless given"},
+    {.path = "/priority",
+     .type = PARAMETER_INTEGER,
+     .minimum = -PRIORITY_MOST,
+     .maximum = PRIORITY_MOST,
+     .default_json = "0",
+     .example_json = "5",
+     .help = "among the studies of one owner that wait: higher ones first, then older ones"},
 };
 const struct parameter_table COMMON_PARAMETERS = {"study", ROWS, sizeof ROWS / sizeof *ROWS};
 
@@ -73,6 +80,8 @@ static int take(struct study *study, const struct parameter *row, const cJSON *v
         study->random = (enum study_random)choice_find(row->choices, value->valuestring)->value;
     } else if (row->type == PARAMETER_CHOICE) {
         study->kind = kinds[choice_find(row->choices, value->valuestring)->value];
+    } else if (strcmp(row->path, "/priority") == 0) {
+        study->priority = (int64_t)value->valuedouble;
     } else if (row->type == PARAMETER_INTEGER) {
         study->realisations = (uint64_t)value->valuedouble;
     } else if (row->type == PARAMETER_SEED && value_seed(value, &seed)) {

@@ -19,6 +19,7 @@ void study_destroy(struct study **study) {
     free(s->swept);
     free(s->cases);
     free(s->name);
+    free(s->owner);
     free(s->source);
     free(s);
     *study = NULL;

@@ -67,6 +67,8 @@ struct study {
     /* Marks the program's results of this kind: those of different editions are not mixed. 0: of no
      * edition, whose results are its own. */
     uint64_t edition;
+    char *owner;      /* of whom it is; "" or NULL: of nobody */
+    int64_t priority; /* among the studies of its owner: higher ones first */
     size_t case_count;
     struct study_case *cases;
     char *source; /* the document as compact JSON, as it was given */
@@ -74,7 +76,7 @@ struct study {
     char **swept;
 };
 
-enum { STUDY_CASES_MOST = 10000, STUDY_REALISATIONS_MOST = 10000000 };
+enum { STUDY_CASES_MOST = 10000, STUDY_REALISATIONS_MOST = 10000000, PRIORITY_MOST = 100 };
 
 void study_destroy(struct study **study);
 

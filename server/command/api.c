@@ -74,6 +74,19 @@ static bool is_planning(const struct study_status *status) {
            status->jobs_waiting + status->jobs_running == 0;
 }
 
+/* Whose it is, and where it stands among those that wait. */
+static bool put_line(cJSON *object, const struct study_status *status) {
+    bool waits = status->place > 0;
+    return field_put(object, "owner",
+                     *status->owner != '\0' ? cJSON_CreateString(status->owner)
+                                            : cJSON_CreateNull()) &&
+           field_put(object, "priority", cJSON_CreateNumber((double)status->priority)) &&
+           field_put(object, "place",
+                     waits ? cJSON_CreateNumber((double)status->place) : cJSON_CreateNull()) &&
+           field_put(object, "starts_in",
+                     waits ? json_number(status->starts_in) : cJSON_CreateNull());
+}
+
 static cJSON *progress(const struct study_status *status, bool *complete) {
     char seed[24];
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)status->seed);
@@ -85,7 +98,7 @@ static cJSON *progress(const struct study_status *status, bool *complete) {
                 field_put(document, "seed", cJSON_CreateString(seed)) &&
                 field_put(document, "random",
                           cJSON_CreateString(choice_name(STUDY_RANDOM, (int)status->random))) &&
-                field_put_count(document, "cases", status->cases) &&
+                put_line(document, status) && field_put_count(document, "cases", status->cases) &&
                 field_put_count(document, "cases_failed", status->cases_failed) &&
                 field_put(document, "planning", cJSON_CreateBool(is_planning(status))) &&
                 (isnan(status->error_reached) ||

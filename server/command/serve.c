@@ -12,7 +12,7 @@
 
 struct options {
     const char *database, *listen, *token_file;
-    const char **hosts;
+    const char **hosts, **shares;
     unsigned workers, lease_s, connections, per_address, deadline_s;
 };
 #define AT(member) offsetof(struct options, member)
@@ -21,7 +21,8 @@ static const struct option_row OPTIONS[] = {
     {"listen", 0, OPTION_TEXT, 0, 0, AT(listen), "ADDR:PORT", "127.0.0.1:8080",
      "where to listen; port 0 picks a free one"},
     {"token-file", 0, OPTION_TEXT, 0, 0, AT(token_file), "FILE", NULL,
-     "tokens, role:token a line (read, submit, work); needed beyond loopback"},
+     "tokens, role:token or role:name:token a line (read, submit, work, admin); needed beyond "
+     "loopback"},
     {"workers", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(workers), "N", "0",
      "run jobs in this process too, on N threads"},
     {"lease", 0, OPTION_COUNT, 1, SECONDS_MOST, AT(lease_s), "SECONDS", "60",
@@ -32,6 +33,8 @@ static const struct option_row OPTIONS[] = {
      "most connections of one address; 0: no limit"},
     {"deadline", 0, OPTION_COUNT, 1, SECONDS_MOST, AT(deadline_s), "SECONDS", "30",
      "most time for one request"},
+    {"share", 0, OPTION_LIST, 0, 0, AT(shares), "NAME=WEIGHT", NULL,
+     "of the workers' time that the studies of a name have beside others; 1 until it is set"},
     {"allow-host", 0, OPTION_LIST, 0, 0, AT(hosts), "NAME", NULL, "another name of this server"},
     {0}};
 
@@ -148,6 +151,22 @@ static void announce(const struct serve *serve) {
     log_line(LEVEL_INFO, NULL, "listening on %s, database %s", url, serve->options->database);
 }
 
+/* Sets the weights of owners, which the store keeps. */
+static int set_shares(struct serve *serve, struct error *err) {
+    int status = 0;
+    for (const char **share = serve->options->shares; status == 0 && *share != NULL; share++) {
+        char name[OWNER_SIZE], *end = NULL;
+        const char *equals = strchr(*share, '=');
+        double weight = equals != NULL ? strtod(equals + 1, &end) : 0;
+        if (equals == NULL || equals == *share || equals - *share >= OWNER_SIZE ||
+            end == equals + 1 || *end != '\0')
+            return error_set(err, ERROR_INPUT, "--share %.80s is not NAME=WEIGHT", *share);
+        snprintf(name, sizeof name, "%.*s", (int)(equals - *share), *share);
+        status = store_share(serve->service.store, name, weight, err);
+    }
+    return status;
+}
+
 static int serve_run(struct serve *serve, struct error *err) {
     struct local_workers workers = {.serve = serve};
     int status = read_listen(serve, err);
@@ -158,6 +177,8 @@ static int serve_run(struct serve *serve, struct error *err) {
     if (status == 0)
         status = service_open(&serve->service, serve->options->database,
                               1000 * (int64_t)serve->options->lease_s, err);
+    if (status == 0)
+        status = set_shares(serve, err);
     struct http_options options = {.address = serve->address,
                                    .port = serve->port,
                                    .connections = serve->options->connections,

@@ -8,24 +8,32 @@ static unsigned roles_of(const char *word, size_t length) {
     static const struct {
         const char *name;
         unsigned roles;
-    } ROLES[] = {
-        {"read", ROLE_READ}, {"submit", ROLE_READ | ROLE_SUBMIT}, {"work", ROLE_READ | ROLE_WORK}};
+    } ROLES[] = {{"read", ROLE_READ},
+                 {"submit", ROLE_READ | ROLE_SUBMIT},
+                 {"work", ROLE_READ | ROLE_WORK},
+                 {"admin", ROLE_READ | ROLE_SUBMIT | ROLE_ADMIN}};
     for (size_t r = 0; r < sizeof ROLES / sizeof *ROLES; r++)
         if (strlen(ROLES[r].name) == length && memcmp(word, ROLES[r].name, length) == 0)
             return ROLES[r].roles;
     return ROLE_NONE;
 }
 
-static int visit_line(const char *line, size_t number, token_visit *visit, void *context,
+static int visit_line(char *text, size_t number, token_visit *visit, void *context,
                       struct error *err) {
-    size_t length = strcspn(line, ":");
-    if (*line == '\0' || *line == '#')
+    size_t length = strcspn(text, ":");
+    struct token_line line = {.name = "", .token = text, .number = number};
+    if (*text == '\0' || *text == '#')
         return 0;
-    if (line[length] == '\0')
-        return visit(context, ROLE_READ | ROLE_SUBMIT | ROLE_WORK, line, number, err);
-    unsigned roles = roles_of(line, length);
-    const char *token = roles != ROLE_NONE ? line + length + 1 : line;
-    return visit(context, roles, token, number, err);
+    line.roles = text[length] != '\0' ? roles_of(text, length)
+                                      : ROLE_READ | ROLE_SUBMIT | ROLE_WORK | ROLE_ADMIN;
+    if (text[length] != '\0' && line.roles != ROLE_NONE) {
+        char *rest = text + length + 1, *colon = strchr(rest, ':');
+        line.token = colon != NULL ? colon + 1 : rest;
+        line.name = colon != NULL ? rest : "";
+        if (colon != NULL)
+            *colon = '\0';
+    }
+    return visit(context, &line, err);
 }
 
 int token_file_read(const char *file, token_visit *visit, void *context, struct error *err) {
@@ -52,17 +60,15 @@ struct choice_of_token {
     char *token;    /* owned; NULL before the first line */
 };
 
-static int choose(void *context, unsigned roles, const char *token, size_t line,
-                  struct error *err) {
+static int choose(void *context, const struct token_line *line, struct error *err) {
     struct choice_of_token *choice = context;
-    (void)line;
     if (choice->token != NULL &&
-        ((choice->roles & choice->role) != 0 || (roles & choice->role) == 0))
+        ((choice->roles & choice->role) != 0 || (line->roles & choice->role) == 0))
         return 0;
     free(choice->token);
-    choice->roles = roles;
-    choice->token = strdup(token);
-    return choice->token != NULL ? 0 : error_memory(err, strlen(token), "a token");
+    choice->roles = line->roles;
+    choice->token = strdup(line->token);
+    return choice->token != NULL ? 0 : error_memory(err, strlen(line->token), "a token");
 }
 
 int token_read(const char *file, enum role role, char **token, struct error *err) {
@@ -71,8 +77,9 @@ int token_read(const char *file, enum role role, char **token, struct error *err
     *token = NULL;
     if (file == NULL && (given == NULL || *given == '\0'))
         return 0;
-    int status = file != NULL ? token_file_read(file, choose, &choice, err)
-                              : choose(&choice, ROLE_NONE, given, 0, err);
+    const struct token_line alone = {.name = "", .token = given};
+    int status =
+        file != NULL ? token_file_read(file, choose, &choice, err) : choose(&choice, &alone, err);
     if (status == 0 && choice.token == NULL)
         status = error_set(err, ERROR_INPUT, "%s holds no token", file);
     if (status != 0)

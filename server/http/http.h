@@ -36,6 +36,10 @@ struct exchange {
     size_t body_size, body_room; /* room without the NUL */
     int64_t start_ns;
 
+    /* Who asks: the name of the token, "" without; and whether it may change the studies of all. */
+    char owner[OWNER_SIZE];
+    bool admin;
+
     unsigned status;               /* 0 until answered */
     struct MHD_Response *response; /* owned until queued */
 };

@@ -163,11 +163,16 @@ static bool check_origin(struct exchange *exchange) {
 }
 
 static bool check_token(struct exchange *exchange, unsigned wanted) {
+    exchange->admin = exchange->service->tokens == NULL;
     if (wanted == ROLE_NONE || exchange->service->tokens == NULL)
         return true;
     const char *authorization = exchange_header(exchange, "Authorization");
     bool bearer = authorization != NULL && strncasecmp(authorization, "Bearer ", 7) == 0;
-    unsigned roles = tokens_roles(exchange->service->tokens, bearer ? authorization + 7 : NULL);
+    const struct token_holder holder =
+        tokens_find(exchange->service->tokens, bearer ? authorization + 7 : NULL);
+    unsigned roles = holder.roles;
+    memcpy(exchange->owner, holder.name, sizeof exchange->owner);
+    exchange->admin = (roles & ROLE_ADMIN) != 0;
     if ((roles & wanted) != 0)
         return true;
     if (roles != 0)

@@ -61,6 +61,8 @@ void handle_study_create(struct exchange *exchange, const char *id) {
     if (!check_key(exchange) || !check_body(exchange))
         return;
     int status = kind_read_study(&study, exchange->body, exchange->body_size, NULL, &faults, &err);
+    if (status == 0 && (study->owner = strdup(exchange->owner)) == NULL)
+        status = error_memory(&err, sizeof exchange->owner, "a study's owner");
     if (status == 0)
         submit(exchange, study);
     else if (faults.count != 0)
@@ -73,25 +75,53 @@ void handle_study_create(struct exchange *exchange, const char *id) {
     fault_list_clear(&faults);
 }
 
+/* A change of a study, which its owner or an admin may make; a study of nobody is anybody's. */
 struct study_change {
+    const struct exchange *exchange;
     const char *id;
+    uint64_t realisations; /* to extend it to */
+    bool refused;          /* for whose it is */
     cJSON *document;
     int (*api)(struct store *store, const char *id, cJSON **out, struct error *err);
 };
 
+static int check_owner(struct store *store, struct study_change *change, struct error *err) {
+    struct study_status now = {0};
+    int status = store_status(store, change->id, &now, err);
+    if (status != 0)
+        return status;
+    change->refused = !change->exchange->admin && *now.owner != '\0' &&
+                      strcmp(now.owner, change->exchange->owner) != 0;
+    if (change->refused)
+        status = error_set(err, ERROR_STATE,
+                           "study %s is of %s, who may change it, as may a token of the role admin",
+                           change->id, now.owner);
+    study_status_clear(&now);
+    return status;
+}
+
 static int change_study(struct store *store, void *context, struct error *err) {
     struct study_change *change = context;
-    return change->api(store, change->id, &change->document, err);
+    int status = check_owner(store, change, err);
+    if (status != 0)
+        return status;
+    return change->api != NULL
+               ? change->api(store, change->id, &change->document, err)
+               : api_extend(store, change->id, change->realisations, &change->document, err);
 }
 
 static void answer_change(struct exchange *exchange, struct study_change change) {
     struct error err = {0};
-    if (writer_do(exchange->service->writer, change_study, &change, &err) != 0) {
-        cJSON_Delete(change.document); /* made, but its commit failed */
-        answer_error(exchange, &err);
-    } else {
+    change.exchange = exchange;
+    if (writer_do(exchange->service->writer, change_study, &change, &err) == 0) {
         answer_json(exchange, 200, change.document);
+        return;
     }
+    cJSON_Delete(change.document); /* made, but its commit failed */
+    if (change.refused)
+        answer_problem(exchange, 403, err.text, NULL);
+    else
+        answer_error(exchange, &err);
 }
 
 /* With results, the study itself goes; the publisher takes its rows away. */
@@ -116,33 +146,18 @@ void handle_study_retry(struct exchange *exchange, const char *id) {
     answer_change(exchange, (struct study_change){.id = id, .api = api_retry});
 }
 
-struct extension {
-    const char *id;
-    uint64_t realisations;
-    cJSON *document;
-};
-
-static int extend_change(struct store *store, void *context, struct error *err) {
-    struct extension *extension = context;
-    return api_extend(store, extension->id, extension->realisations, &extension->document, err);
-}
-
 void handle_study_extend(struct exchange *exchange, const char *id) {
-    struct extension extension = {.id = id};
+    struct study_change change = {.id = id};
     struct error err = {0};
     cJSON *body = body_json(exchange);
     if (body == NULL)
         return;
-    int status = field_count(body, "realisations", &extension.realisations, &err);
+    int status = field_count(body, "realisations", &change.realisations, &err);
     cJSON_Delete(body);
     if (status == 0)
-        status = writer_do(exchange->service->writer, extend_change, &extension, &err);
-    if (status == 0) {
-        answer_json(exchange, 200, extension.document);
-    } else {
-        cJSON_Delete(extension.document); /* made, but its commit failed */
+        answer_change(exchange, change);
+    else
         answer_error(exchange, &err);
-    }
 }
 
 /* --- questions, to a reader --- */

@@ -2,12 +2,13 @@
 #include <nettle/memops.h>
 #include <nettle/sha2.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct entry {
     uint8_t digest[SHA256_DIGEST_SIZE];
-    unsigned roles;
+    struct token_holder holder;
 };
 struct tokens {
     struct entry *entries; /* owned */
@@ -21,15 +22,22 @@ static void digest_of(const char *token, uint8_t digest[SHA256_DIGEST_SIZE]) {
     sha256_digest(&context, SHA256_DIGEST_SIZE, digest);
 }
 
-int tokens_add(struct tokens *tokens, unsigned roles, const char *token, struct error *err) {
+static int add(struct tokens *tokens, const struct token_line *line, struct error *err) {
     size_t bytes = (tokens->count + 1) * sizeof *tokens->entries;
     struct entry *larger = realloc(tokens->entries, bytes);
     if (larger == NULL)
         return error_memory(err, bytes, "tokens");
     tokens->entries = larger;
-    digest_of(token, larger[tokens->count].digest);
-    larger[tokens->count++].roles = roles;
+    struct entry *entry = &larger[tokens->count++];
+    digest_of(line->token, entry->digest);
+    entry->holder = (struct token_holder){.roles = line->roles};
+    snprintf(entry->holder.name, sizeof entry->holder.name, "%s", line->name);
     return 0;
+}
+
+int tokens_add(struct tokens *tokens, unsigned roles, const char *token, struct error *err) {
+    const struct token_line line = {.roles = roles, .name = "", .token = token};
+    return add(tokens, &line, err);
 }
 
 /* What reads a file fills. */
@@ -38,17 +46,28 @@ struct token_reading {
     const char *file;
 };
 
-static int add_line(void *context, unsigned roles, const char *token, size_t line,
-                    struct error *err) {
+static bool is_name(const char *text) {
+    size_t length = strlen(text);
+    return length > 0 && length < OWNER_SIZE &&
+           strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._@-") ==
+               length;
+}
+
+static int add_line(void *context, const struct token_line *line, struct error *err) {
     struct token_reading *reading = context;
-    if (roles == ROLE_NONE)
+    if (line->roles == ROLE_NONE)
         return error_set(err, ERROR_INPUT,
-                         "%s, line %zu: no role:token; roles are read, submit and work",
-                         reading->file, line);
-    if (strlen(token) < 16)
+                         "%s, line %zu: no role:token; roles are read, submit, work and admin",
+                         reading->file, line->number);
+    if (*line->name != '\0' && !is_name(line->name))
+        return error_set(err, ERROR_INPUT,
+                         "%s, line %zu: in role:name:token, a name has 1 to %d letters, digits, "
+                         ". _ @ or -",
+                         reading->file, line->number, OWNER_SIZE - 1);
+    if (strlen(line->token) < 16)
         return error_set(err, ERROR_INPUT, "%s, line %zu: a token of less than 16 characters",
-                         reading->file, line);
-    return tokens_add(reading->tokens, roles, token, err);
+                         reading->file, line->number);
+    return add(reading->tokens, line, err);
 }
 
 int tokens_read(struct tokens **out, const char *file, struct error *err) {
@@ -74,14 +93,18 @@ void tokens_destroy(struct tokens **tokens) {
     *tokens = NULL;
 }
 
-unsigned tokens_roles(const struct tokens *tokens, const char *token) {
+struct token_holder tokens_find(const struct tokens *tokens, const char *token) {
     uint8_t digest[SHA256_DIGEST_SIZE];
-    unsigned roles = 0;
+    struct token_holder found = {0};
     if (token == NULL)
-        return 0;
+        return found;
     digest_of(token, digest);
-    for (size_t i = 0; i < tokens->count; i++) /* all of them, whichever fits */
-        if (memeql_sec(tokens->entries[i].digest, digest, sizeof digest))
-            roles |= tokens->entries[i].roles;
-    return roles;
+    for (size_t i = 0; i < tokens->count; i++) { /* all of them, whichever fits */
+        if (!memeql_sec(tokens->entries[i].digest, digest, sizeof digest))
+            continue;
+        found.roles |= tokens->entries[i].holder.roles;
+        if (*found.name == '\0')
+            memcpy(found.name, tokens->entries[i].holder.name, sizeof found.name);
+    }
+    return found;
 }

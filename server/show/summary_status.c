@@ -41,6 +41,22 @@ static void print_left(const cJSON *status, char *text, size_t size) {
         snprintf(text, size, "%s%s", duration, ahead ? " with what is in front of it" : "");
 }
 
+/* Prints the place of a study that waits. */
+static void print_line(const cJSON *status, FILE *file) {
+    double place = number_of(status, "place"), starts = number_of(status, "starts_in");
+    char when[48];
+    if (isnan(place))
+        return;
+    duration_text(starts, when, sizeof when);
+    fprintf(file, "  place %.0f in line, ", place);
+    if (isnan(starts))
+        fprintf(file, "no worker is at work\n");
+    else if (starts < 1)
+        fprintf(file, "starts with the next job\n");
+    else
+        fprintf(file, "starts in about %s\n", when);
+}
+
 void summary_of_status(const cJSON *status, FILE *file) {
     const cJSON *jobs = field_at(status, "jobs"), *realisations = field_at(status, "realisations");
     struct work_time time;
@@ -58,6 +74,7 @@ void summary_of_status(const cJSON *status, FILE *file) {
             number_of(jobs, "done"), number_of(jobs, "total"), number_of(jobs, "running"),
             number_of(jobs, "failed"));
     fprintf(file, "  workers %.0f, spent %s, left %s\n", number_of(status, "workers"), spent, left);
+    print_line(status, file);
     if (time.seconds > 0)
         print_without_cpu(&time, file);
     if (!isnan(number_of(status, "error_reached")))
@@ -78,13 +95,14 @@ bool status_has_no_value(const cJSON *status) {
 }
 
 void summary_of_list(const cJSON *studies, FILE *file) {
-    struct text_table table = {.columns = 6};
-    static const char *const HEADINGS[] = {"id", "name", "kind", "state", "done %", "created"};
-    for (size_t h = 0; h < 6; h++)
+    struct text_table table = {.columns = 7};
+    static const char *const HEADINGS[] = {"id",    "name",   "owner",  "kind",
+                                           "state", "done %", "created"};
+    for (size_t h = 0; h < 7; h++)
         table_cell(&table, "%s", HEADINGS[h]);
     const cJSON *study;
     cJSON_ArrayForEach(study, field_at(studies, "studies")) {
-        static const char *const TEXTS[] = {"id", "name", "kind", "state"};
+        static const char *const TEXTS[] = {"id", "name", "owner", "kind", "state"};
         for (size_t n = 0; n < sizeof TEXTS / sizeof *TEXTS; n++)
             table_cell(&table, "%s", text_of(study, TEXTS[n]));
         table_cell(&table, "%.1f", 100 * number_of(study, "share"));

@@ -57,7 +57,7 @@ static void beyond_loopback_tokens_are_needed(void **state) {
                                                        "0.0.0.0:0", NULL}),
                      2);
     assert_true(contains("open.err", "tokens are needed"));
-    spit("bad-tokens", "admin:0123456789abcdef\n");
+    spit("bad-tokens", "boss:0123456789abcdef\n");
     assert_int_equal(run_rugo("bad", (const char *[]){"serve", "--db", "open.db", "--token-file",
                                                       "bad-tokens", NULL}),
                      2);
