@@ -252,7 +252,8 @@ static int changes_fill(const struct grid *grid, const double *field, const doub
     struct grid coarse = *grid;
     for (size_t r = 0; r < lags; r++)
         change[r] = NAN;
-    if (grid->nx % 2 != 0 || (!grid_is_profile(grid) && grid->ny % 2 != 0))
+    bool strip = grid->ny == 2 && grid->nx > 2; /* half of which would be a profile */
+    if (strip || grid->nx % 2 != 0 || (!grid_is_profile(grid) && grid->ny % 2 != 0))
         return 0;
     coarse.nx = grid->nx / 2;
     coarse.ny = grid_is_profile(grid) ? 1 : grid->ny / 2;

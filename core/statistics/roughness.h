@@ -44,9 +44,9 @@ int ring_average(const struct grid *grid, const double *field, double *lag, doub
                  struct error *err);
 int acf_of_modes(const struct modes *modes, double *lag, double *correlation, struct error *err);
 /* The same, and by how much every second point of the grid would tell less: at lags 0, 2 dx,
- * 4 dx ..., (acf_lags + 1)/2 of them; NaN where a side has an odd number of points; NULL: not
- * wanted. It is what rings of a width make of the correlation; of profiles, whose rings are single
- * lags, nothing.
+ * 4 dx ..., (acf_lags + 1)/2 of them; NaN where a side has an odd number of points, or y two; NULL:
+ * not wanted. It is what rings of a width make of the correlation; of profiles, whose rings are
+ * single lags, nothing.
  */
 int acf_of_modes_changes(const struct modes *modes, double *lag, double *correlation,
                          double *change, struct error *err);

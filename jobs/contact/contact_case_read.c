@@ -126,19 +126,20 @@ static void read_estimators(struct contact_case *out, struct values *values) {
  * so that it cannot be resampled; but it can be part of a finer one. */
 static bool level_make(struct contact_level *out, const struct contact_case *one_case,
                        double points, const char *path, struct values *values) {
-    const struct grid *own = &one_case->surface.grid, *grid = &out->grid;
-    *out = (struct contact_level){.points = points};
-    if (!surface_case_grid(&one_case->surface, points, path, values, &out->grid))
+    const struct grid *own = &one_case->surface.grid;
+    struct grid grid;
+    if (!surface_case_grid(&one_case->surface, points, path, values, &grid))
         return false;
-    if (own->nx % grid->nx == 0 && own->ny % grid->ny == 0)
-        out->stride = own->nx / grid->nx;
-    if (out->stride > 0 || surface_band_fits(one_case->band, grid))
+    bool part = own->nx % grid.nx == 0 && own->ny % grid.ny == 0;
+    *out = (struct contact_level){
+        .points = points, .grid = grid, .stride = part ? own->nx / grid.nx : 0};
+    if (part || surface_band_fits(one_case->band, &grid))
         return true;
     values_fault(
         values, path,
         "%g points a shortest wave, %zu in all, neither hold the %zu waves of the surface nor "
         "divide its own %zu points (points_per_wavelength)",
-        points, grid->nx, one_case->band.x, own->nx);
+        points, grid.nx, one_case->band.x, own->nx);
     return false;
 }
 
