@@ -151,7 +151,7 @@ static double read_word(const struct word *word, const char *at) {
     uint64_t bits = word->big_endian ? big_endian(at, word->bytes) : little_endian(at, word->bytes);
     if (word->kind == 'f')
         return float_number(bits, word->bytes);
-    uint64_t sign = (uint64_t)1 << (8 * word->bytes - 1);
+    uint64_t sign = (uint64_t)0x80 << (8 * ((word->bytes - 1) & 7));
     if (word->kind == 'u' || (bits & sign) == 0)
         return (double)bits;
     return -(double)(sign - (bits & (sign - 1))); /* two's complement */

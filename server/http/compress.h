@@ -19,7 +19,8 @@ struct compressor;
  * memory. */
 struct compressor *compressor_create(MHD_ContentReaderCallback read, void *context,
                                      MHD_ContentReaderFreeCallback free_context);
-ssize_t compressor_read(void *compressor, uint64_t position, char *buffer, size_t room);
-void compressor_free(void *compressor);
+/* These are for the library; context is the compressor. */
+ssize_t compressor_read(void *context, uint64_t position, char *buffer, size_t room);
+void compressor_free(void *context);
 
 #endif

@@ -91,44 +91,52 @@ static void numpy_headers(void **state) {
     height_map_clear(&map);
 }
 
-/* The numbers 1 to 6 of two rows, in every type that NumPy has for numbers, either order of bytes
- * and of indices; -1 in place of 5 where there is a sign. */
+/* The numbers 1 to 6, with -1 in place of 5 where the type has a sign. */
+static double number_of(const char *type, size_t number) {
+    return number == 5 && *type != 'u' ? -1 : (double)number;
+}
+
+/* The bits of a number in a type such as "i2". */
+static uint64_t bits_of(const char *type, size_t number) {
+    static const uint64_t HALVES[] = {0, 0x3c00, 0x4000, 0x4200, 0x4400, 0xbc00, 0x4600};
+    double value = number_of(type, number);
+    float single = (float)value;
+    uint32_t low;
+    uint64_t bits;
+    memcpy(&low, &single, sizeof low);
+    memcpy(&bits, &value, sizeof bits);
+    if (*type != 'f')
+        return value < 0 ? UINT64_MAX : number;
+    return type[1] == '2' ? HALVES[number] : type[1] == '4' ? low : bits;
+}
+
+static void check_type_and_order(const char *type, bool big, bool fortran, int version) {
+    char file[1000], header[120], data[48];
+    size_t bytes = (size_t)(type[1] - '0');
+    for (size_t place = 0; place < 6; place++) {
+        size_t number = fortran ? place % 2 * 3 + place / 2 + 1 : place + 1;
+        uint64_t bits = bits_of(type, number);
+        for (size_t b = 0; b < bytes; b++)
+            data[place * bytes + (big ? bytes - 1 - b : b)] = (char)(bits >> (8 * b) & 0xff);
+    }
+    snprintf(header, sizeof header, "{'descr': '%c%s', 'fortran_order': %s, 'shape': (2, 3), }",
+             big ? '>' : '<', type, fortran ? "True" : "False");
+    struct height_map map =
+        parse(HEIGHT_MAP_NPY, file, npy(file, version, header, data, 6 * bytes), 1);
+    assert_true(map.grid.nx == 3 && map.grid.ny == 2);
+    for (size_t number = 1; number <= 6; number++)
+        if (!(map.z[number - 1] == number_of(type, number)))
+            fail_msg("%s: number %zu is %g", header, number, map.z[number - 1]);
+    height_map_clear(&map);
+}
+
+/* In every type that NumPy has for numbers, either order of bytes and of indices. */
 static void every_type_and_order(void **state) {
     (void)state;
     static const char *const TYPES[] = {"f2", "f4", "f8", "i1", "i2", "i4",
                                         "i8", "u1", "u2", "u4", "u8"};
-    char file[1000], header[120], data[48];
-    for (size_t t = 0; t < 4 * sizeof TYPES / sizeof *TYPES; t++) {
-        const char *type = TYPES[t / 4];
-        bool big = t % 2 != 0, fortran = t / 2 % 2 != 0, has_sign = *type != 'u';
-        size_t bytes = (size_t)(type[1] - '0');
-        static const uint64_t HALVES[] = {0, 0x3c00, 0x4000, 0x4200, 0x4400, 0xbc00, 0x4600};
-        for (size_t place = 0; place < 6; place++) {
-            size_t number = fortran ? place % 2 * 3 + place / 2 + 1 : place + 1;
-            double value = number == 5 && has_sign ? -1 : (double)number;
-            float single = (float)value;
-            uint64_t bits = number == 5 && has_sign ? UINT64_MAX : number;
-            if (*type == 'f' && bytes == 8)
-                memcpy(&bits, &value, 8);
-            else if (*type == 'f' && bytes == 4)
-                memcpy(&bits, &single, 4); /* the low half, of a machine as ours */
-            else if (*type == 'f')
-                bits = HALVES[number];
-            for (size_t b = 0; b < bytes; b++)
-                data[place * bytes + (big ? bytes - 1 - b : b)] = (char)(bits >> (8 * b) & 0xff);
-        }
-        snprintf(header, sizeof header, "{'descr': '%c%s', 'fortran_order': %s, 'shape': (2, 3), }",
-                 big ? '>' : '<', type, fortran ? "True" : "False");
-        struct height_map map =
-            parse(HEIGHT_MAP_NPY, file, npy(file, 1 + (int)(t % 3), header, data, 6 * bytes), 1);
-        assert_true(map.grid.nx == 3 && map.grid.ny == 2);
-        for (size_t number = 1; number <= 6; number++) {
-            double expected = number == 5 && has_sign ? -1 : (double)number;
-            if (!(map.z[number - 1] == expected))
-                fail_msg("%s: number %zu is %g", header, number, map.z[number - 1]);
-        }
-        height_map_clear(&map);
-    }
+    for (size_t t = 0; t < 4 * sizeof TYPES / sizeof *TYPES; t++)
+        check_type_and_order(TYPES[t / 4], t % 2 != 0, t / 2 % 2 != 0, 1 + (int)(t % 3));
 }
 
 /* What half precision has beside normal numbers. */
