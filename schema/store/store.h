@@ -10,6 +10,7 @@
 #ifndef RUGO_SCHEMA_STORE_STORE_H
 #define RUGO_SCHEMA_STORE_STORE_H
 
+#include "schema/program.h"
 #include "schema/result/block_result.h"
 #include "schema/result/report.h"
 #include "schema/result/work_time.h"
@@ -72,6 +73,7 @@ struct study_status {
     uint64_t place;
     double starts_in;
     char created[32], finished[32]; /* UTC, ISO 8601; "" if not yet */
+    char program[PROGRAM_SIZE];     /* which queued it; "" where an older one did */
 };
 void study_status_clear(struct study_status *status);
 int store_status(struct store *store, const char *id, struct study_status *out, struct error *err);
@@ -215,7 +217,7 @@ struct point_texts {
 /* store_publish, with these texts. */
 int store_publish_points(struct store *store, const char *study, uint64_t case_number,
                          uint64_t revision, const struct case_result *result,
-                         const struct point_texts *texts, struct error *err);
+                         const struct point_texts *points, struct error *err);
 /* What is published of a case at this revision, without its parameters. *found: whether anything
  * is; *out is untouched where nothing is, and on failure. */
 struct published_part {

@@ -51,15 +51,16 @@ static const char *state_name(const unsigned char *text) {
     "CASE WHEN realisations > 0 THEN cases * realisations ELSE (SELECT sum(c.realisations) FROM "  \
     "study_case c WHERE c.study_id = study.id) END, "                                              \
     "CASE WHEN realisations = 0 THEN (SELECT max(c.error_reached) FROM study_case c WHERE "        \
-    "c.study_id = study.id) END, owner, priority"
+    "c.study_id = study.id) END, owner, priority, program"
 
 static uint64_t column_count(sqlite3_stmt *row, int column) {
     return (uint64_t)sqlite3_column_int64(row, column);
 }
 
-static void column_time(sqlite3_stmt *row, int column, char text[32]) {
-    const unsigned char *time = sqlite3_column_text(row, column);
-    snprintf(text, 32, "%s", time != NULL ? (const char *)time : "");
+/* Copies a short text; "" for NULL. */
+static void column_text(sqlite3_stmt *row, int column, char *text, size_t size) {
+    const unsigned char *value = sqlite3_column_text(row, column);
+    snprintf(text, size, "%s", value != NULL ? (const char *)value : "");
 }
 
 static int read_status(sqlite3_stmt *row, struct study_status *out, struct error *err) {
@@ -81,8 +82,9 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     out->realisations_failed = column_count(row, 14);
     out->time.seconds = sqlite3_column_double(row, 15);
     out->revision = column_count(row, 16);
-    column_time(row, 17, out->created);
-    column_time(row, 18, out->finished);
+    column_text(row, 17, out->created, sizeof out->created);
+    column_text(row, 18, out->finished, sizeof out->finished);
+    column_text(row, 30, out->program, sizeof out->program);
     out->workers = column_count(row, 21);
     out->cases_failed = column_count(row, 22);
     out->random = column_random(row, 23);

@@ -64,8 +64,8 @@ static bool put_realisations(cJSON *object, const struct study_status *status) {
            field_put_count(realisations, "failed", status->realisations_failed);
 }
 
-static bool put_time(cJSON *object, const char *name, const char *time) {
-    return field_put(object, name, *time != '\0' ? cJSON_CreateString(time) : cJSON_CreateNull());
+static bool put_known(cJSON *object, const char *name, const char *text) {
+    return field_put(object, name, *text != '\0' ? cJSON_CreateString(text) : cJSON_CreateNull());
 }
 
 /* Whether a round of a study that asks for an error has ended, and the next may follow. */
@@ -111,8 +111,9 @@ static cJSON *progress(const struct study_status *status, bool *complete) {
                 field_put(document, "share", json_number(status->share)) &&
                 field_put(document, "seconds_left", json_number(status->seconds_left)) &&
                 field_put_count(document, "revision", status->revision) &&
-                put_time(document, "created", status->created) &&
-                put_time(document, "finished", status->finished);
+                put_known(document, "program", status->program) &&
+                put_known(document, "created", status->created) &&
+                put_known(document, "finished", status->finished);
     return document;
 }
 

@@ -1,4 +1,5 @@
 /* rugo: the one executable. Finds the subcommand, shows help, sees that output arrived. */
+#include "schema/program.h"
 #include "server/command/command.h"
 #include "server/command/help.h"
 #include "worker/client.h"
@@ -62,7 +63,9 @@ static int dispatch(int argc, char **argv) {
         return EXIT_DONE;
     }
     if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "version") == 0) {
-        puts("rugo " PROGRAM_VERSION);
+        char program[PROGRAM_SIZE];
+        program_write(program);
+        printf("rugo %s\n", program);
         return EXIT_DONE;
     }
     const struct command *command = command_find(argv[1]);

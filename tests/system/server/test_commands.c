@@ -120,7 +120,9 @@ static void every_command_has_help(void **state) {
         assert_int_equal(shell("$RUGO help"), 0);
         assert_true(contains("shell.out", COMMANDS[c]));
     }
-    assert_int_equal(shell("$RUGO --help && $RUGO --version"), 0);
+    assert_int_equal(shell("$RUGO --help && $RUGO --version | grep -Eq '^rugo [0-9.]+[+]"
+                           "([0-9a-f]+(-dirty)?|unknown)$'"),
+                     0);
 }
 
 static void help_tells_of_a_parameter(void **state) {

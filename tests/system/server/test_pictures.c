@@ -26,8 +26,11 @@ static int start(void **state) {
                      201);
     assert_int_equal(sscanf(answer, "{\"id\":\"%16[0-9a-f]\"", id), 1);
     free(answer);
-    return run_rugo("work",
-                    (const char *[]){"work", "--server", url, "--drain", "--workers", "1", NULL});
+    assert_int_equal(run_rugo("work", (const char *[]){"work", "--server", url, "--drain",
+                                                       "--workers", "1", NULL}),
+                     0);
+    /* pictures name the state of their study, which the server ends after its last result */
+    return run_rugo("wait", (const char *[]){"wait", "--server", url, id, NULL});
 }
 
 static int stop(void **state) {
