@@ -21,9 +21,9 @@ OBJCOPY         ?= objcopy
 Q      = $(if $(V),,@)
 say    = $(if $(V),@:,@echo)
 
-PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl nettle zlib cmocka
+PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl nettle zlib libpng cmocka
 APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev libsuitesparse-dev \
-           libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev nettle-dev zlib1g-dev \
+           libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev nettle-dev zlib1g-dev libpng-dev \
            libcmocka-dev
 # those without a pkg-config file
 HEADERS  = Random123/philox.h suitesparse/cholmod.h
@@ -46,13 +46,16 @@ LIBS_core   = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
 LIBS_schema = -lcjson -lsqlite3 $(LIBS_core)
 LIBS_jobs   = $(LIBS_schema)
 LIBS_worker = -lcurl $(LIBS_jobs)
-LIBS_server = -lmicrohttpd -lnettle -lz $(LIBS_worker)
+LIBS_server = -lmicrohttpd -lpng -lnettle -lz $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
-embedded = $(wildcard $(1)/web/* $(1)/http/*.yaml $(1)/python/*.py)
+embedded = $(filter %.html %.js %.css %.yaml %.py,$(wildcard $(addprefix $(1)/,web/* web/vendor/* http/* python/*)))
 # The migrations of the store as one piece of data in the order of their names, each ended by a NUL.
 MIGRATIONS = $(sort $(wildcard schema/store/migrations/*.sql))
 DATA_schema = $(BUILD)/schema/store/migrations.data.o
+# The ready studies as one JSON list, for the page to begin new ones from.
+TEMPLATES = $(sort $(wildcard jobs/studies/*.json))
+DATA_server = $(BUILD)/server/web/templates.data.o
 
 # Each layer is an archive; a layer's tests link it and the layers below, so that one can work on one layer alone.
 LAYERS   = core schema jobs worker server
@@ -94,6 +97,12 @@ $(DATA_schema): $(MIGRATIONS) schema/store/migrations
 	@mkdir -p $(@D)
 	$(Q)for file in $(MIGRATIONS); do cat $$file && printf '\0' || exit; done > $(@D)/migrations.sql
 	$(Q)cd $(@D) && $(LD) -r -b binary -z noexecstack migrations.sql -o $(abspath $@)
+
+$(DATA_server): $(TEMPLATES) jobs/studies
+	@mkdir -p $(@D)
+	$(Q){ between='['; for file in $(TEMPLATES); do echo "$$between"; cat $$file || exit; between=','; done; echo ']'; } \
+	    > $(@D)/templates.json
+	$(Q)cd $(@D) && $(LD) -r -b binary -z noexecstack templates.json -o $(abspath $@)
 
 $(BUILD)/%.data.o: %
 	@mkdir -p $(@D)
@@ -151,11 +160,14 @@ all_tests = $(foreach layer,$(LAYERS),$(TESTS_$(1)_$(layer)))
 
 test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) run-tests-built
-.PHONY: run-tests-built
+.PHONY: run-tests-built browser
 # The ladders with long programs come first, so that no processor waits for one in the end.
 EVERY_TEST = $(foreach ladder,validation faults system unit fuzz,$(call all_tests,$(ladder)))
 run-tests-built: all $(EVERY_TEST)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(EVERY_TEST)
+	@tests/browser/run $(abspath $(BUILD))/rugo
+browser: all
+	@tests/browser/run $(abspath $(BUILD))/rugo
 unit faults validation system: all
 	@$(MAKE) --no-print-directory $(call all_tests,$@)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,$@)

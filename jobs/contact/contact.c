@@ -4,6 +4,7 @@
 #include "jobs/contact/contact_curves.h"
 #include "jobs/contact/contact_loads.h"
 #include "jobs/contact/contact_pairs.h"
+#include "jobs/contact/contact_press.h"
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/contact_target.h"
@@ -190,5 +191,6 @@ const struct job_kind CONTACT_KIND = {
     .answer = contact_target_answer,
     .point_values = point_values,
     .scalar_values = scalar_values,
+    .press = contact_press_once,
     .write_mesh = write_mesh,
 };

@@ -296,6 +296,22 @@ int store_grow(struct store *store, const char *study, uint64_t case_number,
 /* --- upkeep --- */
 int store_snapshot(struct store *store, const char *path,
                    struct error *err); /* VACUUM INTO; path must not exist */
+/* A worker and a job that it holds; or one that holds none, and ended one within the last hour. */
+struct worker_activity {
+    char *name, *host;        /* owned, as all texts here */
+    char *study, *study_name; /* "" without a job */
+    uint64_t case_number;     /* the one that was asked for */
+    int64_t job;              /* 0: none */
+    uint64_t count, done;     /* realisations of the job, and those that it reported */
+    char *claimed;            /* UTC, ISO 8601; "" without a job */
+    uint64_t recent_jobs;     /* ended by it in the last hour, all its jobs together */
+    char *last_ended;         /* UTC; "": none in the last hour */
+};
+/* At most 1000 of them, by name. */
+int store_workers(struct store *store, struct worker_activity **out, size_t *count,
+                  struct error *err);
+void workers_free(struct worker_activity *workers, size_t count);
+
 struct store_metrics {
     uint64_t studies, jobs_waiting, jobs_running, jobs_done, jobs_failed, jobs_cancelled;
     uint64_t wal_bytes, database_bytes;

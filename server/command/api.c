@@ -254,3 +254,64 @@ int api_delete(struct store *store, const char *id, cJSON **out, struct error *e
     study_status_clear(&now);
     return status;
 }
+
+/* --- workers --- */
+
+static bool put_job(cJSON *jobs, const struct worker_activity *worker) {
+    cJSON *job = cJSON_CreateObject();
+    if (job == NULL || !cJSON_AddItemToArray(jobs, job)) {
+        cJSON_Delete(job);
+        return false;
+    }
+    return field_put_text(job, "study", worker->study) &&
+           field_put_text(job, "name", worker->study_name) &&
+           field_put_count(job, "case", worker->case_number) &&
+           field_put_count(job, "job", (uint64_t)worker->job) &&
+           field_put_count(job, "count", worker->count) &&
+           field_put_count(job, "done", worker->done) &&
+           field_put_text(job, "since", worker->claimed);
+}
+
+/* Rows of one worker stand together; the jobs of all go into one entry. */
+static cJSON *worker_entry(cJSON *list, const struct worker_activity *worker, bool same) {
+    if (same)
+        return cJSON_GetArrayItem(list, cJSON_GetArraySize(list) - 1);
+    cJSON *entry = cJSON_CreateObject();
+    const char *seen = worker->job > 0 ? worker->claimed : worker->last_ended;
+    if (worker->job > 0 && strcmp(worker->last_ended, seen) > 0)
+        seen = worker->last_ended;
+    bool complete = entry != NULL && field_put_text(entry, "name", worker->name) &&
+                    field_put_text(entry, "host", worker->host) &&
+                    field_put(entry, "jobs", cJSON_CreateArray()) &&
+                    field_put_count(entry, "jobs_last_hour", worker->recent_jobs) &&
+                    field_put_text(entry, "last_seen", seen);
+    if (complete && cJSON_AddItemToArray(list, entry))
+        return entry;
+    cJSON_Delete(entry);
+    return NULL;
+}
+
+int api_workers(struct store *store, cJSON **out, struct error *err) {
+    struct worker_activity *all = NULL;
+    struct store_metrics metrics = {0};
+    size_t count = 0;
+    int status = store_workers(store, &all, &count, err);
+    if (status == 0)
+        status = store_metrics(store, &metrics, err);
+    if (status != 0) {
+        workers_free(all, count);
+        return status;
+    }
+    cJSON *document = cJSON_CreateObject();
+    cJSON *list = cJSON_AddArrayToObject(document, "workers");
+    bool complete = list != NULL && field_put_count(document, "waiting", metrics.jobs_waiting);
+    for (size_t w = 0; complete && w < count; w++) {
+        bool same = w > 0 && strcmp(all[w].name, all[w - 1].name) == 0 &&
+                    strcmp(all[w].host, all[w - 1].host) == 0;
+        cJSON *entry = worker_entry(list, &all[w], same);
+        complete = entry != NULL &&
+                   (all[w].job == 0 || put_job(cJSON_GetObjectItem(entry, "jobs"), &all[w]));
+    }
+    workers_free(all, count);
+    return finish(document, complete, out, err);
+}

@@ -18,5 +18,7 @@ int api_retry(struct store *store, const char *id, cJSON **out, struct error *er
 /* Progress with the number of jobs queued; see store_extend. */
 int api_extend(struct store *store, const char *id, uint64_t realisations, cJSON **out,
                struct error *err);
+/* {workers: [{name, host, jobs, jobs_last_hour, last_seen}], waiting}: who works on what. */
+int api_workers(struct store *store, cJSON **out, struct error *err);
 
 #endif

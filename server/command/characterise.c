@@ -20,7 +20,7 @@ static const struct option_row OPTIONS[] = {
     {"detrend", 0, OPTION_CHOICE, 0, 0, AT(request.detrend), MAP_DETRENDS, "auto",
      "trend taken out first; auto: a plane, of an open map"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
-    {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg", NULL,
+    {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
      "draw the map as it was measured, without its trend, with its summits marked"},
     {0}};
 

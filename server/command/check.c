@@ -4,6 +4,7 @@
 #include "schema/json/field.h"
 #include "server/command/command.h"
 #include "server/command/options.h"
+#include "server/show/plan.h"
 #include "server/show/summary_cells.h"
 #include "server/show/summary_target.h"
 #include <math.h>
@@ -12,50 +13,6 @@
 #include <string.h>
 
 enum { PLANS_SHOWN = 5 };
-
-static double case_seconds(const struct study_case *one) {
-    uint64_t expected[TARGET_PARTS_MOST];
-    double seconds = one->component_count > 0 ? target_expect(one, expected)
-                                              : one->cost.seconds * (double)one->realisations;
-    return seconds + one->cost.case_seconds;
-}
-
-static double case_error(const struct study_case *one) {
-    const cJSON *asked = json_at(one->parameters, "/target/error");
-    return one->component_count > 0 && asked != NULL
-               ? asked->valuedouble
-               : one->cost.relative_error / sqrt((double)one->realisations);
-}
-
-static uint64_t case_jobs(const struct study_case *one) {
-    uint64_t jobs =
-        one->component_count > 0 ? 0 : (one->realisations + one->block - 1) / one->block;
-    for (size_t a = 0; a < one->component_count; a++)
-        jobs += case_jobs(&one->components[a]);
-    return jobs;
-}
-
-/* Bytes of a worker, by the largest of what runs. */
-static double case_memory(const struct study_case *one) {
-    double most = one->component_count > 0 ? 0 : one->cost.memory_bytes;
-    for (size_t a = 0; a < one->component_count; a++)
-        most = fmax(most, one->components[a].cost.memory_bytes);
-    return most;
-}
-
-static double total_seconds(const struct study *study) {
-    double sum = 0;
-    for (size_t c = 0; c < study->case_count; c++)
-        sum += case_seconds(&study->cases[c]);
-    return sum;
-}
-
-static double largest_memory(const struct study *study) {
-    double most = 0;
-    for (size_t c = 0; c < study->case_count; c++)
-        most = fmax(most, case_memory(&study->cases[c]));
-    return most;
-}
 
 static const char *random_name(const struct study *study) {
     return choice_name(STUDY_RANDOM, (int)study->random);
@@ -86,15 +43,15 @@ static void print_cases(const struct study *study) {
     for (size_t c = 0; c < study->case_count; c++) {
         const struct study_case *one = &study->cases[c];
         char time[48];
-        duration_text(case_seconds(&study->cases[c]), time, sizeof time);
+        duration_text(plan_case_seconds(&study->cases[c]), time, sizeof time);
         table_cell(&table, "%zu", c);
         for (size_t p = 0; p < swept; p++)
             print_value(&table, json_at(one->parameters, study->swept[p]));
         table_cell(&table, "%zu x %zu", one->cost.nx, one->cost.ny);
-        table_cell(&table, "%.1f", case_memory(one) / 0x1p20);
-        table_cell(&table, "%llu", (unsigned long long)case_jobs(one));
+        table_cell(&table, "%.1f", plan_case_bytes(one) / 0x1p20);
+        table_cell(&table, "%llu", (unsigned long long)plan_case_jobs(one));
         table_cell(&table, "%s", time);
-        table_cell(&table, "%.2g", 100 * case_error(&study->cases[c]));
+        table_cell(&table, "%.2g", 100 * plan_case_error(&study->cases[c]));
     }
     table_print(&table, stdout);
     table_clear(&table);
@@ -137,8 +94,8 @@ static void print_values(const struct study *study, const cJSON *object, const c
 
 static void print_text(const struct study *study) {
     char cpu[48], wall[48];
-    duration_text(total_seconds(study), cpu, sizeof cpu);
-    duration_text(total_seconds(study) / processors(), wall, sizeof wall);
+    duration_text(plan_seconds(study), cpu, sizeof cpu);
+    duration_text(plan_seconds(study) / processors(), wall, sizeof wall);
     printf("%s (%s), seed %llu: %zu cases", study->name, study->kind->name,
            (unsigned long long)study->seed, study->case_count);
     if (study->realisations > 0)
@@ -151,50 +108,10 @@ static void print_text(const struct study *study) {
     for (size_t c = 0; c < study->case_count && c < PLANS_SHOWN; c++)
         summary_of_plan(&study->cases[c], stdout);
     printf("in all about %s of CPU, %s on %u processors; up to %.0f MiB a worker\n", cpu, wall,
-           processors(), largest_memory(study) / 0x1p20);
+           processors(), plan_bytes(study) / 0x1p20);
 }
 
 /* --- JSON --- */
-
-/* Adds the plan of a case that asks for an error. */
-static bool put_components(cJSON *document, const struct study_case *one) {
-    uint64_t expected[TARGET_PARTS_MOST];
-    if (one->component_count == 0)
-        return true;
-    cJSON *list = cJSON_AddArrayToObject(document, "components");
-    (void)target_expect(one, expected);
-    bool complete = list != NULL;
-    for (size_t a = 0; a < one->component_count && complete; a++) {
-        const struct study_case *component = &one->components[a];
-        cJSON *entry = cJSON_CreateObject();
-        complete = entry != NULL && cJSON_AddItemToArray(list, entry) &&
-                   field_put_text(entry, "role", component->role) &&
-                   field_put(entry, "parameters", cJSON_Duplicate(component->parameters, true)) &&
-                   field_put_count(entry, "realisations", component->realisations) &&
-                   field_put_count(entry, "expected", expected[a]) &&
-                   field_put(entry, "seconds", json_number(component->cost.seconds));
-    }
-    return complete;
-}
-
-static cJSON *case_document(const struct study *study, size_t c) {
-    const struct study_case *one = &study->cases[c];
-    cJSON *document = cJSON_CreateObject();
-    bool complete =
-        document != NULL && field_put(document, "case", cJSON_CreateNumber((double)c)) &&
-        field_put(document, "parameters", cJSON_Duplicate(one->parameters, true)) &&
-        field_put(document, "nx", cJSON_CreateNumber((double)one->cost.nx)) &&
-        field_put(document, "ny", cJSON_CreateNumber((double)one->cost.ny)) &&
-        field_put(document, "memory_bytes", json_number(case_memory(one))) &&
-        field_put(document, "block", cJSON_CreateNumber((double)one->block)) &&
-        field_put(document, "seconds", json_number(case_seconds(&study->cases[c]))) &&
-        field_put(document, "relative_error", json_number(case_error(&study->cases[c]))) &&
-        put_components(document, &study->cases[c]);
-    if (complete)
-        return document;
-    cJSON_Delete(document);
-    return NULL;
-}
 
 static int print_document(cJSON *document, struct error *err) {
     int status = output_document(document, err);
@@ -214,31 +131,6 @@ static int print_schema(struct error *err) {
     return output_flush(err);
 }
 
-static int print_study_json(const struct study *study, struct error *err) {
-    cJSON *document = cJSON_CreateObject();
-    char seed[24];
-    snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
-    bool complete =
-        document != NULL && field_put(document, "name", cJSON_CreateString(study->name)) &&
-        field_put(document, "kind", cJSON_CreateString(study->kind->name)) &&
-        field_put(document, "seed", cJSON_CreateString(seed)) &&
-        field_put(document, "random", cJSON_CreateString(random_name(study))) &&
-        field_put(document, "realisations", cJSON_CreateNumber((double)study->realisations)) &&
-        field_put(document, "seconds", json_number(total_seconds(study))) &&
-        field_put(document, "memory_bytes", json_number(largest_memory(study))) &&
-        field_put(document, "cases", cJSON_CreateArray());
-    cJSON *cases = cJSON_GetObjectItemCaseSensitive(document, "cases");
-    for (size_t c = 0; complete && c < study->case_count; c++) {
-        cJSON *one = case_document(study, c);
-        complete = one != NULL && cJSON_AddItemToArray(cases, one);
-    }
-    if (!complete) {
-        cJSON_Delete(document);
-        document = NULL;
-    }
-    return print_document(document, err);
-}
-
 /* --- the command --- */
 
 static int check(const char *file, const char *const *sets, bool json, struct fault_list *faults,
@@ -246,7 +138,7 @@ static int check(const char *file, const char *const *sets, bool json, struct fa
     struct study *study = NULL;
     int status = study_file_read(&study, file, sets, faults, err);
     if (status == 0 && json) {
-        status = print_study_json(study, err);
+        status = print_document(plan_document(study), err);
     } else if (status == 0) {
         print_text(study);
         status = output_flush(err);

@@ -2,6 +2,7 @@
  * elsewhere. */
 #include "core/map/height_map_file.h"
 #include "jobs/kind.h"
+#include "jobs/realisation_map.h"
 #include "jobs/surface_case.h"
 #include "server/command/command.h"
 #include "server/command/output_file.h"
@@ -28,8 +29,8 @@ static const struct option_row OPTIONS[] = {
     {"format", 0, OPTION_TEXT, 0, 0, AT(format), "npy|csv|xyz", NULL,
      "of the height map (that of the file's name, or npy)"},
     {"output", 'o', OPTION_TEXT, 0, 0, AT(output), "FILE", NULL, "write the height map there"},
-    {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg", NULL,
-     "draw the surface there, its summits marked"},
+    {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
+     "draw the surface there: its summits marked, or a pixel a point"},
     {"mesh", 0, OPTION_TEXT, 0, 0, AT(mesh), "FILE.vtu", NULL,
      "write the block of the model full, meshed on the surface"},
     {"pressure", 0, OPTION_NUMBER, 0, 0, AT(pressure), "P", NULL,
@@ -161,7 +162,6 @@ static int generate(const struct generate_order *order, const struct study *stud
                     struct error *err) {
     struct surface_case surface;
     struct surface_report report = {0};
-    struct generator *generator = NULL;
     const uint64_t case_number = (uint64_t)order->options->case_number;
     const struct random_key key = {study->seed, study_sequence(study->random, case_number),
                                    (uint64_t)order->options->realisation};
@@ -171,15 +171,8 @@ static int generate(const struct generate_order *order, const struct study *stud
     int status = surface_case_read(&surface, study->cases[case_number].parameters, NULL, err);
     if (status != 0)
         return status;
-    double *z = array_create(grid_points(&surface.grid), sizeof *z);
-    if (z == NULL)
-        status = error_memory(err, grid_points(&surface.grid) * sizeof *z, "a surface");
-    if (status == 0)
-        status =
-            generator_create(&generator, &surface.spectrum, &surface.grid, &surface.options, err);
-    if (status == 0)
-        status = generator_run(generator, key, z, &report, err);
-    generator_destroy(&generator);
+    double *z = NULL;
+    status = realisation_surface(&surface, key, &z, &report, err);
     if (status == 0 && order->options->mesh != NULL)
         status = write_mesh(order, study, z, err);
     if (status == 0 && order->options->picture != NULL)

@@ -1,4 +1,5 @@
 #include "server/command/output_file.h"
+#include "server/show/map_png.h"
 #include <errno.h>
 #include <string.h>
 
@@ -21,6 +22,8 @@ int output_file_picture(const char *path, const struct map_picture *picture, str
     int status = output_file_open(&file, path, err);
     if (status != 0)
         return status;
-    status = plot_map(picture, file, err);
+    size_t length = strlen(path);
+    bool png = length > 4 && strcmp(path + length - 4, ".png") == 0;
+    status = png ? map_png(file, picture->grid, picture->z, err) : plot_map(picture, file, err);
     return output_file_close(file, path, status, err);
 }

@@ -51,6 +51,13 @@ static bool answer_compressed(struct exchange *exchange, unsigned status, const 
     return true;
 }
 
+void answer_bytes(struct exchange *exchange, const char *type, char *bytes, size_t size) {
+    finish(exchange, 200, type,
+           MHD_create_response_from_buffer(size, bytes, MHD_RESPMEM_MUST_FREE));
+    if (exchange->response == NULL)
+        free(bytes);
+}
+
 void answer_text(struct exchange *exchange, unsigned status, const char *type, char *text) {
     if (text == NULL) {
         exchange->status = 500; /* no response: the connection is closed */

@@ -53,6 +53,8 @@ int exchange_socket(const struct exchange *exchange);
 void answer_json(struct exchange *exchange, unsigned status, cJSON *document);
 /* Answers with a text, which it takes (malloc); a large one in gzip where the peer takes that. */
 void answer_text(struct exchange *exchange, unsigned status, const char *type, char *text);
+/* Answers with bytes, which it takes (malloc). */
+void answer_bytes(struct exchange *exchange, const char *type, char *bytes, size_t size);
 /* Answers with static data that outlives the server. */
 void answer_static(struct exchange *exchange, const char *type, const char *data, size_t size);
 void answer_empty(struct exchange *exchange, unsigned status);

@@ -27,6 +27,11 @@ static const struct route {
      {"quantity", "x", "colour", "case", "difference"}},
     {"GET", "/v1/studies/*/table", ROLE_READ, handle_table, {"columns", "where", "format"}},
     {"GET", "/v1/studies/*/events", ROLE_READ, handle_events, {NULL}},
+    {"GET", "/v1/studies/*/contents", ROLE_READ, handle_contents, {NULL}},
+    {"GET", "/v1/studies/*/cases/*/realisations/*/map", ROLE_READ, handle_map, {"field", "load"}},
+    {"POST", "/v1/check", ROLE_SUBMIT, handle_check, {NULL}},
+    {"GET", "/v1/templates", ROLE_NONE, handle_templates, {NULL}},
+    {"GET", "/v1/workers", ROLE_READ, handle_workers, {NULL}},
     {"POST", "/v1/jobs/claim", ROLE_WORK, handle_claim, {NULL}},
     {"POST", "/v1/jobs/*/heartbeat", ROLE_WORK, handle_heartbeat, {NULL}},
     {"POST", "/v1/jobs/*/complete", ROLE_WORK, handle_complete, {NULL}},
@@ -38,14 +43,14 @@ static const struct route {
     {"GET", "/metrics", ROLE_READ, handle_metrics, {NULL}},
     {"GET", "/healthz", ROLE_NONE, handle_health, {NULL}},
     {"GET", "/", ROLE_NONE, handle_page, {NULL}},
-    {"GET", "/app.js", ROLE_NONE, handle_script, {NULL}},
-    {"GET", "/style.css", ROLE_NONE, handle_style, {NULL}},
+    {"GET", "/web/*", ROLE_NONE, handle_asset, {NULL}},
     {"GET", "/rugo.py", ROLE_NONE, handle_client, {NULL}},
 };
 enum { ROUTE_COUNT = sizeof ROUTES / sizeof *ROUTES };
 
-/* Returns whether a path fits a pattern; the starred segment goes to id. */
+/* Returns whether a path fits a pattern; the first starred segment goes to id. */
 static bool fits(const char *pattern, const char *path, char id[SEGMENT_SIZE]) {
+    bool first = true;
     for (; *pattern != '\0'; pattern++) {
         if (*pattern != '*') {
             if (*path++ != *pattern)
@@ -55,8 +60,11 @@ static bool fits(const char *pattern, const char *path, char id[SEGMENT_SIZE]) {
         size_t length = strcspn(path, "/");
         if (length == 0 || length >= SEGMENT_SIZE)
             return false;
-        memcpy(id, path, length);
-        id[length] = 0;
+        if (first) {
+            memcpy(id, path, length);
+            id[length] = 0;
+        }
+        first = false;
         path += length;
     }
     return *path == 0;

@@ -13,7 +13,8 @@ route_handler handle_study_create, handle_study_list, handle_study, handle_docum
     handle_plot, handle_table, handle_events;
 route_handler handle_claim, handle_heartbeat, handle_complete, handle_fail, handle_release;
 route_handler handle_health, handle_metrics, handle_snapshot, handle_openapi, handle_schema,
-    handle_page, handle_script, handle_style, handle_client;
+    handle_page, handle_asset, handle_client, handle_templates, handle_contents, handle_map,
+    handle_check, handle_workers;
 
 /* Returns whether there is a body; false after a 400. */
 bool check_body(struct exchange *exchange);

@@ -1,4 +1,4 @@
-/* Health, metrics, snapshot, descriptions and the page. */
+/* Health, metrics, snapshot, and the schema of studies. */
 #include "jobs/kind.h"
 #include "server/http/route.h"
 #include <errno.h>
@@ -8,44 +8,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#define EMBEDDED(name)                                                                             \
-    extern const char _binary_server_##name##_start[];                                             \
-    extern const char _binary_server_##name##_end[]
-EMBEDDED(http_openapi_yaml);
-EMBEDDED(web_index_html);
-EMBEDDED(web_app_js);
-EMBEDDED(web_style_css);
-EMBEDDED(python_rugo_py);
-
-#define ANSWER_EMBEDDED(exchange, type, name)                                                      \
-    answer_static(exchange, type, _binary_server_##name##_start,                                   \
-                  (size_t)(_binary_server_##name##_end - _binary_server_##name##_start))
-
-void handle_openapi(struct exchange *exchange, const char *id) {
-    (void)id;
-    ANSWER_EMBEDDED(exchange, "application/yaml", http_openapi_yaml);
-}
-
-void handle_page(struct exchange *exchange, const char *id) {
-    (void)id;
-    ANSWER_EMBEDDED(exchange, "text/html; charset=utf-8", web_index_html);
-}
-
-void handle_script(struct exchange *exchange, const char *id) {
-    (void)id;
-    ANSWER_EMBEDDED(exchange, "text/javascript; charset=utf-8", web_app_js);
-}
-
-void handle_style(struct exchange *exchange, const char *id) {
-    (void)id;
-    ANSWER_EMBEDDED(exchange, "text/css; charset=utf-8", web_style_css);
-}
-
-void handle_client(struct exchange *exchange, const char *id) {
-    (void)id;
-    ANSWER_EMBEDDED(exchange, "text/x-python; charset=utf-8", python_rugo_py);
-}
 
 void handle_schema(struct exchange *exchange, const char *id) {
     (void)id;

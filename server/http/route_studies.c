@@ -3,6 +3,8 @@
 #include "schema/json/field.h"
 #include "server/command/api.h"
 #include "server/http/route.h"
+#include "server/show/contents.h"
+#include "server/show/plan.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,19 +54,30 @@ static bool check_key(struct exchange *exchange) {
     return false;
 }
 
-/* Checks on the connection's thread: ten thousand cases must not hold up the writer. */
-void handle_study_create(struct exchange *exchange, const char *id) {
-    (void)id;
+static void answer_plan(struct exchange *exchange, const struct study *study) {
+    cJSON *document = plan_document(study);
+    struct error err = {0};
+    if (document != NULL) {
+        answer_json(exchange, 200, document);
+        return;
+    }
+    (void)error_memory(&err, 0, "a plan");
+    answer_error(exchange, &err);
+}
+
+/* Reads the study on the connection's thread: ten thousand cases must not hold up the writer. */
+static void with_study(struct exchange *exchange,
+                       void (*answer)(struct exchange *exchange, const struct study *study)) {
     struct fault_list faults = {0};
     struct study *study = NULL;
     struct error err = {0};
-    if (!check_key(exchange) || !check_body(exchange))
+    if (!check_body(exchange))
         return;
     int status = kind_read_study(&study, exchange->body, exchange->body_size, NULL, &faults, &err);
     if (status == 0 && (study->owner = strdup(exchange->owner)) == NULL)
         status = error_memory(&err, sizeof exchange->owner, "a study's owner");
     if (status == 0)
-        submit(exchange, study);
+        answer(exchange, study);
     else if (faults.count != 0)
         answer_problem(exchange, 422, "the study is not valid", &faults);
     else if (status == ERROR_INPUT) /* no JSON */
@@ -73,6 +86,17 @@ void handle_study_create(struct exchange *exchange, const char *id) {
         answer_error(exchange, &err);
     study_destroy(&study);
     fault_list_clear(&faults);
+}
+
+void handle_study_create(struct exchange *exchange, const char *id) {
+    (void)id;
+    if (check_key(exchange))
+        with_study(exchange, submit);
+}
+
+void handle_check(struct exchange *exchange, const char *id) {
+    (void)id;
+    with_study(exchange, answer_plan);
 }
 
 /* A change of a study, which its owner or an admin may make; a study of nobody is anybody's. */
@@ -203,4 +227,17 @@ void handle_study(struct exchange *exchange, const char *id) {
 
 void handle_document(struct exchange *exchange, const char *id) {
     answer_question(exchange, id, store_document);
+}
+
+void handle_contents(struct exchange *exchange, const char *id) {
+    answer_question(exchange, id, contents_document);
+}
+
+static int ask_workers(struct store *store, const char *id, cJSON **out, struct error *err) {
+    (void)id;
+    return api_workers(store, out, err);
+}
+
+void handle_workers(struct exchange *exchange, const char *id) {
+    answer_question(exchange, id, ask_workers);
 }

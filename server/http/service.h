@@ -29,6 +29,7 @@ struct service {
     atomic_uint_fast64_t nanoseconds;             /* spent on answers */
     atomic_int_fast64_t connections, streams;     /* open now */
     atomic_int_fast64_t snapshots;                /* being sent */
+    atomic_int_fast64_t maps;                     /* being computed */
 };
 
 int service_open(struct service *service, const char *database, int64_t lease_ms,

@@ -317,8 +317,8 @@ static void a_lease_is_needed_to_report(void **state) {
 static void descriptions_and_page(void **state) {
     (void)state;
     check_answer("GET", "/", NULL, 200, "<title>Rugo</title>");
-    check_answer("GET", "/app.js", NULL, 200, "textContent");
-    check_answer("GET", "/style.css", NULL, 200, "body");
+    check_answer("GET", "/web/app.js", NULL, 200, "import");
+    check_answer("GET", "/web/style.css", NULL, 200, "body");
     check_answer("GET", "/v1/openapi.yaml", NULL, 200, "openapi: 3.1");
     check_answer("GET", "/v1/study.schema.json", NULL, 200, "\"hurst\": {\n");
     check_answer("GET", "/v1/study.schema.json", NULL, 200, "\"maximum\": 9007199254740992\n");

@@ -1,0 +1,88 @@
+// Elements of the page, and how it writes numbers. What users wrote goes in as text, never as markup.
+
+/** Makes an element: attributes by name, listeners as onclick, then its content. */
+export function make(name, attributes = {}, ...content) {
+  const element = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key.startsWith("on")) element.addEventListener(key.slice(2), value);
+    else if (typeof value === "boolean") element.toggleAttribute(key, value);
+    else if (value !== undefined && value !== null) element.setAttribute(key, value);
+  }
+  element.append(...content.flat().filter((part) => part !== null && part !== undefined && part !== ""));
+  return element;
+}
+
+/** Seconds in words. */
+export function duration(seconds) {
+  if (seconds === null || seconds === undefined || !isFinite(seconds)) return "–";
+  if (seconds < 0.1) return `${(1000 * seconds).toPrecision(2)} ms`;
+  if (seconds < 10) return `${seconds.toFixed(1)} s`;
+  if (seconds < 100) return `${seconds.toFixed(0)} s`;
+  if (seconds < 6000) return `${(seconds / 60).toFixed(0)} min`;
+  if (seconds < 360000) return `${(seconds / 3600).toFixed(1)} h`;
+  return `${(seconds / 86400).toFixed(1)} days`;
+}
+
+/** A number with so many digits as mean something, without an exponent where it reads well. */
+export function number(value, digits = 4) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value !== "number") return String(value);
+  const size = Math.abs(value);
+  return size !== 0 && (size < 1e-3 || size >= 1e6) ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
+}
+
+/** A value and its standard error to the error's two digits: 0.1234 ± 0.0012. */
+export function measured(value, error) {
+  if (value === null || value === undefined) return "–";
+  if (!error) return number(value);
+  const decimals = Math.max(0, Math.min(12, 1 - Math.floor(Math.log10(error))));
+  const size = Math.abs(value);
+  if (decimals >= 12 || size >= 1e6) return `${number(value)} ± ${number(error, 2)}`;
+  return `${value.toFixed(decimals)} ± ${error.toFixed(decimals)}`;
+}
+
+export function time(text) {
+  return text ? new Date(text).toLocaleString() : "–";
+}
+
+/** "hurst" of "/surface/hurst". */
+export function lastName(pointer) {
+  return pointer.slice(pointer.lastIndexOf("/") + 1);
+}
+
+const SYMBOLS = {
+  hurst: "H", nayak_alpha: "α", shape: "C", wavelength_ratio: "λl/λs", length_ratio: "L/λl", poisson: "ν", rms_slope: "h′",
+};
+/** "H" of "hurst", where people have a symbol for it. */
+export function symbol(name) {
+  return SYMBOLS[name] ?? name.replaceAll("_", " ");
+}
+
+/** "mean gap" of "mean_gap". */
+export function words(name) {
+  return name.replaceAll("_", " ");
+}
+
+/** A label as people write it: "√m₀" of "sqrt(m0)". */
+export function pretty(label) {
+  return label.replace(/sqrt\(([^()]*)\)/g, "√$1").replaceAll("h'_rms", "h′").replace(/\bm0\b/g, "m₀").replace(/\bm2\b/g, "m₂").replace(/\bm4\b/g, "m₄")
+    .replace(/\bA0\b/g, "A₀").replaceAll("lambda_s", "λₛ").replaceAll("lambda_l", "λₗ").replaceAll("^2", "²");
+}
+
+export function bar(share, label) {
+  return make("progress", { max: 1, value: share, "aria-label": label, title: `${(100 * share).toFixed(1)} %` });
+}
+
+/** A list to choose from; options are values, or pairs of value and text. */
+export function choice(label, options, value, onchange) {
+  const list = make("select", { onchange: (event) => onchange(event.target.value) },
+    options.map((option) => {
+      const [key, text] = Array.isArray(option) ? option : [option, words(String(option))];
+      return make("option", { value: key, selected: String(key) === String(value) }, text);
+    }));
+  return make("label", { class: "choice" }, `${label} `, list);
+}
+
+export function tick(label, checked, onchange) {
+  return make("label", { class: "tick" }, make("input", { type: "checkbox", checked, onchange: (event) => onchange(event.target.checked) }), ` ${label}`);
+}

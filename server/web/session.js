@@ -1,0 +1,84 @@
+// Requests to the service. The token, where one is needed, is kept for this tab alone.
+
+const KEY = "rugo-token";
+const listeners = new Set();
+
+export class Problem extends Error {
+  constructor(status, document) {
+    super(document?.detail ?? `The server answered ${status}.`);
+    this.status = status;
+    this.faults = document?.errors ?? [];
+  }
+}
+
+/** Calls back when a token is needed or refused, with what to say. */
+export function onTokenNeeded(listener) {
+  listeners.add(listener);
+}
+
+export function setToken(token) {
+  if (token) sessionStorage.setItem(KEY, token);
+  else sessionStorage.removeItem(KEY);
+}
+
+export function hasToken() {
+  return sessionStorage.getItem(KEY) !== null;
+}
+
+/** fetch with the token; throws a Problem for any answer but 2xx and 304. */
+export async function request(path, options = {}) {
+  const headers = new Headers(options.headers);
+  const token = sessionStorage.getItem(KEY);
+  if (token) headers.set("Authorization", `Bearer ${token}`);
+  let answer;
+  try {
+    answer = await fetch(path, { ...options, headers });
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    throw new Error("The server cannot be reached.");
+  }
+  if (answer.ok || answer.status === 304) return answer;
+  const document = answer.headers.get("Content-Type")?.includes("json") ? await answer.json().catch(() => null) : null;
+  if (answer.status === 401) {
+    const text = token ? "The server does not know this token." : "This server asks for a token.";
+    for (const listener of listeners) listener(text);
+  }
+  throw new Problem(answer.status, answer.status === 403 ? { ...document, detail: `${document?.detail ?? "Refused"}: this token's role may not do that.` } : document);
+}
+
+export async function getJson(path, options) {
+  return (await request(path, options)).json();
+}
+
+export async function sendJson(method, path, body) {
+  const headers = body === undefined ? {} : { "Content-Type": "application/json" };
+  const answer = await request(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body) });
+  return answer.status === 204 ? null : answer.json();
+}
+
+/** Downloads as a file, with the token that a link could not carry. */
+export async function download(path, name, accept) {
+  const answer = await request(path, { headers: accept ? { Accept: accept } : {} });
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(await answer.blob());
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+/** Reads server-sent events, which EventSource could not ask for with a token; ends with the stream or the signal. */
+export async function events(path, onevent, signal) {
+  const answer = await request(path, { signal, headers: { Accept: "text/event-stream" } });
+  const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+  let waiting = "";
+  for (;;) {
+    const { value, done } = await reader.read();
+    if (done) return;
+    const parts = (waiting + value).split("\n\n");
+    waiting = parts.pop();
+    for (const part of parts) {
+      const data = part.split("\n").filter((line) => line.startsWith("data:")).map((line) => line.slice(5).trim());
+      if (data.length > 0) onevent(JSON.parse(data.join("\n")));
+    }
+  }
+}

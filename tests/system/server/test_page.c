@@ -1,0 +1,212 @@
+/* Protects: what the page is made of: its files, what a study holds, a study's plan before it runs,
+ * the ready studies, workers, and maps of single realisations. The page itself: tests/browser. */
+#include "schema/json/json.h"
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char STUDY[] =
+    "{\"name\":\"looked at\",\"kind\":\"contact\",\"seed\":7,\"realisations\":3,\"surface\":{"
+    "\"dimension\":1,\"hurst\":[0.3,0.7],\"wavelength_ratio\":4,\"length_ratio\":4},\"contact\":{"
+    "\"model\":[\"halfspace\",\"layered\"],\"pressures\":{\"to\":0.1,\"steps\":2}}}";
+static const char MAP[] = "/v1/studies/looked%20at/cases/1/realisations/2/map";
+
+static struct process server;
+static unsigned port;
+
+static int start(void **state) {
+    (void)state;
+    char url[64];
+    port = serve_start(&server, (const char *[]){"--workers", "1", NULL});
+    assert_int_equal(http_exchange(port, "POST", "/v1/studies",
+                                   "Content-Type: application/json\r\n", STUDY, NULL),
+                     201);
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    assert_int_equal(run_rugo("wait", (const char *[]){"wait", "--server", url, "looked at", NULL}),
+                     0);
+    return 0;
+}
+
+static int stop(void **state) {
+    (void)state;
+    process_kill(&server, SIGTERM);
+    return process_wait(&server, 15);
+}
+
+static cJSON *get(const char *path) {
+    char *answer = NULL;
+    assert_int_equal(http_exchange(port, "GET", path, "", NULL, &answer), 200);
+    cJSON *document = cJSON_Parse(answer);
+    assert_non_null(document);
+    free(answer);
+    return document;
+}
+
+static void contents_name_cases_curves_and_scalars(void **state) {
+    (void)state;
+    cJSON *document = get("/v1/studies/looked%20at/contents");
+    const cJSON *cases = cJSON_GetObjectItem(document, "cases");
+    assert_int_equal(cJSON_GetArraySize(cases), 2);
+    const cJSON *swept = cJSON_GetObjectItem(cJSON_GetArrayItem(cases, 1), "swept");
+    assert_int_equal(cJSON_GetArraySize(swept), 1); /* what all cases share is not told */
+    assert_true(cJSON_GetObjectItem(swept, "/surface/hurst")->valuedouble == 0.7);
+    const cJSON *area = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "curves"), 0);
+    assert_string_equal(cJSON_GetObjectItem(area, "quantity")->valuestring, "contact_area");
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(area, "models")), 2);
+    assert_true(cJSON_GetArraySize(cJSON_GetObjectItem(area, "series")) > 1);
+    assert_null(cJSON_GetObjectItem(area, "y"));
+    assert_true(cJSON_GetArraySize(cJSON_GetObjectItem(document, "scalars")) > 3);
+    cJSON_Delete(document);
+}
+
+static void a_plan_is_told_and_nothing_kept(void **state) {
+    (void)state;
+    char *answer = NULL;
+    static const char JSON[] = "Content-Type: application/json\r\n";
+    assert_int_equal(http_exchange(port, "POST", "/v1/check", JSON, STUDY, &answer), 200);
+    cJSON *plan = cJSON_Parse(answer);
+    assert_true(cJSON_GetObjectItem(plan, "seconds")->valuedouble > 0);
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(plan, "cases")), 2);
+    cJSON_Delete(plan);
+    free(answer);
+    assert_int_equal(http_exchange(port, "POST", "/v1/check", JSON,
+                                   "{\"name\":\"n\",\"kind\":\"statistics\",\"surface\":{\"hurst\":"
+                                   "1.4,\"wavelength_ratio\":4}}",
+                                   &answer),
+                     422);
+    assert_non_null(strstr(answer, "/surface/hurst"));
+    free(answer);
+    cJSON *list = get("/v1/studies");
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(list, "studies")), 1);
+    cJSON_Delete(list);
+}
+
+static void ready_studies_can_run(void **state) {
+    (void)state;
+    cJSON *list = get("/v1/templates");
+    const cJSON *one;
+    assert_true(cJSON_GetArraySize(list) > 10);
+    cJSON_ArrayForEach(one, list) {
+        char *text = cJSON_PrintUnformatted(one);
+        assert_int_equal(http_exchange(port, "POST", "/v1/check",
+                                       "Content-Type: application/json\r\n", text, NULL),
+                         200);
+        free(text);
+    }
+    cJSON_Delete(list);
+}
+
+static void the_worker_is_listed(void **state) {
+    (void)state;
+    cJSON *document = get("/v1/workers");
+    const cJSON *workers = cJSON_GetObjectItem(document, "workers");
+    assert_int_equal(cJSON_GetArraySize(workers), 1);
+    assert_true(
+        cJSON_GetObjectItem(cJSON_GetArrayItem(workers, 0), "jobs_last_hour")->valuedouble >= 2);
+    assert_int_equal(cJSON_GetObjectItem(document, "waiting")->valueint, 0);
+    cJSON_Delete(document);
+}
+
+/* Fetches the map at a query into a file and reads the doubles behind its head. */
+static size_t fetch_map(const char *query, double *values, size_t most) {
+    char line[300], head[10];
+    snprintf(line, sizeof line, "curl -sf -o map.npy 'http://127.0.0.1:%u%s%s'", port, MAP, query);
+    assert_int_equal(system(line), 0);
+    FILE *file = fopen("map.npy", "rb");
+    assert_non_null(file);
+    assert_int_equal(fread(head, 1, sizeof head, file), sizeof head);
+    assert_int_equal(
+        fseek(file, 10 + (unsigned char)head[8] + 256 * (unsigned char)head[9], SEEK_SET), 0);
+    size_t count = fread(values, sizeof *values, most, file);
+    fclose(file);
+    return count;
+}
+
+static void maps_are_those_of_the_realisation(void **state) {
+    (void)state;
+    enum { MOST = 4096 };
+    static double z[MOST], gap[MOST], pressure[MOST];
+    if (system("command -v curl >/dev/null") != 0)
+        skip();
+    size_t n = fetch_map("", z, MOST);
+    assert_int_equal(n, 4 * 4 * 8);
+    assert_int_equal(fetch_map("?field=gap&load=0.1", gap, MOST), n);
+    assert_int_equal(fetch_map("?field=pressure&load=0.1", pressure, MOST), n);
+    double mean = 0;
+    size_t touching = 0;
+    for (size_t i = 0; i < n; i++) {
+        mean += pressure[i] / (double)n;
+        touching += pressure[i] > 0;
+        assert_true(pressure[i] == 0 || fabs(gap[i]) < 1e-6); /* the solver's tolerance: 1e-8 */
+    }
+    assert_true(fabs(mean - 0.1) < 1e-12); /* the load, but for rounding */
+    assert_true(touching > n / 20 && touching < n);
+}
+
+static void maps_that_there_are_not(void **state) {
+    (void)state;
+    static const struct {
+        const char *path;
+        unsigned status;
+        const char *said;
+    } WRONG[] = {
+        {"/v1/studies/looked%20at/cases/1/realisations/3/map", 404, "cases have 3"},
+        {"/v1/studies/looked%20at/cases/2/realisations/0/map", 404, "case"},
+        {"/v1/studies/looked%20at/cases/1x/realisations/0/map", 404, "whole numbers"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=slope", 422, "height"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=gap", 422, "load"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=gap&load=nan", 422, "load"},
+        {"/v1/studies/nothing/cases/0/realisations/0/map", 404, "nothing"}};
+    for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
+        char *answer = NULL;
+        assert_int_equal(http_exchange(port, "GET", WRONG[w].path, "", NULL, &answer),
+                         WRONG[w].status);
+        assert_non_null(strstr(answer, WRONG[w].said));
+        free(answer);
+    }
+}
+
+static void a_picture_is_a_png(void **state) {
+    (void)state;
+    char line[300];
+    if (system("command -v curl >/dev/null") != 0)
+        skip();
+    snprintf(line, sizeof line,
+             "curl -sf -H 'Accept: image/png' -o map.png 'http://127.0.0.1:%u%s'", port, MAP);
+    assert_int_equal(system(line), 0);
+    FILE *file = fopen("map.png", "rb");
+    unsigned char head[24];
+    assert_non_null(file);
+    assert_int_equal(fread(head, 1, sizeof head, file), sizeof head);
+    fclose(file);
+    assert_memory_equal(head, "\x89PNG\r\n\x1a\n", 8);
+    assert_int_equal(head[19], 4 * 4 * 8); /* pixels a row */
+    assert_int_equal(head[23], 1);
+}
+
+static void files_of_the_page(void **state) {
+    (void)state;
+    static const char *const FILES[] = {"/", "/web/app.js", "/web/style.css", "/web/uplot.js",
+                                        "/web/uplot.css"};
+    for (size_t f = 0; f < sizeof FILES / sizeof *FILES; f++)
+        assert_int_equal(http_exchange(port, "GET", FILES[f], "", NULL, NULL), 200);
+    assert_int_equal(http_exchange(port, "GET", "/web/nothing.js", "", NULL, NULL), 404);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(contents_name_cases_curves_and_scalars),
+        cmocka_unit_test(a_plan_is_told_and_nothing_kept),
+        cmocka_unit_test(ready_studies_can_run),
+        cmocka_unit_test(the_worker_is_listed),
+        cmocka_unit_test(maps_are_those_of_the_realisation),
+        cmocka_unit_test(maps_that_there_are_not),
+        cmocka_unit_test(a_picture_is_a_png),
+        cmocka_unit_test(files_of_the_page),
+    };
+    return cmocka_run_group_tests(tests, start, stop);
+}
