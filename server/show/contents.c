@@ -10,7 +10,7 @@
 static int read_parameters(struct store *store, const struct aggregate *aggregate,
                            struct study_result *out, struct error *err) {
     const uint64_t count = aggregate->about.cases;
-    int status = aggregate_copy_head(aggregate, out, err);
+    int status = aggregate_head(store, aggregate, out, err);
     if (status == 0 && (out->cases = array_create(count, sizeof *out->cases)) == NULL)
         status = error_memory(err, count * sizeof *out->cases, "cases");
     for (uint64_t c = 0; status == 0 && c < count; c++) {

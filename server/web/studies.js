@@ -18,7 +18,7 @@ const ORDER = { by: "created", down: true }; // kept while the tab is open
 const PERIOD = 2000;
 
 export function share(study) {
-  return study.realisations.total > 0 ? study.realisations.done / study.realisations.total : 0;
+  return study.share ?? (study.realisations.total > 0 ? study.realisations.done / study.realisations.total : 0);
 }
 
 export function isLive(study) {
