@@ -18,6 +18,7 @@ struct running_job {
 };
 
 static const double PRIOR = 4;
+static const double LEAST_LEFT = 0.05; /* of a realisation, of a job that has not ended */
 
 struct reading {
     struct store *store;
@@ -131,8 +132,8 @@ static void load_workers(const struct reading *reading, double *loads, double *d
         if (job->leads)
             rate = case_rate(reading, j);
         double since = job->elapsed - (job->reported > 0 ? job->reported_after : 0);
-        double whole = job->count * rate;
-        double now = fmin(whole, job->reported * rate + fmax(0, since));
+        double whole = job->count * rate, most = fmax(0, whole - LEAST_LEFT * rate);
+        double now = fmin(most, job->reported * rate + fmax(0, since));
         loads[j] = whole - now;
         *done += now;
     }

@@ -2,12 +2,15 @@
 #include "server/command/api.h"
 #include "server/http/route.h"
 #include "worker/clock.h"
+#include <math.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { STREAMS_MOST = 64, POLL_MS = 300, ALIVE_MS = 15000 };
+/* A study whose jobs run, and end seldom, is told of whenever so much more of its work is done. */
+static const double SHARE_STEP = 0.001;
 
 /* One stream; the library calls next_event on the connection's own thread, which may wait. */
 struct event_stream {
@@ -16,6 +19,7 @@ struct event_stream {
     int socket; /* the library's */
     char id[SEGMENT_SIZE];
     double revision; /* sent last; -1 at first */
+    double share;    /* of the work, sent last */
     int64_t sent_ms;
     bool ended;
     char *pending; /* owned: text not yet taken */
@@ -49,10 +53,13 @@ static char *read_event(struct event_stream *stream) {
         return code == ERROR_ABSENT ? strdup("event: deleted\ndata: {}\n\n") : NULL;
     }
     double revision = cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(status, "revision"));
-    if (revision != stream->revision && (text = json_print(status)) != NULL) {
+    double share = cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(status, "share"));
+    bool moved = revision != stream->revision || fabs(share - stream->share) >= SHARE_STEP;
+    if (moved && (text = json_print(status)) != NULL) {
         if (asprintf(&event, "event: progress\ndata: %s\n\n", text) < 0)
             event = NULL;
         stream->revision = revision;
+        stream->share = share;
         stream->ended = has_ended(status);
     }
     free(text);

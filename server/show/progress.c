@@ -72,11 +72,12 @@ static double number_of(const cJSON *object, const char *key) {
 void progress_of_document(struct progress_bar *bar, const cJSON *progress) {
     const cJSON *realisations = field_at(progress, "realisations");
     const char *id = cJSON_GetStringValue(field_at(progress, "id"));
-    const struct progress_state state = {.study = id != NULL ? id : "?",
-                                         .share = number_of(progress, "share"),
-                                         .seconds_left = number_of(progress, "seconds_left"),
-                                         .done = number_of(realisations, "done"),
-                                         .total = number_of(realisations, "total")};
+    double share = number_of(progress, "share"); /* an older server tells none */
+    struct progress_state state = {.study = id != NULL ? id : "?",
+                                   .seconds_left = number_of(progress, "seconds_left"),
+                                   .done = fmax(0, number_of(realisations, "done")),
+                                   .total = fmax(0, number_of(realisations, "total"))};
+    state.share = share >= 0 && share <= 1 ? share : state.done / fmax(1, state.total);
     if (progress_is_due(bar))
         progress_draw(bar, &state);
 }

@@ -54,8 +54,10 @@ static char *fetch(const char *path, const char *more, const char *file, size_t 
 
 static void the_same_bytes(void **state) {
     (void)state;
-    if (system("command -v curl >/dev/null") != 0)
+    if (system("command -v curl >/dev/null") != 0) {
+        print_message("SKIP: there is no curl\n");
         skip();
+    }
     static const struct {
         const char *path, *more;
         bool large;

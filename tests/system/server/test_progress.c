@@ -1,8 +1,9 @@
-/* Protects: on a terminal the bar of a run moves each second, to its end; elsewhere there are
- * lines, and never a word that a queued study has no time left. */
+/* Protects: on a terminal the bar of a run moves each second, to its end; a queued study is never
+ * told to have no time left; events tell of work that goes on while no job ends. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include <pty.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +13,8 @@
 
 /* Some seconds of one worker: few realisations, which take long. */
 static const char STUDY[] =
-    "{\"name\":\"slow\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":6,\"surface\":{"
-    "\"hurst\":0.8,\"wavelength_ratio\":32,\"length_ratio\":8,\"points_per_wavelength\":8}}";
+    "{\"name\":\"slow\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":20,\"surface\":{"
+    "\"hurst\":0.8,\"wavelength_ratio\":64,\"length_ratio\":8,\"points_per_wavelength\":8}}";
 
 static double seconds_now(void) {
     struct timespec now;
@@ -52,7 +53,7 @@ static void the_bar_moves(void **state) {
     double seconds = seconds_now() - start;
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
     assert_non_null(strstr(text, "100.0 %"));
-    assert_non_null(strstr(text, "6 of 6 realisations"));
+    assert_non_null(strstr(text, "20 of 20 realisations"));
     char *rest = NULL, last[200] = "";
     double moves = 0;
     for (char *bar = strtok_r(text, "\r", &rest); bar != NULL; bar = strtok_r(NULL, "\r", &rest)) {
@@ -78,10 +79,46 @@ static void nobody_is_told_of_no_time(void **state) {
     assert_true(contains("status.out", "left not known, as nobody works"));
 }
 
+/* A job that runs moves its study, though nothing of it has ended: each event has more of the work
+ * done than the one before. */
+static void events_tell_of_work_that_goes_on(void **state) {
+    (void)state;
+    static const char LONG[] =
+        "{\"name\":\"long\",\"kind\":\"statistics\",\"realisations\":9,\"surface\":{\"hurst\":0.8,"
+        "\"wavelength_ratio\":128,\"length_ratio\":8}}";
+    char text[16384] = "";
+    size_t used = 0;
+    double shares[3];
+    int count = 0;
+    static const char JSON[] = "Content-Type: application/json\r\n";
+    struct process server = {0};
+    unsigned port = serve_start(&server, NULL);
+    assert_int_equal(http_exchange(port, "POST", "/v1/studies", JSON, LONG, NULL), 201);
+    assert_int_equal(http_exchange(port, "POST", "/v1/jobs/claim", JSON,
+                                   "{\"worker\":\"w\",\"sequence\":true}", NULL),
+                     200);
+    int stream = http_connect(port);
+    static const char REQUEST[] = "GET /v1/studies/long/events HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    assert_int_equal(write(stream, REQUEST, strlen(REQUEST)), strlen(REQUEST));
+    while (count < 3) {
+        ssize_t got = read(stream, text + used, sizeof text - 1 - used);
+        assert_true(got > 0); /* the stream is not cut off before */
+        text[used += (size_t)got] = '\0';
+        const char *at = text;
+        for (count = 0; count < 3 && (at = strstr(at, "\"share\":")) != NULL; at++)
+            shares[count++] = strtod(at + 8, NULL);
+    }
+    close(stream);
+    assert_true(shares[0] < shares[1] && shares[1] < shares[2] && shares[2] < 1);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 15), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_bar_moves),
         cmocka_unit_test(nobody_is_told_of_no_time),
+        cmocka_unit_test(events_tell_of_work_that_goes_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
