@@ -33,7 +33,6 @@ struct found_study {
     bool queued;
     enum study_random random;
     char owner[OWNER_SIZE];
-    double start; /* of its next job, on the clock of its owner (store_line.c) */
 };
 
 /* The kinds of a claim as " one two ", the caller's to free; *out is NULL for any. */
@@ -51,54 +50,69 @@ static int kinds_text(const char *const *kinds, char **out, struct error *err) {
     return 0;
 }
 
+#define FOUND_COLUMNS "id, public, kind, seed, state = 'queued', random, owner"
 /* Studies that a worker may have: ?1 those of independent cases alone, ?2 of these kinds. */
 #define CLAIMABLE                                                                                  \
     "state IN ('queued', 'running') AND jobs_waiting > 0 AND (NOT ?1 OR random = 'independent' "   \
     "OR (cases = 1 AND realisations > 0)) AND (?2 IS NULL OR instr(?2, ' ' || kind || ' ') > 0)"
-#define FOUND_COLUMNS                                                                              \
-    "s.id, s.public, s.kind, s.seed, s.state = 'queued', s.random, s.owner, max(h.served, "        \
-    "(SELECT "                                                                                     \
-    "max(begun) FROM share)) AS start"
-
-/* The next study of the owner whose turn it is, or the one that is asked for. */
-static int query_study(struct store *store, const struct claim *claim, int64_t only,
-                       const char *kinds, sqlite3_stmt **row, struct error *err) {
-    if (only != 0)
-        return store_query(store, row, err,
-                           "SELECT " FOUND_COLUMNS " FROM study s JOIN share h ON h.owner = "
-                           "s.owner WHERE " CLAIMABLE " AND s.id = ?3",
-                           "iti", (int64_t)claim->independent_only, kinds, only);
-    return store_query(store, row, err,
-                       "SELECT " FOUND_COLUMNS " FROM share h JOIN study s ON s.id = (SELECT id "
-                       "FROM study INDEXED BY study_line WHERE owner = h.owner AND " CLAIMABLE
-                       " ORDER BY priority DESC, id LIMIT 1) ORDER BY start, h.begun, h.owner "
-                       "LIMIT 1",
-                       "it", (int64_t)claim->independent_only, kinds);
-}
-
-/* Fills job's study, kind and seed. 1, or 0 when there is none. */
-static int find_study(struct store *store, const struct claim *claim, int64_t only,
-                      struct found_study *found, struct claimed_job *job, struct error *err) {
+/* A study that a worker may have: of this owner the first in line, or the one that is asked for.
+ * Fills job's study, kind and seed. 1, or 0 when there is none. */
+static int first_study(struct store *store, const struct claim *claim, int64_t only,
+                       const char *kinds, struct found_study *found, struct claimed_job *job,
+                       struct error *err) {
     sqlite3_stmt *row = NULL;
-    char *kinds = NULL;
-    int status = kinds_text(claim->kinds, &kinds, err);
-    if (status == 0)
-        status = query_study(store, claim, only, kinds, &row, err);
-    free(kinds); /* which was copied */
+    int64_t independent = claim->independent_only;
+    int status =
+        only != 0
+            ? store_query(store, &row, err,
+                          "SELECT " FOUND_COLUMNS " FROM study WHERE " CLAIMABLE " AND id = ?3",
+                          "iti", independent, kinds, only)
+            : store_query(store, &row, err,
+                          "SELECT " FOUND_COLUMNS " FROM study INDEXED BY study_line WHERE "
+                          "owner = ?3 AND " CLAIMABLE " ORDER BY priority DESC, id LIMIT 1",
+                          "itt", independent, kinds, found->owner);
     if (status == 0)
         status = store_step(store, row, err);
     if (status <= 0)
         return status;
-    *found = (struct found_study){.id = sqlite3_column_int64(row, 0),
-                                  .queued = sqlite3_column_int(row, 4),
-                                  .random = column_random(row, 5),
-                                  .start = sqlite3_column_double(row, 7)};
+    found->id = sqlite3_column_int64(row, 0);
+    found->queued = sqlite3_column_int(row, 4);
+    found->random = column_random(row, 5);
     snprintf(found->owner, sizeof found->owner, "%s", (const char *)sqlite3_column_text(row, 6));
     snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 1));
     job->seed = strtoull((const char *)sqlite3_column_text(row, 3), NULL, 10);
     job->kind = column_copy(row, 2);
     sqlite3_reset(row);
     return job->kind != NULL ? 1 : error_memory(err, 0, "a kind");
+}
+
+/* Asks owner after owner, whose clock is least first. */
+static int next_study(struct store *store, const struct claim *claim, const char *kinds,
+                      struct found_study *found, struct claimed_job *job, struct error *err) {
+    sqlite3_stmt *turn = NULL;
+    int status = store_query(store, &turn, err,
+                             "SELECT owner FROM share ORDER BY max(served, (SELECT max(begun) FROM "
+                             "share)), begun, owner",
+                             "");
+    while (status == 0 && (status = store_step(store, turn, err)) == 1) {
+        snprintf(found->owner, sizeof found->owner, "%s",
+                 (const char *)sqlite3_column_text(turn, 0));
+        status = first_study(store, claim, 0, kinds, found, job, err);
+        if (status != 0)
+            sqlite3_reset(turn);
+    }
+    return status;
+}
+
+static int find_study(struct store *store, const struct claim *claim, int64_t only,
+                      struct found_study *found, struct claimed_job *job, struct error *err) {
+    char *kinds = NULL;
+    int status = kinds_text(claim->kinds, &kinds, err);
+    if (status == 0)
+        status = only != 0 ? first_study(store, claim, only, kinds, found, job, err)
+                           : next_study(store, claim, kinds, found, job, err);
+    free(kinds);
+    return status;
 }
 
 /* Leases the study's first job that waits. */
@@ -166,8 +180,10 @@ static int count_share(struct store *store, const struct found_study *study, dou
                        struct error *err) {
     static const double LEAST = 1e-3;
     return store_run(store, err,
-                     "UPDATE share SET begun = ?1, served = ?1 + ?2 / weight WHERE owner = ?3",
-                     "ddt", study->start, seconds > LEAST ? seconds : LEAST, study->owner);
+                     "UPDATE share SET begun = start, served = start + ?1 / weight FROM (SELECT "
+                     "max(served, (SELECT max(begun) FROM share)) AS start FROM share WHERE owner "
+                     "= ?2) WHERE owner = ?2",
+                     "dt", seconds > LEAST ? seconds : LEAST, study->owner);
 }
 
 /* The counters change with every claim; the state only with the first, as it is indexed. */
