@@ -41,7 +41,7 @@ function row(study) {
     make("th", { scope: "row" }, make("a", { href: `#/study/${encodeURIComponent(study.id)}`, title: study.id }, study.name)),
     make("td", {}, study.kind),
     make("td", {}, study.owner ?? ""),
-    make("td", { class: study.state }, study.state),
+    make("td", { class: study.state }, study.place ? `${study.state}, place ${study.place}` : study.state),
     make("td", {}, bar(share(study), `progress of ${study.name}`)),
     make("td", { class: "number" }, `${done} / ${total}`),
     make("td", { class: "number" }, isLive(study) ? duration(study.seconds_left) : "–"),

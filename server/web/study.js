@@ -38,6 +38,12 @@ function asks(root, text, action, refresh) {
   };
 }
 
+// Of a study that waits: its place, and when it starts where a worker is at work.
+function line(study) {
+  if (!study.place) return null;
+  return study.starts_in === null ? `${study.place}` : `${study.place}, starts in ${duration(study.starts_in)}`;
+}
+
 function failures(study) {
   if (!study.failures?.length) return null;
   return make("details", { open: true }, make("summary", {}, `${study.failures.length} failures`),
@@ -72,7 +78,7 @@ export async function showStudy(root, signal, id, part = "curves") {
       live ? null : make("button", { class: "danger", onclick: asks(root, `Delete ${called} and its results for ever?`, remove, refresh) }, "Delete …"),
       make("a", { class: "button", href: `#/new/${encodeURIComponent(id)}` }, "Copy as a new study"),
       make("span", { class: "actions-message", role: "alert" }));
-    const facts = [["State", make("span", { class: study.state }, study.state)], ["Kind", study.kind], ["Owner", study.owner], ["Seed", study.seed], ["Cases", study.cases],
+    const facts = [["State", make("span", { class: study.state }, study.state)], ["Place in line", line(study)], ["Kind", study.kind], ["Owner", study.owner], ["Seed", study.seed], ["Cases", study.cases],
       ["Realisations", `${done} / ${total}${failed ? `, ${failed} failed` : ""}`], ["CPU time", duration(study.cpu_seconds)], ["Workers", live ? study.workers : null],
       ["Time left", live ? duration(study.seconds_left) : null], ["Error reached", study.error_reached ? `${(100 * study.error_reached).toPrecision(3)} %` : null],
       ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Id", make("code", {}, study.id)]];
