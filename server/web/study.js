@@ -54,7 +54,7 @@ export async function showStudy(root, signal, id, part = "curves") {
   const path = `/v1/studies/${encodeURIComponent(id)}`;
   const head = make("div"), tabs = make("nav", { class: "tabs", "aria-label": "Parts of the study" }), body = make("section");
   root.append(make("p", { role: "status", class: "waiting" }, "Loading …"));
-  let study, redraw = null, contents = null;
+  let study, redraw = null, contents = null, following = false;
 
   function drawHead() {
     document.title = `${study.name} – Rugo`;
@@ -78,10 +78,10 @@ export async function showStudy(root, signal, id, part = "curves") {
       live ? null : make("button", { class: "danger", onclick: asks(root, `Delete ${called} and its results for ever?`, remove, refresh) }, "Delete …"),
       make("a", { class: "button", href: `#/new/${encodeURIComponent(id)}` }, "Copy as a new study"),
       make("span", { class: "actions-message", role: "alert" }));
-    const facts = [["State", make("span", { class: study.state }, study.state)], ["Place in line", line(study)], ["Kind", study.kind], ["Owner", study.owner], ["Seed", study.seed], ["Cases", study.cases],
+    const facts = [["State", make("span", { class: study.state }, study.state)], ["Place in line", line(study)], ["Kind", study.kind], ["Owner", study.owner], ["Priority", study.priority || null], ["Seed", study.seed], ["Cases", study.cases],
       ["Realisations", `${done} / ${total}${failed ? `, ${failed} failed` : ""}`], ["CPU time", duration(study.cpu_seconds)], ["Workers", live ? study.workers : null],
-      ["Time left", live ? duration(study.seconds_left) : null], ["Error reached", study.error_reached ? `${(100 * study.error_reached).toPrecision(3)} %` : null],
-      ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Id", make("code", {}, study.id)]];
+      ["Time left", live ? duration(study.seconds_left) : null], ["Cases without values", study.cases_valueless || null], ["Error reached", study.error_reached ? `${(100 * study.error_reached).toPrecision(3)} %` : null],
+      ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Program", study.program], ["Id", make("code", {}, study.id)]];
     head.replaceChildren(make("h1", {}, study.name), live ? bar(share(study), `progress of ${study.name}`) : "", 
       make("dl", { class: "facts" }, facts.filter(([, value]) => value !== null && value !== undefined && value !== "").map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
       actions, failures(study) ?? "");
@@ -91,6 +91,7 @@ export async function showStudy(root, signal, id, part = "curves") {
     const before = study?.revision;
     study = next;
     drawHead();
+    follow();
     if (before === next.revision) return;
     if (contents && contents.curves.length === 0) fill();
     else if (redraw) redraw();
@@ -107,16 +108,19 @@ export async function showStudy(root, signal, id, part = "curves") {
     }
   }
 
+  /** Follows the study until it ends; once at a time, again where it goes on. */
   async function follow() {
+    if (following) return;
+    following = true;
     while (!signal.aborted && isLive(study)) {
       try {
         await events(`${path}/events`, update, signal);
         update(await getJson(path, { signal }));
       } catch (error) {
-        if (signal.aborted) return;
-        await new Promise((done) => setTimeout(done, 3000));
+        if (!signal.aborted) await new Promise((done) => setTimeout(done, 3000));
       }
     }
+    following = false;
   }
 
   try {

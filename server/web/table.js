@@ -1,5 +1,5 @@
 // A row a case: what was swept, then scalars, or curves at one place, with their errors.
-import { lastName, make, measured, number, symbol, words } from "/web/elements.js";
+import { make, measured, number, symbol, words } from "/web/elements.js";
 import { download, getJson } from "/web/session.js";
 
 export function showTable(root, signal, study, contents) {
@@ -16,24 +16,24 @@ export function showTable(root, signal, study, contents) {
     return parts.length > 0 ? `?${parts.join("&")}` : "";
   }
 
-  function cell(column, value) {
+  function cell(table, row, at) {
+    const value = row.values[at], error = row.standard_errors[at], theory = row.theory?.[at], other = row.errors?.[at];
+    const told = [theory !== null && theory !== undefined ? `theory ${number(theory)}` : "", other ? `errors beside chance up to ${number(other, 2)}` : ""].filter(Boolean).join("; ");
     if (value === null || value === undefined) return make("td", { class: "number" }, "–");
-    if (typeof value === "object" && !Array.isArray(value)) return make("td", { class: "number" }, measured(value.value, value.standard_error));
-    return make("td", { class: typeof value === "number" ? "number" : null }, Array.isArray(value) ? value.join(", ") : number(value));
+    return make("td", { class: typeof value === "number" ? "number" : null, title: told || null }, Array.isArray(value) ? value.join(", ") : typeof value === "number" ? measured(value, error) : words(String(value)));
   }
 
-  function plain(value) {
-    const of = value !== null && typeof value === "object" && !Array.isArray(value) ? value.value : value;
-    return of ?? -Infinity;
-  }
+  const heading = (column) => (column.type === "parameter" ? symbol(column.name) : words(column.name));
 
   function draw(table) {
     const rows = [...table.rows];
-    if (order) rows.sort((a, b) => (plain(a[order.at]) < plain(b[order.at]) ? -1 : 1) * (order.down ? -1 : 1));
-    const head = table.columns.map((column, at) => make("th", { scope: "col", "aria-sort": order?.at === at ? (order.down ? "descending" : "ascending") : "none", title: column.unit ?? column.name },
-      make("button", { class: "plain", onclick: () => { order = { at, down: order?.at === at && !order.down }; draw(table); } }, column.parameter ? symbol(lastName(column.name)) : words(column.name))));
-    place.replaceChildren(make("table", {}, make("thead", {}, make("tr", {}, head)), make("tbody", {}, rows.map((one) => make("tr", {}, one.map((value, at) => cell(table.columns[at], value)))))));
-    message.textContent = `${rows.length} cases; values ± one standard error`;
+    if (order) rows.sort((a, b) => ((a.values[order.at] ?? -Infinity) < (b.values[order.at] ?? -Infinity) ? -1 : 1) * (order.down ? -1 : 1));
+    const head = table.columns.map((column, at) => make("th", { scope: "col", "aria-sort": order?.at === at ? (order.down ? "descending" : "ascending") : "none", title: column.unit ? `${column.unit} over ${column.x_label}` : column.pointer ?? column.name },
+      make("button", { class: "plain", onclick: () => { order = { at, down: order?.at === at && !order.down }; draw(table); } }, heading(column))));
+    place.replaceChildren(make("table", {}, make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "case"), head)),
+      make("tbody", {}, rows.map((row) => make("tr", {}, make("td", { class: "number" }, row.case), row.error ? make("td", { colspan: table.columns.length, class: "failed" }, row.error) : table.columns.map((column, at) => cell(table, row, at)))))));
+    const unknown = [...new Set(table.columns.flatMap((column) => column.unknown ?? []))];
+    message.textContent = `${rows.length} ${rows.length === 1 ? "case" : "cases"}; values ± one standard error.${unknown.length > 0 ? ` Errors not known: ${unknown.join(", ")}.` : ""}`;
   }
 
   async function load() {
