@@ -73,6 +73,10 @@ void contact_case_clear(struct contact_case *one_case);
 static inline const struct contact_level *contact_case_finest(const struct contact_case *one_case) {
     return &one_case->levels[one_case->level_count - 1];
 }
+/* Returns how many bins pressures have, with under- and overflow. */
+static inline size_t contact_case_bins(const struct contact_case *one_case) {
+    return one_case->pressure.count + 2;
+}
 /* Model, level and load as one number, loads running fastest; and how many there are. */
 static inline size_t contact_case_cell(const struct contact_case *one_case, size_t model,
                                        size_t level, size_t load) {

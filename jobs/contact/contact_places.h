@@ -2,7 +2,7 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_PLACES_H
 #define RUGO_JOBS_CONTACT_CONTACT_PLACES_H
 
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/contact_case.h"
 
 /* Levels on which pressures are counted. */
 static inline size_t places_counted_levels(const struct contact_case *one_case) {
@@ -11,7 +11,7 @@ static inline size_t places_counted_levels(const struct contact_case *one_case) 
 
 static inline size_t places_pressures(const struct contact_case *one_case) {
     return one_case->model_count * places_counted_levels(one_case) * one_case->pdf_count *
-           contact_tally_bins(one_case);
+           contact_case_bins(one_case);
 }
 
 /* Place of a level's difference from the next coarser one. */

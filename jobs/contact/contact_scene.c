@@ -61,7 +61,7 @@ static int scene_fill(struct contact_scene *scene, const struct contact_complian
     if (status != 0)
         return status;
     size_t points = grid_points(&contact_case_finest(one_case)->grid);
-    size_t bins = contact_tally_bins(one_case);
+    size_t bins = contact_case_bins(one_case);
     scene->z = array_create(points, sizeof *scene->z);
     scene->shares = array_create(bins, sizeof *scene->shares);
     return scene->z != NULL && scene->shares != NULL

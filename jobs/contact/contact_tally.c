@@ -74,7 +74,7 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
         status = sums_create(&out->sums[SUMS_HALVINGS], contact_case_has_paths(one_case), err);
     if (status == 0)
         status = tally_create(&out->pressures, places_pressures(one_case),
-                              contact_tally_bins(one_case), err);
+                              contact_case_bins(one_case), err);
     out->rows.width = contact_rows_width(one_case);
     if (status == 0)
         values_begin(out);
@@ -108,7 +108,7 @@ void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t l
     size_t first = contact_tally_pressure_cell(tally, model, level, at);
     uint64_t parts = CONTACT_AREA_PARTS * grid_points(&one_case->levels[level].grid), before = 0;
     double sum = 0;
-    for (size_t b = 0; b < contact_tally_bins(one_case); b++) {
+    for (size_t b = 0; b < contact_case_bins(one_case); b++) {
         sum += shares[b];
         uint64_t end = (uint64_t)llround(sum * (double)parts);
         if (end > before)

@@ -68,7 +68,7 @@ static inline double *contact_tally_values(struct contact_tally *tally,
 }
 /* Exact sums of areas by pressure hold this part of a node's. */
 #define CONTACT_AREA_PARTS ((uint64_t)1 << 20)
-/* Adds areas by pressure, shares[contact_tally_bins] of the cell, on a level, one of those that
+/* Adds areas by pressure, shares[contact_case_bins] of the cell, on a level, one of those that
  * contact_tally_counts tells. at: position in pdf_loads. */
 void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t level, size_t at,
                              const double *shares);
@@ -114,10 +114,6 @@ double contact_tally_halvings(const struct contact_tally *tally);
  * values there. */
 void contact_tally_pressure_shares(const struct contact_tally *tally, size_t model, size_t level,
                                    size_t at, struct estimate *out);
-/* Returns how many bins pressures have, with under- and overflow. */
-static inline size_t contact_tally_bins(const struct contact_case *one_case) {
-    return one_case->pressure.count + 2;
-}
 /* Returns the first cell of the pressures of a model, level and load, which are underflow, the
  * bins, overflow. */
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t level,

@@ -41,7 +41,7 @@ static bool pressures_fit(const struct contact_tally *tally, size_t model, size_
         tally->pressures.count + contact_tally_pressure_cell(tally, model, level, at);
     double parts = (double)CONTACT_AREA_PARTS * (double)grid_points(&one_case->levels[level].grid);
     double area = parts * contact_tally_total(tally, MEASURE_EDGES, cell), sum = 0;
-    for (size_t b = 0; b < contact_tally_bins(one_case); b++)
+    for (size_t b = 0; b < contact_case_bins(one_case); b++)
         sum += (double)count[b];
     return fabs(sum - area) <= 1e-6 * area + (double)tally->realisations;
 }

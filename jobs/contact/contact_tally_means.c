@@ -1,5 +1,6 @@
 /* Means over the realisations that a tally holds, with their standard errors. */
 #include "jobs/contact/contact_places.h"
+#include "jobs/contact/contact_tally.h"
 #include <math.h>
 
 /* Over the realisations that have a value. */
@@ -100,7 +101,7 @@ size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t mod
     const struct contact_case *one_case = tally->one_case;
     size_t step = one_case->level_count - 1 - level;
     return ((model * places_counted_levels(one_case) + step) * one_case->pdf_count + at) *
-           contact_tally_bins(one_case);
+           contact_case_bins(one_case);
 }
 
 static struct tally_total pressure_total(const struct contact_tally *tally, size_t model,

@@ -1,3 +1,4 @@
+#include "server/command/access.h"
 #include "jobs/kind.h"
 #include "schema/result/result_json.h"
 #include "schema/study/override.h"

@@ -2,7 +2,6 @@
 #ifndef RUGO_SERVER_COMMAND_ACCESS_INTERNAL_H
 #define RUGO_SERVER_COMMAND_ACCESS_INTERNAL_H
 
-#include "server/command/access.h"
 #include "worker/client.h"
 
 struct access {

@@ -1,5 +1,6 @@
 /* A table of a study, local or of a server. */
 #include "core/memory_file.h"
+#include "server/command/access.h"
 #include "server/command/access_internal.h"
 #include "server/show/case_table.h"
 #include <ctype.h>

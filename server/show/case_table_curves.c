@@ -1,4 +1,5 @@
 /* Columns of values of curves. */
+#include "server/show/case_table.h"
 #include "server/show/case_table_internal.h"
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,12 @@
 #ifndef RUGO_SERVER_SHOW_CASE_TABLE_INTERNAL_H
 #define RUGO_SERVER_SHOW_CASE_TABLE_INTERNAL_H
 
-#include "server/show/case_table.h"
+#include "schema/result/result.h"
+
+struct case_table;
+struct picture_source;
+struct table_column;
+struct table_value;
 
 enum { TABLE_WORDS_MOST = 8, TABLE_NAME_SIZE = 192 };
 /* A column as it is asked for: "contact_area:layered@0.1". */

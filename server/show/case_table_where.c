@@ -1,4 +1,5 @@
 /* Rows of a table by the parameters of their cases: "hurst=0.8,shape=1". */
+#include "server/show/case_table.h"
 #include "server/show/case_table_internal.h"
 #include "server/show/shown_cases.h"
 #include <math.h>
