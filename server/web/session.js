@@ -43,7 +43,7 @@ export async function request(path, options = {}) {
     const text = token ? "The server does not know this token." : "This server asks for a token.";
     for (const listener of listeners) listener(text);
   }
-  throw new Problem(answer.status, answer.status === 403 ? { ...document, detail: `${document?.detail ?? "Refused"}: this token's role may not do that.` } : document);
+  throw new Problem(answer.status, document);
 }
 
 export async function getJson(path, options) {

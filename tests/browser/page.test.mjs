@@ -245,7 +245,7 @@ test("a token is asked for once, a wrong one told, and a lesser one refused in w
   await page.keyboard.press("Enter");
   await says(page, "No study yet");
   await page.goto(`${closed}/#/new`);
-  await says(page, "this token's role may not do that");
+  await says(page, "the token's role does not allow this");
   await click(page, "Forget token");
   await page.goto(closed);
   await page.reload();
