@@ -5,7 +5,7 @@
 #include "schema/result/bytes.h"
 #include "tests/support/fuzz/fuzz.h"
 
-enum { CASES = 4, REALISATIONS_MOST = 4, SCALARS_MOST = 64 };
+enum { CASES = 4, REALISATIONS_MOST = 4, SCALARS_MOST = 128 };
 static const struct {
     const char *kind, *text;
 } STUDIES[CASES] = {
