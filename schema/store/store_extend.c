@@ -119,19 +119,21 @@ static int extend(struct store *store, int64_t study, int64_t had, int64_t wante
     return status != 0 ? status : study_count_work(store, study, err);
 }
 
-/* Fails where the results that are there are of another edition; those of older programs tell none.
- */
+/* Fails where the results that are there are of another edition, or tell none, as those of older
+ * programs: results of both could not be merged, and what was published would be lost. */
 static int check_edition(struct store *store, int64_t study, const char *id, uint64_t edition,
                          struct error *err) {
     int64_t other = 0;
     int status = store_integer(
-        store, &other, err, "SELECT edition IS NOT NULL AND edition <> ? FROM study WHERE id = ?",
-        "ii", (int64_t)edition, study);
+        store, &other, err,
+        "SELECT coalesce(edition <> ?, realisations_done > 0) FROM study WHERE id = ?", "ii",
+        (int64_t)edition, study);
     if (status == 0 && other != 0)
-        return error_set(err, ERROR_STATE,
-                         "study %s is of a version of the program whose results may differ from "
-                         "this one's: submit it anew with more realisations",
-                         id);
+        return error_set(
+            err, ERROR_STATE,
+            "study %s is of another version of the program whose results may differ from "
+            "this one's: submit it anew with more realisations",
+            id);
     return status;
 }
 
