@@ -56,5 +56,12 @@ signOut.addEventListener("click", () => {
   setToken(null);
   show();
 });
-window.addEventListener("hashchange", show);
+document.querySelector(".skip").addEventListener("click", (event) => { // its address is no view
+  event.preventDefault();
+  main.focus();
+});
+window.addEventListener("hashchange", () => {
+  show();
+  main.focus({ preventScroll: true }); // what had the focus may be gone; readers of the screen go on here
+});
 show();

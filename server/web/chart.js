@@ -2,8 +2,9 @@
 import uPlot from "/web/uplot.js";
 import { make, measured, number } from "/web/elements.js";
 
-// Viridis without its palest end, for values in an order; Okabe and Ito's colours for the rest. Both are safe for the colour-blind.
+// Viridis without the end that is too near the page's ground, for values in an order; Okabe and Ito's colours for the rest. Both are safe for the colour-blind.
 const ORDERED = [[68, 1, 84], [70, 50, 127], [54, 92, 141], [39, 127, 142], [31, 161, 135], [74, 194, 109], [159, 218, 58]];
+const ORDERED_ON_DARK = [...ORDERED.slice(2), [253, 231, 37]];
 const APART = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"];
 export const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 2, 2, 2, 2, 2]];
 const HEIGHT = 420, REACH = 40; // pixels
@@ -11,10 +12,11 @@ const HEIGHT = 420, REACH = 40; // pixels
 /** A colour for each of count lines. */
 export function colours(count, ordered) {
   if (!ordered && count <= APART.length) return APART.slice(0, count);
+  const stops = matchMedia("(prefers-color-scheme: dark)").matches ? ORDERED_ON_DARK : ORDERED;
   return Array.from({ length: count }, (_, i) => {
-    const place = count > 1 ? (i / (count - 1)) * (ORDERED.length - 1) : 0;
-    const below = Math.min(Math.floor(place), ORDERED.length - 2), part = place - below;
-    return `rgb(${ORDERED[below].map((a, k) => Math.round(a + part * (ORDERED[below + 1][k] - a))).join(",")})`;
+    const place = count > 1 ? (i / (count - 1)) * (stops.length - 1) : 0;
+    const below = Math.min(Math.floor(place), stops.length - 2), part = place - below;
+    return `rgb(${stops[below].map((a, k) => Math.round(a + part * (stops[below + 1][k] - a))).join(",")})`;
   });
 }
 

@@ -1,10 +1,11 @@
 // The curves of a study: which quantity, cases, models and levels are shown, and how.
-import { choice, lastName, make, number, pretty, symbol, tick, words } from "/web/elements.js";
+import { choice, lastName, make, number, pretty, replace, symbol, tick, words } from "/web/elements.js";
 import { download, getJson, request } from "/web/session.js";
 import { DASHES, chart, colours } from "/web/chart.js";
 
 const CASES_FIRST = 12; // shown before anything is chosen
 const BANDS_MOST = 24; // lines; more bands hide each other
+const MOST_DASHED = 3; // settings that differ by the dash of their lines alone
 
 /** "H = 0.8, C = 1": what tells a case from the others. */
 export function caseName(one) {
@@ -13,10 +14,19 @@ export function caseName(one) {
   return parts.length > 0 ? parts.join(", ") : `case ${one.case}`;
 }
 
-/** Whether the cases differ in one number alone, so that their colours can be in its order. */
-function ordered(cases) {
-  const varied = Object.keys(cases[0]?.swept ?? {}).filter((key) => new Set(cases.map((one) => JSON.stringify(one.swept[key]))).size > 1);
-  return varied.length === 1 && cases.every((one) => typeof one.swept[varied[0]] === "number");
+/**
+ * How cases are told apart, in their order: {colour, dash} each. Where they differ in a number, its values have colours in
+ * their order, and the rest dashes; where that are more than MOST_DASHED settings, each case has a colour.
+ */
+function looks(all) {
+  const valuesOf = (key) => new Set(all.map((one) => JSON.stringify(one.swept[key])));
+  const varied = Object.keys(all[0]?.swept ?? {}).filter((key) => valuesOf(key).size > 1);
+  const leading = varied.filter((key) => all.every((one) => typeof one.swept[key] === "number")).sort((a, b) => valuesOf(b).size - valuesOf(a).size)[0];
+  const restOf = (one) => JSON.stringify(varied.filter((key) => key !== leading).map((key) => one.swept[key]));
+  const rest = [...new Set(all.map(restOf))];
+  if (leading === undefined || rest.length > MOST_DASHED) return colours(all.length, false).map((colour) => ({ colour, dash: 0 }));
+  const values = [...new Set(all.map((one) => one.swept[leading]))].sort((a, b) => a - b), ofValue = colours(values.length, true);
+  return all.map((one) => ({ colour: ofValue[values.indexOf(one.swept[leading])], dash: rest.indexOf(restOf(one)) }));
 }
 
 function lineOf(curve, label, colour, dash, withBand) {
@@ -57,9 +67,10 @@ export function showCurves(root, signal, study, contents) {
     return documents.flatMap((document) => document.cases);
   }
 
-  /** The lines of what is chosen: a colour a case, a dash a model or level. */
+  /** The lines of what is chosen; a dash also tells models and levels apart. */
   function linesOf(results) {
-    const ofColour = colours(results.length, ordered(results.map((one) => cases.get(one.case) ?? { swept: {} })));
+    const look = looks(results.map((one) => cases.get(one.case) ?? { swept: {} }));
+    const groups = 1 + Math.max(0, ...look.map((one) => one.dash));
     const lines = [], theories = new Map();
     results.forEach((one, c) => {
       const label = one.less !== undefined && one.less !== null ? `${caseName(cases.get(one.case))} less ${caseName(cases.get(one.less))}` : caseName(cases.get(one.case));
@@ -70,12 +81,12 @@ export function showCurves(root, signal, study, contents) {
       else if (state.level !== "all") found = found.filter((curve) => String(curve.level ?? "") === state.level);
       found.forEach((curve, k) => {
         const more = [about().models.length > 1 ? curve.model : "", state.level === "all" && curve.level ? `${curve.level} points` : ""].filter(Boolean).join(", ");
-        lines.push(lineOf(curve, more ? `${label}; ${more}` : label, ofColour[c], DASHES[k % DASHES.length], state.band));
+        lines.push(lineOf(curve, more ? `${label}; ${more}` : label, look[c].colour, DASHES[(look[c].dash + groups * k) % DASHES.length], state.band));
         if (!state.theory || state.difference) return;
         for (const [name, y] of Object.entries(curve.theory ?? {})) {
           const key = name + JSON.stringify(y), same = theories.get(key);
           if (same) same.cases.add(c);
-          else theories.set(key, { cases: new Set([c]), line: { x: curve.x, y, colour: ofColour[c], dash: DASHES[1 + (Object.keys(curve.theory).indexOf(name) % 4)], theory: true }, name, label });
+          else theories.set(key, { cases: new Set([c]), line: { x: curve.x, y, colour: look[c].colour, dash: DASHES[1 + (Object.keys(curve.theory).indexOf(name) % 4)], theory: true }, name, label });
         }
       });
     });
@@ -175,7 +186,7 @@ export function showCurves(root, signal, study, contents) {
 
   function controlsOf() {
     const one = about();
-    controls.replaceChildren(
+    replace(controls,
       choice("Quantity", contents.curves.map((curve) => [curve.quantity, words(curve.quantity)]), state.quantity, (quantity) => {
         const next = contents.curves.find((curve) => curve.quantity === quantity);
         set({ quantity, series: next.series.includes(state.series) ? state.series : next.series[0], models: new Set(next.models), level: "finest" });

@@ -12,6 +12,21 @@ export function make(name, attributes = {}, ...content) {
   return element;
 }
 
+/** What a control is called, to find it again in a newer copy of its surroundings. */
+function nameOf(control) {
+  const label = control.closest("label");
+  const text = label ? (label.firstChild.nodeType === Node.TEXT_NODE ? label.firstChild : label).textContent : control.getAttribute("href") ?? control.textContent;
+  return control.localName + (control.localName === "summary" ? "" : text);
+}
+
+/** Puts content in place of what element holds. The control that had the focus has it again. */
+export function replace(element, ...content) {
+  const held = element.contains(document.activeElement) ? nameOf(document.activeElement) : null;
+  element.replaceChildren(...content);
+  if (held === null) return;
+  [...element.querySelectorAll("a, button, input, select, summary")].find((one) => nameOf(one) === held)?.focus();
+}
+
 /** Seconds in words. */
 export function duration(seconds) {
   if (seconds === null || seconds === undefined || !isFinite(seconds)) return "–";
@@ -51,16 +66,16 @@ export function lastName(pointer) {
 }
 
 const SYMBOLS = {
-  hurst: "H", nayak_alpha: "α", shape: "C", wavelength_ratio: "λl/λs", length_ratio: "L/λl", poisson: "ν", rms_slope: "h′",
+  hurst: "H", nayak_alpha: "α", shape: "C", wavelength_ratio: "λₗ/λₛ", length_ratio: "L/λₗ", poisson: "ν", rms_slope: "h′",
 };
 /** "H" of "hurst", where people have a symbol for it. */
 export function symbol(name) {
   return SYMBOLS[name] ?? name.replaceAll("_", " ");
 }
 
-/** "mean gap" of "mean_gap". */
+/** "mean gap" of "mean_gap", with the capitals of people and of abbreviations. */
 export function words(name) {
-  return name.replaceAll("_", " ");
+  return name.replaceAll("_", " ").replace(/\b(?:persson|nayak|weibull|gaussian|archard)\b/g, (one) => one[0].toUpperCase() + one.slice(1)).replace("gw mccool", "GW–McCool").replace(/\b(?:bgt|pdf|cdf|psd|acf)\b/g, (one) => one.toUpperCase());
 }
 
 /** A label as people write it: "√m₀" of "sqrt(m0)". */

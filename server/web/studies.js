@@ -1,5 +1,5 @@
 // The list of studies: search, filter, order, progress as it happens.
-import { bar, choice, duration, make, time } from "/web/elements.js";
+import { bar, choice, duration, make, replace, time } from "/web/elements.js";
 import { getJson } from "/web/session.js";
 
 const COLUMNS = [
@@ -72,7 +72,7 @@ export function showStudies(root, signal) {
     found.sort((a, b) => (of(a) < of(b) ? -1 : of(a) > of(b) ? 1 : 0) * (ORDER.down ? -1 : 1));
     for (const head of heads)
       head.setAttribute("aria-sort", head.dataset.key !== ORDER.by ? "none" : ORDER.down ? "descending" : "ascending");
-    body.replaceChildren(...found.map(row));
+    replace(body, ...found.map(row));
     table.hidden = found.length === 0;
     table.classList.toggle("ownerless", !studies.some((study) => study.owner));
     message.textContent = studies.length === 0 ? "No study yet. Begin with “New study”, or rugo submit."

@@ -1,5 +1,5 @@
 // One study: its state and what can be done with it, and its parts: curves, table, report, realisations, document.
-import { bar, duration, make, time } from "/web/elements.js";
+import { bar, duration, make, replace, time } from "/web/elements.js";
 import { events, getJson, request, sendJson } from "/web/session.js";
 import { isLive, share } from "/web/studies.js";
 import { showCurves } from "/web/curves.js";
@@ -82,7 +82,7 @@ export async function showStudy(root, signal, id, part = "curves") {
       ["Realisations", `${done} / ${total}${failed ? `, ${failed} failed` : ""}`], ["CPU time", duration(study.cpu_seconds)], ["Workers", live ? study.workers : null],
       ["Time left", live ? duration(study.seconds_left) : null], ["Cases without values", study.cases_valueless || null], ["Error reached", study.error_reached ? `${(100 * study.error_reached).toPrecision(3)} %` : null],
       ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Program", study.program], ["Id", make("code", {}, study.id)]];
-    head.replaceChildren(make("h1", {}, study.name), live ? bar(share(study), `progress of ${study.name}`) : "", 
+    replace(head, make("h1", {}, study.name), live ? bar(share(study), `progress of ${study.name}`) : "",
       make("dl", { class: "facts" }, facts.filter(([, value]) => value !== null && value !== undefined && value !== "").map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
       actions, failures(study) ?? "");
   }

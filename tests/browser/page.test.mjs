@@ -1,16 +1,12 @@
 // Protects: what a person does on the page works against a real server, in a real browser: studies, curves, the
 // table, the report, realisations, a new study, cancel, extend, delete, workers, tokens, a phone's width, the keyboard.
 import assert from "node:assert/strict";
-import { spawn, execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import puppeteer from "puppeteer-core";
+import { end, finished, folder, launch, send, serve } from "./service.mjs";
 
-const { RUGO, BROWSER, PICTURES } = process.env;
-const folder = mkdtempSync(join(tmpdir(), "rugo-browser-"));
-const servers = [];
+const { PICTURES } = process.env;
 let browser, open, closed;
 
 const CONTACT = { name: "pressed", kind: "contact", seed: 1, realisations: 6,
@@ -19,39 +15,6 @@ const CONTACT = { name: "pressed", kind: "contact", seed: 1, realisations: 6,
 const STATISTICS = { name: "summits", kind: "statistics", seed: 1, realisations: 30,
   surface: { hurst: [0.2, 0.5, 0.8], wavelength_ratio: 4, length_ratio: 4, points_per_wavelength: 8 } };
 const LONG = { ...STATISTICS, name: "a long one", realisations: 1000000 };
-
-/** Starts a service on a port of its own and waits until it answers. */
-async function serve(name, ...options) {
-  const server = spawn(RUGO, ["serve", "--db", join(folder, `${name}.db`), "--listen", "127.0.0.1:0", ...options], { stdio: ["ignore", "pipe", "pipe"] });
-  servers.push(server);
-  const url = await new Promise((found, failed) => {
-    let text = "";
-    const read = (part) => {
-      text += part;
-      const match = text.match(/127\.0\.0\.1:(\d+)/);
-      if (match && match[1] !== "0") found(`http://127.0.0.1:${match[1]}`);
-    };
-    server.stdout.on("data", read);
-    server.stderr.on("data", read);
-    server.on("exit", () => failed(new Error(`rugo serve ended: ${text}`)));
-  });
-  return url;
-}
-
-async function send(url, method, path, body, token) {
-  const headers = { "Content-Type": "application/json", ...(token ? { Authorization: `Bearer ${token}` } : {}) };
-  const answer = await fetch(url + path, { method, headers, body: body && JSON.stringify(body) });
-  assert.ok(answer.ok, `${method} ${path}: ${answer.status} ${await answer.clone().text()}`);
-  return answer.json();
-}
-
-async function finished(url, id) {
-  for (;;) {
-    const study = await send(url, "GET", `/v1/studies/${id}`);
-    if (!["queued", "running"].includes(study.state)) return study;
-    await new Promise((done) => setTimeout(done, 200));
-  }
-}
 
 /** A tab whose errors fail the test: scripts, requests that the test does not expect, refused contents. */
 async function tab(t, expected = []) {
@@ -88,7 +51,7 @@ const legend = (page) => page.$$eval(".legend li", (all) => all.map((one) => one
 const picture = async (page, name) => PICTURES && page.screenshot({ path: join(PICTURES, `${name}.png`) });
 
 before(async () => {
-  browser = await puppeteer.launch({ executablePath: BROWSER, args: ["--no-sandbox", "--disable-dev-shm-usage"] });
+  browser = await launch();
   open = await serve("open", "--workers", "1");
   writeFileSync(join(folder, "tokens"), "read:reader-token-0123456789\nsubmit:writer-token-0123456789\n", { mode: 0o600 });
   closed = await serve("closed", "--token-file", join(folder, "tokens"));
@@ -98,8 +61,7 @@ before(async () => {
 
 after(async () => {
   await browser?.close();
-  for (const server of servers) server.kill();
-  rmSync(folder, { recursive: true, force: true });
+  end();
 });
 
 test("the list has the studies, finds them by name, and orders them", async (t) => {

@@ -34,7 +34,7 @@ static void ready_studies(void **state) {
         const char *name;
         size_t cases, largest; /* grid of the largest case */
         uint64_t realisations;
-    } studies[] = {{"demo", 3, 512, 400},
+    } studies[] = {{"demo", 3, 512, 20},
                    {"gaussian-nayak", 5, 8192, 1000},
                    {"weibull-statistics", 20, 1024, 1000},
                    {"nayak-hurst", 18, 2400, 1000},
