@@ -71,7 +71,7 @@ def _rows(text):
 
 
 def _token_of_file(path):
-    """The first token of a file that may submit, else the first: a role:token a line, or a token alone."""
+    """The first token of a file that may submit, else the first: role:token, role:name:token or a token a line."""
     first = None
     with open(path, encoding="utf-8") as file:
         for line in file:
@@ -79,9 +79,9 @@ def _token_of_file(path):
             if line == "" or line.startswith("#"):
                 continue
             role, colon, rest = line.partition(":")
-            known = colon and role in ("read", "submit", "work")
-            token = rest if known else line
-            if not known or role == "submit":
+            known = colon and role in ("read", "submit", "work", "admin")
+            token = rest.split(":", 1)[-1] if known else line  # behind the name, where there is one
+            if not known or role in ("submit", "admin"):
                 return token
             first = first or token
     if first is None:

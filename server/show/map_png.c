@@ -3,7 +3,7 @@
 #include <png.h>
 #include <stdlib.h>
 
-/* Stops of the colour map inferno (Smith & van der Walt 2015), dark to light. */
+/* Stops of the colour map "inferno", whose lightness rises evenly from dark to light. */
 static const double STOPS[][3] = {{0, 0, 4},     {40, 11, 84},   {101, 21, 110}, {159, 42, 99},
                                   {212, 72, 66}, {245, 125, 21}, {250, 193, 39}, {252, 255, 164}};
 enum { STOPS_COUNT = sizeof STOPS / sizeof *STOPS, CHANNELS = 4 };

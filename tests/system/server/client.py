@@ -88,8 +88,9 @@ def many_cases_are_asked_for_one_by_one(server):
 
 def tokens_are_read_as_commands_do():
     path = pathlib.Path(FOLDER, "client-tokens")
-    for text, token in (("# ours\nread:aaaa\nsubmit:bb:b\nwork:cccc\n", "bb:b"), ("\nread:aaaa\nwork:cc\n", "aaaa"),
-                        ("alone\n", "alone")):
+    for text, token in (("# ours\nread:aaaa\nsubmit:bbbb\nwork:cccc\n", "bbbb"), ("\nread:aaaa\nwork:cc\n", "aaaa"),
+                        ("work:cccc\nsubmit:anna:b:b\n", "b:b"), ("read:carl:aaaa\nadmin:root:dddd\n", "dddd"),
+                        ("read:carl:aaaa\n", "aaaa"), ("alone\n", "alone"), ("no:role\n", "no:role")):
         path.write_text(text)
         assert rugo.Server(URL, token_file=path).token == token
     path.unlink()

@@ -60,7 +60,12 @@ static void released_migrations_are_frozen(void **state) {
                   {"schema/store/migrations/005.sql", 0xd323a4efa3489637u},
                   {"schema/store/migrations/006.sql", 0x9a89fdf526d611cau},
                   {"schema/store/migrations/007.sql", 0xcd64f16d5e3429ceu},
-                  {"schema/store/migrations/008.sql", 0xfce3dfd9844fee0du}};
+                  {"schema/store/migrations/008.sql", 0xfce3dfd9844fee0du},
+                  {"schema/store/migrations/009.sql", 0xf1d3635a8bbe9885u},
+                  {"schema/store/migrations/010.sql", 0xae4e92da6ff3d2c9u},
+                  {"schema/store/migrations/011.sql", 0xfd1ef60cd56112aau},
+                  {"schema/store/migrations/012.sql", 0x13877ee471321076u},
+                  {"schema/store/migrations/013.sql", 0x2fdb199e1e71779fu}};
     for (size_t f = 0; f < sizeof FROZEN / sizeof *FROZEN; f++) {
         size_t size = 0;
         char *text = read_source(FROZEN[f].name, &size);
