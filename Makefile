@@ -258,12 +258,14 @@ check-citations:
 FIGURES = jobs/studies/figures
 figures: all
 	@$(FIGURES)/draw $(BUILD)/rugo $(FIGURES)
+page-figures: all
+	@tests/browser/run $(abspath $(BUILD))/rugo $(FIGURES)
 check-figures: all
 	@tests/same-figures --self-test
 	@$(FIGURES)/draw $(BUILD)/rugo $(BUILD)/figures
 	@tests/same-figures $(FIGURES) $(BUILD)/figures
 	@echo "figures: as the program draws them"
-.PHONY: check-citations figures check-figures
+.PHONY: check-citations figures page-figures check-figures
 
 # The description of the HTTP service, by a linter from npm; skipped where there is none.
 check-openapi: all

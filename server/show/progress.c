@@ -32,7 +32,10 @@ void progress_draw(struct progress_bar *bar, const struct progress_state *state)
     if (bar->next_ms == 0)
         bar->start_ms = now_ms;
     bar->next_ms = now_ms + (terminal ? TERMINAL_MS : PLAIN_MS);
-    duration_text(state->seconds_left, left, sizeof left);
+    if (state->seconds_left > 0 && state->seconds_left < 1)
+        snprintf(left, sizeof left, "less than 1 s");
+    else
+        duration_text(state->seconds_left, left, sizeof left);
     if (terminal)
         print_bar(bar, state, left, now_ms);
     else

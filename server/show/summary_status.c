@@ -50,7 +50,7 @@ static void print_line(const cJSON *status, FILE *file) {
     duration_text(starts, when, sizeof when);
     fprintf(file, "  place %.0f in line, ", place);
     if (isnan(starts))
-        fprintf(file, "no worker is at work\n");
+        fprintf(file, "no worker is at work; rugo work starts one\n");
     else if (starts < 1)
         fprintf(file, "starts with the next job\n");
     else

@@ -61,7 +61,7 @@ export function chart(lines, options) {
   });
   const axis = (label, size) => ({ label, stroke: text, grid, ticks: grid, font: "13px system-ui, sans-serif", labelFont: "14px system-ui, sans-serif", labelSize: 28, size });
   const place = make("div", { class: "plot" });
-  const readout = make("output", { class: "readout", "aria-live": "polite" }, "Point at a curve for its values.");
+  const readout = make("output", { class: "readout", "aria-live": "polite" }, "Point at a curve for its values, or walk along it by the arrow keys.");
   const element = make("div", { class: "chart", tabindex: "0", role: "figure",
     "aria-label": `${options.yLabel} over ${options.xLabel}, ${lines.length} curves; arrow keys walk along them` }, place, readout);
 
