@@ -145,9 +145,10 @@ struct job_kind {
      * none. */
     int (*complete)(const void *study, const struct surface_basis *basis,
                     struct case_result *result, struct error *err);
-    /* Presses the surface z of the own grid to p/(E* h') > 0, to be looked at: the gap, in the
-     * units of z, and the pressures over E* h', a value a point. NULL for kinds without contact. */
-    int (*press)(const void *study, const double *z, double pressure, double *gap,
+    /* Presses a realisation, of which the case, z and stop are looked at, to p/(E* h') > 0: the
+     * gap, in the units of z, and the pressures over E* h', a value a point. NULL for kinds without
+     * contact. */
+    int (*press)(const struct realisation *realisation, double pressure, double *gap,
                  double *pressures, struct error *err);
     /* Writes what the case is solved on, for the surface z of its own grid, pressed to p/(E* h')
      * where that is above 0, as a VTU file. Lengths in lambda_s, pressures and stresses in E* h'.

@@ -29,8 +29,10 @@ static int press(const struct map_order *order, const void *one_case, size_t poi
                  struct error *err) {
     double *gap = array_create(points, sizeof *gap);
     double *pressure = array_create(points, sizeof *pressure);
+    const struct realisation realisation = {
+        .study = one_case, .z = *z, .stop = order->stop, .stop_context = order->stop_context};
     int status = gap != NULL && pressure != NULL
-                     ? order->kind->press(one_case, *z, order->load, gap, pressure, err)
+                     ? order->kind->press(&realisation, order->load, gap, pressure, err)
                      : error_memory(err, 2 * points * sizeof *gap, "a contact map");
     if (status == 0) {
         double **chosen = order->field == MAP_GAP ? &gap : &pressure;

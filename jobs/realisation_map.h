@@ -16,6 +16,10 @@ struct map_order {
     enum map_field field;
     double load;        /* p/(E* h'), for gap and pressure */
     double points_most; /* larger maps are refused */
+    /* Called again and again while a contact is solved: non-zero stops it with ERROR_STOPPED; may
+     * be NULL. */
+    int (*stop)(void *context);
+    void *stop_context;
 };
 
 /* Generates a surface of the case; *z is the caller's to free, heights on surface->grid, x fastest.
@@ -25,7 +29,8 @@ int realisation_surface(const struct surface_case *surface, struct random_key ke
 
 /* Fills *out with an array of the points of *grid, x fastest, the caller's to free: heights and
  * gaps in the units of the surface, pressures over E* h'. ERROR_INPUT for a map that is too large,
- * a kind that presses nothing, or a load that is none. */
+ * a kind that presses nothing, or a load that is none; ERROR_NUMERIC where no surface or contact is
+ * found. */
 int realisation_map(const struct map_order *order, struct grid *grid, double **out,
                     struct error *err);
 

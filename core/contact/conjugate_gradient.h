@@ -9,8 +9,10 @@
 #include "core/contact/compliance.h"
 #include "core/surface/transform.h"
 
-/* Arrays of the grid have `padded` entries: those from n on stand for nodes that never touch, with
- * z far below and all else 0. */
+enum { CONJUGATE_GRADIENT_LANES = 8 }; /* independent partial sums, so that reductions vectorise */
+
+/* Arrays of the grid have `padded` entries, a multiple of the lanes: those from n on stand for
+ * nodes that never touch, with z far below and all else 0. */
 struct conjugate_gradient {
     struct transform *transform; /* owned, as all below */
     size_t n, padded;
@@ -20,8 +22,10 @@ struct conjugate_gradient {
     double *z;     /* heights of mean 0, filled by the caller */
     double *p, *u; /* pressures, and the displacements that they make */
     double *q;     /* tangent dp/d(mean p): of mean 1, 0 outside of the contact */
-    double *r, *old, *t, *w; /* scratch */
-    double transforms;       /* Fourier transforms made so far, forward and inverse */
+    double *r, *old, *t, *w;    /* scratch */
+    double transforms;          /* Fourier transforms made so far, forward and inverse */
+    int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */
+    void *stop_context;
 };
 
 int conjugate_gradient_create(struct conjugate_gradient *out, const struct compliance *compliance,
@@ -30,7 +34,7 @@ void conjugate_gradient_clear(struct conjugate_gradient *solver);
 double conjugate_gradient_bytes(const struct grid *grid);
 
 struct conjugate_gradient_end {
-    bool converged;
+    bool converged, stopped;
     size_t iterations;
     double approach;    /* D: the gap is D + u - z */
     double inside;      /* largest |gap| under pressure */

@@ -83,6 +83,11 @@ void contact_destroy(struct contact **contact) {
     *contact = NULL;
 }
 
+void contact_set_stop(struct contact *c, int (*stop)(void *context), void *context) {
+    c->solver.stop = stop;
+    c->solver.stop_context = context;
+}
+
 /* Returns the unit of the solver's pressures, in E*. */
 static double pressure_unit(const struct contact *c) {
     return c->unit / c->solver.largest;
@@ -234,13 +239,16 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
     predict(c, mean);
     conjugate_gradient_run(d, mean, c->options.tolerance, c->options.stall_iterations,
                            iterations_most(c), &end);
-    if (!end.converged) {
+    if (!end.converged)
         c->mean = 0;
+    if (end.stopped)
+        return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of contact",
+                         end.iterations);
+    if (!end.converged)
         return error_set(err, ERROR_NUMERIC,
                          "contact under a mean pressure of %g E* did not converge: %zu iterations "
                          "left gaps of %.2g and penetrations of %.2g RMS heights",
                          pressure, end.iterations, end.inside, end.penetration);
-    }
     if (!c->tangent && mean != c->mean)
         take_secant(c, mean - c->mean);
     c->mean = mean;

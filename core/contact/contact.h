@@ -51,6 +51,10 @@ int contact_create(struct contact **out, const struct compliance *compliance,
                    const struct contact_options *options, struct error *err);
 void contact_destroy(struct contact **contact);
 double contact_bytes(const struct grid *grid);
+/* From now on stop is called before each iteration; when it returns non-zero, contact_press fails
+ * with ERROR_STOPPED, as it fails where it does not converge. NULL, the initial value, never stops.
+ */
+void contact_set_stop(struct contact *contact, int (*stop)(void *context), void *context);
 
 /* Takes a surface (copies; any height of its mean) and lifts it off: the next load starts anew.
  * ERROR_INPUT for a height that is not finite. */

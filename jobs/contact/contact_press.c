@@ -21,9 +21,9 @@ static void copy(const struct grid *grid, const struct contact_state *state, dou
     }
 }
 
-int contact_press_once(const void *one_case, const double *z, double load, double *gap,
+int contact_press_once(const struct realisation *realisation, double load, double *gap,
                        double *pressure, struct error *err) {
-    const struct contact_case *contact_case = one_case;
+    const struct contact_case *contact_case = realisation->study;
     const struct grid *grid = &contact_case->surface.grid;
     const struct block block = block_of(contact_case);
     struct contact_options options = CONTACT_DEFAULTS;
@@ -41,8 +41,10 @@ int contact_press_once(const void *one_case, const double *z, double load, doubl
         status = compliance_create(&compliance, grid, &block, err);
     if (status == 0)
         status = contact_create(&contact, compliance, &options, err);
-    if (status == 0)
-        status = contact_begin(contact, z, err);
+    if (status == 0) {
+        contact_set_stop(contact, realisation->stop, realisation->stop_context);
+        status = contact_begin(contact, realisation->z, err);
+    }
     if (status == 0)
         status = contact_press(contact, load * moments.rms_slope, &state, err);
     if (status == 0)

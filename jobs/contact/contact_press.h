@@ -2,11 +2,11 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_PRESS_H
 #define RUGO_JOBS_CONTACT_CONTACT_PRESS_H
 
-#include "core/error.h"
+#include "jobs/kind.h"
 
 /* As job_kind's press: on the block of the first model without elements, or on a half-space where
  * all models have them. */
-int contact_press_once(const void *one_case, const double *z, double load, double *gap,
+int contact_press_once(const struct realisation *realisation, double load, double *gap,
                        double *pressure, struct error *err);
 
 #endif

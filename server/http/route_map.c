@@ -6,10 +6,15 @@
 #include "server/http/accept.h"
 #include "server/http/route.h"
 #include "server/show/map_png.h"
+#include "worker/clock.h"
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAPS_MOST = 2 }; /* at a time: one may take seconds */
+enum {
+    MAPS_MOST = 2,   /* at a time: one may take seconds */
+    TIME_MS = 50000, /* for one: below the minute that clients wait */
+};
 static const double POINTS_MOST = 1 << 20;
 
 struct map_question {
@@ -37,6 +42,26 @@ static void fault(struct exchange *exchange, const char *pointer, const char *de
     fault_add(&faults, pointer, "%s", detail);
     answer_problem(exchange, 422, "the query is not valid", &faults);
     fault_list_clear(&faults);
+}
+
+/* Why a map would not be waited for any longer. */
+struct patience {
+    const struct exchange *exchange;
+    int64_t until_ms;
+    const char *lost; /* static text; NULL while there is some */
+};
+
+static int is_lost(void *context) {
+    struct patience *patience = context;
+    const struct exchange *exchange = patience->exchange;
+    struct pollfd peer = {.fd = exchange_socket(exchange), .events = POLLRDHUP};
+    if (atomic_load(&exchange->service->stopping))
+        patience->lost = "the server ends";
+    else if (clock_ms() > patience->until_ms)
+        patience->lost = "the contact takes longer than the 50 s that a map may take here";
+    else if (poll(&peer, 1, 0) > 0)
+        patience->lost = "the peer has left";
+    return patience->lost != NULL;
 }
 
 static bool prefers_png(const struct exchange *exchange) {
@@ -147,7 +172,7 @@ static int send_map(struct exchange *exchange, const struct map_question *questi
 
 void handle_map(struct exchange *exchange, const char *id) {
     struct map_question question;
-    struct map_order order;
+    struct map_order order = {.kind = NULL};
     struct case_info info = {0};
     struct error err = {0};
     if (!read_question(exchange, id, &question))
@@ -157,10 +182,17 @@ void handle_map(struct exchange *exchange, const char *id) {
         answer_problem(exchange, 503, "too many maps are being computed", NULL);
         return;
     }
+    struct patience patience = {.exchange = exchange, .until_ms = clock_ms() + TIME_MS};
     int status = find_case(exchange, &question, &order, &info, &err);
+    order.stop = is_lost;
+    order.stop_context = &patience;
     if (status == 0)
         status = send_map(exchange, &question, &order, &err);
-    if (status != 0)
+    if (status == ERROR_STOPPED)
+        answer_problem(exchange, 503, patience.lost, NULL);
+    else if (status == ERROR_NUMERIC) /* what is asked for is not found: no fault of the server */
+        answer_problem(exchange, 422, err.text, NULL);
+    else if (status != 0)
         answer_error(exchange, &err);
     case_info_clear(&info);
     atomic_fetch_sub(&exchange->service->maps, 1);

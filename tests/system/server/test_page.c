@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 static const char STUDY[] =
     "{\"name\":\"looked at\",\"kind\":\"contact\",\"seed\":7,\"realisations\":3,\"surface\":{"
@@ -170,6 +172,59 @@ static void maps_that_there_are_not(void **state) {
     }
 }
 
+enum { SOCKETS = 16 };
+
+/* Asks for maps that take long until no more are computed at a time, without waiting for any. */
+static size_t ask_long(unsigned at, int sockets[SOCKETS]) {
+    static const char LONG[] =
+        "GET /v1/studies/long/cases/0/realisations/0/map?field=gap&load=0.01 HTTP/1.1\r\n"
+        "Host: localhost\r\nConnection: close\r\n\r\n";
+    for (size_t n = 0; n < SOCKETS;) {
+        sockets[n] = http_connect(at);
+        assert_int_equal(write(sockets[n++], LONG, sizeof LONG - 1), sizeof LONG - 1);
+        sleep_ms(200);
+        if (http_exchange(at, "GET", MAP, "", NULL, NULL) == 503)
+            return n;
+    }
+    fail_msg("%d long maps at a time", SOCKETS);
+    return 0;
+}
+
+/* Neither a peer that has left nor a server that is to end waits for a contact that takes long. */
+static void maps_that_nobody_waits_for_are_given_up(void **state) {
+    (void)state;
+    static const char JSON[] = "Content-Type: application/json\r\n";
+    static const char LONG[] =
+        "{\"name\":\"long\",\"kind\":\"contact\",\"seed\":1,\"realisations\":1,\"surface\":{"
+        "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":8192,\"length_ratio\":8,"
+        "\"points_per_wavelength\":8},\"contact\":{\"model\":\"halfspace\",\"pressures\":{\"to\":0."
+        "1,"
+        "\"steps\":2}}}"; /* half a million points */
+    struct process other;
+    int sockets[SOCKETS];
+    char answer[2048];
+    unsigned told = 0, at = serve_start(&other, (const char *[]){"--db", "long.db", NULL});
+    assert_int_equal(http_exchange(at, "POST", "/v1/studies", JSON, STUDY, NULL), 201);
+    assert_int_equal(http_exchange(at, "POST", "/v1/studies", JSON, LONG, NULL), 201);
+    size_t count = ask_long(at, sockets);
+    for (size_t n = 0; n < count; n++)
+        close(sockets[n]);
+    int waited = 0;
+    while (http_exchange(at, "GET", MAP, "", NULL, NULL) != 200 && ++waited < 50)
+        sleep_ms(100);
+    assert_true(waited < 50);
+    count = ask_long(at, sockets);
+    process_kill(&other, SIGTERM);
+    assert_int_equal(process_wait(&other, 8), 0); /* requests are waited for 10 s */
+    for (size_t n = 0; n < count; n++) {
+        ssize_t got = recv(sockets[n], answer, sizeof answer - 1, MSG_WAITALL);
+        answer[got > 0 ? got : 0] = '\0';
+        told += strstr(answer, "503") != NULL && strstr(answer, "the server ends") != NULL;
+        close(sockets[n]);
+    }
+    assert_int_equal(told, 2);
+}
+
 static void a_picture_is_a_png(void **state) {
     (void)state;
     char line[300];
@@ -205,6 +260,7 @@ int main(void) {
         cmocka_unit_test(the_worker_is_listed),
         cmocka_unit_test(maps_are_those_of_the_realisation),
         cmocka_unit_test(maps_that_there_are_not),
+        cmocka_unit_test(maps_that_nobody_waits_for_are_given_up),
         cmocka_unit_test(a_picture_is_a_png),
         cmocka_unit_test(files_of_the_page),
     };
