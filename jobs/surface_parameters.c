@@ -33,6 +33,7 @@ static const struct parameter ROWS[] = {
      .example_json = "1",
      .help = "1: profile (2D contact), 2: surface (3D contact)"},
     {.path = "/surface/hurst",
+     .symbol = "H",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
      .maximum = 1,
@@ -41,6 +42,7 @@ static const struct parameter ROWS[] = {
      .example_json = "[0.2, 0.5, 0.8]",
      .help = "Hurst exponent H of a self-affine spectrum"},
     {.path = "/surface/wavelength_ratio",
+     .symbol = "lambda_l/lambda_s",
      .type = PARAMETER_NUMBER,
      .minimum = 1,
      .maximum = 1e5,
@@ -49,6 +51,7 @@ static const struct parameter ROWS[] = {
      .help = "lambda_l/lambda_s, longest over shortest wavelength of the spectrum; or give "
              "nayak_alpha"},
     {.path = "/surface/nayak_alpha",
+     .symbol = "alpha",
      .type = PARAMETER_NUMBER,
      .minimum = 1,
      .maximum = 1e6,
@@ -65,6 +68,7 @@ static const struct parameter ROWS[] = {
      .example_json = "\"continuous\"",
      .help = "how nayak_alpha is solved: the discrete sums of the cell, or the continuous formula"},
     {.path = "/surface/rolloff_ratio",
+     .symbol = "lambda_l/lambda_r",
      .type = PARAMETER_NUMBER,
      .minimum = 1,
      .maximum = 1e5,
@@ -83,6 +87,7 @@ static const struct parameter ROWS[] = {
      .help = "of self-affine surfaces: all waves are so many times as long along x, lambda_l and "
              "lambda_s being those along y"},
     {.path = "/surface/length_ratio",
+     .symbol = "L/lambda_l",
      .type = PARAMETER_NUMBER,
      .minimum = 1,
      .maximum = 1e5,
@@ -100,6 +105,7 @@ static const struct parameter ROWS[] = {
      .help = "of surfaces: Ly/lambda_l, side of a rectangular cell along y; unless given the cell "
              "is square. Points are as far apart along y as along x"},
     {.path = "/surface/points_per_wavelength",
+     .symbol = "lambda_s/Delta x",
      .type = PARAMETER_NUMBER,
      .minimum = 2,
      .maximum = 1e4,
@@ -110,6 +116,7 @@ static const struct parameter ROWS[] = {
              "number of points without prime factors above 7 (of a rectangle: such a number times "
              "its sides in least whole numbers)"},
     {.path = "/surface/rms_slope",
+     .symbol = "h'_rms",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
      .maximum = 1e100,
@@ -118,6 +125,7 @@ static const struct parameter ROWS[] = {
      .example_json = "0.1",
      .help = "RMS slope that fixes the scale; without it and rms_height: m0 = 1"},
     {.path = "/surface/rms_height",
+     .symbol = "h_rms",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
      .maximum = 1e100,
@@ -183,6 +191,7 @@ static const struct parameter ROWS[] = {
      .help = "height distribution: a named one, or one's own by samples or quantiles; all are "
              "brought to mean 0 and the standard deviation of the spectrum"},
     {.path = "/surface/heights/shape",
+     .symbol = "C",
      .type = PARAMETER_NUMBER,
      .minimum = 0.01,
      .maximum = 20,

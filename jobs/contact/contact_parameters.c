@@ -31,6 +31,7 @@ static const struct parameter ROWS[] = {
          "halfspace, layered, full (finite elements on the rough geometry itself), or a list of "
          "them: all solved on the same realisations"},
     {.path = "/contact/young",
+     .symbol = "E",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
      .maximum = 1e100,
@@ -41,6 +42,7 @@ static const struct parameter ROWS[] = {
      .example_json = "70",
      .help = "Young's modulus E; results are dimensionless and do not depend on it"},
     {.path = "/contact/poisson",
+     .symbol = "nu",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
      .maximum = 0.4999,

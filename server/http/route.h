@@ -5,7 +5,7 @@
 
 #include "server/http/http.h"
 
-enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 5 };
+enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 13 };
 typedef void route_handler(struct exchange *exchange, const char *id);
 
 route_handler handle_study_create, handle_study_list, handle_study, handle_document,

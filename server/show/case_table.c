@@ -29,8 +29,8 @@ int table_add(struct case_table *table, struct table_column column, struct table
     if (larger == NULL || room == NULL || column.name == NULL)
         return error_memory(err, table->row_count * sizeof *room, "a column");
     for (size_t r = 0; r < table->row_count; r++)
-        room[r] =
-            (struct table_value){.value = NAN, .standard_error = NAN, .error = NAN, .theory = NAN};
+        room[r] = (struct table_value){
+            .value = NAN, .standard_error = NAN, .error = NAN, .theory = NAN, .grid = NAN};
     column.values = room;
     table->columns[table->column_count++] = column;
     *values = room;
@@ -73,7 +73,8 @@ static struct table_value value_of(const struct scalar *scalar, bool unknown[ERR
     struct table_value value = {.value = scalar->value,
                                 .standard_error = scalar->standard_error,
                                 .error = NAN,
-                                .theory = scalar->theory};
+                                .theory = scalar->theory,
+                                .grid = scalar->grid};
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         const struct scalar_error *error = &scalar->errors[s];
         unknown[s] = unknown[s] || (error->applies && !error->known);
@@ -207,20 +208,35 @@ static int add_rows(struct case_table *table, const char *const *where, struct e
     return table_where(table, where, err);
 }
 
+int case_table_open(struct case_table *out, const struct picture_source *source,
+                    const char *const *where, struct error *err) {
+    static const struct result_filter SCALARS = {.case_number = -1, .part = {.scalars_only = true}};
+    *out = (struct case_table){0};
+    int status = source->results(source->context, &SCALARS, &out->study, err);
+    if (status == 0)
+        status = add_rows(out, where, err);
+    if (status != 0)
+        case_table_clear(out);
+    return status;
+}
+
+int case_table_add(struct case_table *table, const struct picture_source *source,
+                   const char *columns, struct error *err) {
+    struct table_maker maker = {.table = table, .source = source};
+    int status = columns != NULL ? add_wished(&maker, columns, err) : add_usual(&maker, err);
+    study_result_clear(&maker.curves);
+    return status;
+}
+
 int case_table_make(struct case_table *out, const struct picture_source *source,
                     const struct table_request *request, struct error *err) {
-    static const struct result_filter SCALARS = {.case_number = -1, .part = {.scalars_only = true}};
-    struct case_table table = {0};
-    struct table_maker maker = {.table = &table, .source = source};
-    int status = source->results(source->context, &SCALARS, &table.study, err);
+    struct case_table table;
+    int status = case_table_open(&table, source, request->where, err);
+    if (status != 0)
+        return status;
+    status = add_parameters(&table, err);
     if (status == 0)
-        status = add_rows(&table, request->where, err);
-    if (status == 0)
-        status = add_parameters(&table, err);
-    if (status == 0)
-        status = request->columns != NULL ? add_wished(&maker, request->columns, err)
-                                          : add_usual(&maker, err);
-    study_result_clear(&maker.curves);
+        status = case_table_add(&table, source, request->columns, err);
     if (status != 0)
         case_table_clear(&table);
     else

@@ -96,7 +96,8 @@ static struct table_value value_at(const struct curve *curve, size_t k, const st
     struct table_value value = {.value = curve->y[k],
                                 .standard_error = curve->standard_error[k],
                                 .error = NAN,
-                                .theory = NAN};
+                                .theory = NAN,
+                                .grid = NAN};
     value.theory = theory != NULL ? number_at(theory->y, k) : (double)NAN;
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         const struct curve_error *error = &curve->errors[s];

@@ -110,14 +110,16 @@ static int write_plots_of(const struct study_result *study, const struct curve *
                           bool first_unit, const char *folder, struct error *err) {
     const struct logarithmic_picture *more =
         view_logarithmic(view_of(study->kind), curve->quantity);
-    struct plot_request request = {.quantity = curve->quantity, .y_label = curve->y_label};
+    struct plot_request request = {
+        .lines = {.quantity = curve->quantity, .y_label = curve->y_label}};
     const char *series = curve->series != NULL ? curve->series : "";
     char name[192];
     snprintf(name, sizeof name, "%.100s%s%.60s.svg", curve->quantity, first_unit ? "" : "-",
              first_unit ? "" : series);
     int status = write_plot(study, &request, folder, name, err);
     if (status == 0 && first_unit && more != NULL && more->suffix != NULL) {
-        request.logarithmic = true;
+        request.axes = AXES_XY;
+        request.theories_whole = true;
         snprintf(name, sizeof name, "%.100s-%.60s.svg", curve->quantity, more->suffix);
         status = write_plot(study, &request, folder, name, err);
     }

@@ -4,15 +4,20 @@
 #ifndef RUGO_SERVER_SHOW_PICTURE_H
 #define RUGO_SERVER_SHOW_PICTURE_H
 
+#include "server/show/plot.h"
 #include "worker/aggregate.h"
 #include "worker/comparison.h"
 #include <stdio.h>
 
 struct picture_request {
-    const char *quantity;                /* of curves, or a scalar's name */
-    const char *x, *colour;              /* parameters, of scalars alone (sweep.h); NULL: chosen */
-    int64_t case_number;                 /* of curves; -1: all that a picture can show, of a density
-                                          the first one that has begun */
+    const char *quantity;     /* of curves, a scalar's name, or QUANTITY@X */
+    const char *x;            /* a parameter, for a scalar or a value of curves; NULL: chosen */
+    const char *const *where; /* cases to draw, as of a table (case_table.h); NULL: all */
+    const char *colour, *dash, *panel; /* what differs between lines (plot_lines.h); NULL: chosen */
+    const char *model, *series, *level; /* of curves: these alone; NULL: all */
+    const char *width;                  /* on paper (plot_layout.h); NULL: for screens */
+    int axes;                           /* enum plot_axes */
+    int64_t case_number; /* of curves; -1: all, of a density the first that has begun */
     const struct comparison *difference; /* of curves, in place of cases; NULL: none */
 };
 /* Who asks gives these; each fills an empty document, which the caller clears also after a failure.

@@ -1,4 +1,5 @@
 #include "server/show/plot_frame.h"
+#include "server/show/plot_words.h"
 #include <math.h>
 
 static void axis_include(struct plot_axis *axis, double value) {
@@ -15,11 +16,11 @@ static double axis_place(const struct plot_axis *axis, double value) {
 }
 
 double frame_x(const struct frame *frame, double x) {
-    return FRAME_LEFT + (frame->right - FRAME_LEFT) * axis_place(&frame->x, x);
+    return frame->left + (frame->right - frame->left) * axis_place(&frame->x, x);
 }
 
 double frame_y(const struct frame *frame, double y) {
-    return FRAME_BOTTOM - (FRAME_BOTTOM - FRAME_TOP) * axis_place(&frame->y, y);
+    return frame->bottom - (frame->bottom - frame->top) * axis_place(&frame->y, y);
 }
 
 bool frame_has_place(const struct frame *frame, double x, double y) {
@@ -40,7 +41,11 @@ void frame_include(struct frame *frame, size_t n, const double *x, const double 
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
     *frame = (struct frame){.x = {.low = INFINITY, .high = -INFINITY, .logarithmic = x_logarithmic},
                             .y = {.low = INFINITY, .high = -INFINITY, .logarithmic = y_logarithmic},
-                            .right = FRAME_RIGHT};
+                            .left = FRAME_LEFT,
+                            .top = FRAME_TOP,
+                            .right = FRAME_RIGHT,
+                            .bottom = FRAME_BOTTOM,
+                            .scale = 1};
 }
 
 void frame_include_point(struct frame *frame, double x, double y) {
@@ -53,8 +58,9 @@ void frame_include_point(struct frame *frame, double x, double y) {
 void frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths) {
     const double height = FRAME_BOTTOM - FRAME_TOP, width = FRAME_RIGHT - FRAME_LEFT;
     double wanted = height * (x[1] - x[0]) / (y[1] - y[0]);
-    *frame = (struct frame){
-        .x = {.low = x[0], .high = x[1]}, .y = {.low = y[0], .high = y[1]}, .right = FRAME_RIGHT};
+    frame_start(frame, false, false);
+    frame->x = (struct plot_axis){.low = x[0], .high = x[1]};
+    frame->y = (struct plot_axis){.low = y[0], .high = y[1]};
     if (same_lengths && wanted >= width / 3 && wanted < width)
         frame->right = FRAME_LEFT + (int)lrint(wanted);
 }
@@ -98,22 +104,28 @@ static double tick_value(double value, const struct plot_axis *axis) {
 
 static void draw_tick(FILE *file, const struct frame *frame, bool horizontal, double value,
                       bool numbered) {
-    double x = horizontal ? frame_x(frame, value) : FRAME_LEFT;
-    double y = horizontal ? FRAME_BOTTOM : frame_y(frame, value);
+    double x = horizontal ? frame_x(frame, value) : frame->left;
+    double y = horizontal ? frame->bottom : frame_y(frame, value);
     fprintf(file, "<path d=\"M%.1f %.1f%c%d\" class=\"grid\"/>", x, y, horizontal ? 'V' : 'H',
-            horizontal ? FRAME_TOP : frame->right);
-    if (numbered)
+            horizontal ? frame->top : frame->right);
+    if (numbered && !(horizontal ? frame->without_x : frame->without_y))
         fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">%.4g</text>",
-                horizontal ? x : x - 8, horizontal ? y + 18 : y + 4, horizontal ? "middle" : "end",
-                value);
+                horizontal ? x : x - 8 * frame->scale, y + (horizontal ? 18 : 4) * frame->scale,
+                horizontal ? "middle" : "end", value);
     fputc('\n', file);
+}
+
+static double length_of(const struct frame *frame, bool horizontal) {
+    return (horizontal ? frame->right - frame->left : frame->bottom - frame->top) / frame->scale;
 }
 
 /* Lines at 1, 2 and 5 of each decade; numbers at all of them where they do not crowd. */
 static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool horizontal) {
+    static const double ROOM_X = 110, ROOM_Y = 60; /* of a decade */
     const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
     static const double STEPS[] = {1, 2, 5};
-    bool crowded = log10(axis->high / axis->low) > 4;
+    bool crowded = length_of(frame, horizontal) <
+                   (horizontal ? ROOM_X : ROOM_Y) * log10(axis->high / axis->low);
     for (int decade = (int)floor(log10(axis->low)); pow(10, decade) <= axis->high; decade++)
         for (int s = 0; s < 3; s++) {
             double value = STEPS[s] * pow(10, decade);
@@ -123,6 +135,7 @@ static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool h
 }
 
 static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
+    enum { PARTS = 5, PART_ROOM = 55 };
     const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
     for (size_t n = 0; n < axis->tick_count; n++)
         draw_tick(file, frame, horizontal, axis->ticks[n], true);
@@ -132,24 +145,12 @@ static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
         draw_logarithmic_ticks(file, frame, horizontal);
         return;
     }
-    double step = round_step(axis->high - axis->low, 5);
-    long last = lrint(floor(axis->high / step));
-    for (long n = lrint(ceil(axis->low / step)); n <= last; n++)
+    double room = floor(length_of(frame, horizontal) / PART_ROOM);
+    double step = round_step(axis->high - axis->low, (int)fmin(PARTS, fmax(2, room)));
+    static const double ROUNDING = 1e-9; /* of a tick at an end */
+    long last = lrint(floor(axis->high / step + ROUNDING));
+    for (long n = lrint(ceil(axis->low / step - ROUNDING)); n <= last; n++)
         draw_tick(file, frame, horizontal, tick_value((double)n * step, axis), true);
-}
-
-void svg_text(FILE *file, const char *text) {
-    for (; *text != '\0'; text++) {
-        const char *entity = *text == '<'   ? "&lt;"
-                             : *text == '>' ? "&gt;"
-                             : *text == '&' ? "&amp;"
-                             : *text == '"' ? "&quot;"
-                                            : NULL;
-        if (entity != NULL)
-            fputs(entity, file);
-        else
-            fputc(*text, file);
-    }
 }
 
 void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label) {
@@ -157,12 +158,22 @@ void frame_draw(FILE *file, const struct frame *frame, const char *x_label, cons
     draw_ticks(file, frame, true);
     draw_ticks(file, frame, false);
     fprintf(file, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" class=\"frame\"/>\n",
-            FRAME_LEFT, FRAME_TOP, frame->right - FRAME_LEFT, FRAME_BOTTOM - FRAME_TOP);
-    fprintf(file, "<text x=\"%d\" y=\"%d\" class=\"middle\">", (FRAME_LEFT + frame->right) / 2,
-            FRAME_BOTTOM + 44);
-    svg_text(file, x_label);
-    fprintf(file, "</text>\n<text transform=\"translate(20 %d) rotate(-90)\" class=\"middle\">",
-            (FRAME_TOP + FRAME_BOTTOM) / 2);
-    svg_text(file, y_label);
-    fputs("</text></g>\n", file);
+            frame->left, frame->top, frame->right - frame->left, frame->bottom - frame->top);
+    if (x_label != NULL)
+        frame_label(file, frame, true, x_label);
+    if (y_label != NULL)
+        frame_label(file, frame, false, y_label);
+    fputs("</g>\n", file);
+}
+
+void frame_label(FILE *file, const struct frame *frame, bool horizontal, const char *label) {
+    double x = (frame->left + frame->right) / 2.0, y = (frame->top + frame->bottom) / 2.0;
+    if (horizontal)
+        fprintf(file, "<text x=\"%.0f\" y=\"%.0f\" class=\"middle\">", x,
+                frame->bottom + 44 * frame->scale);
+    else
+        fprintf(file, "<text transform=\"translate(%.0f %.0f) rotate(-90)\" class=\"middle\">",
+                frame->left - 60 * frame->scale, y);
+    svg_label(file, label);
+    fputs("</text>\n", file);
 }

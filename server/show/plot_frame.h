@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Curves are drawn in this area, in SVG user units. */
+/* Curves are drawn in this area, in SVG user units, unless a picture has frames of its own. */
 enum { FRAME_LEFT = 80, FRAME_RIGHT = 700, FRAME_TOP = 40, FRAME_BOTTOM = 500 };
 
 struct plot_axis {
@@ -17,7 +17,9 @@ struct plot_axis {
 };
 struct frame {
     struct plot_axis x, y;
-    int right; /* FRAME_RIGHT, or less in a narrower picture */
+    int left, top, right, bottom; /* FRAME_LEFT and so on; right is less in a narrower picture */
+    double scale;                 /* of letters and their distances; 1 on screens */
+    bool without_x, without_y;    /* no numbers and label at this axis */
 };
 /* Start, include the n points that must be seen, finish: false when there is no point at all. */
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic);
@@ -37,8 +39,9 @@ bool frame_has_place(const struct frame *frame, double x, double y);
 
 /* Returns the step of 1, 2 or 5 times a power of ten that divides a range into about `parts`. */
 double round_step(double range, int parts);
+/* Draws the frame with its ticks; labels (plot_words.h) are NULL for none. */
 void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label);
-/* Prints a text, in which what XML reserves is escaped. */
-void svg_text(FILE *file, const char *text);
+/* Draws the label of an axis beside the frame. */
+void frame_label(FILE *file, const struct frame *frame, bool horizontal, const char *label);
 
 #endif

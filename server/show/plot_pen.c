@@ -11,27 +11,48 @@ const char *const PEN_COLOURS[PLOT_LINES] = {"#0072b2", "#d55e00", "#009e73", "#
                                              "#e69f00", "#56b4e9", "#000000", "#8a8a00",
                                              "#7f3b08", "#6a51a3", "#999999", "#a50026"};
 
-void pen_title(const struct plot_pen *pen, const char *name, const char *subject) {
+static void make_title(const char *name, const char *subject, char title[PLOT_LABEL_SIZE]) {
+    snprintf(title, PLOT_LABEL_SIZE, "%.110s: %.80s", name, subject);
+}
+
+void pen_subject(const struct plot_pen *pen, const char *name, const char *subject) {
     char title[PLOT_LABEL_SIZE];
-    snprintf(title, sizeof title, "%.120s: %.60s", name, subject);
+    make_title(name, subject, title);
     fputs("<title>", pen->file);
     svg_text(pen->file, title);
-    fprintf(pen->file, "</title>\n<text x=\"%d\" y=\"%d\" class=\"title\">", FRAME_LEFT,
-            FRAME_TOP - 14);
+    fputs("</title>\n", pen->file);
+}
+
+void pen_title(const struct plot_pen *pen, const char *name, const char *subject) {
+    char title[PLOT_LABEL_SIZE];
+    pen_subject(pen, name, subject);
+    make_title(name, subject, title);
+    fprintf(pen->file, "<text x=\"%d\" y=\"%d\" class=\"title\">", FRAME_LEFT, FRAME_TOP - 14);
     svg_text(pen->file, title);
     fputs("</text>\n", pen->file);
 }
 
 void pen_head(const struct plot_pen *pen, int width) {
+    pen_head_sized(pen, &(struct pen_size){.width = width, .height = HEIGHT, .font = 13});
+}
+
+void pen_head_sized(const struct plot_pen *pen, const struct pen_size *size) {
+    fprintf(pen->file, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" ",
+            size->width, size->height);
+    if (size->millimetres > 0)
+        fprintf(pen->file, "width=\"%.4gmm\" height=\"%.4gmm\">\n", size->millimetres,
+                size->millimetres * size->height / size->width);
+    else
+        fprintf(pen->file, "width=\"%d\" height=\"%d\">\n", size->width, size->height);
     fprintf(pen->file,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" "
-            "height=\"%d\">\n<style>text{font:13px system-ui,sans-serif;fill:#222}"
+            "<style>text{font:%gpx system-ui,sans-serif;fill:#222}"
             ".title{font-weight:600}.middle{text-anchor:middle}.end{text-anchor:end}"
-            ".note{fill:#666;font-size:12px}.grid{stroke:#e4e4e4}.frame{fill:none;stroke:#444}"
+            ".note{fill:#666;font-size:%gpx}.grid{stroke:#e4e4e4}.frame{fill:none;stroke:#444}"
             ".curve{fill:none;stroke-linejoin:round}.theory{fill:none;stroke-width:1.4}"
-            ".bar{stroke-width:1.4;stroke-opacity:.45}.partial{fill:#fff}</style>\n"
+            ".bar{stroke-width:1.4;stroke-opacity:.45}.partial{fill:#fff}"
+            ".dot{stroke-width:3.6;stroke-linecap:round}.index{font-size:75%%}</style>\n"
             "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
-            width, HEIGHT, width, HEIGHT, width, HEIGHT);
+            size->font, size->font - 1, size->width, size->height);
 }
 
 void pen_study(const struct plot_pen *pen, const struct study_result *study) {

@@ -1,29 +1,22 @@
 #include "server/show/sweep.h"
+#include "server/show/shown_cases.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-bool sweep_same(const struct case_result *a, const struct case_result *b, const char *pointer) {
-    return parameter_same(result_parameter(a, pointer), result_parameter(b, pointer));
-}
+struct sweep {
+    struct case_table *table;
+    const char *x;          /* pointer of the parameter */
+    struct plot_line *list; /* owned until the lines take it */
+    size_t count;
+    size_t left_out; /* rows without a value, or without this parameter */
+};
 
-/* --- the parameters --- */
+/* --- the parameter --- */
 
 static bool is_named(const char *pointer, const char *name) {
     return strcmp(pointer, name) == 0 || strcmp(pointer + 1, name) == 0 ||
            strcmp(last_name(pointer), name) == 0;
-}
-
-/* Returns the pointer of a parameter: of those that are swept first. */
-static const char *find_pointer(const struct shown_cases *shown, const char *name) {
-    for (size_t n = 0; n < shown->varied_count; n++)
-        if (is_named(shown->varied[n], name))
-            return shown->varied[n];
-    for (size_t c = 0; c < shown->count; c++)
-        for (size_t p = 0; p < shown->list[c]->parameter_count; p++)
-            if (is_named(shown->list[c]->parameters[p].pointer, name))
-                return shown->list[c]->parameters[p].pointer;
-    return NULL;
 }
 
 /* Returns NaN for a case without the parameter, or where it is a word. */
@@ -32,141 +25,211 @@ static double number_at(const struct case_result *one, const char *pointer) {
     return value != NULL && value->text == NULL ? value->number : (double)NAN;
 }
 
-/* Counts the numbers that a parameter has in these cases. */
-static size_t count_numbers(const struct shown_cases *shown, const char *pointer) {
+/* Counts the numbers that a parameter has in the rows. */
+static size_t count_numbers(const struct case_table *table, const char *pointer) {
     size_t count = 0;
-    for (size_t c = 0; c < shown->count; c++) {
-        double number = number_at(shown->list[c], pointer);
+    for (size_t r = 0; r < table->row_count; r++) {
+        double number = number_at(table->rows[r], pointer);
         bool met = isnan(number);
-        for (size_t before = 0; before < c && !met; before++)
-            met = number == number_at(shown->list[before], pointer);
+        for (size_t before = 0; before < r && !met; before++)
+            met = number == number_at(table->rows[before], pointer);
         count += !met;
     }
     return count;
 }
 
+/* Chooses the parameter of this name, or of all the one of most numbers. */
 static int choose_x(struct sweep *sweep, const char *name, struct error *err) {
-    const struct shown_cases *shown = &sweep->shown;
-    size_t most = 1;
-    if (name != NULL) {
-        sweep->x = find_pointer(shown, name);
-        if (sweep->x == NULL || count_numbers(shown, sweep->x) == 0)
-            return error_set(err, ERROR_INPUT, "x: \"%.60s\" is no number of the study's cases",
-                             name);
-        return 0;
-    }
-    for (size_t n = 0; n < shown->varied_count; n++) {
-        size_t numbers = count_numbers(shown, shown->varied[n]);
-        if (numbers > most) {
-            most = numbers;
-            sweep->x = shown->varied[n];
+    const struct case_table *table = sweep->table;
+    size_t most = name != NULL ? 0 : 1;
+    for (size_t r = 0; r < table->row_count; r++)
+        for (size_t p = 0; p < table->rows[r]->parameter_count; p++) {
+            const char *pointer = table->rows[r]->parameters[p].pointer;
+            if ((r > 0 && result_parameter(table->rows[0], pointer) != NULL) ||
+                (name != NULL && !is_named(pointer, name)))
+                continue;
+            size_t numbers = count_numbers(table, pointer);
+            if (numbers > most) {
+                most = numbers;
+                sweep->x = pointer;
+            }
         }
-    }
-    if (sweep->x == NULL)
-        return error_set(err, ERROR_INPUT, "x: the study sweeps no number; name one of its cases");
-    return 0;
-}
-
-static int choose_colour(struct sweep *sweep, const char *name, struct error *err) {
-    const struct shown_cases *shown = &sweep->shown;
-    if (name == NULL)
+    if (sweep->x != NULL)
         return 0;
-    for (size_t n = 0; n < shown->varied_count; n++)
-        if (is_named(shown->varied[n], name) && strcmp(shown->varied[n], sweep->x) != 0)
-            sweep->colour = shown->varied[n];
-    if (sweep->colour == NULL)
-        return error_set(err, ERROR_INPUT, "colour: \"%.60s\" is not swept beside %.60s", name,
-                         last_name(sweep->x));
-    return 0;
+    return name != NULL
+               ? error_set(err, ERROR_INPUT, "x: \"%.60s\" is no number of the study's cases", name)
+               : error_set(err, ERROR_INPUT,
+                           "x: the study sweeps no number; name one of its cases");
 }
 
-/* --- the points --- */
+/* --- lines --- */
 
-/* Returns whether two cases differ by nothing but x. */
+/* Returns whether two cases differ by nothing but x. Lists go with a number. */
 static bool same_line(const struct sweep *sweep, const struct case_result *a,
                       const struct case_result *b) {
-    for (size_t n = 0; n < sweep->shown.varied_count; n++)
-        if (strcmp(sweep->shown.varied[n], sweep->x) != 0 &&
-            !sweep_same(a, b, sweep->shown.varied[n]))
-            return false;
-    return true;
-}
-
-static void add_point(struct sweep *sweep, const struct case_result *one, const char *name) {
-    const struct scalar *scalar = result_scalar(one, name);
-    double x = number_at(one, sweep->x);
-    if (scalar == NULL || !isfinite(scalar->value) || !isfinite(x)) {
-        sweep->left_out++;
-        return;
+    bool same = a->parameter_count == b->parameter_count;
+    for (size_t p = 0; p < a->parameter_count && same; p++) {
+        const struct result_parameter *own = &a->parameters[p];
+        same = own->list || strcmp(own->pointer, sweep->x) == 0 ||
+               parameter_same(own, parameter_at(b, own->pointer, p));
     }
-    struct sweep_point *point = &sweep->points[sweep->count];
-    *point = (struct sweep_point){one, scalar, x, sweep->line_count};
-    for (size_t p = 0; p < sweep->count; p++)
-        if (same_line(sweep, sweep->points[p].one, one)) {
-            point->line = sweep->points[p].line;
-            break;
+    return same;
+}
+
+static double x_of(const struct sweep *sweep, size_t row) {
+    return number_at(sweep->table->rows[row], sweep->x);
+}
+
+static bool has_point(const struct sweep *sweep, const struct table_column *column, size_t row) {
+    return isfinite(column->values[row].value) && isfinite(x_of(sweep, row));
+}
+
+/* Gathers the rows of the line that begins with this one, by rising x. */
+static size_t gather(const struct sweep *sweep, const struct table_column *column, size_t first,
+                     size_t *rows) {
+    size_t count = 0;
+    for (size_t r = first; r < sweep->table->row_count; r++) {
+        size_t place = count;
+        if (!has_point(sweep, column, r) ||
+            !same_line(sweep, sweep->table->rows[first], sweep->table->rows[r]))
+            continue;
+        for (; place > 0 && x_of(sweep, rows[place - 1]) > x_of(sweep, r); place--)
+            rows[place] = rows[place - 1];
+        rows[place] = r;
+        count++;
+    }
+    return count;
+}
+
+/* Returns whether an earlier row of the same line has a point. */
+static bool is_taken(const struct sweep *sweep, const struct table_column *column, size_t row) {
+    for (size_t r = 0; r < row; r++)
+        if (has_point(sweep, column, r) &&
+            same_line(sweep, sweep->table->rows[r], sweep->table->rows[row]))
+            return true;
+    return false;
+}
+
+static void add_theory(struct curve *curve, const char *name, const double *y) {
+    for (size_t k = 0; k < curve->n; k++)
+        if (isfinite(y[k])) {
+            curve->theories[curve->theory_count++] = (struct theory){name, y};
+            return;
         }
-    sweep->line_count += point->line == sweep->line_count;
-    sweep->count++;
 }
 
-static int compare(const void *a, const void *b) {
-    const struct sweep_point *one = a, *other = b;
-    if (one->line != other->line)
-        return one->line < other->line ? -1 : 1;
-    return (one->x > other->x) - (one->x < other->x);
+/* Makes the curve of a line in the table's room. */
+static int add_line(struct sweep *sweep, const struct table_column *column, const size_t *rows,
+                    size_t n, struct error *err) {
+    struct case_result *room = &sweep->table->room;
+    struct curve *curve = result_room(room, 1, sizeof *curve);
+    double *numbers[5];
+    bool complete = curve != NULL;
+    for (size_t a = 0; a < 5; a++) {
+        numbers[a] = result_numbers(room, n);
+        complete = complete && numbers[a] != NULL;
+    }
+    if (!complete)
+        return error_memory(err, 5 * n * sizeof(double), "a line");
+    for (size_t k = 0; k < n; k++) {
+        const struct table_value *value = &column->values[rows[k]];
+        numbers[0][k] = x_of(sweep, rows[k]);
+        numbers[1][k] = value->value;
+        numbers[2][k] = value->standard_error;
+        numbers[3][k] = value->theory;
+        numbers[4][k] = value->grid;
+    }
+    *curve = curve_named(column->name, "", "");
+    curve->model = column->model;
+    curve_set_points(curve, n, numbers[0], numbers[1], numbers[2]);
+    add_theory(curve, column->theory != NULL ? column->theory : "theory", numbers[3]);
+    add_theory(curve, "theory of the grid", numbers[4]);
+    sweep->list[sweep->count++] =
+        (struct plot_line){.one = sweep->table->rows[rows[0]], .curve = curve};
+    return 0;
 }
 
-int sweep_make(struct sweep *out, const struct study_result *study,
-               const struct sweep_request *request, struct error *err) {
-    *out = (struct sweep){.points = array_create(study->case_count, sizeof *out->points)};
+static int add_column(struct sweep *sweep, const struct table_column *column, size_t *rows,
+                      struct error *err) {
     int status = 0;
-    if (out->points == NULL || !shown_of_results(study, &out->shown))
-        status = error_memory(err, study->case_count * sizeof *out->points, "a sweep");
-    if (status == 0)
-        status = choose_x(out, request->x, err);
-    if (status == 0)
-        status = choose_colour(out, request->colour, err);
-    for (size_t c = 0; c < study->case_count && status == 0; c++)
-        add_point(out, &study->cases[c], request->scalar);
-    if (status == 0 && out->count == 0)
-        status = error_set(err, ERROR_ABSENT, "no case has a value of \"%.60s\"", request->scalar);
-    if (status == 0)
-        qsort(out->points, out->count, sizeof *out->points, compare);
-    else
-        sweep_clear(out);
+    for (size_t r = 0; r < sweep->table->row_count && status == 0; r++) {
+        if (!has_point(sweep, column, r))
+            sweep->left_out++;
+        else if (!is_taken(sweep, column, r))
+            status = add_line(sweep, column, rows, gather(sweep, column, r, rows), err);
+    }
     return status;
 }
 
-void sweep_clear(struct sweep *sweep) {
-    free(sweep->points);
-    shown_clear(&sweep->shown);
-    *sweep = (struct sweep){0};
+static int add_lines(struct sweep *sweep, const char *name, struct error *err) {
+    const struct case_table *table = sweep->table;
+    size_t most = table->row_count * table->column_count, *rows = NULL;
+    int status = 0;
+    sweep->list = array_create(most, sizeof *sweep->list);
+    rows = array_create(table->row_count, sizeof *rows);
+    if (sweep->list == NULL || rows == NULL)
+        status = error_memory(err, most * sizeof *sweep->list, "lines");
+    for (size_t n = 0; n < table->column_count && status == 0; n++)
+        if (table->columns[n].type != COLUMN_PARAMETER)
+            status = add_column(sweep, &table->columns[n], rows, err);
+    free(rows);
+    if (status == 0 && sweep->count == 0)
+        status = error_set(err, ERROR_ABSENT, "no case has a value of \"%.60s\"", name);
+    return status;
 }
 
-const struct sweep_point *sweep_line(const struct sweep *sweep, size_t line, size_t *count) {
-    size_t first = 0, end;
-    while (first < sweep->count && sweep->points[first].line < line)
-        first++;
-    for (end = first; end < sweep->count && sweep->points[end].line == line;)
-        end++;
-    *count = end - first;
-    return sweep->points + first;
+/* --- the picture --- */
+
+enum { LABEL_SIZE = 160 };
+
+static void label_y(const struct case_table *table, const char *name, char label[LABEL_SIZE]) {
+    const struct table_column *column = &table->columns[table->column_count - 1];
+    if (column->type == COLUMN_CURVE && column->unit != NULL)
+        snprintf(label, LABEL_SIZE, "%.60s at %.60s = %.6g", column->unit, column->x_label,
+                 column->x);
+    else
+        plot_spaced(name, label, LABEL_SIZE);
 }
 
-void sweep_label(const struct sweep *sweep, const struct sweep_point *point, char *out,
-                 size_t size) {
-    size_t used = 0;
-    *out = '\0';
-    for (size_t n = 0; n < sweep->shown.varied_count && used < size; n++) {
-        const char *pointer = sweep->shown.varied[n], *comma = used > 0 ? ", " : "";
-        const struct result_parameter *value = result_parameter(point->one, pointer);
-        if (value == NULL || strcmp(pointer, sweep->x) == 0)
-            continue;
-        int more = value->text != NULL
-                       ? snprintf(out + used, size - used, "%s%s", comma, value->text)
-                       : snprintf(out + used, size - used, "%s%s %.5g", comma, last_name(pointer),
-                                  value->number);
-        used += more > 0 ? (size_t)more : 0;
-    }
+static void label_x(const struct sweep *sweep, char label[LABEL_SIZE]) {
+    const char *kind = sweep->table->study.kind, *unit = plot_unit(kind, sweep->x);
+    snprintf(label, LABEL_SIZE, "%.60s%s%.40s%s", plot_symbol(kind, sweep->x),
+             unit != NULL ? " (" : "", unit != NULL ? unit : "", unit != NULL ? ")" : "");
+}
+
+static int draw(struct sweep *sweep, const char *name, const struct plot_request *request,
+                FILE *file, struct error *err) {
+    const struct study_result *study = &sweep->table->study;
+    struct lines_request lines_request = request->lines;
+    struct plot_lines lines;
+    char x[LABEL_SIZE], y[LABEL_SIZE], subject[LABEL_SIZE], left_out[LABEL_SIZE] = "";
+    lines_request.left_out = sweep->x;
+    struct plot_line *list = sweep->list;
+    sweep->list = NULL;
+    int status = plot_lines_take(&lines, study->kind, list, sweep->count, &lines_request, err);
+    if (status != 0)
+        return status;
+    label_x(sweep, x);
+    label_y(sweep->table, name, y);
+    snprintf(subject, sizeof subject, "%.80s over %.60s", name, last_name(sweep->x));
+    if (sweep->left_out > 0)
+        snprintf(left_out, sizeof left_out, "without a value: %zu %s", sweep->left_out,
+                 sweep->left_out == 1 ? "case" : "cases");
+    const struct plot_words words = {
+        .subject = subject, .x = x, .y = y, .note = left_out, .points = true};
+    status = plot_lines_draw(&lines, study, request, &words, file, err);
+    plot_lines_clear(&lines);
+    return status;
+}
+
+int sweep_draw(struct case_table *table, const char *name, const char *x,
+               const struct plot_request *request, FILE *file, struct error *err) {
+    struct sweep sweep = {.table = table};
+    int status = choose_x(&sweep, x, err);
+    if (status == 0)
+        status = add_lines(&sweep, name, err);
+    if (status == 0)
+        status = draw(&sweep, name, request, file, err);
+    free(sweep.list);
+    return status;
 }

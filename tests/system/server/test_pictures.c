@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static struct process server;
 static unsigned port;
@@ -51,6 +52,13 @@ static void plots_are_the_same_near_and_far(void **state) {
          {"--quantity", "summit_joint_pdf", "--case", "1"},
          "summit_joint_pdf, case 1"},
         {"quantity=summit_joint_pdf", {"--quantity", "summit_joint_pdf"}, "class=\"heat\""},
+        {"quantity=psd&where=hurst=0.8&width=85",
+         {"--quantity", "psd", "--where", "hurst=0.8", "--width", "85"},
+         "width=\"85mm\""},
+        {"quantity=psd&panel=hurst", {"--quantity", "psd", "--panel", "hurst"}, ">H = 0.8<"},
+        {"quantity=psd&colour=surface/hurst",
+         {"--quantity", "psd", "--colour", "surface/hurst"},
+         ">H = 0.2<"},
         {"quantity=summit_height_pdf&difference=1,0",
          {"--quantity", "summit_height_pdf", "--difference", "1", "0"},
          "case 1 less case 0"},
@@ -61,7 +69,10 @@ static void plots_are_the_same_near_and_far(void **state) {
                    *far[16] = {"plot", "--server", url, id};
         for (size_t o = 0; o < 8 && PLOTS[n].options[o] != NULL; o++)
             near[4 + o] = far[4 + o] = PLOTS[n].options[o];
-        assert_int_equal(run_rugo("near", near), 0);
+        int status = run_rugo("near", near);
+        if (status != 0)
+            print_error("%s: %s\n", PLOTS[n].query, slurp("near.err"));
+        assert_int_equal(status, 0);
         assert_int_equal(run_rugo("far", far), 0);
         snprintf(path, sizeof path, "/v1/studies/%s/plot?%s", id, PLOTS[n].query);
         assert_int_equal(http_exchange(port, "GET", path, NULL, NULL, &answer), 200);
@@ -87,9 +98,16 @@ static void what_cannot_be_drawn_is_refused(void **state) {
         {"?quantity=colour", 422, "no quantity 'colour'"},
         {"?quantity=summit_density&x=shape", 422, "is no number"},
         {"?quantity=summit_density&case=0", 422, "is a scalar"},
-        {"?quantity=psd&x=hurst", 422, "belong to scalars"},
+        {"?quantity=psd&x=hurst", 422, "curves are over their own x"},
+        {"?quantity=psd&where=hurst=0.3", 422, "there is 0.2, 0.8"},
+        {"?quantity=psd&dash=shape", 422, "what differs: hurst"},
+        {"?quantity=psd&model=layered", 422, "of this model"},
+        {"?quantity=psd&log=z", 422, "?log"},
+        {"?quantity=psd&width=3", 422, "neither one, two"},
+        {"?quantity=summit_density&model=layered", 422, "belong to curves"},
+        {"?quantity=psd@3", 422, "psd has no value at 3"},
         {"?quantity=psd&case=2", 404, "has no case 2"},
-        {"?quantity=psd&difference=1,0&x=hurst", 422, "takes no case, x or colour"},
+        {"?quantity=psd&difference=1,0&x=hurst", 422, "takes no case, x or where"},
         {"?quantity=psd&size=3", 422, "?size"},
     };
     for (size_t n = 0; n < sizeof REFUSED / sizeof *REFUSED; n++) {
@@ -102,6 +120,26 @@ static void what_cannot_be_drawn_is_refused(void **state) {
         assert_non_null(strstr(answer, REFUSED[n].word));
         free(answer);
     }
+}
+
+/* Pixels need a program that may not be there: the picture, or a word about what is missing. */
+static void pictures_become_pixels(void **state) {
+    (void)state;
+    int status = run_rugo("png", (const char *[]){"plot", "--db", "rugo.db", id, "--quantity",
+                                                  "psd", "--out", "psd.png", NULL});
+    if (status == 0)
+        assert_true(contains("psd.png", "PNG"));
+    else
+        assert_true(contains("png.err", "pixels need rsvg-convert"));
+    assert_int_equal(run_rugo("file", (const char *[]){"plot", "--db", "rugo.db", id, "--quantity",
+                                                       "psd", "-o", "psd.svg", NULL}),
+                     0);
+    assert_true(contains("psd.svg", "</svg>"));
+    assert_int_not_equal(
+        run_rugo("none", (const char *[]){"plot", "--db", "rugo.db", id, "--quantity", "no", "-o",
+                                          "no.svg", NULL}),
+        0);
+    assert_true(access("no.svg", F_OK) != 0);
 }
 
 /* A density has a picture a case among the files, too. */
@@ -146,6 +184,7 @@ static void surfaces_are_drawn(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plots_are_the_same_near_and_far),
+        cmocka_unit_test(pictures_become_pixels),
         cmocka_unit_test(files_have_densities),
         cmocka_unit_test(surfaces_are_drawn),
         cmocka_unit_test(what_cannot_be_drawn_is_refused),

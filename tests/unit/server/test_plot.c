@@ -1,7 +1,7 @@
-/* Protects: a picture shows as many curves as its legend can name, says what it leaves out, and
- * tells models, levels, estimators and theories apart. */
+/* Protects: a picture tells its curves apart by panels, colours and dashes, says what it leaves
+ * out, and tells models, levels, estimators and theories apart. */
 #include "server/show/plot.h"
-#include "server/show/plot_choice.h"
+#include "server/show/plot_layout.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"
@@ -40,59 +40,158 @@ static struct study_result contact_of(size_t cases, int levels) {
     return study;
 }
 
-static void a_choice_narrows_as_far_as_it_must(void **state) {
+static void label_of(const struct plot_lines *lines, enum plot_channel_type channel, size_t v,
+                     const char *expected) {
+    char label[PLOT_LABEL_SIZE];
+    channel_label(lines, channel, v, label, sizeof label);
+    assert_string_equal(label, expected);
+}
+
+static void lines_narrow_as_far_as_they_must(void **state) {
     (void)state;
     static const struct {
         size_t cases;
         int levels;
-        size_t count, colours;
-        const char *left_out, *first, *last;
+        struct lines_request request;
+        size_t count, panels, colours, dashes;
+        const char *narrowed;
     } CHOICES[] = {
-        {1, 1, 8, 8, "", "halfspace, edges", "layered, nodes_upper"},
-        {1, 3, 12, 4, "without brackets", "halfspace, edges, level 12", "layered, nodes, level 4"},
-        {2, 2, 8, 8, "without brackets, finest level", "hurst 0.1, halfspace, edges",
-         "hurst 0.2, layered, nodes"},
-        {5, 2, 10, 10, "without brackets, finest level, edges", "hurst 0.1, halfspace, edges",
-         "hurst 0.5, layered, edges"},
-        {9, 1, 9, 9, "without brackets, edges, halfspace", "hurst 0.1, edges", "hurst 0.9, edges"},
-        {20, 1, 12, 12, "without brackets, edges, halfspace, first 12 of 20 curves",
-         "hurst 0.1, edges", "hurst 1.2, edges"},
+        {1, 1, {.quantity = "contact_area"}, 8, 1, 4, 2, ""},
+        {1, 3, {.quantity = "contact_area"}, 12, 1, 2, 2, "without brackets"},
+        {2, 2, {.quantity = "contact_area"}, 8, 2, 2, 2, "without brackets, finest level"},
+        {5, 2, {.quantity = "contact_area"}, 10, 1, 5, 2, "without brackets, finest level, edges"},
+        {9, 1, {.quantity = "contact_area"}, 9, 1, 9, 1, "without brackets, edges, halfspace"},
+        {20, 1, {.quantity = "contact_area"}, 20, 1, 20, 1, "without brackets, edges, halfspace"},
+        {20,
+         1,
+         {.quantity = "contact_area", .model = "layered", .series = "nodes"},
+         20,
+         1,
+         20,
+         1,
+         ""},
+        {5, 3, {.quantity = "contact_area", .level = "8"}, 10, 1, 5, 2, "without brackets, edges"},
+        {9,
+         1,
+         {.quantity = "contact_area", .names = {[CHANNEL_DASH] = "model"}},
+         18,
+         1,
+         9,
+         2,
+         "without brackets, edges"},
+        {2,
+         3,
+         {.quantity = "contact_area", .names = {[CHANNEL_PANEL] = "level"}},
+         12,
+         3,
+         2,
+         2,
+         "without brackets, edges"},
     };
     for (size_t n = 0; n < sizeof CHOICES / sizeof *CHOICES; n++) {
+        struct error err = {0};
         struct study_result study = contact_of(CHOICES[n].cases, CHOICES[n].levels);
-        struct plot_choice choice;
-        char label[PLOT_LABEL_SIZE];
-        size_t colours = 0;
-        plot_choose(&choice, &study, "contact_area", NULL);
-        assert_int_equal(choice.count, CHOICES[n].count);
-        assert_string_equal(choice.left_out, CHOICES[n].left_out);
-        plot_label(&choice, 0, label);
-        assert_string_equal(label, CHOICES[n].first);
-        plot_label(&choice, choice.count - 1, label);
-        assert_string_equal(label, CHOICES[n].last);
-        for (size_t l = 0; l < choice.count; l++)
-            colours = choice.lines[l].colour >= colours ? choice.lines[l].colour + 1 : colours;
-        assert_int_equal(colours, CHOICES[n].colours); /* levels share theirs */
+        struct plot_lines lines = {0};
+        assert_int_equal(plot_lines_choose(&lines, &study, &CHOICES[n].request, &err), 0);
+        if (lines.count != CHOICES[n].count)
+            print_error("choice %zu\n", n);
+        assert_int_equal(lines.count, CHOICES[n].count);
+        assert_string_equal(lines.narrowed, CHOICES[n].narrowed);
+        assert_int_equal(lines.channels[CHANNEL_PANEL].count, CHOICES[n].panels);
+        assert_int_equal(lines.channels[CHANNEL_COLOUR].count, CHOICES[n].colours);
+        assert_int_equal(lines.channels[CHANNEL_DASH].count, CHOICES[n].dashes);
+        plot_lines_clear(&lines);
         study_result_clear(&study);
     }
 }
 
-/* Where strains are finite, their kinematics are named, even where all lines have the same. */
-static void kinematics_are_named(void **state) {
+/* Numbers rise, and are told by their symbols; words stand in the order of the study. */
+static void channels_name_their_values(void **state) {
     (void)state;
+    struct error err = {0};
+    struct study_result study = contact_of(2, 2);
+    struct plot_lines lines = {0};
+    assert_int_equal(
+        plot_lines_choose(&lines, &study,
+                          &(struct lines_request){
+                              .quantity = "contact_area",
+                              .names = {[CHANNEL_COLOUR] = "model", [CHANNEL_PANEL] = "level"}},
+                          &err),
+        0);
+    label_of(&lines, CHANNEL_COLOUR, 1, "layered");
+    label_of(&lines, CHANNEL_PANEL, 0, "level 4");
+    label_of(&lines, CHANNEL_PANEL, 1, "level 8");
+    assert_false(lines.channels[CHANNEL_COLOUR].ordered);
+    plot_lines_clear(&lines);
+    study.cases[0].parameters[0].number = 0.9;
+    assert_int_equal(
+        plot_lines_choose(&lines, &study,
+                          &(struct lines_request){.quantity = "contact_area", .series = "edges"},
+                          &err),
+        0);
+    label_of(&lines, CHANNEL_COLOUR, 0, "H = 0.2");
+    label_of(&lines, CHANNEL_COLOUR, 1, "H = 0.9");
+    assert_int_equal(lines.list[0].at[CHANNEL_COLOUR], 1); /* the first case has the higher one */
+    assert_true(lines.channels[CHANNEL_COLOUR].ordered);
+    plot_lines_clear(&lines);
+    study_result_clear(&study);
+}
+
+static void what_there_is_not_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        struct lines_request request;
+        int status;
+        const char *word;
+    } REFUSED[] = {
+        {{.quantity = "colour"}, ERROR_ABSENT, "no case has the quantity \"colour\""},
+        {{.quantity = "contact_area", .model = "full"}, ERROR_INPUT, "layered nodes 4"},
+        {{.quantity = "contact_area", .level = "5"}, ERROR_INPUT, "halfspace edges 8"},
+        {{.quantity = "contact_area", .names = {[CHANNEL_COLOUR] = "shape"}},
+         ERROR_INPUT,
+         "colour: \"shape\" does not differ between the lines; what differs: hurst"},
+        {{.quantity = "contact_area", .names = {"hurst", "surface/hurst", NULL}},
+         ERROR_INPUT,
+         "colour: \"surface/hurst\" is shown in another way"},
+        {{.quantity = "contact_area", .names = {[CHANNEL_DASH] = "hurst"}},
+         ERROR_INPUT,
+         "has 7 values, at most 6"},
+    };
+    struct study_result study = contact_of(7, 2);
+    for (size_t n = 0; n < sizeof REFUSED / sizeof *REFUSED; n++) {
+        struct error err = {0};
+        struct plot_lines lines = {0};
+        int status = plot_lines_choose(&lines, &study, &REFUSED[n].request, &err);
+        if (status != REFUSED[n].status || strstr(err.text, REFUSED[n].word) == NULL)
+            print_error("%zu: %s\n", n, err.text);
+        assert_int_equal(status, REFUSED[n].status);
+        assert_non_null(strstr(err.text, REFUSED[n].word));
+    }
+    study_result_clear(&study);
+}
+
+/* What goes with the model, such as its kinematics, takes no channel of its own. */
+static void kinematics_go_with_their_model(void **state) {
+    (void)state;
+    struct error err = {0};
     struct study_result study = built_study("contact", "finite", 1);
     struct case_result *one = &study.cases[0];
-    struct plot_choice choice;
-    char label[PLOT_LABEL_SIZE];
-    add_curve(one, "contact_area", "edges", "full", 4, 0);
-    one->curves[0].kinematics = "hencky";
-    plot_choose(&choice, &study, "contact_area", NULL);
-    plot_label(&choice, 0, label);
-    assert_string_equal(label, "full (hencky), edges");
+    struct plot_lines lines = {0};
+    const struct lines_request area = {.quantity = "contact_area"};
     add_curve(one, "contact_area", "edges", "layered", 4, 0);
-    plot_choose(&choice, &study, "contact_area", NULL);
-    plot_label(&choice, 1, label);
-    assert_string_equal(label, "layered, edges");
+    add_curve(one, "contact_area", "edges", "full", 4, 0);
+    one->curves[1].kinematics = "hencky";
+    assert_int_equal(plot_lines_choose(&lines, &study, &area, &err), 0);
+    assert_int_equal(lines.channels[CHANNEL_COLOUR].count, 2);
+    assert_int_equal(lines.channels[CHANNEL_DASH].count, 1);
+    assert_int_equal(lines.channels[CHANNEL_PANEL].count, 1);
+    plot_lines_clear(&lines);
+    add_curve(one, "contact_area", "edges", "full", 4, 0);
+    one->curves[2].kinematics = "green";
+    assert_int_equal(plot_lines_choose(&lines, &study, &area, &err), 0);
+    assert_int_equal(lines.channels[CHANNEL_COLOUR].count, 3); /* which tells the model, too */
+    assert_int_equal(lines.channels[CHANNEL_DASH].count, 1);
+    plot_lines_clear(&lines);
     study_result_clear(&study);
 }
 
@@ -101,16 +200,19 @@ static void one_unit_a_picture(void **state) {
     (void)state;
     struct study_result study = contact_of(1, 1);
     struct case_result *one = &study.cases[0];
-    struct plot_choice choice;
+    struct error err = {0};
+    struct plot_lines lines = {0};
+    struct lines_request request = {.quantity = "patch_count"};
     add_curve(one, "patch_count", "cell", "halfspace", 4, 0);
     add_curve(one, "patch_count", "wave", "halfspace", 4, 0);
-    plot_choose(&choice, &study, "patch_count", NULL);
-    assert_int_equal(choice.count, 1);
-    plot_choose(&choice, &study, "patch_count", "per wave");
-    assert_int_equal(choice.count, 1);
-    assert_string_equal(choice.lines[0].curve->series, "wave");
-    plot_choose(&choice, &study, "colour", NULL);
-    assert_int_equal(choice.count, 0);
+    assert_int_equal(plot_lines_choose(&lines, &study, &request, &err), 0);
+    assert_int_equal(lines.count, 1);
+    plot_lines_clear(&lines);
+    request.y_label = "per wave";
+    assert_int_equal(plot_lines_choose(&lines, &study, &request, &err), 0);
+    assert_int_equal(lines.count, 1);
+    assert_string_equal(lines.list[0].curve->series, "wave");
+    plot_lines_clear(&lines);
     study_result_clear(&study);
 }
 
@@ -125,21 +227,26 @@ static char *picture_of(const struct study_result *study, const struct plot_requ
     return text;
 }
 
-static const struct plot_request AREA = {.quantity = "contact_area"};
+static const struct plot_request AREA = {.lines = {.quantity = "contact_area"}};
 
 static void a_picture_names_what_it_draws(void **state) {
     (void)state;
     struct study_result study = contact_of(1, 3);
     for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
         char *text = picture_of(
-            &study, &(struct plot_request){.quantity = "contact_area", .logarithmic = logarithmic});
-        assert_int_equal(count_of(text, "class=\"curve\""), 24); /* a line and its legend each */
-        assert_int_equal(count_of(text, "class=\"bar\""), 4);    /* a known error a finest curve */
+            &study, &(struct plot_request){.lines = {.quantity = "contact_area"},
+                                           .axes = logarithmic ? AXES_XY : AXES_AUTOMATIC});
+        /* 12 lines; in the legend two series, two models, three levels */
+        assert_int_equal(count_of(text, "class=\"curve\""), 12 + 7);
+        assert_int_equal(count_of(text, "class=\"bar\""), 4); /* a known error a finest curve */
+        assert_int_equal(count_of(text, "class=\"mark\""), 4 * 2 + 4); /* finest; legend */
         assert_int_equal(count_of(text, "class=\"theory\""), 2); /* shared: once, and its legend */
-        assert_int_equal(count_of(text, "theory: persson<"), 1);
+        assert_int_equal(count_of(text, ">theory: persson<"), 1);
+        assert_int_equal(count_of(text, ">level 12<"), 1);
+        assert_int_equal(count_of(text, ">nodes<"), 1);
         assert_int_equal(count_of(text, "shown: without brackets"), 1);
         assert_int_equal(count_of(text, "a &amp; b"), 2);
-        assert_int_equal(count_of(text, "A/A0 &lt;share&gt;"), 1);
+        assert_int_equal(count_of(text, "A/A₀ &lt;share&gt;"), 1);
         assert_null(strstr(text, "nan"));
         assert_null(strstr(text, "inf"));
         free(text);
@@ -148,7 +255,7 @@ static void a_picture_names_what_it_draws(void **state) {
     study.cases[0].curves[0].theories[0].y = (const double[]){0.15, 0.25};
     char *text = picture_of(&study, &AREA);
     assert_int_equal(count_of(text, "class=\"theory\""), 3);
-    assert_int_equal(count_of(text, "theory: persson of each"), 1);
+    assert_int_equal(count_of(text, "theory: persson, of each"), 1);
     free(text);
     study_result_clear(&study);
 }
@@ -175,6 +282,56 @@ static void missing_realisations_are_seen(void **state) {
     study_result_clear(&study);
 }
 
+/* More than colours can tell apart stand in panels, which share their axes; numbers are in the
+ * margins alone. */
+static void many_cases_are_panels(void **state) {
+    (void)state;
+    struct study_result study = contact_of(20, 1);
+    for (size_t c = 0; c < 20; c++) {
+        built_parameter(&study.cases[c], "/surface/heights/distribution",
+                        c % 2 ? "weibull_min" : "weibull_max", 0);
+        built_parameter(&study.cases[c], "/surface/wavelength_ratio", NULL, c < 10 ? 8 : 16);
+        study.cases[c].parameters[0].number = 0.1 * (double)(c % 10 / 2 + 1);
+    }
+    char *text = picture_of(&study, &AREA);
+    assert_int_equal(count_of(text, "<g class=\"panel\">"), 2);
+    assert_int_equal(count_of(text, "class=\"curve\""), 20 + 5 + 2);
+    assert_int_equal(count_of(text, ">H = 0.3<"), 1);
+    assert_int_equal(count_of(text, ">weibull min<"), 1);
+    assert_int_equal(count_of(text, "</tspan> 16</text>"), 1); /* of a panel alone */
+    assert_int_equal(count_of(text, "class=\"end\">0.2</text>"), 1);
+    assert_int_equal(count_of(text, "class=\"middle\">0.2</text>"), 2);
+    assert_int_equal(count_of(text, "first 12"), 0);
+    assert_int_equal(count_of(text, "#440154"),
+                     4 * (1 + 1 + 2 * 2) + 3); /* the least H is darkest */
+    free(text);
+    study_result_clear(&study);
+}
+
+/* On paper letters are small, a narrow picture has its legend below, and its title is the caption's
+ * matter. */
+static void pictures_have_sizes_on_paper(void **state) {
+    (void)state;
+    struct study_result study = contact_of(1, 1);
+    struct plot_request request = AREA;
+    struct error err = {0};
+    assert_int_equal(plot_width_read("one", &request.millimetres, &err), 0);
+    char *text = picture_of(&study, &request);
+    assert_int_equal(count_of(text, "width=\"85mm\""), 1);
+    assert_int_equal(count_of(text, "viewBox=\"0 0 321 "), 1);
+    assert_int_equal(count_of(text, "font:10px"), 1);
+    assert_int_equal(count_of(text, "a &amp; b"), 1);
+    free(text);
+    assert_int_equal(plot_width_read("120mm", &request.millimetres, &err), 0);
+    assert_true(request.millimetres == 120);
+    assert_int_equal(plot_width_read("two", &request.millimetres, &err), 0);
+    assert_true(request.millimetres == WIDTH_TWO);
+    static const char *const BAD[] = {"", "mm", "10", "1001", "nan", "85cm", "three"};
+    for (size_t n = 0; n < sizeof BAD / sizeof *BAD; n++)
+        assert_int_equal(plot_width_read(BAD[n], &request.millimetres, &err), ERROR_INPUT);
+    study_result_clear(&study);
+}
+
 /* The kind's view, not the picture, knows which quantity spans decades. */
 static void the_view_sets_logarithmic_axes(void **state) {
     (void)state;
@@ -185,7 +342,7 @@ static void the_view_sets_logarithmic_axes(void **state) {
         struct curve curve = built_points(one, "psd", 3, (const double[]){1, 10, 1000},
                                           (const double[]){1, 1e-3, 1e-6}, (const double[3]){0});
         built_curve(one, &curve);
-        struct plot_request request = {.quantity = "psd"};
+        struct plot_request request = {.lines = {.quantity = "psd"}};
         char *text = picture_of(&study, &request);
         assert_int_equal(count_of(text, ">100</text>"), n == 0); /* a tick of the x axis */
         free(text);
@@ -195,9 +352,13 @@ static void the_view_sets_logarithmic_axes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_choice_narrows_as_far_as_it_must),
-        cmocka_unit_test(kinematics_are_named),
+        cmocka_unit_test(lines_narrow_as_far_as_they_must),
+        cmocka_unit_test(channels_name_their_values),
+        cmocka_unit_test(what_there_is_not_is_refused),
+        cmocka_unit_test(kinematics_go_with_their_model),
         cmocka_unit_test(one_unit_a_picture),
+        cmocka_unit_test(many_cases_are_panels),
+        cmocka_unit_test(pictures_have_sizes_on_paper),
         cmocka_unit_test(a_picture_names_what_it_draws),
         cmocka_unit_test(missing_realisations_are_seen),
         cmocka_unit_test(the_view_sets_logarithmic_axes),

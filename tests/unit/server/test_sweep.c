@@ -1,6 +1,6 @@
 /* Protects: the picture of a scalar over a parameter has a line for each setting of the others,
  * marks with their errors, theories once each, and says what it leaves out or cannot draw. */
-#include "server/show/plot_sweep.h"
+#include "server/show/sweep.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"
@@ -24,28 +24,60 @@ static struct study_result study_of(size_t ratios) {
     return study;
 }
 
-static char *draw(const struct study_result *study, const struct sweep_request *request,
-                  int expected, struct error *err) {
+/* What a picture is asked for. */
+struct request {
+    const char *name, *x, *colour;
+};
+
+/* Gives a table the scalars of a study, which the table then owns. */
+static int results(const void *context, const struct result_filter *filter,
+                   struct study_result *out, struct error *err) {
+    struct study_result *study = (struct study_result *)(size_t)context;
+    (void)filter;
+    (void)err;
+    *out = *study;
+    *study = (struct study_result){0};
+    return 0;
+}
+
+/* Draws, and leaves the study as it was. */
+static char *draw(struct study_result *study, const struct request *request, int expected,
+                  struct error *err) {
+    const struct picture_source source = {.context = study, .results = results};
+    const struct plot_request plot = {
+        .lines = {.quantity = request->name, .names = {[CHANNEL_COLOUR] = request->colour}}};
+    struct case_table table = {0};
     char *text = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
-    assert_int_equal(plot_sweep(study, request, file, err), expected);
+    assert_int_equal(case_table_open(&table, &source, NULL, err), 0);
+    int status = case_table_add(&table, &source, request->name, err);
+    if (status == 0)
+        status = sweep_draw(&table, request->name, request->x, &plot, file, err);
     assert_int_equal(fclose(file), 0);
+    if (status != expected)
+        print_error("%s\n", err->text);
+    assert_int_equal(status, expected);
+    *study = table.study;
+    table.study = (struct study_result){0};
+    case_table_clear(&table);
     return text;
 }
 
-static void check_count(const struct study_result *study, const struct sweep_request *request,
-                        const char *word, size_t expected) {
+static void check_count(struct study_result *study, const struct request *request, const char *word,
+                        size_t expected) {
     struct error err = {0};
     char *text = draw(study, request, 0, &err);
+    if (count_of(text, word) != expected)
+        print_error("%zu times %s\n", count_of(text, word), word);
     assert_int_equal(count_of(text, word), expected);
     assert_null(strstr(text, "nan"));
     assert_null(strstr(text, "inf"));
     free(text);
 }
 
-static const struct sweep_request DENSITY = {.scalar = "summit_density"};
+static const struct request DENSITY = {.name = "summit_density"};
 
 static void each_setting_is_a_line(void **state) {
     (void)state;
@@ -56,8 +88,8 @@ static void each_setting_is_a_line(void **state) {
     check_count(&study, &DENSITY, "class=\"bar\"", points);           /* an error each */
     check_count(&study, &DENSITY, "class=\"theory\"", 2);             /* shared, and legend */
     check_count(&study, &DENSITY, ">theory<", 1);
-    check_count(&study, &DENSITY, ">wavelength_ratio 8<", 1);
-    check_count(&study, &DENSITY, ">wavelength_ratio 16<", 1);
+    check_count(&study, &DENSITY, "</tspan> 8</text>", 1);
+    check_count(&study, &DENSITY, "</tspan> 16</text>", 1);
     check_count(&study, &DENSITY, "a &amp; b: summit_density over hurst<", 2);
     check_count(&study, &DENSITY, ">0.6</text>", 1); /* what was swept has the ticks */
     study.cases[0].scalars[0].theory = 9;
@@ -73,37 +105,40 @@ static void points_rise_along_a_line(void **state) {
     (void)state;
     struct error err = {0};
     struct study_result study = study_of(RATIOS);
-    struct sweep sweep = {0};
-    size_t count;
-    assert_int_equal(sweep_make(&sweep, &study, &DENSITY, &err), 0);
-    assert_int_equal(sweep.line_count, RATIOS);
-    for (size_t line = 0; line < RATIOS; line++) {
-        const struct sweep_point *points = sweep_line(&sweep, line, &count);
-        assert_int_equal(count, HURSTS);
-        for (size_t p = 0; p < count; p++) {
-            assert_true(fabs(points[p].x - 0.2 * (double)(p + 1)) < 1e-12);
-            assert_true(points[p].scalar->value == points[p].x + 8 * (double)(line + 1));
+    char *text = draw(&study, &DENSITY, 0, &err), *next = text;
+    size_t lines = 0;
+    for (; (next = strstr(next, "class=\"curve\"")) != NULL; next++) {
+        double x, last = 0;
+        char *point = strstr(next, " d=\"M") + 4;
+        size_t points = 0;
+        for (; (*point == 'M' || *point == 'L') && strtod(point + 1, &point) > last; points++) {
+            x = last;
+            last = x + 1;
+            point = strchr(point, ' ') + 1;
+            (void)strtod(point, &point);
         }
+        lines += points == HURSTS;
     }
-    sweep_clear(&sweep);
+    assert_int_equal(lines, RATIOS);
+    free(text);
     study_result_clear(&study);
 }
 
 static void parameters_are_named(void **state) {
     (void)state;
     static const struct {
-        struct sweep_request request;
+        struct request request;
         int status;
         const char *word; /* of the picture or of the error */
     } ROWS[] = {
-        {{"summit_density", "wavelength_ratio", NULL}, 0, "hurst 0.4"},
-        {{"summit_density", "surface/wavelength_ratio", "hurst"}, 0, "hurst 0.4"},
-        {{"summit_density", "/surface/hurst", "wavelength_ratio"}, 0, "wavelength_ratio 16"},
+        {{"summit_density", "wavelength_ratio", NULL}, 0, "H = 0.4"},
+        {{"summit_density", "surface/wavelength_ratio", "hurst"}, 0, "H = 0.4"},
+        {{"summit_density", "/surface/hurst", "wavelength_ratio"}, 0, "</tspan> 16</text>"},
         {{"summit_density", "shape", NULL}, ERROR_INPUT, "\"shape\" is no number"},
         {{"summit_density", "spectrum", NULL}, ERROR_INPUT, "\"spectrum\" is no number"},
-        {{"summit_density", "hurst", "hurst"}, ERROR_INPUT, "\"hurst\" is not swept beside hurst"},
-        {{"summit_density", "hurst", "spectrum"}, ERROR_INPUT, "\"spectrum\" is not swept"},
-        {{"kurtosis", NULL, NULL}, ERROR_ABSENT, "no case has a value of \"kurtosis\""},
+        {{"summit_density", "hurst", "hurst"}, ERROR_INPUT, "\"hurst\" does not differ"},
+        {{"summit_density", "hurst", "spectrum"}, ERROR_INPUT, "\"spectrum\" does not differ"},
+        {{"kurtosis", NULL, NULL}, ERROR_INPUT, "no case has a scalar \"kurtosis\""},
     };
     struct study_result study = study_of(RATIOS);
     for (size_t r = 0; r < sizeof ROWS / sizeof *ROWS; r++) {
@@ -115,16 +150,16 @@ static void parameters_are_named(void **state) {
     study_result_clear(&study);
 }
 
-/* A colour stands for the values of a parameter, marks for the rest. */
+/* A colour stands for the values of a parameter, dashes and marks for the rest. */
 static void colours_are_of_a_parameter(void **state) {
     (void)state;
-    const struct sweep_request by_spectrum = {"summit_density", "hurst", "spectrum"};
+    const struct request by_spectrum = {"summit_density", "hurst", "spectrum"};
     struct study_result study = study_of(4);
     for (size_t c = 0; c < study.case_count; c++)
         study.cases[c].parameters[2].text = c % 4 < 2 ? "self_affine" : "table";
-    check_count(&study, &DENSITY, "stroke=\"#cc79a7\"", 2 + 2 * HURSTS + 1); /* the fourth one */
-    check_count(&study, &by_spectrum, "stroke=\"#cc79a7\"", 0);
-    check_count(&study, &by_spectrum, "stroke=\"#d55e00\"", 2 * (2 + 2 * HURSTS + 1));
+    check_count(&study, &DENSITY, "stroke=\"#440154\"", 1 + 2 * HURSTS + 2); /* the least ratio */
+    check_count(&study, &by_spectrum, "stroke=\"#440154\"", 0);
+    check_count(&study, &by_spectrum, "stroke=\"#d55e00\"", 2 * (1 + 2 * HURSTS) + 2);
     study_result_clear(&study);
 }
 
@@ -132,10 +167,10 @@ static void what_is_left_out_is_told(void **state) {
     (void)state;
     struct error err = {0};
     struct study_result study = study_of(20);
-    const struct sweep_request by_hurst = {"summit_density", "hurst", NULL};
+    const struct request by_hurst = {"summit_density", "hurst", NULL};
     check_count(&study, &DENSITY, "over wavelength_ratio<", 2); /* which has more values */
-    check_count(&study, &by_hurst, "class=\"curve\"", 2 * 12);
-    check_count(&study, &by_hurst, "shown: first 12 of 20 lines", 1);
+    check_count(&study, &by_hurst, "class=\"curve\"", 20 + 7);  /* not all are named */
+    check_count(&study, &by_hurst, "in between: of 20 values of ", 1);
     study_result_clear(&study);
     study = study_of(RATIOS);
     study.cases[3].scalars[0].value = NAN;

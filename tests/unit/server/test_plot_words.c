@@ -1,0 +1,52 @@
+/* Protects: labels are set as people write them, and nothing of them becomes markup by chance. */
+#include "core/memory_file.h"
+#include "server/show/plot_words.h"
+#include "tests/support/check.h"
+#include <stdlib.h>
+#include <string.h>
+
+static void labels_are_set(void **state) {
+    (void)state;
+    static const struct {
+        const char *label, *out;
+    } LABELS[] = {
+        {"z/sqrt(m0)", "z/√m₀"},
+        {"sqrt(a + b)", "√(a + b)"},
+        {"A/A0", "A/A₀"},
+        {"k lambda_s", "k λ<tspan class=\"index\" dy=\"3\">s</tspan>"},
+        {"h'_rms)", "h′<tspan class=\"index\" dy=\"3\">rms</tspan><tspan dy=\"-3\">)</tspan>"},
+        {"C_l = 3", "C<tspan class=\"index\" dy=\"3\">l</tspan> <tspan dy=\"-3\">=</tspan> 3"},
+        {"L^-2", "L<tspan class=\"index\" dy=\"-5\">-2</tspan>"},
+        {"z''", "z″"},
+        {"lambdas alphabet 10 nodes", "lambdas alphabet 10 nodes"},
+        {"a < b & c", "a &lt; b &amp; c"},
+        {"_x^", "_x^"},
+        {"", ""},
+    };
+    for (size_t n = 0; n < sizeof LABELS / sizeof *LABELS; n++) {
+        struct memory_file memory;
+        assert_true(memory_file_open(&memory));
+        svg_label(memory.file, LABELS[n].label);
+        char *text = memory_file_close(&memory, NULL);
+        assert_string_equal(text, LABELS[n].out);
+        free(text);
+    }
+}
+
+static void parameters_have_symbols(void **state) {
+    (void)state;
+    assert_string_equal(plot_symbol("contact", "/surface/hurst"), "H");
+    assert_string_equal(plot_symbol("statistics", "/surface/heights/shape"), "C");
+    assert_string_equal(plot_symbol("contact", "/surface/dimension"), "dimension");
+    assert_string_equal(plot_symbol("no such kind", "/surface/hurst"), "hurst");
+    assert_string_equal(plot_symbol(NULL, "/surface/hurst"), "hurst");
+    assert_int_equal(plot_letters("lambda_s = 8"), strlen("l_s = 8"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(labels_are_set),
+        cmocka_unit_test(parameters_have_symbols),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
