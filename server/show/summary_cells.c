@@ -112,7 +112,7 @@ void work_time_text(const struct work_time *time, char *out, size_t size) {
     char clock[48], cpu[48];
     duration_text(time->seconds, clock, sizeof clock);
     duration_text(time->cpu_seconds, cpu, sizeof cpu);
-    snprintf(out, size, "%s of CPU time in %s", cpu, clock);
+    snprintf(out, size, "%s of CPU time in %s of workers' time", cpu, clock);
 }
 
 void print_without_cpu(const struct work_time *time, FILE *file) {

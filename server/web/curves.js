@@ -122,7 +122,8 @@ export function showCurves(root, signal, study, contents) {
   async function drawMatrix() {
     const one = [...state.cases][0] ?? 0;
     const svg = await (await request(`${path}/plot?quantity=${encodeURIComponent(state.quantity)}&case=${one}`, { signal })).text();
-    figure.replaceChildren(make("img", { class: "picture", alt: `${words(state.quantity)} of case ${one}`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` }));
+    figure.replaceChildren(make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": words(state.quantity) },
+      make("img", { class: "picture", alt: `${words(state.quantity)} of case ${one}`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` })));
     legend.replaceChildren();
     values.replaceChildren();
     message.textContent = state.cases.size > 1 ? `Of ${caseName(cases.get(one))}: a density is shown of one case.` : "";

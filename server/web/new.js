@@ -73,7 +73,7 @@ export async function showNew(root, signal, from) {
       onchange: (event) => { put(study, pointer, typed(event.target.value)); write(); } });
     return make("div", { class: "field" }, make("label", { for: id }, words(lastName(pointer))), control,
       choices.length > 0 ? make("datalist", { id: `${id}-list` }, choices.map((one) => make("option", { value: one }))) : null,
-      make("small", { id: `${id}-help` }, member.description), make("small", { class: "fault", "data-fault": pointer }));
+      make("small", { id: `${id}-help` }, member.description, choices.some((one) => !member.description.includes(one)) ? ` (${choices.join(", ")})` : ""), make("small", { class: "fault", "data-fault": pointer }));
   }
 
   function form() {

@@ -23,19 +23,19 @@ function colour(share) {
   return STOPS[below].map((a, k) => a + part * (STOPS[below + 1][k] - a));
 }
 
-/** Draws a map of rows x columns; what is 0 where `zeroApart` (no contact) is transparent. */
-function mapOf({ shape, values }, zeroApart) {
+/** Draws a map of rows x columns; of gaps and pressures what is 0 is transparent. */
+function mapOf({ shape, values }, field) {
   const [rows, columns] = shape;
   let low = Infinity, high = -Infinity;
   for (const value of values) {
     if (value < low) low = value;
     if (value > high) high = value;
   }
-  const canvas = make("canvas", { width: columns, height: rows, role: "img", "aria-label": `map of ${rows} by ${columns} points, from ${number(low)} to ${number(high)}` });
+  const canvas = make("canvas", { width: columns, height: rows, role: "img", "aria-label": `${field} of ${rows} by ${columns} points, from ${number(low)} to ${number(high)}` });
   const context = canvas.getContext("2d"), image = context.createImageData(columns, rows);
   for (let i = 0; i < values.length; i++) {
     const [r, g, b] = colour(high > low ? (values[i] - low) / (high - low) : 0);
-    image.data.set([r, g, b, zeroApart && values[i] === 0 ? 0 : 255], 4 * i);
+    image.data.set([r, g, b, field !== "height" && values[i] === 0 ? 0 : 255], 4 * i);
   }
   context.putImageData(image, 0, 0);
   canvas.className = "map";
@@ -44,7 +44,7 @@ function mapOf({ shape, values }, zeroApart) {
   const line = scale.getContext("2d").createImageData(256, 1);
   for (let i = 0; i < 256; i++) line.data.set([...colour(i / 255), 255], 4 * i);
   scale.getContext("2d").putImageData(line, 0, 0);
-  return make("figure", {}, canvas, make("figcaption", {}, number(low), " ", scale, " ", number(high)));
+  return make("figure", {}, canvas, make("figcaption", {}, `${field} from `, number(low), " ", scale, " to ", number(high)));
 }
 
 export function showRealisation(root, signal, study, contents) {
@@ -68,7 +68,7 @@ export function showRealisation(root, signal, study, contents) {
         const y = Array.from(map.values);
         shown = chart([{ label: state.field, x: y.map((_, i) => i), y, colour: "#0072b2" }], { xLabel: "point", yLabel: state.field });
         place.replaceChildren(shown.element);
-      } else place.replaceChildren(mapOf(map, state.field !== "height"));
+      } else place.replaceChildren(mapOf(map, state.field));
       const touching = state.field === "pressure" ? map.values.reduce((sum, p) => sum + (p > 0), 0) / map.values.length : null;
       message.textContent = touching === null ? "" : `${(100 * touching).toPrecision(3)} % of the points are in contact.`;
     } catch (error) {

@@ -13,7 +13,8 @@ async function showReport(root, signal, study) {
   const path = `/v1/studies/${encodeURIComponent(study.id)}/report`;
   root.append(make("p", {}, "Cost against error of every model and mesh; circles are where the study stands."));
   const [answer, report] = await Promise.all([request(path, { signal, headers: { Accept: "image/svg+xml" } }), getJson(path, { signal })]);
-  root.append(make("img", { class: "picture", alt: "relative error over processor time, a line for each model and mesh", src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(await answer.text())}` }));
+  root.append(make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": "speed and error" },
+    make("img", { class: "picture", alt: "relative error over processor time, a line for each model and mesh", src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(await answer.text())}` })));
   const notes = report.cases.flatMap((one) => (one.notes ?? []).map((note) => `case ${one.case}: ${typeof note === "string" ? note : note.text ?? JSON.stringify(note)}`));
   if (notes.length > 0) root.append(make("h3", {}, "Notes"), make("ul", {}, notes.slice(0, 50).map((note) => make("li", {}, note))));
 }

@@ -175,7 +175,7 @@ test("a new study is begun from a ready one, checked as it is written, and submi
 
 test("a running study shows its progress and can be cancelled; an ended one extended and deleted", async (t) => {
   const { id } = await send(open, "POST", "/v1/studies", LONG);
-  const page = await tab(t);
+  const page = await tab(t, [404]); // of the deleted study, whose state was being asked for
   page.on("dialog", (dialog) => dialog.accept(dialog.type() === "prompt" ? "40" : undefined));
   await page.goto(`${open}/#/study/${id}`);
   await page.waitForSelector("dd .running", { timeout: 20000 });
@@ -214,6 +214,34 @@ test("a token is asked for once, a wrong one told, and a lesser one refused in w
   await says(page, "This server asks for a token.");
 });
 
+test("the keyboard keeps its place, and every control has a name", async (t) => {
+  const page = await tab(t);
+  const focused = () => page.evaluate(() => (document.activeElement.closest("label") ?? document.activeElement).textContent.trim());
+  await page.goto(open);
+  await says(page, "studies");
+  await page.waitForSelector("tbody a");
+  await page.focus("tbody a");
+  const link = await focused();
+  await new Promise((done) => setTimeout(done, 2500)); // the list is drawn anew every 2 s
+  assert.equal(await focused(), link);
+  await page.focus(".skip");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.evaluate(() => document.activeElement.id + location.hash), "main");
+  await page.goto(`${open}/#/study/${CONTACT.id}`);
+  await page.waitForSelector(".uplot canvas");
+  await page.evaluate(() => [...document.querySelectorAll("label.tick input")].find((one) => one.parentElement.textContent.trim() === "log y").focus());
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => [...document.querySelectorAll("label.tick input")].some((one) => one.checked && one.parentElement.textContent.trim() === "log y"));
+  assert.equal(await focused(), "log y");
+  assert.notEqual(await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle), "none");
+  for (const [hash, control] of [["", "input[type=search]"], [`study/${CONTACT.id}`, ".choice select"], [`study/${CONTACT.id}/table`, "form input"],
+    [`study/${CONTACT.id}/realisation`, "input[type=number]"], ["new", "textarea"]]) {
+    await page.goto(`${open}/#/${hash}`);
+    await page.waitForSelector(`main ${control}`);
+    assert.deepEqual(await page.$$eval("main :is(input, select, textarea, button, a)", (all) => all.filter((one) => !(one.labels?.length > 0) && !one.getAttribute("aria-label") && one.textContent.trim() === "").map((one) => one.outerHTML)), [], hash);
+  }
+});
+
 test("it fits a phone, in the dark too", async (t) => {
   const page = await tab(t);
   await page.setViewport({ width: 390, height: 844, isMobile: true });
@@ -221,8 +249,14 @@ test("it fits a phone, in the dark too", async (t) => {
   for (const [hash, name] of [["", "phone-list"], [`study/${CONTACT.id}`, "phone-curves"], ["new", "phone-new"]]) {
     await page.goto(`${open}/#/${hash}`);
     await new Promise((done) => setTimeout(done, 1000));
-    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name} is no wider than the screen`);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 390, `${name} is no wider than the screen`);
     await picture(page, name);
+  }
+  for (const part of ["table", "report", "realisation", "document"]) {
+    await page.goto(`${open}/#/study/${CONTACT.id}/${part}`);
+    await page.waitForNetworkIdle({ idleTime: 300 });
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 390, `${part} is no wider than the screen`);
+    await picture(page, `phone-${part}`);
   }
 });
 

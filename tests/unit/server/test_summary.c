@@ -210,14 +210,14 @@ static void failures_are_told(void **state) {
     summary_of_status(empty, file);
     fclose(file);
     check_shown(
-        text,
-        (const char *[]){
-            "12  pressed  contact  done\n  62.5 % of the work, realisations 30 of 50, jobs 3 "
-            "of 5 (0 running, 1 failed)\n  workers 0, spent 5 s of CPU time in 12 s, left -\nJobs "
-            "whose CPU time is not known, so that the clock stands for it: 1.\n",
-            "  failed: case 1, realisations 10 to 19, 3 attempts, "
-            "worker w: lost\n",
-            "  not published: case 2: of another program\n", "\n-  -  -  -\n", NULL});
+        text, (const char *[]){
+                  "12  pressed  contact  done\n  62.5 % of the work, realisations 30 of 50, jobs 3 "
+                  "of 5 (0 running, 1 failed)\n  workers 0, spent 5 s of CPU time in 12 s of "
+                  "workers' time, left -\nJobs "
+                  "whose CPU time is not known, so that the clock stands for it: 1.\n",
+                  "  failed: case 1, realisations 10 to 19, 3 attempts, "
+                  "worker w: lost\n",
+                  "  not published: case 2: of another program\n", "\n-  -  -  -\n", NULL});
     free(text);
     cJSON_Delete(document);
     cJSON_Delete(empty);
