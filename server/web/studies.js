@@ -25,13 +25,6 @@ export function isLive(study) {
   return study.state === "queued" || study.state === "running";
 }
 
-/** "2 min", or of what waits its place and when it will begin. */
-export function timeLeft(study) {
-  if (study.state !== "queued" || !study.place) return duration(study.seconds_left);
-  const begins = study.starts_in === null || study.starts_in === undefined ? "" : `, begins in ${duration(study.starts_in)}`;
-  return `${duration(study.seconds_left)} (place ${study.place}${begins})`;
-}
-
 async function all(signal) {
   let studies = [], next = "";
   do {
@@ -51,7 +44,7 @@ function row(study) {
     make("td", { class: study.state }, study.place ? `${study.state}, place ${study.place}` : study.state),
     make("td", {}, bar(share(study), `progress of ${study.name}`)),
     make("td", { class: "number" }, `${done} / ${total}`),
-    make("td", { class: "number" }, isLive(study) ? timeLeft(study) : "–"),
+    make("td", { class: "number" }, isLive(study) ? duration(study.seconds_left) : "–"),
     make("td", { class: "number" }, duration(study.cpu_seconds)),
     make("td", {}, time(study.created)));
 }
