@@ -1,6 +1,7 @@
-/* `rugo plot`: one picture of a study's results, as SVG or PNG. */
+/* `rugo plot`: one picture of a study's results, or of a map in a file, as SVG or PNG. */
 #include "core/memory_file.h"
 #include "server/command/access.h"
+#include "server/command/map_file.h"
 #include "server/command/output_file.h"
 #include "server/command/rasterise.h"
 #include "server/show/picture.h"
@@ -139,6 +140,33 @@ static int show(struct access *access, const char *id, const struct options *opt
     return status == 0 ? output_flush(err) : status;
 }
 
+/* --- a map in a file --- */
+
+static int draw_map(const char *path, const struct options *options, struct error *err) {
+    const char *slash = strrchr(path, '/');
+    struct height_map map = {0};
+    int status = map_file_read(&map, path, 0, err);
+    if (status != 0)
+        return status;
+    char subject[64];
+    snprintf(subject, sizeof subject, "%zu x %zu points", map.grid.nx, map.grid.ny);
+    const struct map_picture picture = {.name = slash != NULL ? slash + 1 : path,
+                                        .subject = subject,
+                                        .x_label = "x",
+                                        .y_label = "y",
+                                        .z_label = "z",
+                                        .grid = &map.grid,
+                                        .z = map.z,
+                                        .boundary = BOUNDARY_OPEN,
+                                        .unmarked = true};
+    if (options->out != NULL)
+        status = output_file_picture(options->out, &picture, err);
+    else if ((status = plot_map(&picture, stdout, err)) == 0)
+        status = output_flush(err);
+    height_map_clear(&map);
+    return status;
+}
+
 static int run(const void *values, const char *const *arguments) {
     const struct options *options = values;
     struct error err = {0};
@@ -146,8 +174,11 @@ static int run(const void *values, const char *const *arguments) {
     struct access *access = NULL;
     if (access_options_check("plot", &options->place) != 0)
         return EXIT_USAGE;
-    if (options->quantity == NULL)
-        return usage_error("plot", "--quantity is missing: the name of curves or of a scalar");
+    if (options->quantity == NULL) {
+        if (height_map_format_of(arguments[0]) == HEIGHT_MAP_FORMATS)
+            return usage_error("plot", "--quantity is missing: the name of curves or of a scalar");
+        return draw_map(arguments[0], options, &err) != 0 ? command_fail("plot", &err) : EXIT_DONE;
+    }
     int status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)
         status = access_find(access, arguments[0], id, &err);
@@ -159,8 +190,9 @@ static int run(const void *values, const char *const *arguments) {
 
 const struct command COMMAND_PLOT = {
     .name = "plot",
-    .arguments = "ID",
-    .summary = "a picture (SVG, PNG) of curves, or of a scalar or their values over what was swept",
+    .arguments = "ID|MAP.npy",
+    .summary =
+        "a picture (SVG, PNG) of curves, of a scalar or values over what was swept, or of a map",
     .least = 1,
     .most = 1,
     .options = OPTIONS,

@@ -166,7 +166,7 @@ static int draw_surface(struct map_plot *plot, struct error *err) {
 
 int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
     struct map_plot plot = {.picture = picture, .pen = {.file = file}};
-    int status = find_summits(&plot, err);
+    int status = picture->unmarked ? 0 : find_summits(&plot, err);
     if (status == 0) {
         pen_head(&plot.pen, PEN_WIDTH);
         pen_title(&plot.pen, picture->name, picture->subject);
@@ -174,7 +174,8 @@ int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
             grid_is_profile(picture->grid) ? draw_profile(&plot, err) : draw_surface(&plot, err);
     }
     if (status == 0) {
-        draw_summits(&plot);
+        if (!picture->unmarked)
+            draw_summits(&plot);
         fputs("</svg>\n", file);
     }
     summit_list_clear(&plot.summits);

@@ -1,4 +1,4 @@
-/* An SVG of one surface or profile, with its summits marked. */
+/* An SVG of one surface or profile, with its summits marked, or of any other map. */
 #ifndef RUGO_SERVER_SHOW_PLOT_MAP_H
 #define RUGO_SERVER_SHOW_PLOT_MAP_H
 
@@ -11,9 +11,11 @@ struct map_picture { /* borrows */
     const struct grid *grid;
     const double *z;        /* grid_points; NaN: a hole, of an open map */
     enum boundary boundary; /* periodic where nothing is said */
+    bool unmarked;          /* no summits: the values may be those of anything */
 };
 /* Draws a profile as its trace, a surface as colours of its heights, holes of either left blank;
- * both with a mark at each nine-point summit (of profiles: peak), at most 1000, the highest. Points
+ * both with a mark at each nine-point summit (of profiles: peak), at most 1000, the highest,
+ * unless these are not wanted. Points
  * are joined, of traces by their extremes, of surfaces by their means, until the picture can show
  * them. Write errors are left to the file's own flag. */
 int plot_map(const struct map_picture *picture, FILE *file, struct error *err);

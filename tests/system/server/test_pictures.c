@@ -181,12 +181,29 @@ static void surfaces_are_drawn(void **state) {
     assert_true(contains("none.err", "cannot open no/folder.svg"));
 }
 
+static void maps_of_files_are_drawn(void **state) {
+    (void)state;
+    spit("map.csv", "0,1,2\n3,nan,5\n");
+    assert_int_equal(run_rugo("map", (const char *[]){"plot", "map.csv", "--out", "map.svg", NULL}),
+                     0);
+    assert_true(contains("map.svg", "map.csv: 3 x 2 points"));
+    assert_false(contains("map.svg", "<circle")); /* heights are nothing but values here */
+    assert_int_equal(run_rugo("map", (const char *[]){"plot", "map.csv", "--out", "map.png", NULL}),
+                     0);
+    char *png = slurp("map.png");
+    assert_memory_equal(png, "\x89PNG", 4);
+    free(png);
+    assert_int_equal(run_rugo("nomap", (const char *[]){"plot", "nowhere.npy", NULL}), 1);
+    assert_true(contains("nomap.err", "nowhere.npy"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plots_are_the_same_near_and_far),
         cmocka_unit_test(pictures_become_pixels),
         cmocka_unit_test(files_have_densities),
         cmocka_unit_test(surfaces_are_drawn),
+        cmocka_unit_test(maps_of_files_are_drawn),
         cmocka_unit_test(what_cannot_be_drawn_is_refused),
     };
     return cmocka_run_group_tests(tests, start, stop);
