@@ -42,7 +42,8 @@ static int read_candidates(struct store *store, const char *given, char id[STUDY
     if (status != 0 || count == 1)
         return status;
     if (count == 0)
-        return error_set(err, ERROR_ABSENT, "there is no study \"%.40s\"", given);
+        return error_set(err, ERROR_ABSENT,
+                         "there is no study \"%.40s\"; rugo status lists those there are", given);
     if (count > CANDIDATES_SHOWN)
         snprintf(more, sizeof more, " and %zu more", count - CANDIDATES_SHOWN);
     return error_set(err, ERROR_INPUT, "\"%.40s\" may be each of %zu studies; name its id: %s%s",

@@ -151,8 +151,15 @@ static struct exchange *exchange_create(struct http *http, struct MHD_Connection
     return exchange;
 }
 
+/* Idle workers ask for a job several times a second, and get none: nobody looks for that. */
+static bool is_idle_claim(const struct exchange *exchange) {
+    return exchange->status == 204 && strcmp(exchange->path, "/v1/jobs/claim") == 0;
+}
+
 static void log_exchange(const struct exchange *exchange, bool whole) {
     char request[160];
+    if (whole && is_idle_claim(exchange))
+        return;
     snprintf(request, sizeof request, "%.16s %.120s", exchange->method, exchange->path);
     struct log_about about = {.request = request,
                               .status = (long)exchange->status,
