@@ -193,7 +193,7 @@ static void maps_of_files_are_drawn(void **state) {
     char *png = slurp("map.png");
     assert_memory_equal(png, "\x89PNG", 4);
     free(png);
-    assert_int_equal(run_rugo("nomap", (const char *[]){"plot", "nowhere.npy", NULL}), 1);
+    assert_int_equal(run_rugo("nomap", (const char *[]){"plot", "nowhere.npy", NULL}), 2);
     assert_true(contains("nomap.err", "nowhere.npy"));
 }
 
