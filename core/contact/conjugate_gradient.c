@@ -17,6 +17,7 @@ enum {
     LANES = CONJUGATE_GRADIENT_LANES,
     REFRESH = 50, /* iterations after which u is computed anew from p */
     TANGENT_MOST = 300,
+    ASK = 8, /* iterations after which stop is asked: it may take as long as one of a small grid */
 };
 /* Length of a projected step over the inverse of the largest compliance, which is 1 here; must be
  * below 2. */
@@ -288,7 +289,8 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
         end->converged = number && violation <= fmax(tolerance * end->deepest, ROUNDING * highest);
         if (end->converged || !number || end->iterations == max_iterations)
             return;
-        end->stopped = solver->stop != NULL && solver->stop(solver->stop_context) != 0;
+        end->stopped = solver->stop != NULL && end->iterations % ASK == ASK - 1 &&
+                       solver->stop(solver->stop_context) != 0;
         if (end->stopped)
             return;
         if (!careful && stalled(&progress, violation, stall_iterations)) {

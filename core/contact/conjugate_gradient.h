@@ -24,7 +24,7 @@ struct conjugate_gradient {
     double *q;     /* tangent dp/d(mean p): of mean 1, 0 outside of the contact */
     double *r, *old, *t, *w;    /* scratch */
     double transforms;          /* Fourier transforms made so far, forward and inverse */
-    int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */
+    int (*stop)(void *context); /* called every few iterations, non-zero stops; may be NULL */
     void *stop_context;
 };
 

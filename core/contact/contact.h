@@ -51,7 +51,7 @@ int contact_create(struct contact **out, const struct compliance *compliance,
                    const struct contact_options *options, struct error *err);
 void contact_destroy(struct contact **contact);
 double contact_bytes(const struct grid *grid);
-/* From now on stop is called before each iteration; when it returns non-zero, contact_press fails
+/* From now on stop is called every few iterations; when it returns non-zero, contact_press fails
  * with ERROR_STOPPED, as it fails where it does not converge. NULL, the initial value, never stops.
  */
 void contact_set_stop(struct contact *contact, int (*stop)(void *context), void *context);

@@ -76,6 +76,7 @@ int contact_coarse_solve(struct contact_coarse *coarse, const double *z, size_t 
                                         .rms_height = coarse->rms_height,
                                         .scaled = true};
     struct error reason = {0};
+    contact_set_stop(coarse->solver, stopper->stop, stopper->context);
     int status = contact_begin(coarse->solver, z, &reason);
     for (size_t k = 0; k < one_case->load_count && status == 0; k++) {
         struct contact_pressed pressed = {.stretch = 1, .open_stretch = 1};

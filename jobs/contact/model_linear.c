@@ -44,9 +44,8 @@ void linear_destroy(struct contact_solver **solver) {
 
 int linear_begin(struct contact_solver *solver, const double *z, int (*stop)(void *context),
                  void *context, double *facts, struct error *err) {
-    (void)stop;
-    (void)context;
     (void)facts;
+    contact_set_stop(solver->contact, stop, context);
     return contact_begin(solver->contact, z, err);
 }
 
