@@ -1,4 +1,5 @@
 #include "server/show/plot.h"
+#include "schema/result/swept.h"
 #include "server/show/plot_layout.h"
 #include "server/show/plot_theory.h"
 #include "server/show/view.h"
@@ -318,15 +319,29 @@ int plot_lines_draw(const struct plot_lines *lines, const struct study_result *s
     return 0;
 }
 
+/* Names the quantity, and the case where it is one of several, or the two of a difference. */
+static void make_subject(const struct study_result *study, const char *quantity,
+                         char subject[PLOT_LABEL_SIZE]) {
+    const struct case_result *one = &study->cases[0];
+    unsigned long long number = one->case_number, less = one->less;
+    int used = snprintf(subject, PLOT_LABEL_SIZE, "%.60s", quantity);
+    if (one->difference)
+        snprintf(subject + used, PLOT_LABEL_SIZE - (size_t)used, ", case %llu less case %llu",
+                 number, less);
+    else if (study->case_count == 1 && swept_count(study) > 0)
+        snprintf(subject + used, PLOT_LABEL_SIZE - (size_t)used, ", case %llu", number);
+}
+
 int plot_quantity(const struct study_result *study, const struct plot_request *request, FILE *file,
                   struct error *err) {
     struct plot_lines lines = {0};
+    char subject[PLOT_LABEL_SIZE];
     int status = plot_lines_choose(&lines, study, &request->lines, err);
     if (status != 0)
         return status;
     const struct curve *first = lines.list[0].curve;
-    const struct plot_words words = {
-        .subject = request->lines.quantity, .x = first->x_label, .y = first->y_label};
+    make_subject(study, request->lines.quantity, subject);
+    const struct plot_words words = {.subject = subject, .x = first->x_label, .y = first->y_label};
     status = plot_lines_draw(&lines, study, request, &words, file, err);
     plot_lines_clear(&lines);
     return status;

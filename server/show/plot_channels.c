@@ -236,31 +236,45 @@ static size_t code_of(const struct plot_channel *channel, const struct plot_line
     return code;
 }
 
+/* Inserts a code among those that are met, which rise; *place is where it stands. Returns whether
+ * it is new. */
+static bool insert_code(size_t *codes, size_t count, size_t code, size_t *place) {
+    size_t v = count;
+    while (v > 0 && codes[v - 1] > code)
+        v--;
+    *place = v > 0 && codes[v - 1] == code ? v - 1 : v;
+    if (*place < v)
+        return false;
+    memmove(codes + v + 1, codes + v, (count - v) * sizeof *codes);
+    codes[v] = code;
+    return true;
+}
+
 /* Numbers the combinations that there are, by rising code. */
 static int number_values(struct plot_lines *lines, enum plot_channel_type type, struct error *err) {
     struct plot_channel *channel = &lines->channels[type];
-    size_t *firsts = array_create(lines->count, sizeof *firsts);
-    if (firsts == NULL)
-        return error_memory(err, lines->count * sizeof *firsts, "values");
+    size_t *firsts = array_create(lines->count, sizeof *firsts), place;
+    size_t *codes = array_create(lines->count, sizeof *codes);
     channel->lines = firsts;
     channel->ordered = channel->factor_count == 1 && channel->factors[0]->ordered;
-    for (size_t n = 0; n < lines->count; n++) {
-        size_t code = code_of(channel, &lines->list[n]), v = 0;
-        while (v < channel->count && code_of(channel, &lines->list[firsts[v]]) < code)
-            v++;
-        if (v < channel->count && code_of(channel, &lines->list[firsts[v]]) == code)
+    for (size_t n = 0; n < lines->count && firsts != NULL && codes != NULL; n++) {
+        size_t code = code_of(channel, &lines->list[n]);
+        lines->list[n].at[type] = code; /* until all are known */
+        if (!insert_code(codes, channel->count, code, &place))
             continue;
-        memmove(firsts + v + 1, firsts + v, (channel->count - v) * sizeof *firsts);
-        firsts[v] = n;
+        memmove(firsts + place + 1, firsts + place, (channel->count - place) * sizeof *firsts);
+        firsts[place] = n;
         channel->count++;
     }
-    for (size_t n = 0; n < lines->count; n++) {
-        size_t code = code_of(channel, &lines->list[n]), v = 0;
-        while (code_of(channel, &lines->list[firsts[v]]) != code)
-            v++;
-        lines->list[n].at[type] = v;
+    for (size_t n = 0; n < lines->count && firsts != NULL && codes != NULL; n++) {
+        (void)insert_code(codes, channel->count, lines->list[n].at[type], &place);
+        lines->list[n].at[type] = place;
     }
-    return 0;
+    int status = firsts != NULL && codes != NULL
+                     ? 0
+                     : error_memory(err, lines->count * sizeof *codes, "values");
+    free(codes);
+    return status;
 }
 
 int plot_channels_set(struct plot_lines *lines, const struct lines_request *request,

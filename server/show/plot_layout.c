@@ -6,7 +6,7 @@
 /* On screens; those of print are scaled. */
 enum {
     BELOW = 70,
-    GAP_X = 18,
+    GAP_X = 30,
     GAP_Y = 30,
     LEGEND_GAP = 16,
     MARGIN = 16,

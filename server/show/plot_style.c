@@ -187,8 +187,8 @@ void plot_legend_notes(struct legend *legend, const struct plot_lines *lines, en
                        const char *note) {
     const struct plot_channel *panels = &lines->channels[CHANNEL_PANEL];
     char text[PLOT_LABEL_SIZE + 16];
-    legend_add(legend,
-               marks == MARKS_NONE ? "bands: one standard error" : "bars: one standard error", "");
+    bool bands = marks == MARKS_NONE || lines->list[0].curve->minuend != NULL;
+    legend_add(legend, bands ? "bands: one standard error" : "bars: one standard error", "");
     if (is_partial(lines))
         legend_add(legend, "circles: not over all realisations", "");
     if (note != NULL && *note != '\0')

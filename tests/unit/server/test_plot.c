@@ -291,7 +291,8 @@ static void many_cases_are_panels(void **state) {
         built_parameter(&study.cases[c], "/surface/heights/distribution",
                         c % 2 ? "weibull_min" : "weibull_max", 0);
         built_parameter(&study.cases[c], "/surface/wavelength_ratio", NULL, c < 10 ? 8 : 16);
-        study.cases[c].parameters[0].number = 0.1 * (double)(c % 10 / 2 + 1);
+        size_t step = c % 10 / 2;
+        study.cases[c].parameters[0].number = 0.1 * (double)(step + 1);
     }
     char *text = picture_of(&study, &AREA);
     assert_int_equal(count_of(text, "<g class=\"panel\">"), 2);
@@ -332,6 +333,28 @@ static void pictures_have_sizes_on_paper(void **state) {
     study_result_clear(&study);
 }
 
+/* A difference names its cases, and has a band about a line of no difference. */
+static void differences_have_bands(void **state) {
+    (void)state;
+    struct study_result study = contact_of(1, 1);
+    struct case_result *one = &study.cases[0];
+    one->difference = true;
+    one->case_number = 2;
+    for (size_t a = 0; a < one->curve_count; a++) {
+        struct curve *curve = &one->curves[a];
+        curve->y = built_numbers(one, 2, (const double[]){-0.1, 0.2});
+        curve->standard_error = built_numbers(one, 2, (const double[]){0.05, 0.05});
+        curve->minuend = curve->subtrahend = curve->y;
+    }
+    char *text = picture_of(&study, &AREA);
+    assert_int_equal(count_of(text, "contact_area, case 2 less case 0"), 2);
+    assert_int_equal(count_of(text, "class=\"band\""), 8);
+    assert_int_equal(count_of(text, "class=\"bar\""), 0);
+    assert_int_equal(count_of(text, ">bands: one standard error<"), 1);
+    free(text);
+    study_result_clear(&study);
+}
+
 /* The kind's view, not the picture, knows which quantity spans decades. */
 static void the_view_sets_logarithmic_axes(void **state) {
     (void)state;
@@ -361,6 +384,7 @@ int main(void) {
         cmocka_unit_test(pictures_have_sizes_on_paper),
         cmocka_unit_test(a_picture_names_what_it_draws),
         cmocka_unit_test(missing_realisations_are_seen),
+        cmocka_unit_test(differences_have_bands),
         cmocka_unit_test(the_view_sets_logarithmic_axes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
