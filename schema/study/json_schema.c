@@ -96,6 +96,7 @@ static cJSON *text_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
     return checked(schema,
                    field_put_text(schema, "type", "string") &&
+                       field_put_text(schema, "pattern", "^[^\\u0000-\\u001f\\u007f-\\u009f]*$") &&
                        field_put(schema, "minLength", cJSON_CreateNumber(parameter->minimum)) &&
                        field_put(schema, "maxLength", cJSON_CreateNumber(parameter->maximum)));
 }

@@ -10,7 +10,7 @@
 enum parameter_type {
     PARAMETER_NUMBER,
     PARAMETER_INTEGER,
-    PARAMETER_TEXT,    /* a string of minimum..maximum characters */
+    PARAMETER_TEXT,    /* a string of minimum..maximum characters, none of control */
     PARAMETER_SEED,    /* an integer of minimum..maximum, or any of 64 bits as a decimal string */
     PARAMETER_CHOICE,  /* a string out of choices */
     PARAMETER_NUMBERS, /* an array of items_low..items_high numbers: one value, e.g. bins */

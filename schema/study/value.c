@@ -79,13 +79,22 @@ static size_t characters(const char *text) {
     return n;
 }
 
+/* Whether a UTF-8 text has control characters: terminals that show it would obey them. */
+static bool has_controls(const char *text) {
+    for (const unsigned char *s = (const unsigned char *)text; *s != '\0'; s++)
+        if (*s < ' ' || *s == 0x7f || (*s == 0xc2 && s[1] >= 0x80 && s[1] < 0xa0))
+            return true;
+    return false;
+}
+
 static bool text_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
                        struct fault_list *faults) {
-    if (cJSON_IsString(value) && in_range(parameter, (double)characters(value->valuestring)))
+    if (cJSON_IsString(value) && in_range(parameter, (double)characters(value->valuestring)) &&
+        !has_controls(value->valuestring))
         return true;
-    char what[80];
-    snprintf(what, sizeof what, "a text of %.0f to %.0f characters", parameter->minimum,
-             parameter->maximum);
+    char what[96];
+    snprintf(what, sizeof what, "a text of %.0f to %.0f characters, none a control character",
+             parameter->minimum, parameter->maximum);
     return is_not(value, pointer, faults, what);
 }
 
