@@ -10,7 +10,7 @@
 #define RUGO_SERVER_SHOW_CASE_TABLE_H
 
 #include "schema/result/result.h"
-#include "server/show/picture.h"
+#include "server/show/picture_source.h"
 
 struct table_request {
     const char *columns; /* names with commas between; NULL: those that the kind's view shows */

@@ -4,6 +4,7 @@
 #ifndef RUGO_SERVER_SHOW_PICTURE_H
 #define RUGO_SERVER_SHOW_PICTURE_H
 
+#include "server/show/picture_source.h"
 #include "server/show/plot.h"
 #include "worker/aggregate.h"
 #include "worker/comparison.h"
@@ -19,15 +20,6 @@ struct picture_request {
     int axes;                           /* enum plot_axes */
     int64_t case_number; /* of curves; -1: all, of a density the first that has begun */
     const struct comparison *difference; /* of curves, in place of cases; NULL: none */
-};
-/* Who asks gives these; each fills an empty document, which the caller clears also after a failure.
- */
-struct picture_source {
-    const void *context;
-    int (*results)(const void *context, const struct result_filter *filter,
-                   struct study_result *out, struct error *err);
-    int (*difference)(const void *context, const struct comparison *comparison,
-                      struct study_result *out, struct error *err);
 };
 /* Draws the picture. ERROR_ABSENT for a name that no case has, ERROR_INPUT for a part of the
  * request that does not belong to what is drawn. Write errors are left to the file's own flag. */

@@ -20,12 +20,6 @@ struct plot_request {
  * are left to the file's own flag. Fails as plot_lines_choose does. */
 int plot_quantity(const struct study_result *study, const struct plot_request *request, FILE *file,
                   struct error *err);
-struct plot_words {
-    const char *subject; /* of the title */
-    const char *x, *y;   /* labels of the axes */
-    const char *note;    /* in the legend; NULL: none */
-    bool points;         /* x is of a few cases: each has a tick and a mark */
-};
 /* Draws lines as they are. study: whose picture it is. */
 int plot_lines_draw(const struct plot_lines *lines, const struct study_result *study,
                     const struct plot_request *request, const struct plot_words *words, FILE *file,

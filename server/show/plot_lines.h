@@ -83,4 +83,12 @@ int plot_channels_set(struct plot_lines *lines, const struct lines_request *requ
                       struct error *err);
 struct plot_value factor_value(const struct plot_factor *factor, const struct plot_line *line);
 
+/* What a picture of lines says beside them. */
+struct plot_words {
+    const char *subject; /* of the title */
+    const char *x, *y;   /* labels of the axes */
+    const char *note;    /* in the legend; NULL: none */
+    bool points;         /* x is of a few cases: each has a tick and a mark */
+};
+
 #endif

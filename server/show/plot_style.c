@@ -17,7 +17,7 @@ static const char *const LEVELS[] = {
     "stroke-opacity=\".45\" stroke-width=\".9\"", "stroke-opacity=\".3\" stroke-width=\".7\""};
 enum { LEVEL_COUNT = sizeof LEVELS / sizeof *LEVELS };
 
-/* Stops of viridis (van der Walt & Smith 2015) without the palest. */
+/* Stops of the colour map "viridis", whose lightness rises evenly, without the palest. */
 static const double STOPS[][3] = {{68, 1, 84},    {70, 50, 127},  {54, 92, 141}, {39, 127, 142},
                                   {31, 161, 135}, {74, 194, 109}, {159, 218, 58}};
 enum { STOP_COUNT = sizeof STOPS / sizeof *STOPS, ENTRIES_MOST = 10, STEPS = 6 };

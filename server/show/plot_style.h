@@ -2,8 +2,8 @@
 #ifndef RUGO_SERVER_SHOW_PLOT_STYLE_H
 #define RUGO_SERVER_SHOW_PLOT_STYLE_H
 
-#include "server/show/plot.h"
 #include "server/show/plot_legend.h"
+#include "server/show/plot_lines.h"
 
 enum plot_marks { MARKS_NONE, MARKS_DOTS, MARKS_SHAPES };
 
