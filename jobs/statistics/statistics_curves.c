@@ -357,12 +357,13 @@ int statistics_curves(const struct statistics_case *one_case, const struct modes
                                            .result = out,
                                            .theory_name =
                                                applies ? statistics_theory_name(one_case) : NULL};
-    int status = add_heights(&maker, err);
-    if (status == 0)
-        status = add_summit_heights(&maker, moments->nayak_alpha, err);
+    /* the first is the main curve of reports: summits are what grids and generation bear on */
+    int status = add_summit_heights(&maker, moments->nayak_alpha, err);
     if (status == 0)
         status = add_summit_curvatures(&maker, err);
     if (status == 0)
         status = add_sides(&maker, add_joint, err);
+    if (status == 0)
+        status = add_heights(&maker, err);
     return status != 0 ? status : spectra_curves(one_case, modes, tally, out, err);
 }
