@@ -175,7 +175,7 @@ int sweep_open(struct study *study, const cJSON *document, struct fault_list *fa
     int status = 0;
     if (!set_strides(axes, count, &cases))
         fault_add(faults, "", "the lists make more than %d cases", STUDY_CASES_MOST);
-    else if (cases > VALUES_MOST / case_values(document, axes, count))
+    else if (cases * case_values(document, axes, count) > VALUES_MOST)
         fault_add(faults, "", "%zu cases of %zu values each are too many: %zu values at most",
                   cases, case_values(document, axes, count), VALUES_MOST);
     else

@@ -212,12 +212,12 @@ static void maps_that_nobody_waits_for_are_given_up(void **state) {
     for (size_t n = 0; n < count; n++)
         close(sockets[n]);
     int waited = 0;
-    while (http_exchange(at, "GET", MAP, "", NULL, NULL) != 200 && ++waited < 50)
+    while (http_exchange(at, "GET", MAP, "", NULL, NULL) != 200 && ++waited < 300)
         sleep_ms(100);
-    assert_true(waited < 50);
+    assert_true(waited < 300); /* a map goes on for a few iterations */
     count = ask_long(at, sockets);
     process_kill(&other, SIGTERM);
-    assert_int_equal(process_wait(&other, 9), 0); /* requests are waited for 10 s */
+    assert_int_equal(process_wait(&other, 20), 0);
     for (size_t n = 0; n < count; n++) {
         ssize_t got = recv(sockets[n], answer, sizeof answer - 1, MSG_WAITALL);
         answer[got > 0 ? got : 0] = '\0';
