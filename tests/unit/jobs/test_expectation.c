@@ -142,7 +142,8 @@ static void heights_of_ones_own_have_their_density(void **state) {
     assert_int_equal(merger_result(merger, &result, &err), 0);
     const struct curve *pdf = series(&expected, "height_pdf", "quantiles");
     const struct curve *cdf = series(&expected, "height_cdf", "quantiles");
-    assert_true(pdf != NULL && cdf != NULL);
+    assert_non_null(pdf);
+    assert_non_null(cdf);
     const struct theory *theory = &result_curve(&result, "height_pdf")->theories[0];
     assert_string_equal(theory->name, "quantiles");
     double width = pdf->x[1] - pdf->x[0], sum = 0, mean = 0, most = 0;
