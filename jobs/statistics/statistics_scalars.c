@@ -181,7 +181,8 @@ static struct estimate summit_estimate(const struct scalar_columns *columns,
     enum statistics_scalar number = (enum statistics_scalar)number_behind(scalar);
     const double *values = column(columns, scalar);
     if (is_moment(scalar, &moment)) {
-        const double *mean = column(columns, scalar - moment - 1);
+        const double *mean =
+            column(columns, (enum statistics_scalar)((int)scalar - (int)moment - 1));
         const struct height_columns heights = {.n = columns->n,
                                                .number = column(columns, number),
                                                .mean = mean,
