@@ -77,9 +77,7 @@ static bool is_planning(const struct study_status *status) {
 /* Whose it is, and where it stands among those that wait. */
 static bool put_line(cJSON *object, const struct study_status *status) {
     bool waits = status->place > 0;
-    return field_put(object, "owner",
-                     *status->owner != '\0' ? cJSON_CreateString(status->owner)
-                                            : cJSON_CreateNull()) &&
+    return put_known(object, "owner", status->owner) &&
            field_put(object, "priority", cJSON_CreateNumber((double)status->priority)) &&
            field_put(object, "place",
                      waits ? cJSON_CreateNumber((double)status->place) : cJSON_CreateNull()) &&

@@ -17,13 +17,17 @@ int output_file_close(FILE *file, const char *path, int status, struct error *er
     return status;
 }
 
+bool output_file_is_png(const char *path) {
+    size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".png") == 0;
+}
+
 int output_file_picture(const char *path, const struct map_picture *picture, struct error *err) {
     FILE *file;
     int status = output_file_open(&file, path, err);
     if (status != 0)
         return status;
-    size_t length = strlen(path);
-    bool png = length > 4 && strcmp(path + length - 4, ".png") == 0;
-    status = png ? map_png(file, picture->grid, picture->z, err) : plot_map(picture, file, err);
+    status = output_file_is_png(path) ? map_png(file, picture->grid, picture->z, err)
+                                      : plot_map(picture, file, err);
     return output_file_close(file, path, status, err);
 }

@@ -95,17 +95,12 @@ static int draw(struct access *access, const char *id, const struct options *opt
     return picture_draw(&source, &request, file, err);
 }
 
-static bool is_png(const char *path) {
-    size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".png") == 0;
-}
-
 static int write_file(const char *text, size_t size, const char *path, struct error *err) {
     FILE *file;
     int status = output_file_open(&file, path, err);
     if (status != 0)
         return status;
-    if (is_png(path))
+    if (output_file_is_png(path))
         status = rasterise(text, size, file, err);
     else
         (void)fwrite(text, 1, size, file); /* the file remembers a failure */

@@ -1,42 +1,15 @@
 /* Pictures of results over HTTP. */
 #include "core/memory_file.h"
+#include "server/http/origin.h"
 #include "server/http/route.h"
 #include "server/show/picture.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* What a picture is drawn from: a study of the service's store. */
-struct origin {
-    struct service *service;
-    const char *id;
-};
-
-static int results(const void *context, const struct result_filter *filter,
-                   struct study_result *out, struct error *err) {
-    const struct origin *origin = context;
-    struct store *reader;
-    int status = service_reader(origin->service, &reader, err);
-    if (status == 0)
-        status = aggregate_study(reader, origin->id, filter, out, err);
-    service_give_back(origin->service, reader);
-    return status;
-}
-
-static int difference(const void *context, const struct comparison *comparison,
-                      struct study_result *out, struct error *err) {
-    const struct origin *origin = context;
-    struct store *reader;
-    int status = service_reader(origin->service, &reader, err);
-    if (status == 0)
-        status = comparison_make(reader, origin->id, comparison, out, err);
-    service_give_back(origin->service, reader);
-    return status;
-}
-
 /* Draws into memory; the text is the caller's to free, NULL after a failure. */
 static int draw(const struct origin *origin, const struct picture_request *request, char **text,
                 struct error *err) {
-    const struct picture_source source = {origin, results, difference};
+    const struct picture_source source = origin_source(origin);
     struct memory_file picture;
     *text = NULL;
     if (!memory_file_open(&picture))

@@ -1,26 +1,11 @@
 /* The cases of a study as a table over HTTP. */
 #include "core/memory_file.h"
 #include "server/http/accept.h"
+#include "server/http/origin.h"
 #include "server/http/route.h"
 #include "server/show/case_table.h"
 #include <stdlib.h>
 #include <string.h>
-
-struct origin {
-    struct service *service;
-    const char *id;
-};
-
-static int results(const void *context, const struct result_filter *filter,
-                   struct study_result *out, struct error *err) {
-    const struct origin *origin = context;
-    struct store *reader;
-    int status = service_reader(origin->service, &reader, err);
-    if (status == 0)
-        status = aggregate_study(reader, origin->id, filter, out, err);
-    service_give_back(origin->service, reader);
-    return status;
-}
 
 /* Reads ?format=, or else what the request likes best: JSON, unless it says so. -1 after a 422. */
 static int read_format(struct exchange *exchange) {
@@ -45,7 +30,7 @@ static int read_format(struct exchange *exchange) {
 /* Makes the table as a text, which is the caller's to free. */
 static int print(const struct origin *origin, const struct table_request *request, int format,
                  char **text, struct error *err) {
-    const struct picture_source source = {.context = origin, .results = results};
+    const struct picture_source source = origin_source(origin);
     struct case_table table = {0};
     struct memory_file memory;
     int status = case_table_make(&table, &source, request, err);
