@@ -53,17 +53,13 @@ int rugo_spectrum_moments(const struct rugo_spectrum *spectrum, const struct rug
                           struct rugo_moments *out, struct rugo_error *err) {
     struct error why = {0};
     struct spectrum shape;
-    struct modes *modes = NULL;
+    struct moments moments;
     struct grid cell = grid_of_rugo(grid);
     int status = spectrum_take(&shape, spectrum, &why);
     if (status == 0)
-        status = modes_create(&modes, &shape, &cell, &why);
-    if (status == 0) {
-        struct moments moments;
-        modes_moments(modes, &moments);
-        modes_destroy(&modes);
+        status = spectrum_moments(&shape, &cell, &moments, &why);
+    if (status == 0)
         moments_give(&moments, out);
-    }
     return error_give(status, &why, err);
 }
 

@@ -256,6 +256,16 @@ void modes_moments(const struct modes *modes, struct moments *out) {
     out->rms_curvature = profile ? sqrt(m[5]) : sqrt((m[5] + 2 * m[4] + m[6]) / 4);
 }
 
+int spectrum_moments(const struct spectrum *spectrum, const struct grid *grid, struct moments *out,
+                     struct error *err) {
+    struct modes *modes = NULL;
+    int status = modes_create(&modes, spectrum, grid, err);
+    if (status == 0)
+        modes_moments(modes, out);
+    modes_destroy(&modes);
+    return status;
+}
+
 bool moments_isotropic(const struct moments *moments) {
     static const double MARGIN = 0.25;
     return fabs(3 * moments->m22 / moments->m4 - 1) <= MARGIN &&

@@ -28,6 +28,10 @@ struct moments {
 bool moments_isotropic(const struct moments *moments);
 /* Sums pairwise or compensated, with a relative error of about 1e-15. */
 void modes_moments(const struct modes *modes, struct moments *out);
+/* The same of a spectrum on a grid, for those who need nothing else of its modes. Fails as
+ * modes_create does; *out is untouched then. */
+int spectrum_moments(const struct spectrum *spectrum, const struct grid *grid, struct moments *out,
+                     struct error *err);
 
 /* Nayak parameter of the continuous self-affine spectrum (F2.5) of dimension 1 or 2; ratio_long is
  * lambda_l/lambda_s, ratio_rolloff lambda_l/lambda_r >= 1. NaN outside of the domain. */

@@ -15,16 +15,13 @@ bool contact_case_has_scale(const struct contact_case *one_case) {
 int contact_case_scale(const struct contact_case *one_case, double *rms_height, double *rms_slope,
                        struct error *err) {
     const struct surface_case *surface = &one_case->surface;
-    struct modes *modes = NULL;
     struct moments moments;
     *rms_height = *rms_slope = NAN;
     if (!contact_case_has_scale(one_case))
         return 0;
-    int status = modes_create(&modes, &surface->spectrum, &surface->grid, err);
+    int status = spectrum_moments(&surface->spectrum, &surface->grid, &moments, err);
     if (status != 0)
         return status;
-    modes_moments(modes, &moments);
-    modes_destroy(&modes);
     *rms_height = moments.rms_height;
     *rms_slope = moments.rms_slope;
     return 0;

@@ -30,13 +30,9 @@ int contact_press_once(const struct realisation *realisation, double load, doubl
     struct compliance *compliance = NULL;
     struct contact *contact = NULL;
     struct contact_state state;
-    struct modes *modes = NULL;
     struct moments moments = {0};
     options.without_tangent = true;
-    int status = modes_create(&modes, &contact_case->surface.spectrum, grid, err);
-    if (status == 0)
-        modes_moments(modes, &moments);
-    modes_destroy(&modes);
+    int status = spectrum_moments(&contact_case->surface.spectrum, grid, &moments, err);
     if (status == 0)
         status = compliance_create(&compliance, grid, &block, err);
     if (status == 0)
