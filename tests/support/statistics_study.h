@@ -7,7 +7,7 @@
 #include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "schema/json/json.h"
-#include "tests/support/result_tree.h"
+#include "tests/support/merging.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -60,28 +60,6 @@ static inline struct job_merger *merger_of(const char *study) {
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
     return merger;
-}
-
-static inline struct block_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
-    struct block_result result = {0};
-    struct error err = {0};
-    if (runner_run(runner, first, count, NULL, &result, &err) != 0)
-        fail_msg("%s", err.text);
-    return result;
-}
-
-static inline void merge(struct job_merger *merger, const struct block_result *result) {
-    struct error err = {0};
-    if (merger_add(merger, result, &err) != 0)
-        fail_msg("%s", err.text);
-}
-
-static inline cJSON *curves_of(struct job_merger *merger) {
-    cJSON *document = NULL;
-    struct error err = {0};
-    if (merger_tree(merger, NULL, NULL, &document, &err) != 0)
-        fail_msg("%s", err.text);
-    return document;
 }
 
 static inline const cJSON *curve_of(const cJSON *document, const char *quantity) {

@@ -7,7 +7,7 @@
 #include "jobs/runner.h"
 #include "schema/json/json.h"
 #include "schema/result/bytes.h"
-#include "tests/support/result_tree.h"
+#include "tests/support/merging.h"
 #include "tests/support/seed.h"
 #include <math.h>
 #include <setjmp.h>
@@ -87,36 +87,6 @@ static struct job_merger *merger_of(const char *study) {
     return merger;
 }
 
-static struct block_result run(struct job_runner *runner, uint64_t first, uint64_t count) {
-    struct block_result result = {0};
-    struct error err = {0};
-    if (runner_run(runner, first, count, NULL, &result, &err) != 0)
-        fail_msg("%s", err.text);
-    return result;
-}
-
-static void merge(struct job_merger *merger, const struct block_result *result) {
-    struct error err = {0};
-    if (merger_add(merger, result, &err) != 0)
-        fail_msg("%s", err.text);
-}
-
-static cJSON *curves_of(struct job_merger *merger) {
-    cJSON *document = NULL;
-    struct error err = {0};
-    if (merger_tree(merger, NULL, NULL, &document, &err) != 0)
-        fail_msg("%s", err.text);
-    return document;
-}
-
-static char *text_of(struct job_merger *merger) {
-    cJSON *document = curves_of(merger);
-    char *text = cJSON_PrintUnformatted(document);
-    assert_non_null(text);
-    cJSON_Delete(document);
-    return text;
-}
-
 /* The document of realisations 0 .. count - 1. */
 static cJSON *document_of(const char *study, uint64_t count) {
     struct job_runner *runner = runner_of(study, NULL);
@@ -194,14 +164,6 @@ static void any_split_and_order(void **state) {
     }
 }
 
-static void assert_refused(struct job_merger *merger, const struct block_result *result,
-                           const char *words) {
-    struct error err = {0};
-    int status = merger_add(merger, result, &err);
-    if (status != ERROR_INPUT || strstr(err.text, words) == NULL)
-        fail_msg("'%s' expected, but status %d, '%s'", words, status, err.text);
-}
-
 /* Another case's, another kind's, twice the same, damaged, cut: refused, and nothing is added. */
 static void foreign_and_damaged(void **state) {
     (void)state;
@@ -224,16 +186,7 @@ static void foreign_and_damaged(void **state) {
     bad = next;
     bad.scalar_count--;
     assert_refused(merger, &bad, "scalars a realisation");
-    for (size_t size = 0; size < next.size; size += 1 + next.size / 200) {
-        bad = next;
-        bad.size = size;
-        assert_refused(merger, &bad, "the partial result");
-    }
-    for (size_t bit = 0; bit < 8 * next.size; bit += 1 + next.size / 97) {
-        ((unsigned char *)next.data)[bit / 8] ^= (unsigned char)(1u << (bit % 8));
-        assert_refused(merger, &next, "the partial result");
-        ((unsigned char *)next.data)[bit / 8] ^= (unsigned char)(1u << (bit % 8));
-    }
+    assert_damaged_are_refused(merger, &next, 200);
     char *after = text_of(merger);
     assert_string_equal(after, before);
     merge(merger, &next);

@@ -6,14 +6,6 @@
 #include "tests/support/statistics_study.h"
 #include <stdlib.h>
 
-static char *text_of(struct job_merger *merger) {
-    cJSON *document = curves_of(merger);
-    char *text = cJSON_PrintUnformatted(document);
-    assert_non_null(text);
-    cJSON_Delete(document);
-    return text;
-}
-
 /* Random blocks, run by several runners, merged in random order: the same text. */
 static void any_split_and_order(void **state) {
     (void)state;
@@ -54,14 +46,6 @@ static void any_split_and_order(void **state) {
     }
 }
 
-static void assert_refused(struct job_merger *merger, const struct block_result *result,
-                           const char *words) {
-    struct error err = {0};
-    int status = merger_add(merger, result, &err);
-    if (status != ERROR_INPUT || strstr(err.text, words) == NULL)
-        fail_msg("'%s' expected, but status %d, '%s'", words, status, err.text);
-}
-
 /* Another case's, another block's, twice the same, damaged, cut: refused, and nothing is added. */
 static void foreign_and_damaged(void **state) {
     (void)state;
@@ -84,16 +68,7 @@ static void foreign_and_damaged(void **state) {
     bad = next;
     bad.scalar_count--;
     assert_refused(merger, &bad, "scalars a realisation");
-    for (size_t size = 0; size < next.size; size += 1 + next.size / 500) {
-        bad = next;
-        bad.size = size;
-        assert_refused(merger, &bad, "the partial result");
-    }
-    for (size_t bit = 0; bit < 8 * next.size; bit += 1 + next.size / 97) {
-        ((unsigned char *)next.data)[bit / 8] ^= (unsigned char)(1u << (bit % 8));
-        assert_refused(merger, &next, "the partial result");
-        ((unsigned char *)next.data)[bit / 8] ^= (unsigned char)(1u << (bit % 8));
-    }
+    assert_damaged_are_refused(merger, &next, 500);
     char *after = text_of(merger);
     assert_string_equal(after, before);
     merge(merger, &next);
