@@ -3,8 +3,8 @@
 #   V=1              show each command
 #   SAN=address,undefined | SAN=thread   sanitizers      COV=1 coverage      DEBUG=1 no optimisation
 #   CI=1             warnings are errors
-# CC, AR, CPPFLAGS, CFLAGS, LDFLAGS and LDLIBS are the user's, from the command line or the environment; so are
-# DESTDIR, PREFIX, bindir, libdir, includedir, mandir, pythondir and INSTALL_PROGRAM (`install` keeps symbols) of `make install`.
+# CC, AR, CPPFLAGS, CFLAGS, LDFLAGS and LDLIBS are the user's, from the command line or the environment; so are DESTDIR,
+# PREFIX, bindir and the folders below it, and INSTALL_PROGRAM (`install` keeps symbols) of `make install`.
 BUILD  ?= build
 PREFIX ?= /usr/local
 bindir     ?= $(PREFIX)/bin
@@ -13,6 +13,8 @@ includedir ?= $(PREFIX)/include
 mandir     ?= $(PREFIX)/share/man
 completion ?= $(PREFIX)/share/bash-completion/completions
 pythondir  ?= $(PREFIX)/share/rugo/python
+unitdir    ?= $(PREFIX)/lib/systemd/system
+sysusersdir ?= $(PREFIX)/lib/sysusers.d
 INSTALL         ?= install
 INSTALL_PROGRAM ?= $(INSTALL) -s
 INSTALL_DATA    ?= $(INSTALL) -m 644
@@ -21,10 +23,10 @@ OBJCOPY         ?= objcopy
 Q      = $(if $(V),,@)
 say    = $(if $(V),@:,@echo)
 
-PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl nettle zlib libpng cmocka
+PACKAGES = fftw3 gsl sqlite3 libmicrohttpd libcjson libcurl gnutls nettle zlib libpng libzip expat cmocka
 APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev libsuitesparse-dev \
-           libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev nettle-dev zlib1g-dev libpng-dev \
-           libcmocka-dev
+           libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev libgnutls28-dev nettle-dev zlib1g-dev libpng-dev \
+           libzip-dev libexpat1-dev libcmocka-dev
 # those without a pkg-config file
 HEADERS  = Random123/philox.h suitesparse/cholmod.h
 
@@ -42,11 +44,12 @@ NEEDED   = $(LANGUAGE) -ffp-contract=off -fno-math-errno -fno-trapping-math -fPI
            $(TESTED) $(if $(SAN),-fno-omit-frame-pointer -fno-sanitize-recover=all)
 COMPILE  = $(CC) $(WARN) $(CPPFLAGS) $(CFLAGS) $(NEEDED)
 LINK     = $(CC) $(CFLAGS) $(LDFLAGS) -pthread $(TESTED)
-LIBS_core   = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
+LIBS_library = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
+LIBS_core   = -lzip -lexpat -lnettle $(LIBS_library)
 LIBS_schema = -lcjson -lsqlite3 $(LIBS_core)
 LIBS_jobs   = $(LIBS_schema)
 LIBS_worker = -lcurl $(LIBS_jobs)
-LIBS_server = -lmicrohttpd -lpng -lnettle -lz $(LIBS_worker)
+LIBS_server = -lmicrohttpd -lgnutls -lpng -lz $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
 embedded = $(filter %.html %.js %.css %.yaml %.py,$(wildcard $(addprefix $(1)/,web/* web/vendor/* http/* python/*)))
@@ -120,18 +123,44 @@ $(BUILD)/rugo: $(call objects,$(MAIN)) $(BUILD)/commit.o $(call archive,$(BELOW_
 	$(say) LD $@
 	$(Q)$(LINK) -pie -o $@ $^ $(LIBS_server) $(LDLIBS)
 
-# The library: core, with the functions of rugo.h alone to be seen from outside.
+# The program without shared libraries, for machines that have none of them or older ones. Its libraries are made from
+# the distribution's sources where Debian has no archives of them (server/static/libraries).
+STATIC      = $(BUILD)/static
+LIBS_static = -lmicrohttpd -lpng -lcurl -lssl -lcrypto -lcjson -lsqlite3 -lcholmod -lamd -lcamd -lcolamd -lccolamd \
+              -lsuitesparseconfig -lmetis -llapack -lblas -lgfortran -lquadmath -lgomp -lfftw3 -lgsl -lgslcblas -lgnutls \
+              -ltasn1 -lhogweed -lnettle -lgmp -lunistring -lzip -lexpat -lz -lm
+static: static-deps
+	@$(MAKE) --no-print-directory $(STATIC)/rugo
+static-deps: deps
+	@CC="$(CC)" tests/install-deps "libssl gnutls nettle" "libssl-dev libgnutls28-dev libunistring-dev dpkg-dev gfortran cmake" \
+	    unistring/version.h dpkg-source gfortran cmake
+$(STATIC)/libraries: server/static/libraries
+	@mkdir -p $(@D)
+	@CC="$(CC)" $< $(STATIC) && touch $@
+# The linker warns of name lookups and dlopen, which server/command/portable.c keeps from other C libraries.
+$(STATIC)/rugo: $(call objects,$(MAIN)) $(BUILD)/commit.o $(call archive,$(BELOW_server)) $(STATIC)/libraries
+	$(say) LD $@
+	$(Q)$(LINK) -static-pie -Wl,--gc-sections,-s -o $@ $(filter %.o %.a,$^) -L$(STATIC)/lib \
+	    -Wl,--start-group $(LIBS_static) -Wl,--end-group $(LDLIBS) >$@.log 2>&1 || { cat $@.log; exit 1; }
+# In a folder with nothing but the program as the root of its files; skipped, with a word, where that cannot be made.
+check-static: all
+	@MAKE="$(MAKE) --no-print-directory" tests/check-static $(abspath $(BUILD)) $(abspath $(STATIC)/rugo)
+.PHONY: static static-deps check-static
+
+# The library: core, with the functions of rugo.h alone to be seen from outside. They read no files of instruments: those
+# who link it need neither zip nor XML.
 VERSION  := $(shell sed -n 's/^.define RUGO_VERSION "\(.*\)"/\1/p' core/rugo.h)
 SONAME    = librugo.so.$(basename $(VERSION))
 SHARED    = librugo.so.$(VERSION)
+LIBRARY   = $(call objects,$(filter-out core/instrument/%,$(call sources,core)))
 library: $(addprefix $(BUILD)/,$(SHARED) librugo.a rugo.pc rugo.1 rugo.bash)
 
-$(BUILD)/$(SHARED): $(call objects,$(call sources,core)) core/rugo.map
+$(BUILD)/$(SHARED): $(LIBRARY) core/rugo.map
 	$(say) LD $@
 	$(Q)$(LINK) -shared -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs) \
-	    -o $@ $(filter %.o,$^) -Wl,--version-script=core/rugo.map $(LIBS_core) $(LDLIBS)
+	    -o $@ $(filter %.o,$^) -Wl,--version-script=core/rugo.map $(LIBS_library) $(LDLIBS)
 
-$(BUILD)/librugo.a: $(call objects,$(call sources,core))
+$(BUILD)/librugo.a: $(LIBRARY)
 	$(Q)$(LD) -r -o $(BUILD)/librugo.o $^
 	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='rugo_*' -R '.gnu.lto_*' -N '*.c.*' $(BUILD)/librugo.o
 	$(Q)rm -f $@; $(AR) rcs $@ $(BUILD)/librugo.o
@@ -162,13 +191,14 @@ test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) run-tests-built
 .PHONY: run-tests-built browser
 # The ladders with long programs come first, so that no processor waits for one in the end.
-EVERY_TEST = $(foreach ladder,validation faults system unit fuzz,$(call all_tests,$(ladder)))
+EVERY_TEST = $(foreach ladder,validation faults system unit fuzz,$(call all_tests,$(ladder))) \
+             $(BUILD)/tests/system/faults/kills
 run-tests-built: all $(EVERY_TEST)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(EVERY_TEST)
 	@tests/browser/run $(abspath $(BUILD))/rugo
 browser: all
 	@tests/browser/run $(abspath $(BUILD))/rugo
-unit faults validation system: all
+unit validation system: all
 	@$(MAKE) --no-print-directory $(call all_tests,$@)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,$@)
 
@@ -185,6 +215,33 @@ run-faults:
 	@$(MAKE) --no-print-directory -j$$(nproc) $(filter-out $(TESTS_faults_server),$(call all_tests,faults))
 	@tests/run-tests $(filter-out $(TESTS_faults_server),$(call all_tests,faults))
 .PHONY: run-faults
+
+# Faults of whole processes: programs of their own support, each for RUGO_SECONDS. `make test` runs kills alone, for seconds.
+WORLD   = $(call objects,$(wildcard tests/support/faults/*.c))
+TESTS_system_faults := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/system/faults/*.c))
+$(TESTS_system_faults): $(BUILD)/%: $(BUILD)/%.c.o $(WORLD) $(SUPPORT) $(call archive,$(BELOW_server))
+	$(say) LD $@
+	$(Q)$(LINK) -pie -o $@ $^ -lcmocka $(LIBS_server) $(LDLIBS)
+SHIM = $(BUILD)/tests/system/faults/failing_writes.so
+$(TESTS_system_faults): | $(SHIM)
+$(SHIM): $(BUILD)/tests/support/failing/failing_writes.c.o
+	@mkdir -p $(@D)
+	$(Q)$(LINK) -shared -o $@ $^
+
+fault-deps: deps
+	-@tests/install-deps "" "faketime iproute2" faketime ip
+faults: all fault-deps
+	@$(MAKE) --no-print-directory $(call all_tests,faults) $(TESTS_system_faults)
+	@RUGO=$(abspath $(BUILD))/rugo RUGO_SECONDS=$${RUGO_SECONDS:-20} \
+	    tests/run-tests $(TESTS_system_faults) $(call all_tests,faults)
+
+# Faults and fuzzing for HOURS, with new seeds; the report and what failed stay in $(BUILD)/soak.
+HOURS = 1
+soak: all fault-deps fuzz-deps
+	@$(MAKE) --no-print-directory -j$$(nproc) $(TESTS_system_faults)
+	@RUGO=$(abspath $(BUILD))/rugo MAKE="$(MAKE)" tests/system/faults/soak $(HOURS) \
+	    $(BUILD)/soak $(TESTS_system_faults)
+.PHONY: fault-deps soak
 
 # Fuzzing: a target of tests/fuzz/<layer> is a test that replays its corpus (tests/support/fuzz), and with clang's
 # libFuzzer in a build of its own it runs for SECONDS, beginning with its corpus. What it finds stays in $(BUILD)-fuzz.
@@ -212,14 +269,17 @@ $(foreach target,$(call all_tests,fuzz),$(eval $(call FUZZ,$(target))))
 run-fuzz: $(foreach target,$(call all_tests,fuzz),run-fuzz-$(notdir $(target)))
 .PHONY: fuzz fuzz-deps run-fuzz
 
-# Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads.
+# Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads, and
+# system tests but those that count what is lost or told within seconds, which the sanitizer takes.
+UNTIMED := $(filter-out $(addprefix %/test_,same_answer slurm supervised target target_coverage \
+	commands contact_shown python),$(TESTS_system_server))
 run-unit:
 	@$(MAKE) --no-print-directory -j$$(nproc) $(call all_tests,unit)
 	@tests/run-tests $(call all_tests,unit)
 run-threads:
-	@$(MAKE) --no-print-directory -j$$(nproc) all $(TESTS_unit_worker) $(TESTS_system_server)
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(TESTS_unit_worker) $(UNTIMED)
 	@TSAN_OPTIONS=suppressions=$(abspath tests/thread-sanitizer.txt) \
-		RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(TESTS_unit_worker) $(TESTS_system_server)
+		RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(TESTS_unit_worker) $(UNTIMED)
 .PHONY: run-unit run-threads
 
 deps:
@@ -239,11 +299,13 @@ format:
 	@clang-format -i $(SOURCES)
 check-format:
 	@clang-format --dry-run --Werror $(SOURCES)
+# Not the programs that made fixtures: they need headers of others.
+LINTED = $(filter-out tests/fixtures/%,$(filter %.c,$(SOURCES)))
 lint: lint-deps check-format check-layers check-circles check-citations
-	@printf '%s\n' $(filter %.c,$(SOURCES)) | \
+	@printf '%s\n' $(LINTED) | \
 	    xargs -P $$(nproc) -I {} bash -o pipefail -c \
 	        "clang-tidy --quiet {} -- $(LANGUAGE) -Icore 2>&1 | sed '/^[0-9]* warnings* generated/d'"
-	@echo "lint: $(words $(filter %.c,$(SOURCES))) files clean"
+	@echo "lint: $(words $(LINTED)) files clean"
 lint-deps: deps
 	@tests/install-deps "" "clang-format clang-tidy" clang-format clang-tidy
 .PHONY: lint-deps
@@ -266,6 +328,16 @@ check-figures: all
 	@tests/same-figures $(FIGURES) $(BUILD)/figures
 	@echo "figures: as the program draws them"
 .PHONY: check-citations figures page-figures check-figures
+
+# From the file of an instrument to its contact, as jobs/studies/measured/README.md tells, a minute.
+tour: all
+	@jobs/studies/measured/tour $(abspath $(BUILD)/rugo)
+.PHONY: tour
+
+# Against a real Slurm of two nodes on this machine, minutes; skipped, with a word, where there is none.
+slurm-test: all
+	@tests/system/slurm/run $(abspath $(BUILD)/rugo)
+.PHONY: slurm-test
 
 # The description of the HTTP service, by a linter from npm; skipped where there is none.
 check-openapi: all
@@ -290,7 +362,8 @@ check-circles:
 
 INSTALLED = $(bindir)/rugo $(libdir)/$(SHARED) $(libdir)/$(SONAME) $(libdir)/librugo.so $(libdir)/librugo.a \
             $(libdir)/pkgconfig/rugo.pc $(includedir)/rugo.h $(mandir)/man1/rugo.1 $(completion)/rugo \
-            $(pythondir)/rugo.py
+            $(pythondir)/rugo.py $(addprefix $(unitdir)/,$(UNITS)) $(sysusersdir)/rugo.conf
+UNITS     = rugo.service rugo-work@.service
 install: all
 	$(INSTALL) -d $(sort $(dir $(addprefix $(DESTDIR),$(INSTALLED))))
 	$(INSTALL_PROGRAM) $(BUILD)/rugo $(DESTDIR)$(bindir)/rugo
@@ -303,13 +376,20 @@ install: all
 	$(INSTALL_DATA) $(BUILD)/rugo.1 $(DESTDIR)$(mandir)/man1/rugo.1
 	$(INSTALL_DATA) $(BUILD)/rugo.bash $(DESTDIR)$(completion)/rugo
 	$(INSTALL_DATA) server/python/rugo.py $(DESTDIR)$(pythondir)/rugo.py
+	for unit in $(UNITS); do \
+	    sed 's|/usr/local/bin|$(bindir)|' server/systemd/$$unit >$(BUILD)/$$unit && \
+	    $(INSTALL_DATA) $(BUILD)/$$unit $(DESTDIR)$(unitdir)/$$unit || exit; done
+	$(INSTALL_DATA) server/systemd/rugo.conf $(DESTDIR)$(sysusersdir)/rugo.conf
 uninstall:
 	rm -f $(addprefix $(DESTDIR),$(INSTALLED))
 
 # Into a prefix of its own: header, libraries and pkg-config agree, and the example runs with each library.
 check-install: all
 	@CC="$(CC)" MAKE="$(MAKE) --no-print-directory BUILD=$(BUILD)" tests/check-install core/example.c
-.PHONY: uninstall check-install
+# The units of systemd, by its own tools; skipped where there are none.
+check-units: all
+	@tests/check-units $(abspath $(BUILD))/rugo
+.PHONY: uninstall check-install check-units
 clean:
 	rm -rf $(BUILD) $(dir $(wildcard build*/flags))
 
