@@ -34,7 +34,10 @@ struct full_size {
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
                                 const struct full_options *options, double rms_slope);
 /* CPU seconds for a series of loads of one surface, and bytes of the solver; 0 bytes where the
- * block takes too many layers. */
+ * block takes too many layers. With the surface and the program the peak of profiles of 1024 to
+ * 65536 points and of surfaces of 32 x 32 to 192 x 192 was 0.96 to 1.05 of what is told (0.45 for
+ * steep profiles, not all of which are factorised in the end), and the time of three loads 1.0 to
+ * 2.1 of it; 3.2 at a Poisson's ratio of 0.4999. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, size_t loads);
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size);

@@ -7,6 +7,7 @@
 
 struct area_workspace {
     struct grid grid;
+    bool open; /* nothing is in contact beyond the sides */
     struct area_law law;
     struct mesh_error_workspace *mesh_error;
     double *rise; /* grid_points: scratch */
@@ -24,6 +25,7 @@ int area_workspace_create(struct area_workspace **out, const struct compliance *
         return error_memory(err, n * sizeof(double), "contact areas");
     }
     workspace->grid = *grid;
+    workspace->open = compliance->open;
     int status = area_law_make(grid, &compliance->block, &workspace->law, err);
     if (status == 0)
         status = mesh_error_create(&workspace->mesh_error, compliance, err);
@@ -54,11 +56,13 @@ const struct area_law *area_workspace_law(const struct area_workspace *workspace
     return &workspace->law;
 }
 
-static void count_nodes(const struct grid *grid, const double *p, struct contact_area *out) {
+static void count_nodes(const struct grid *grid, bool open, const double *p,
+                        struct contact_area *out) {
     size_t nx = grid->nx, ny = grid->ny, nodes = 0, all = 0, any = 0;
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {
-            size_t i2 = (i + 1) % nx, j2 = (j + 1) % ny;
+            size_t i2 = open && i + 1 == nx ? i : (i + 1) % nx;
+            size_t j2 = open && j + 1 == ny ? j : (j + 1) % ny;
             bool a = p[j * nx + i] > 0, b = p[j * nx + i2] > 0;
             bool c = p[j2 * nx + i] > 0, d = p[j2 * nx + i2] > 0;
             nodes += a;
@@ -82,8 +86,8 @@ void contact_area(struct area_workspace *workspace, const struct contact_state *
     const struct area_law *law = &workspace->law;
     struct edge_area edges;
     struct mesh_error error;
-    count_nodes(grid, state->p, out);
-    edge_area_measure(&law->edge, grid, state, workspace->rise, &edges);
+    count_nodes(grid, workspace->open, state->p, out);
+    edge_area_measure(&law->edge, grid, workspace->open, state, workspace->rise, &edges);
     mesh_error_measure(workspace->mesh_error, state, &error);
     out->mean_gap = state->mean_gap - error.weighting - error.compliance;
     /* The pressure that the block would take at the mesh's mean gap, less the one it has. */

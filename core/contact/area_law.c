@@ -96,7 +96,7 @@ static int add_loads(struct double_sine *wave, const struct area_law *law, struc
         status = contact_press(wave->contact, LOAD[k] * full, &state, err);
         if (status != 0)
             break;
-        edge_area_measure(&law->edge, &wave->grid, &state, wave->rise, &area);
+        edge_area_measure(&law->edge, &wave->grid, false, &state, wave->rise, &area);
         mesh_error_measure(wave->mesh_error, &state, &error);
         double rate = state.tangent != NULL ? area.rate * state.stiffness : 0;
         double moved = rate * error.compliance, counted = area.nodes - law->overlap * area.sides;

@@ -1,4 +1,5 @@
 #include "core/contact/compliance.h"
+#include "core/contact/free_space.h"
 #include "core/contact/layered.h"
 #include <math.h>
 #include <stdlib.h>
@@ -79,6 +80,8 @@ static int compliance_allocate(struct compliance *compliance, struct error *err)
 
 static int compliance_fill(struct compliance *compliance, struct error *err) {
     int status = 0;
+    if (compliance->open)
+        return free_space_symbol(&compliance->grid, &compliance->waved, compliance->length, err);
     if (compliance->block.model == MODEL_LAYERED)
         status = layered_lengths(&compliance->grid, &compliance->block, compliance->length,
                                  &compliance->layers, err);
@@ -89,27 +92,54 @@ static int compliance_fill(struct compliance *compliance, struct error *err) {
     return status != 0 ? status : lengths_check(compliance, err);
 }
 
-int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,
-                      struct error *err) {
+static int open_check(const struct block *block, struct error *err) {
+    if (block->model != MODEL_HALFSPACE)
+        return error_set(err, ERROR_INPUT,
+                         "a map that does not repeat is pressed on a half-space alone: a mesh of "
+                         "finite elements needs a periodic cell");
+    if (!isinf(block->height))
+        return error_set(err, ERROR_INPUT,
+                         "block height %g under a map that does not repeat; allowed: infinite",
+                         block->height);
+    return 0;
+}
+
+static int create(struct compliance **out, const struct grid *grid, const struct block *block,
+                  bool open, struct error *err) {
     *out = NULL;
     int status = grid_check(grid, err);
     if (status == 0)
         status = block_check(block, err);
+    if (status == 0 && open)
+        status = open_check(block, err);
     if (status != 0)
         return status;
     struct compliance *compliance = array_create(1, sizeof *compliance);
     if (compliance == NULL)
         return error_memory(err, sizeof *compliance, "the compliance");
-    compliance->grid = *grid;
-    compliance->block = *block;
-    compliance->waves = wave_count(grid);
-    status = compliance_allocate(compliance, err);
+    *compliance = (struct compliance){.grid = *grid, .block = *block, .open = open, .waved = *grid};
+    if (open)
+        free_space_padded(grid, &compliance->waved);
+    status = grid_check(&compliance->waved, err);
+    compliance->waves = wave_count(&compliance->waved);
+    if (status == 0)
+        status = compliance_allocate(compliance, err);
     if (status == 0)
         status = compliance_fill(compliance, err);
     if (status != 0)
         compliance_destroy(&compliance);
     *out = compliance;
     return status;
+}
+
+int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,
+                      struct error *err) {
+    return create(out, grid, block, false, err);
+}
+
+int compliance_create_open(struct compliance **out, const struct grid *grid,
+                           const struct block *block, struct error *err) {
+    return create(out, grid, block, true, err);
 }
 
 void compliance_destroy(struct compliance **compliance) {

@@ -11,7 +11,10 @@
  *   local one (as in B-bar; Hughes 1980) but for a part that makes the face's compliance of fourth
  *   order along x and y (layered.c), so that nu = 0.4999 does not lock. Periodic, equal sideways,
  *   its stiffness falls apart into one block-tridiagonal system in depth a wave vector, which is
- *   eliminated from the far side up: the exact compliance of the mesh. */
+ *   eliminated from the far side up: the exact compliance of the mesh.
+ *
+ * A half-space may also be pressed in the grid's rectangle alone, in free space (free_space.h): its
+ * displacements have a level then, and it knows no wave vectors of its own. */
 #ifndef RUGO_CORE_CONTACT_COMPLIANCE_H
 #define RUGO_CORE_CONTACT_COMPLIANCE_H
 
@@ -22,10 +25,12 @@
 struct compliance {
     struct grid grid;
     struct block block;
-    size_t waves;   /* (nx/2 + 1) * ny */
-    double *length; /* owned: S E*; 0 for the mean */
-    double *weight; /* owned: symbol of the gap weighting; NULL: 1 */
-    size_t layers;  /* of the mesh; 0 for a half-space */
+    bool open;         /* in free space, not periodic */
+    struct grid waved; /* whose wave vectors the arrays hold: grid, or where open the padded one */
+    size_t waves;      /* (nx/2 + 1) * ny of that */
+    double *length;    /* owned: S E*; 0 for the mean, where open what free_space.h says */
+    double *weight;    /* owned: symbol of the gap weighting; NULL: 1 */
+    size_t layers;     /* of the mesh; 0 for a half-space */
 };
 
 /* S E* of the block itself, without a mesh (F10.1, F10.2), under a wave number k > 0. */
@@ -35,6 +40,9 @@ double block_compliance(double k, double height);
  * layers. */
 int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,
                       struct error *err);
+/* Of a half-space in free space. ERROR_INPUT as above, and for any other block; ERROR_MEMORY. */
+int compliance_create_open(struct compliance **out, const struct grid *grid,
+                           const struct block *block, struct error *err);
 void compliance_destroy(struct compliance **compliance);
 double compliance_bytes(const struct grid *grid, const struct block *block);
 

@@ -3,20 +3,24 @@
  * back; what lies outside the set is dropped, and the mean is subtracted so that the load stays.
  * Two things differ from the textbook. The search direction is kept when the set changes, with
  * Polak and Ribiere's factor; a restart at every node that opens or closes takes half as many
- * iterations again. When there is no progress, careful steps follow (as in Dostal 1997): conjugate
- * gradients in the set that stop where a pressure becomes 0, and projected gradients where that
- * happened or where penetrations exceed the gaps inside. The energy falls in each of them, in
- * projected steps by at least a fixed part of the square of the change, so that they end at the
- * solution from any start. */
+ * iterations again. On long cells steps that cut pressures at 0 can make long waves overshoot again
+ * and again; when progress is slow such steps are shortened to the least energy, which takes no
+ * further transform. When there is still no progress, careful steps follow (as in Dostal 1997):
+ * conjugate gradients in the set that stop where a pressure becomes 0, and projected gradients
+ * where that happened or where penetrations exceed the gaps inside. The energy falls in each of
+ * them, in projected steps by at least a fixed part of the square of the change, so that they end
+ * at the solution from any start. */
 #include "core/contact/conjugate_gradient.h"
 #include "core/vectors.h"
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 enum {
     LANES = CONJUGATE_GRADIENT_LANES,
     REFRESH = 50, /* iterations after which u is computed anew from p */
     TANGENT_MOST = 300,
+    SLOW = 30, /* iterations that have not halved the violation, after which steps are shortened */
     ASK = 8, /* iterations after which stop is asked: it may take as long as one of a small grid */
 };
 /* Length of a projected step over the inverse of the largest compliance, which is 1 here; must be
@@ -27,10 +31,22 @@ static const double TANGENT_TOLERANCE =
 /* Rounding of the highest points can make violations as large as this, over the heights. */
 static const double ROUNDING = 64 * DBL_EPSILON;
 
-static void filter(struct conjugate_gradient *solver, const double *symbol, const double *in,
-                   double *out) {
-    transform_filter(solver->transform, symbol, 1, in, out);
+/* A padded transform takes about as long as three of the grid. */
+static const double WIDE_TRANSFORMS = 3;
+
+static void stiffen(struct conjugate_gradient *solver, const double *in, double *out) {
+    transform_filter(solver->transform, solver->stiff, 1, in, out);
     solver->transforms += 2;
+}
+
+static void soften(struct conjugate_gradient *solver, const double *in, double *out) {
+    if (solver->wide == NULL) {
+        transform_filter(solver->transform, solver->soft, 1, in, out);
+        solver->transforms += 2;
+        return;
+    }
+    transform_filter_part(solver->wide, solver->soft, 1, solver->grid.nx, solver->grid.ny, in, out);
+    solver->transforms += 2 * WIDE_TRANSFORMS;
 }
 
 static double lanes_sum(const double *lanes) {
@@ -191,7 +207,7 @@ struct step_memory {
 
 /* Computes the next direction t, and w = S t. */
 static void direct(struct conjugate_gradient *solver, struct step_memory *memory) {
-    filter(solver, solver->stiff, solver->r, solver->w);
+    stiffen(solver, solver->r, solver->w);
     struct products s = multiply(solver->padded, solver->r, solver->w, solver->old, solver->t);
     double mean = s.w / s.members;
     double energy = s.w_r - mean * s.r, change = energy - (s.w_old - mean * s.old);
@@ -201,7 +217,7 @@ static void direct(struct conjugate_gradient *solver, struct step_memory *memory
     double *last = solver->old;
     solver->old = solver->r;
     solver->r = last;
-    filter(solver, solver->soft, solver->t, solver->w);
+    soften(solver, solver->t, solver->w);
 }
 
 /* Replaces p by the pressures nearest to p - STRIDE gap among those >= 0 of this mean (Michelot
@@ -267,6 +283,47 @@ static void iterate(struct conjugate_gradient *solver, double mean, bool careful
         scale(solver->n, mean * (double)solver->n / sum, solver->p);
 }
 
+/* Makes a projected step, after which nothing of the last direction holds. */
+static void step_projected(struct conjugate_gradient *solver, double mean,
+                           struct step_memory *memory, bool *stale) {
+    project(solver, mean);
+    *memory = (struct step_memory){0};
+    *stale = true;
+}
+
+/* Shortens the step from kept_p, where u was kept_u, to a p that was cut at 0: to the one of least
+ * energy between them. Where the energy does not fall that way at all, a projected step from kept_p
+ * takes its place. *stale: as for iterate. */
+static void shorten(struct conjugate_gradient *solver, double mean, struct step_memory *memory,
+                    bool *stale) {
+    double slope = 0, curvature = 0;
+    soften(solver, solver->p, solver->u);
+    for (size_t i = 0; i < solver->n; i++) {
+        double change = solver->p[i] - solver->kept_p[i];
+        slope += (solver->kept_u[i] - solver->z[i]) * change;
+        curvature += (solver->u[i] - solver->kept_u[i]) * change;
+    }
+    bool falls = slope < 0;
+    double share = !falls ? 0 : -slope < curvature ? -slope / curvature : 1;
+    for (size_t i = 0; share < 1 && i < solver->n; i++) {
+        solver->p[i] = solver->kept_p[i] + share * (solver->p[i] - solver->kept_p[i]);
+        solver->u[i] = solver->kept_u[i] + share * (solver->u[i] - solver->kept_u[i]);
+    }
+    *stale = false;
+    if (!falls)
+        step_projected(solver, mean, memory, stale);
+}
+
+/* As iterate, with a step that is shortened where it was cut. */
+static void iterate_shortened(struct conjugate_gradient *solver, double mean,
+                              struct step_memory *memory, bool *stale) {
+    memcpy(solver->kept_p, solver->p, solver->n * sizeof *solver->p);
+    memcpy(solver->kept_u, solver->u, solver->n * sizeof *solver->u);
+    iterate(solver, mean, false, memory, stale);
+    if (*stale)
+        shorten(solver, mean, memory, stale);
+}
+
 void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, double tolerance,
                             size_t stall_iterations, size_t max_iterations,
                             struct conjugate_gradient_end *end) {
@@ -281,7 +338,7 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
         highest = fmax(highest, fabs(solver->z[i]));
     for (;; end->iterations++) {
         if (stale || end->iterations % REFRESH == 0)
-            filter(solver, solver->soft, solver->p, solver->u);
+            soften(solver, solver->p, solver->u);
         end->approach = mean_approach(solver->padded, solver->p, solver->u, solver->z);
         residual(solver->padded, solver->p, solver->u, solver->z, careful ? 0 : 1, solver->r, end);
         double violation = fmax(end->inside, end->penetration);
@@ -298,9 +355,9 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
             memory.energy = 0;
         }
         if (careful && (memory.blocked || end->penetration >= end->inside)) {
-            project(solver, mean);
-            memory = (struct step_memory){0};
-            stale = true;
+            step_projected(solver, mean, &memory, &stale);
+        } else if (!careful && progress.since >= SLOW) {
+            iterate_shortened(solver, mean, &memory, &stale);
         } else {
             iterate(solver, mean, careful, &memory, &stale);
         }
@@ -319,7 +376,7 @@ double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
         for (size_t i = 0; i < solver->padded; i++)
             sum += solver->q[i] = solver->p[i];
     scale(solver->n, (double)solver->n / sum, solver->q);
-    filter(solver, solver->soft, solver->q, solver->u);
+    soften(solver, solver->q, solver->u);
     for (size_t iteration = 0;; iteration++) {
         double approach = 0, energy = 0;
         size_t members = 0;

@@ -15,14 +15,19 @@ enum { CONJUGATE_GRADIENT_LANES = 8 }; /* independent partial sums, so that redu
  * nodes that never touch, with z far below and all else 0. */
 struct conjugate_gradient {
     struct transform *transform; /* owned, as all below */
+    struct transform *wide;      /* of the padded grid where the compliance is open; else NULL */
+    struct grid grid;
     size_t n, padded;
     double largest; /* largest compliance, the unit of soft and stiff; in the grid's length */
     double *soft,
-        *stiff;    /* by wave: weighted compliance over largest, and its inverse; 0 for the mean */
+        *stiff;    /* by wave: weighted compliance over largest, and its inverse; 0 for the mean.
+                      Where open, soft is that of the padded grid, and stiff is the inverse of the
+                      periodic half-space's: a preconditioner, no exact inverse */
     double *z;     /* heights of mean 0, filled by the caller */
     double *p, *u; /* pressures, and the displacements that they make */
     double *q;     /* tangent dp/d(mean p): of mean 1, 0 outside of the contact */
     double *r, *old, *t, *w;    /* scratch */
+    double *kept_p, *kept_u;    /* before a step that may be shortened */
     double transforms;          /* Fourier transforms made so far, forward and inverse */
     int (*stop)(void *context); /* called every few iterations, non-zero stops; may be NULL */
     void *stop_context;

@@ -22,7 +22,7 @@ static void add_family(const struct edge_family *f, const struct edge_law *law,
                        const struct contact_state *state, const double *rise,
                        struct edge_area *sums) {
     for (size_t line = 0; line < f->lines; line++)
-        for (size_t node = 0; node < f->nodes; node++) {
+        for (size_t node = 0; node < f->nodes - (f->open ? 1 : 0); node++) {
             bool first = rise[edge_node(f, line, node)] > 0;
             bool second = rise[edge_node(f, line, node + 1)] > 0;
             if (first == second)
@@ -34,12 +34,15 @@ static void add_family(const struct edge_family *f, const struct edge_law *law,
 }
 
 /* Patches less holes, by the corners that their boundary turns: cells with one corner in contact
- * turn it by a quarter, cells with three back by one; and the sides of the boundary. */
-static void count_boundary(const struct grid *grid, const double *p, struct edge_area *sums) {
+ * turn it by a quarter, cells with three back by one; and the sides of the boundary. It ends at the
+ * sides of an open grid. */
+static void count_boundary(const struct grid *grid, bool open, const double *p,
+                           struct edge_area *sums) {
     size_t nx = grid->nx, ny = grid->ny;
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {
-            size_t i2 = (i + 1) % nx, j2 = (j + 1) % ny;
+            size_t i2 = open && i + 1 == nx ? i : (i + 1) % nx;
+            size_t j2 = open && j + 1 == ny ? j : (j + 1) % ny;
             bool in = p[j * nx + i] > 0, right = p[j * nx + i2] > 0, back = p[j2 * nx + i] > 0;
             int corners = in + right + back + (p[j2 * nx + i2] > 0);
             sums->patches += corners == 1 ? 0.25 : corners == 3 ? -0.25 : 0;
@@ -47,10 +50,11 @@ static void count_boundary(const struct grid *grid, const double *p, struct edge
         }
 }
 
-void edge_area_measure(const struct edge_law *law, const struct grid *grid,
+void edge_area_measure(const struct edge_law *law, const struct grid *grid, bool open,
                        const struct contact_state *state, double *rise, struct edge_area *out) {
     double n = (double)grid_points(grid);
     struct edge_family rows = edge_rows(grid), columns = edge_columns(grid);
+    rows.open = columns.open = open;
     edge_fill_rise(grid, state, rise);
     *out = (struct edge_area){0};
     for (size_t i = 0; i < grid_points(grid); i++)
@@ -59,7 +63,7 @@ void edge_area_measure(const struct edge_law *law, const struct grid *grid,
     add_family(&rows, law, state, rise, out);
     if (!grid_is_profile(grid)) {
         add_family(&columns, law, state, rise, out);
-        count_boundary(grid, state->p, out);
+        count_boundary(grid, open, state->p, out);
     }
     *out = (struct edge_area){.straight = out->straight / n,
                               .rate = out->rate / n,

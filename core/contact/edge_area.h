@@ -19,8 +19,9 @@ struct edge_area {
     double sides;   /* of nodes in contact that face open ones, over the number of nodes */
 };
 
-/* rise: scratch of grid_points. */
-void edge_area_measure(const struct edge_law *law, const struct grid *grid,
+/* rise: scratch of grid_points. open: contact ends at the sides of the grid, on the borders of the
+ * cells of the outermost nodes. */
+void edge_area_measure(const struct edge_law *law, const struct grid *grid, bool open,
                        const struct contact_state *state, double *rise, struct edge_area *out);
 
 #endif

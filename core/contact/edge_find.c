@@ -19,24 +19,35 @@ double edge_fill_rise(const struct grid *grid, const struct contact_state *state
     return most;
 }
 
+/* Returns the index a few steps from another one, of count, which closes upon itself or not. */
+static size_t stepped(size_t count, bool open, size_t at, int steps) {
+    size_t back = (size_t)-steps, from = at % count;
+    if (steps >= 0)
+        return open && from + (size_t)steps >= count ? count - 1 : (from + (size_t)steps) % count;
+    return open && from < back ? 0 : (from + back * (count - 1)) % count;
+}
+
 struct edge_crossing edge_crossing_at(const struct edge_family *family, size_t line, size_t a,
                                       size_t b) {
     const struct edge_family *f = family;
-    size_t back = a + 2 * f->nodes - (b - a);
-    return (struct edge_crossing){.inside = edge_node(f, line, a),
-                                  .outside = edge_node(f, line, b),
-                                  .before = edge_node(f, line, back),
-                                  .far_before = edge_node(f, line, back - (b - a)),
-                                  .beyond = edge_node(f, line, 2 * b - a + f->nodes),
-                                  .far_beyond = edge_node(f, line, 3 * b - 2 * a + f->nodes),
-                                  .inside_left = edge_node(f, line + 1, a),
-                                  .outside_left = edge_node(f, line + 1, b),
-                                  .inside_right = edge_node(f, line + f->lines - 1, a),
-                                  .outside_right = edge_node(f, line + f->lines - 1, b),
-                                  .step = f->step,
-                                  .across = f->across,
-                                  .row = f->row,
-                                  .profile = f->lines == 1};
+    int on = b == a + 1 ? 1 : -1;
+    size_t left = stepped(f->lines, f->open, line, 1);
+    size_t right = stepped(f->lines, f->open, line, -1);
+    return (struct edge_crossing){
+        .inside = edge_node(f, line, a),
+        .outside = edge_node(f, line, b),
+        .before = edge_node(f, line, stepped(f->nodes, f->open, a, -on)),
+        .far_before = edge_node(f, line, stepped(f->nodes, f->open, a, -2 * on)),
+        .beyond = edge_node(f, line, stepped(f->nodes, f->open, b, on)),
+        .far_beyond = edge_node(f, line, stepped(f->nodes, f->open, b, 2 * on)),
+        .inside_left = edge_node(f, left, a),
+        .outside_left = edge_node(f, left, b),
+        .inside_right = edge_node(f, right, a),
+        .outside_right = edge_node(f, right, b),
+        .step = f->step,
+        .across = f->across,
+        .row = f->row,
+        .profile = f->lines == 1};
 }
 
 /* One crossing as it is found. Distances are true ones, in spacings along the normal. */

@@ -11,14 +11,15 @@ struct edge_family {
     size_t along, beside; /* steps in the array */
     double step, across;  /* lengths */
     bool row;
+    bool open; /* lines end at the sides of the grid */
 };
 static inline struct edge_family edge_rows(const struct grid *grid) {
-    return (struct edge_family){grid->ny,      grid->nx,      1,   grid->nx,
-                                grid_dx(grid), grid_dy(grid), true};
+    return (struct edge_family){grid->ny,      grid->nx,      1,    grid->nx,
+                                grid_dx(grid), grid_dy(grid), true, false};
 }
 static inline struct edge_family edge_columns(const struct grid *grid) {
     return (struct edge_family){grid->nx,      grid->ny,      grid->nx, 1,
-                                grid_dy(grid), grid_dx(grid), false};
+                                grid_dy(grid), grid_dx(grid), false,    false};
 }
 /* Both numbers count modulo what there is. */
 static inline size_t edge_node(const struct edge_family *family, size_t line, size_t node) {
@@ -36,7 +37,9 @@ struct edge_crossing {
     bool row;                                                      /* along x */
     bool profile;
 };
-/* From node a of the line to node b, one step forth or back (nodes counted modulo the line). */
+/* From node a of the line to node b, one step forth or back (nodes counted modulo the line). On
+ * open lines both are nodes, and in place of nodes and lines beyond a side stands the outermost
+ * one. */
 struct edge_crossing edge_crossing_at(const struct edge_family *family, size_t line, size_t a,
                                       size_t b);
 

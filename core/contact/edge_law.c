@@ -87,6 +87,7 @@ static int line_compliance(struct compliance **out, const struct grid *grid,
     if (status == 0) {
         *line = (struct compliance){.grid = {count, 1, length, length},
                                     .block = deep,
+                                    .waved = {count, 1, length, length},
                                     .waves = count / 2 + 1,
                                     .layers = whole->layers};
         line->length = array_create(line->waves, sizeof *line->length);

@@ -6,6 +6,7 @@
  * smaller index is the root, so that roots come in the order of the nodes. */
 struct patch_finder {
     struct grid grid;
+    bool open;      /* its sides do not meet */
     size_t *parent; /* grid_points */
     size_t *size;   /* grid_points: nodes, at a root */
 };
@@ -24,6 +25,10 @@ int patch_finder_create(struct patch_finder **out, const struct grid *grid, stru
     }
     *out = finder;
     return 0;
+}
+
+void patch_finder_open(struct patch_finder *finder) {
+    finder->open = true;
 }
 
 void patch_finder_destroy(struct patch_finder **finder) {
@@ -49,24 +54,31 @@ static void join(size_t *parent, size_t i, size_t j) {
         parent[a] = b;
 }
 
-void patches_find(struct patch_finder *finder, const double *p, struct patches *out,
-                  size_t *sizes) {
-    size_t nx = finder->grid.nx, ny = finder->grid.ny, n = nx * ny;
-    size_t *parent = finder->parent, *size = finder->size;
-    for (size_t i = 0; i < n; i++) {
-        parent[i] = i;
-        size[i] = 0;
-    }
+/* Joins each node under pressure with those at its right and above it. */
+static void join_neighbours(const struct patch_finder *finder, const double *p) {
+    size_t nx = finder->grid.nx, ny = finder->grid.ny;
+    size_t *parent = finder->parent;
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {
             size_t at = j * nx + i, right = j * nx + (i + 1) % nx, up = (j + 1) % ny * nx + i;
             if (!(p[at] > 0))
                 continue;
-            if (p[right] > 0)
+            if (p[right] > 0 && !(finder->open && i + 1 == nx))
                 join(parent, at, right);
-            if (p[up] > 0)
+            if (p[up] > 0 && !(finder->open && j + 1 == ny))
                 join(parent, at, up);
         }
+}
+
+void patches_find(struct patch_finder *finder, const double *p, struct patches *out,
+                  size_t *sizes) {
+    size_t n = finder->grid.nx * finder->grid.ny;
+    size_t *parent = finder->parent, *size = finder->size;
+    for (size_t i = 0; i < n; i++) {
+        parent[i] = i;
+        size[i] = 0;
+    }
+    join_neighbours(finder, p);
     double nodes = 0, squares = 0;
     *out = (struct patches){0};
     for (size_t i = 0; i < n; i++)

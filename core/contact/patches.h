@@ -1,4 +1,5 @@
-/* Contact patches: nodes in contact, joined along grid lines, across the cell's periodic sides. */
+/* Contact patches: nodes in contact, joined along grid lines, also across the sides of a periodic
+ * cell. */
 #ifndef RUGO_CORE_CONTACT_PATCHES_H
 #define RUGO_CORE_CONTACT_PATCHES_H
 
@@ -12,6 +13,8 @@ struct patches {
 };
 struct patch_finder;
 int patch_finder_create(struct patch_finder **out, const struct grid *grid, struct error *err);
+/* From now on nothing is joined across the sides. */
+void patch_finder_open(struct patch_finder *finder);
 void patch_finder_destroy(struct patch_finder **finder);
 /* In contact: p > 0. sizes (NULL: not wanted) gets the nodes of each patch, room for grid_points.
  */

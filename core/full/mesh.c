@@ -75,9 +75,11 @@ static int levels_create(struct mesh *mesh, const struct grid *grid, const struc
         status = error_set(err, ERROR_INPUT,
                            "a block of height %g needs more than %d layers that grow by %g",
                            block->height, LAYERS_MOST, block->layer_growth);
-    else if ((double)(mesh->layers + 1) * (double)mesh->face > (double)INT32_MAX / 8)
-        status = error_set(err, ERROR_INPUT, "%zu layers of %zu nodes are too many", mesh->layers,
-                           mesh->face);
+    else if (mesh_nodes_bound(grid, mesh->layers) > MESH_NODES_MOST)
+        status = error_set(err, ERROR_INPUT,
+                           "%zu layers under %zu points are too many; allowed: %.0f "
+                           "nodes",
+                           mesh->layers, mesh->face, MESH_NODES_MOST);
     if (status == 0) {
         mesh->level = array_create(mesh->layers + 1, sizeof *mesh->level);
         if (mesh->level == NULL)

@@ -35,6 +35,13 @@ struct mesh {
     double quality; /* smallest element_quality of an element */
 };
 
+/* Nodes under each point of the face, whatever the columns' widths: their numbers are of 32 bits in
+ * the factorisation of their equations. */
+#define MESH_NODES_MOST 268435455.0
+static inline double mesh_nodes_bound(const struct grid *grid, size_t layers) {
+    return ((double)layers + 1) * (double)grid_points(grid);
+}
+
 /* Makes the mesh of a block with a flat face. transition: depth in widths of the wide columns from
  * which columns become twice as wide, where their numbers are even and at least 4 remain; INFINITY
  * keeps all columns equal. ERROR_INPUT for a grid or block out of range (compliance.h) or a

@@ -18,13 +18,14 @@ struct spectrum {
      * <= |m| <= lx/short includes both edges, with a relative guard of 1e-9 against rounding */
     double hurst; /* [0, 1] */
     double wavelength_long, wavelength_rolloff, wavelength_short;
-    /* of surfaces: all waves are so many times as long along x as they are along y; 0 is as 1 */
+    /* of surfaces, self-affine ones and tables: all waves are so many times as long along x as they
+     * are along y; 0 is as 1 */
     double anisotropy;
     /* exponential autocorrelation exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (F2.2), as it is at the points
      * of the grid; it has no band limit and fills the grid */
     double correlation_x, correlation_y;
-    /* table: isotropic density of any scale at rising |k|, interpolated in logarithms, 0 outside;
-     * borrowed */
+    /* table: density of any scale at rising |k|, of waves along y, interpolated in logarithms, 0
+     * outside; borrowed */
     size_t table_count;
     const double *table_wave_number; /* radians per length */
     const double *table_density;

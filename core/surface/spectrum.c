@@ -100,7 +100,7 @@ static double table_density(const struct spectrum *s, double k) {
 }
 
 static double density(const struct spectrum *s, bool profile, double kx, double ky) {
-    double x = s->type == SPECTRUM_SELF_AFFINE && s->anisotropy > 0 ? kx * s->anisotropy : kx;
+    double x = s->anisotropy > 0 ? kx * s->anisotropy : kx;
     double k = profile ? fabs(kx) : hypot(x, ky);
     switch (s->type) {
     case SPECTRUM_SELF_AFFINE:
@@ -122,7 +122,8 @@ static int band_edge(const struct spectrum *s, double length, size_t points, dou
     if (s->type == SPECTRUM_SELF_AFFINE)
         edge = floor(length / (s->wavelength_short * anisotropy) * (1 + EDGE));
     else if (s->type == SPECTRUM_TABLE)
-        edge = floor(s->table_wave_number[s->table_count - 1] * length / (2 * M_PI) * (1 + EDGE));
+        edge = floor(s->table_wave_number[s->table_count - 1] * length / (2 * M_PI * anisotropy) *
+                     (1 + EDGE));
     if (edge > (double)nyquist)
         return error_set(
             err, ERROR_INPUT,

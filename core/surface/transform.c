@@ -48,6 +48,17 @@ static int plans_create(struct transform *t) {
                            t->one_inverse != NULL && t->one_forward != NULL));
 }
 
+size_t transform_fast_count(size_t n) {
+    for (size_t candidate = n + n % 2;; candidate += 2) {
+        size_t rest = candidate;
+        for (size_t factor = 2; factor <= 5; factor++)
+            while (rest % factor == 0)
+                rest /= factor;
+        if (rest == 1)
+            return candidate;
+    }
+}
+
 int transform_create(struct transform **out, const struct grid *grid, size_t mode_x, size_t mode_y,
                      struct error *err) {
     if (grid_check(grid, err) != 0)
@@ -109,16 +120,20 @@ void transform_inverse_columns(struct transform *t) {
         fftw_execute(t->column_inverse);
 }
 
+/* The lines of rows j .. j + rows - 1, at most ROWS of them, from the spectrum. */
+static void inverse_lines(struct transform *t, size_t j, size_t rows) {
+    for (size_t row = 0; row < t->batch; row++)
+        memset(t->rows + row * t->half + t->columns, 0, (t->half - t->columns) * sizeof *t->rows);
+    for (size_t i = 0; i < t->columns; i++)
+        for (size_t row = 0; row < rows; row++)
+            t->rows[row * t->half + i] = t->spectrum[i * t->ny + j + row];
+    fftw_execute(t->row_inverse);
+}
+
 void transform_inverse_rows(struct transform *t, size_t first, size_t count, double *z) {
     for (size_t j = first; j < first + count; j += ROWS) {
         size_t rows = first + count - j < ROWS ? first + count - j : ROWS;
-        for (size_t row = 0; row < t->batch; row++)
-            memset(t->rows + row * t->half + t->columns, 0,
-                   (t->half - t->columns) * sizeof *t->rows);
-        for (size_t i = 0; i < t->columns; i++)
-            for (size_t row = 0; row < rows; row++)
-                t->rows[row * t->half + i] = t->spectrum[i * t->ny + j + row];
-        fftw_execute(t->row_inverse);
+        inverse_lines(t, j, rows);
         memcpy(z + (j - first) * t->nx, t->lines, rows * t->nx * sizeof *z);
     }
 }
@@ -148,10 +163,8 @@ void transform_pad(struct transform *from, struct transform *to) {
     }
 }
 
-/* Rows j .. j + rows - 1, at most ROWS of them, into the spectrum. */
-static void forward_batch(struct transform *t, size_t j, size_t rows, const double *z,
-                          double scale) {
-    memcpy(t->lines, z, rows * t->nx * sizeof *z);
+/* The lines as rows j .. j + rows - 1, at most ROWS of them, into the spectrum. */
+static void forward_lines(struct transform *t, size_t j, size_t rows, double scale) {
     fftw_execute(t->row_forward);
     for (size_t i = 0; i < t->columns; i++)
         for (size_t row = 0; row < rows; row++)
@@ -162,7 +175,8 @@ static void forward_rows(struct transform *t, size_t first, size_t count, const 
                          double scale) {
     for (size_t j = first; j < first + count; j += ROWS) {
         size_t rows = first + count - j < ROWS ? first + count - j : ROWS;
-        forward_batch(t, j, rows, z + (j - first) * t->nx, scale);
+        memcpy(t->lines, z + (j - first) * t->nx, rows * t->nx * sizeof *z);
+        forward_lines(t, j, rows, scale);
     }
 }
 
@@ -180,11 +194,11 @@ void transform_forward(struct transform *t, const double *z) {
     transform_forward_columns(t);
 }
 
-void transform_filter(struct transform *t, const double *symbol, double factor, const double *in,
-                      double *out) {
-    forward_rows(t, 0, t->ny, in, factor / ((double)t->nx * (double)t->ny));
+/* Multiplies each column by its symbol, in cache; rows from ny on are 0 before. */
+static void filter_columns(struct transform *t, const double *symbol, size_t ny) {
     for (size_t i = 0; i < t->columns; i++) {
         double complex *column = t->spectrum + i * t->ny;
+        memset(column + ny, 0, (t->ny - ny) * sizeof *column);
         if (t->ny > 1)
             fftw_execute_dft(t->one_forward, column, column);
         for (size_t row = 0; row < t->ny; row++)
@@ -192,5 +206,30 @@ void transform_filter(struct transform *t, const double *symbol, double factor, 
         if (t->ny > 1)
             fftw_execute_dft(t->one_inverse, column, column);
     }
+}
+
+void transform_filter(struct transform *t, const double *symbol, double factor, const double *in,
+                      double *out) {
+    forward_rows(t, 0, t->ny, in, factor / ((double)t->nx * (double)t->ny));
+    filter_columns(t, symbol, t->ny);
     transform_inverse_rows(t, 0, t->ny, out);
+}
+
+void transform_filter_part(struct transform *t, const double *symbol, double factor, size_t nx,
+                           size_t ny, const double *in, double *out) {
+    double scale = factor / ((double)t->nx * (double)t->ny);
+    for (size_t j = 0; j < ny; j += ROWS) {
+        size_t rows = ny - j < ROWS ? ny - j : ROWS;
+        memset(t->lines, 0, t->batch * t->nx * sizeof *t->lines);
+        for (size_t row = 0; row < rows; row++)
+            memcpy(t->lines + row * t->nx, in + (j + row) * nx, nx * sizeof *in);
+        forward_lines(t, j, rows, scale);
+    }
+    filter_columns(t, symbol, ny);
+    for (size_t j = 0; j < ny; j += ROWS) {
+        size_t rows = ny - j < ROWS ? ny - j : ROWS;
+        inverse_lines(t, j, rows);
+        for (size_t row = 0; row < rows; row++)
+            memcpy(out + (j + row) * nx, t->lines + row * t->nx, nx * sizeof *out);
+    }
 }

@@ -15,6 +15,10 @@
 
 struct transform;
 
+/* Returns the least even number of 2, 3 and 5 alone that is n or more: transforms of so many points
+ * are fast. */
+size_t transform_fast_count(size_t n);
+
 /* Makes a plan for the band |mx| <= mode_x <= nx/2, |my| <= mode_y <= ny/2. Memory: about one band
  * of columns. */
 int transform_create(struct transform **out, const struct grid *grid, size_t mode_x, size_t mode_y,
@@ -47,5 +51,9 @@ void transform_forward_columns(struct transform *transform);
  * Needs the whole band in y; in and out may be the same. */
 void transform_filter(struct transform *transform, const double *symbol, double factor,
                       const double *in, double *out);
+/* The same of a field in the first ny rows of nx points of the transform's grid, beside which it is
+ * 0; out holds as many. */
+void transform_filter_part(struct transform *transform, const double *symbol, double factor,
+                           size_t nx, size_t ny, const double *in, double *out);
 
 #endif
