@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/plain_text.h"
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -13,6 +14,7 @@ void error_fill(struct error *err, int code, const char *format, ...) {
     err->code = code;
     vsnprintf(err->text, sizeof err->text, format, arguments);
     va_end(arguments);
+    text_make_plain(err->text);
 }
 
 int error_context(struct error *err, const char *format, ...) {
@@ -35,6 +37,7 @@ int error_context(struct error *err, const char *format, ...) {
         head = tail < room ? room - tail : 0;
     memmove(err->text + head, err->text, tail + 1);
     memcpy(err->text, context, head);
+    text_make_plain(err->text);
     return err->code;
 }
 

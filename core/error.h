@@ -2,7 +2,8 @@
  *
  * Every fallible function returns an int: 0, or one of the negative codes below, and then has
  * filled the caller's struct error with a sentence that names the thing at fault, its value and
- * what is allowed. Callers either handle it or return it, with a word of context put in front.
+ * what is allowed; characters that a terminal would obey are '?' in it. Callers either handle it or
+ * return it, with a word of context put in front.
  *
  * What a failure leaves, wherever a function says nothing else: *out of a constructor is NULL or
  * untouched, and nothing has to be destroyed; outputs that are filled in place are undefined; the

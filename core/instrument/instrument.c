@@ -1,0 +1,58 @@
+#include "core/instrument/formats.h"
+#include "core/map/height_map_file.h"
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+/* X3P stands behind NPZ: it owns every other zip archive, to say what is wrong with it. */
+const struct instrument_format *const INSTRUMENT_FORMATS[] = {
+    &INSTRUMENT_GWY,  &INSTRUMENT_SDF,    &INSTRUMENT_NPZ,
+    &INSTRUMENT_X3P,  &INSTRUMENT_ZYGO,   &INSTRUMENT_SURFER,
+    &INSTRUMENT_ESRI, &INSTRUMENT_POINTS, NULL,
+};
+
+static bool has_ending(const char *name, const char *endings) {
+    const char *dot = strrchr(name, '.');
+    if (dot == NULL || dot[1] == '\0')
+        return false;
+    const size_t length = strlen(dot + 1);
+    for (const char *at = endings; *at != '\0';) {
+        size_t word = strcspn(at, " ");
+        if (word == length && strncasecmp(at, dot + 1, word) == 0)
+            return true;
+        at += word + strspn(at + word, " ");
+    }
+    return false;
+}
+
+static const struct instrument_format *format_of(const char *name, const char *data, size_t size) {
+    for (size_t f = 0; INSTRUMENT_FORMATS[f] != NULL; f++)
+        if (INSTRUMENT_FORMATS[f]->owns != NULL && INSTRUMENT_FORMATS[f]->owns(data, size))
+            return INSTRUMENT_FORMATS[f];
+    for (size_t f = 0; INSTRUMENT_FORMATS[f] != NULL; f++)
+        if (has_ending(name, INSTRUMENT_FORMATS[f]->endings))
+            return INSTRUMENT_FORMATS[f];
+    return INSTRUMENT_TEXT.owns(data, size) ? &INSTRUMENT_TEXT : NULL;
+}
+
+int instrument_read(struct height_map *out, const char *name, const char *data, size_t size,
+                    double dx, const struct instrument_request *request, const char **format,
+                    struct error *err) {
+    const struct instrument_format *foreign = format_of(name, data, size);
+    enum height_map_format own = height_map_format_of(name);
+    if (own == HEIGHT_MAP_FORMATS)
+        own = size > 0 && data[0] == '\x93' ? HEIGHT_MAP_NPY : HEIGHT_MAP_CSV;
+    if (dx != 0 && !(dx > 0 && isfinite(dx)))
+        return error_set(err, ERROR_INPUT, "the spacing of points must be above 0, not %g", dx);
+    int status = foreign != NULL ? foreign->read(out, data, size, request, err)
+                                 : height_map_parse(out, own, data, size, dx, err);
+    if (status != 0)
+        return status;
+    if (foreign != NULL && dx > 0) {
+        out->grid.lx = dx * (double)out->grid.nx;
+        out->grid.ly = dx * (double)out->grid.ny;
+    }
+    if (format != NULL)
+        *format = foreign != NULL ? foreign->name : HEIGHT_MAP_NAMES[own];
+    return 0;
+}

@@ -1,0 +1,71 @@
+#include "core/instrument/layers.h"
+#include "core/instrument/unit_of.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Puts "1 'Topography' [m], 2 'Phase' [deg]" into text, and how many more there are where it does
+ * not hold them all. */
+static void list_layers(const struct layer *layers, size_t count, char *text, size_t room) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (size_t layer = 0; layer < count; layer++) {
+        char one[80];
+        snprintf(one, sizeof one, "%s%zu '%.30s' [%.12s]", layer > 0 ? ", " : "", layer + 1,
+                 layers[layer].title != NULL ? layers[layer].title : "", layers[layer].z_unit);
+        size_t length = strlen(one);
+        if (used + length + 24 > room) {
+            snprintf(text + used, room - used, " and %zu more", count - layer);
+            return;
+        }
+        memcpy(text + used, one, length + 1);
+        used += length;
+    }
+}
+
+static bool by_title(const struct layer *layers, size_t count, const char *asked, size_t *out) {
+    for (size_t layer = 0; layer < count; layer++)
+        if (layers[layer].title != NULL && strcmp(layers[layer].title, asked) == 0) {
+            *out = layer;
+            return true;
+        }
+    return false;
+}
+
+static bool by_position(size_t count, const char *asked, size_t *out) {
+    if (strspn(asked, "0123456789") != strlen(asked) || strlen(asked) < 1 || strlen(asked) > 9)
+        return false;
+    size_t position = strtoul(asked, NULL, 10);
+    if (position < 1 || position > count)
+        return false;
+    *out = position - 1;
+    return true;
+}
+
+int layer_choose(const struct layer *layers, size_t count, const char *asked, const char *others,
+                 size_t *out, struct error *err) {
+    double metres;
+    if (count == 0)
+        return error_set(err, ERROR_INPUT, "the file holds no layer of heights%s", others);
+    if (asked == NULL) {
+        *out = 0;
+        for (size_t layer = count; layer-- > 0;)
+            if (unit_is_length(layers[layer].z_unit, &metres))
+                *out = layer;
+        return 0;
+    }
+    if (by_title(layers, count, asked, out) || by_position(count, asked, out))
+        return 0;
+    char text[300];
+    list_layers(layers, count, text, sizeof text);
+    return error_set(err, ERROR_INPUT,
+                     "the file has no layer '%.40s'; allowed: a title or number of %s%s", asked,
+                     text, others);
+}
+
+int layer_check_only(const char *asked, struct error *err) {
+    if (asked == NULL || strcmp(asked, "1") == 0)
+        return 0;
+    return error_set(err, ERROR_INPUT, "the file has no layer '%.40s'; allowed: 1, its only one",
+                     asked);
+}

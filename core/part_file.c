@@ -1,0 +1,158 @@
+#include "core/part_file.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <glob.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define PART_SUFFIX ".part-"
+#define PART_NAME PART_SUFFIX "XXXXXX"
+
+enum { TRIES_MOST = 100 };
+
+/* A path in which no character stands for others; NULL out of memory. The caller frees. */
+static char *pattern_of(const char *path) {
+    static const char RANDOM[] = PART_SUFFIX "??????";
+    size_t length = strlen(path), used = 0;
+    char *pattern = array_create(2 * length + sizeof RANDOM, 1);
+    if (pattern == NULL)
+        return NULL;
+    for (size_t n = 0; n < length; n++) {
+        if (strchr("*?[]\\", path[n]) != NULL)
+            pattern[used++] = '\\';
+        pattern[used++] = path[n];
+    }
+    memcpy(pattern + used, RANDOM, sizeof RANDOM);
+    return pattern;
+}
+
+static void remove_unheld(const char *part) {
+    int file = open(part, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    if (file < 0)
+        return;
+    if (flock(file, LOCK_EX | LOCK_NB) == 0)
+        (void)unlink(part);
+    close(file);
+}
+
+void part_file_remove_left(const char *path) {
+    glob_t found;
+    char *pattern = pattern_of(path);
+    if (pattern != NULL && glob(pattern, GLOB_NOSORT, NULL, &found) == 0) {
+        for (size_t n = 0; n < found.gl_pathc; n++)
+            remove_unheld(found.gl_pathv[n]);
+        globfree(&found);
+    }
+    free(pattern);
+}
+
+/* Makes the file and locks it. *held is false where the name was taken, or another process took the
+ * file away between the two, as one that was left. */
+static int make_part(struct part_file *part, bool *held, struct error *err) {
+    struct stat info;
+    uint32_t word;
+    size_t length = strlen(part->target);
+    if (getrandom(&word, sizeof word, 0) != (ssize_t)sizeof word)
+        return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
+    snprintf(part->path + length, sizeof PART_NAME, PART_SUFFIX "%06x", (unsigned)(word >> 8));
+    *held = false;
+    part->file = open(part->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (part->file < 0)
+        return errno == EEXIST
+                   ? 0
+                   : error_set(err, ERROR_SYSTEM, "%s: no file can be made beside it: %s",
+                               part->target, strerror(errno));
+    *held = flock(part->file, LOCK_EX | LOCK_NB) == 0 && fstat(part->file, &info) == 0 &&
+            info.st_nlink == 1;
+    if (!*held)
+        close(part->file);
+    return 0;
+}
+
+int part_file_create(struct part_file *part, const char *path, struct error *err) {
+    struct stat info;
+    bool held = false;
+    *part = (struct part_file){0};
+    if (lstat(path, &info) == 0)
+        return error_set(err, ERROR_INPUT, "%s exists; a new file is needed", path);
+    part_file_remove_left(path);
+    size_t size = strlen(path) + sizeof PART_NAME;
+    struct part_file made = {-1, array_create(size, 1), strdup(path)};
+    int status = 0;
+    if (made.path == NULL || made.target == NULL)
+        status = error_memory(err, size, "the path of a file");
+    else
+        memcpy(made.path, path, strlen(path));
+    for (int tries = 0; status == 0 && !held; tries++)
+        status = tries < TRIES_MOST
+                     ? make_part(&made, &held, err)
+                     : error_set(err, ERROR_SYSTEM, "%s cannot be locked", made.path);
+    if (status != 0) {
+        free(made.path);
+        free(made.target);
+        return status;
+    }
+    *part = made;
+    return 0;
+}
+
+/* Renames without replacing; where the file system cannot do that in one step, in two. */
+static int put_in_place(const struct part_file *part) {
+    struct stat info;
+    if (renameat2(AT_FDCWD, part->path, AT_FDCWD, part->target, RENAME_NOREPLACE) == 0)
+        return 0;
+    if (errno != EINVAL && errno != ENOSYS)
+        return -1;
+    if (lstat(part->target, &info) == 0) {
+        errno = EEXIST;
+        return -1;
+    }
+    return rename(part->path, part->target);
+}
+
+/* The name itself is on the disk when its folder is. */
+static int sync_folder(const char *path) {
+    char *folder = strdup(path);
+    if (folder == NULL)
+        return -1;
+    char *slash = strrchr(folder, '/');
+    if (slash != NULL)
+        slash[slash == folder] = '\0';
+    int file = open(slash != NULL ? folder : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    int status = file < 0 ? -1 : fsync(file);
+    if (file >= 0)
+        close(file);
+    free(folder);
+    return status;
+}
+
+int part_file_publish(struct part_file *part, struct error *err) {
+    int status = 0;
+    if (fsync(part->file) != 0)
+        status = error_set(err, ERROR_SYSTEM, "%s: %s", part->target, strerror(errno));
+    else if (put_in_place(part) != 0)
+        status =
+            error_set(err, errno == EEXIST ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s", part->target,
+                      errno == EEXIST ? "exists; a new file is needed" : strerror(errno));
+    else
+        (void)sync_folder(part->target); /* some file systems cannot, and the file is there */
+    part_file_destroy(part);             /* after a success there is no such path any more */
+    return status;
+}
+
+void part_file_destroy(struct part_file *part) {
+    if (part->path == NULL)
+        return;
+    (void)unlink(part->path);
+    close(part->file);
+    free(part->path);
+    free(part->target);
+    *part = (struct part_file){0};
+}
