@@ -8,6 +8,9 @@
 struct height_map {
     struct grid grid; /* spacing from the file (xyz) or from dx */
     double *z;        /* owned, grid_points; NaN: a hole, where nothing was measured */
+    /* Units of x and y, and of z: "m" where the file tells a length, which is in metres then; ""
+     * where it tells none; else what the file says, of layers that hold no heights ("V"). */
+    char xy_unit[16], z_unit[16];
 };
 void height_map_clear(struct height_map *map);
 

@@ -190,32 +190,55 @@ static int check_type(const char *type, const char *order, struct word *word, bo
     return 0;
 }
 
-int height_map_npy_parse(struct height_map *map, const char *data, size_t size, double dx,
-                         struct error *err) {
-    char header[HEADER_MOST];
-    size_t start = 0, nx, ny;
+/* What a header says. */
+struct npy {
+    size_t start, nx, ny; /* bytes before the heights */
     struct word word;
     bool fortran;
-    int status = read_header(data, size, header, &start, err);
+};
+
+static int read_layout(struct npy *npy, const char *data, size_t size, struct error *err) {
+    char header[HEADER_MOST];
+    int status = read_header(data, size, header, &npy->start, err);
     if (status == 0)
         status = check_type(value_behind(header, "descr"), value_behind(header, "fortran_order"),
-                            &word, &fortran, err);
+                            &npy->word, &npy->fortran, err);
     if (status != 0)
         return status;
-    if (!read_shape(value_behind(header, "shape"), &ny, &nx))
+    if (!read_shape(value_behind(header, "shape"), &npy->ny, &npy->nx))
         return error_set(err, ERROR_INPUT, "the npy shape must be (n,) or (ny, nx)");
-    status = height_map_shape(map, ny, nx, dx, err);
+    return 0;
+}
+
+int height_map_npy_shape(const char *data, size_t size, size_t *ny, size_t *nx, struct error *err) {
+    struct npy npy = {0};
+    struct height_map map;
+    int status = read_layout(&npy, data, size, err);
+    if (status == 0)
+        status = height_map_shape(&map, npy.ny, npy.nx, 1, err);
+    *ny = npy.ny;
+    *nx = npy.nx;
+    return status;
+}
+
+int height_map_npy_parse(struct height_map *map, const char *data, size_t size, double dx,
+                         struct error *err) {
+    struct npy npy = {0};
+    int status = read_layout(&npy, data, size, err);
+    if (status == 0)
+        status = height_map_shape(map, npy.ny, npy.nx, dx, err);
     if (status != 0)
         return status;
+    const size_t ny = npy.ny, nx = npy.nx, start = npy.start;
     size_t n = nx * ny;
-    if (size - start != n * word.bytes)
+    if (size - start != n * npy.word.bytes)
         return error_set(err, ERROR_INPUT,
                          "%zu rows of %zu heights take %zu bytes; the npy file has %zu", ny, nx,
-                         n * word.bytes, size - start);
+                         n * npy.word.bytes, size - start);
     map->z = array_create(n, sizeof *map->z);
     if (map->z == NULL)
         return error_memory(err, n * sizeof *map->z, "a height map");
-    return read_heights(map, data + start, &word, fortran, err);
+    return read_heights(map, data + start, &npy.word, npy.fortran, err);
 }
 
 /* --- writing --- */

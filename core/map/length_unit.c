@@ -1,0 +1,56 @@
+#include "core/map/length_unit.h"
+#include <math.h>
+#include <string.h>
+
+static const struct length_unit {
+    const char *name;
+    double metres;
+} UNITS[] = {{"m", 1},
+             {"metre", 1},
+             {"meter", 1},
+             {"dm", 1e-1},
+             {"cm", 1e-2},
+             {"mm", 1e-3},
+             {"\xc2\xb5m", 1e-6}, /* micro sign */
+             {"\xce\xbcm", 1e-6}, /* Greek mu */
+             {"\xb5m", 1e-6},     /* micro sign of Latin-1 */
+             {"um", 1e-6},
+             {"micron", 1e-6},
+             {"microns", 1e-6},
+             {"nm", 1e-9},
+             {"pm", 1e-12},
+             {"A", 1e-10},
+             {"\xc3\x85", 1e-10},     /* A with ring */
+             {"\xe2\x84\xab", 1e-10}, /* angstrom sign */
+             {"\xc5", 1e-10},         /* A with ring of Latin-1 */
+             {"angstrom", 1e-10},
+             {"km", 1e3},
+             {"inch", 0.0254},
+             {"in", 0.0254},
+             {"mil", 2.54e-5}};
+enum { UNIT_COUNT = sizeof UNITS / sizeof UNITS[0] };
+
+bool length_unit_metres(const char *name, size_t size, double *metres) {
+    while (size > 0 && strchr(" \t\r\n", *name) != NULL && *name != '\0') {
+        name++;
+        size--;
+    }
+    while (size > 0 && (name[size - 1] == '\0' || strchr(" \t\r\n", name[size - 1]) != NULL))
+        size--;
+    for (size_t u = 0; u < UNIT_COUNT; u++)
+        if (strlen(UNITS[u].name) == size && memcmp(UNITS[u].name, name, size) == 0) {
+            *metres = UNITS[u].metres;
+            return true;
+        }
+    return false;
+}
+
+const char *length_unit_readable(double metres, double *metres_in_one) {
+    static const struct length_unit READABLE[] = {
+        {"m", 1}, {"mm", 1e-3}, {"\xc2\xb5m", 1e-6}, {"nm", 1e-9}, {"pm", 1e-12}};
+    size_t u = 0;
+    while (u < 4 && fabs(metres) < READABLE[u].metres)
+        u++;
+    *metres_in_one = READABLE[u].metres;
+    return READABLE[u].name;
+}
