@@ -34,13 +34,13 @@ static double developed_area(const struct measured_map *map) {
 }
 
 int areal_measure(const struct measured_map *map, const struct correlation *correlation,
-                  struct areal *out, struct error *err) {
+                  struct summit_list *list, struct areal *out, struct error *err) {
     struct roughness roughness;
     struct hills hills;
     double shortest, longest;
     open_roughness_measure(map, &roughness);
     double highest = roughness.highest - roughness.mean, lowest = roughness.mean - roughness.lowest;
-    int status = hills_find(map, PRUNED_SHARE * (highest + lowest), &hills, err);
+    int status = hills_find(map, PRUNED_SHARE * (highest + lowest), list, &hills, err);
     if (status != 0)
         return status;
     correlation_lengths(correlation, CORRELATION_LEVEL, &shortest, &longest);

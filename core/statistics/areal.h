@@ -4,6 +4,7 @@
 
 #include "core/statistics/correlation.h"
 #include "core/statistics/measured_map.h"
+#include "core/statistics/summit_list.h"
 
 /* FORMULAS.md, F18.9 and F18.10; NaN where a map does not tell. */
 struct areal {
@@ -14,7 +15,8 @@ struct areal {
     double sal, str;   /* shortest lag at which the correlation is 0.2; over the longest */
     double spd, spc;   /* density of hills, and mean curvature at their peaks */
 };
+/* list: an empty one that the peaks of hills are put in, or NULL. */
 int areal_measure(const struct measured_map *map, const struct correlation *correlation,
-                  struct areal *out, struct error *err);
+                  struct summit_list *list, struct areal *out, struct error *err);
 
 #endif

@@ -11,19 +11,6 @@ struct correlation {
     double *values; /* owned; lag (x, y) at its place modulo the padded grid */
 };
 
-/* Returns the least even number of 2, 3 and 5 alone that is n or more: transforms of it are fast.
- */
-static size_t smooth_number(size_t n) {
-    for (size_t candidate = n + n % 2;; candidate += 2) {
-        size_t rest = candidate;
-        for (size_t factor = 2; factor <= 5; factor++)
-            while (rest % factor == 0)
-                rest /= factor;
-        if (rest == 1)
-            return candidate;
-    }
-}
-
 /* Lags up to the reach do not meet their own other end in the padded grid. */
 static void shape_fill(struct correlation *c, const struct measured_map *map) {
     c->grid = c->padded = *map->grid;
@@ -31,9 +18,9 @@ static void shape_fill(struct correlation *c, const struct measured_map *map) {
     c->reach_y = grid_is_profile(&c->grid) ? 0 : (long)(c->grid.ny / 2);
     if (map->boundary == BOUNDARY_PERIODIC)
         return;
-    c->padded.nx = smooth_number(c->grid.nx + (size_t)c->reach_x + 2);
+    c->padded.nx = transform_fast_count(c->grid.nx + (size_t)c->reach_x + 2);
     if (c->reach_y > 0)
-        c->padded.ny = smooth_number(c->grid.ny + (size_t)c->reach_y + 2);
+        c->padded.ny = transform_fast_count(c->grid.ny + (size_t)c->reach_y + 2);
 }
 
 /* Fills out, on the padded grid, with the sum over pairs at each lag of field times field, which is

@@ -7,11 +7,12 @@ static const uint32_t NONE = UINT32_MAX;
 
 struct search {
     const struct measured_map *map;
-    uint32_t *order;      /* owned: points with heights, sorted */
-    size_t count;         /* of them */
-    uint32_t *parent;     /* owned; NONE: not yet flooded; a peak is its own parent */
-    unsigned char *whole; /* owned: points with all neighbours */
-    struct average bends; /* of the peaks that count */
+    uint32_t *order;           /* owned: points with heights, sorted */
+    size_t count;              /* of them */
+    uint32_t *parent;          /* owned; NONE: not yet flooded; a peak is its own parent */
+    unsigned char *whole;      /* owned: points with all neighbours */
+    struct summit_list *peaks; /* borrowed; NULL: not wanted */
+    struct average bends;      /* of the peaks that count */
 };
 
 /* Highest first; of equal ones the first point. */
@@ -60,15 +61,18 @@ static uint32_t peak_of(uint32_t *parent, uint32_t at) {
     return at;
 }
 
-static void peak_count(struct search *s, uint32_t peak) {
+static int peak_count(struct search *s, uint32_t peak, struct error *err) {
     const struct grid *grid = s->map->grid;
     long i = (long)(peak % grid->nx), j = (long)(peak / grid->nx);
     double dx = grid_dx(grid), dy = grid_dy(grid), z = s->map->z[peak];
     if (s->whole[peak] == 0)
-        return;
+        return 0;
     double xx = map_height(s->map, i - 1, j) - 2 * z + map_height(s->map, i + 1, j);
     double yy = map_height(s->map, i, j - 1) - 2 * z + map_height(s->map, i, j + 1);
-    average_add(&s->bends, -(xx / (dx * dx) + yy / (dy * dy)) / 2);
+    double bend = -(xx / (dx * dx) + yy / (dy * dy)) / 2;
+    const struct summit summit = {(double)i * dx, (double)j * dy, z, bend};
+    average_add(&s->bends, bend);
+    return s->peaks != NULL ? summit_list_add(s->peaks, &summit, err) : 0;
 }
 
 /* Returns the number of a neighbour; NONE beside an open map. */
@@ -81,11 +85,12 @@ static uint32_t neighbour(const struct measured_map *map, long i, long j) {
 
 /* Lets a point rise out of the falling water: it begins a hill, or joins the hills around it, of
  * which the highest goes on. */
-static void point_flood(struct search *s, uint32_t at, double least) {
+static int point_flood(struct search *s, uint32_t at, double least, struct error *err) {
     const double *z = s->map->z;
     long nx = (long)s->map->grid->nx, i = (long)at % nx, j = (long)at / nx;
+    int status = 0;
     s->parent[at] = at;
-    for (long step = 0; step < 9; step++) {
+    for (long step = 0; step < 9 && status == 0; step++) {
         uint32_t beside = neighbour(s->map, i + step % 3 - 1, j + step / 3 - 1);
         if (beside == NONE || s->parent[beside] == NONE)
             continue;
@@ -95,26 +100,30 @@ static void point_flood(struct search *s, uint32_t at, double least) {
         bool higher = z[there] > z[here] || (z[there] == z[here] && there < here);
         uint32_t stays = higher ? there : here, ends = higher ? here : there;
         if (ends != at && z[ends] - z[at] >= least)
-            peak_count(s, ends);
+            status = peak_count(s, ends, err);
         s->parent[ends] = stays;
     }
+    return status;
 }
 
-int hills_find(const struct measured_map *map, double least, struct hills *out, struct error *err) {
+int hills_find(const struct measured_map *map, double least, struct summit_list *peaks,
+               struct hills *out, struct error *err) {
     struct search s;
     int status = search_create(&s, map, err);
     if (status != 0)
         return status;
     size_t searched = map_mark_whole(map, 1, 1, s.whole);
-    for (size_t n = 0; n < s.count; n++)
-        point_flood(&s, s.order[n], least);
-    for (size_t n = 0; n < s.count; n++)
+    s.peaks = peaks;
+    for (size_t n = 0; n < s.count && status == 0; n++)
+        status = point_flood(&s, s.order[n], least, err);
+    for (size_t n = 0; n < s.count && status == 0; n++)
         if (s.parent[s.order[n]] == s.order[n])
-            peak_count(&s, s.order[n]); /* the highest, and one in each part cut off by holes */
+            status = peak_count(&s, s.order[n], err); /* the highest, and one in each part cut off
+                                                         by holes */
     *out = (struct hills){.count = s.bends.count,
                           .density = (double)s.bends.count / (double)searched /
                                      (grid_dx(map->grid) * grid_dy(map->grid)),
                           .curvature = average_value(&s.bends)};
     search_clear(&s);
-    return 0;
+    return status;
 }

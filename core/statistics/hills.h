@@ -4,6 +4,7 @@
 #define RUGO_CORE_STATISTICS_HILLS_H
 
 #include "core/statistics/measured_map.h"
+#include "core/statistics/summit_list.h"
 
 struct hills {
     size_t count;
@@ -13,8 +14,10 @@ struct hills {
 /* Finds the peaks whose hills are `least` or more above their highest saddle to a higher peak,
  * after Wolf's pruning of the change tree (FORMULAS.md, F18.10). A point has 8 neighbours. Points
  * at the side of an open map and beside holes prune others, but do not count: they may be the slope
- * of a higher one. Surfaces alone. ERROR_MEMORY, or
- * ERROR_INPUT for 2^32 - 1 points or more. */
-int hills_find(const struct measured_map *map, double least, struct hills *out, struct error *err);
+ * of a higher one. Surfaces alone. peaks: an
+ * empty list that those which count are put in, or NULL. ERROR_MEMORY, or ERROR_INPUT for 2^32 - 1
+ * points or more. */
+int hills_find(const struct measured_map *map, double least, struct summit_list *peaks,
+               struct hills *out, struct error *err);
 
 #endif

@@ -1,4 +1,5 @@
-/* Refined summits of an open map. Private to open_summits.c. */
+/* Refined summits of an open map. Private to open_summits.c, but for how many
+ * points around it needs. */
 #ifndef RUGO_CORE_STATISTICS_OPEN_REFINED_H
 #define RUGO_CORE_STATISTICS_OPEN_REFINED_H
 

@@ -36,7 +36,7 @@ int psd_prescribed(const struct spectrum *spectrum, const struct modes *modes, d
     if (spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
         return exponential_density(spectrum, modes, wave_number, density, err);
     psd_of_modes(modes, wave_number, density);
-    if (spectrum->type == SPECTRUM_SELF_AFFINE && spectrum->anisotropy > 1)
+    if (spectrum->anisotropy > 1)
         return 0; /* no density of the wave number alone: means over rings */
     /* Along the longer side waves are denser than rings, and some wave has a ring's own number. */
     bool along_y = !grid_is_profile(grid) && grid->ly < grid->lx;

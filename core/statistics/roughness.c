@@ -103,9 +103,8 @@ void roughness_measure(const struct grid *grid, const double *z, struct roughnes
     out->nayak_alpha = variance / out->m2 * (out->m4 / out->m2);
 }
 
-/* Squared amplitudes of a map on its full half plane, in the layout of a struct modes. */
-static int power_measure(const struct grid *grid, const double *z, struct modes *modes,
-                         struct error *err) {
+int map_modes_measure(const struct grid *grid, const double *z, struct modes *modes,
+                      struct error *err) {
     struct transform *transform = NULL;
     *modes = (struct modes){.grid = *grid, .mode_x = grid->nx / 2, .mode_y = grid->ny / 2};
     size_t rows = 2 * modes->mode_y + 1;
@@ -115,6 +114,7 @@ static int power_measure(const struct grid *grid, const double *z, struct modes 
     int status = transform_create(&transform, grid, modes->mode_x, modes->mode_y, err);
     if (status != 0) {
         free(modes->power);
+        modes->power = NULL;
         return status;
     }
     transform_forward(transform, z);
@@ -132,7 +132,7 @@ static int power_measure(const struct grid *grid, const double *z, struct modes 
 int roughness_spectral(const struct grid *grid, const double *z, struct moments *out,
                        struct error *err) {
     struct modes modes;
-    int status = power_measure(grid, z, &modes, err);
+    int status = map_modes_measure(grid, z, &modes, err);
     if (status != 0)
         return status;
     modes_moments(&modes, out);
@@ -195,7 +195,7 @@ void psd_of_band(const struct modes *modes, double *wave_number, double *density
 int psd_measure(const struct grid *grid, const double *z, double *wave_number, double *density,
                 struct error *err) {
     struct modes modes;
-    int status = power_measure(grid, z, &modes, err);
+    int status = map_modes_measure(grid, z, &modes, err);
     if (status != 0)
         return status;
     psd_of_modes(&modes, wave_number, density);
@@ -305,7 +305,7 @@ int acf_of_modes(const struct modes *modes, double *lag, double *correlation, st
 int acf_measure(const struct grid *grid, const double *z, double *lag, double *correlation,
                 struct error *err) {
     struct modes modes;
-    int status = power_measure(grid, z, &modes, err);
+    int status = map_modes_measure(grid, z, &modes, err);
     if (status != 0)
         return status;
     status = acf_of_modes(&modes, lag, correlation, err);

@@ -20,6 +20,10 @@ void roughness_measure(const struct grid *grid, const double *z, struct roughnes
 int roughness_spectral(const struct grid *grid, const double *z, struct moments *out,
                        struct error *err);
 
+/* Fills *modes with the squared amplitudes of a map, on the whole half plane; the caller frees
+ * their power. */
+int map_modes_measure(const struct grid *grid, const double *z, struct modes *modes,
+                      struct error *err);
 /* Returns the number of radial bins of the functions below for a grid: rings of width one in |m|
  * (min(lx,ly)). */
 size_t radial_bins(const struct grid *grid);

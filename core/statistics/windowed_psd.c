@@ -79,16 +79,22 @@ static double window_apply(const struct grid *grid, double *z) {
     return sum_value(&squares) / (double)grid_points(grid);
 }
 
+int windowed_heights(const struct measured_map *map, double *z, double *power, struct error *err) {
+    memcpy(z, map->z, grid_points(map->grid) * sizeof *z);
+    int status = holes_fill(map->grid, z, err);
+    if (status == 0)
+        *power = window_apply(map->grid, z);
+    return status;
+}
+
 int windowed_psd_measure(const struct measured_map *map, double *wave_number, double *density,
                          struct error *err) {
     const struct grid *grid = map->grid;
     size_t points = grid_points(grid), bins = radial_bins(grid);
-    double *z = array_create(points, sizeof *z);
+    double power = 1, *z = array_create(points, sizeof *z);
     if (z == NULL)
         return error_memory(err, points * sizeof *z, "a map under a window");
-    memcpy(z, map->z, points * sizeof *z);
-    int status = holes_fill(grid, z, err);
-    double power = status == 0 ? window_apply(grid, z) : 1;
+    int status = windowed_heights(map, z, &power, err);
     if (status == 0)
         status = psd_measure(grid, z, wave_number, density, err);
     for (size_t r = 0; r < bins && status == 0; r++)

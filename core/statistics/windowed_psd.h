@@ -11,4 +11,8 @@
 int windowed_psd_measure(const struct measured_map *map, double *wave_number, double *density,
                          struct error *err);
 
+/* Fills z with the heights of the map under the window, as above; *power: mean square of the
+ * window. */
+int windowed_heights(const struct measured_map *map, double *z, double *power, struct error *err);
+
 #endif

@@ -4,6 +4,7 @@
  * points. */
 #include "core/contact/area.h"
 #include "core/contact/contact.h"
+#include "core/contact/free_space.h"
 #include "core/surface/surface.h"
 #include <math.h>
 #include <stdio.h>
@@ -39,7 +40,7 @@ static void bench_clear(struct contact_bench *bench) {
 
 /* A cell 8 longest waves wide; `points` a shortest wave. */
 static int bench_create(struct contact_bench *bench, size_t n, int dimension, double points,
-                        enum block_model model, struct error *err) {
+                        enum block_model model, bool open, struct error *err) {
     double cell = (double)n / points;
     struct grid grid = {n, dimension == 2 ? n : 1, cell, cell};
     struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
@@ -58,7 +59,8 @@ static int bench_create(struct contact_bench *bench, size_t n, int dimension, do
         status = generator_create(&bench->generator, &spectrum, &grid, &SURFACE_DEFAULTS, err);
     double start = cpu_ms();
     if (!status)
-        status = compliance_create(&bench->compliance, &grid, &block, err);
+        status = open ? compliance_create_open(&bench->compliance, &grid, &block, err)
+                      : compliance_create(&bench->compliance, &grid, &block, err);
     if (!status)
         status = area_workspace_create(&bench->areas, bench->compliance, err);
     bench->preparation = cpu_ms() - start;
@@ -99,12 +101,12 @@ static int bench_run(struct contact_bench *bench, uint64_t realisation, size_t l
 }
 
 /* Some surfaces at the loads into the means of result. */
-static int measure(size_t n, int dimension, double points, enum block_model model, size_t loads,
-                   const double *load, struct result *result, double *preparation,
+static int measure(size_t n, int dimension, double points, enum block_model model, bool open,
+                   size_t loads, const double *load, struct result *result, double *preparation,
                    struct error *err) {
     struct contact_bench bench;
     int surfaces = n >= 512 && dimension == 2 ? 1 : SURFACES;
-    int status = bench_create(&bench, n, dimension, points, model, err);
+    int status = bench_create(&bench, n, dimension, points, model, open, err);
     for (int r = 0; !status && r < surfaces; r++)
         status = bench_run(&bench, (uint64_t)r, loads, load, result, err);
     result->ms /= surfaces;
@@ -122,9 +124,10 @@ static int profiles(enum block_model model, struct error *err) {
     for (size_t n = 512; n <= 8192; n *= 4) {
         double coarse[EVEN_COUNT] = {0}, fine[EVEN_COUNT] = {0}, preparation, ignored, worst = 0;
         struct result result = {.area = coarse}, reference = {.area = fine};
-        int status = measure(n, 1, 8, model, EVEN_COUNT, EVEN, &result, &preparation, err);
+        int status = measure(n, 1, 8, model, false, EVEN_COUNT, EVEN, &result, &preparation, err);
         if (!status)
-            status = measure(8 * n, 1, 64, model, EVEN_COUNT, EVEN, &reference, &ignored, err);
+            status =
+                measure(8 * n, 1, 64, model, false, EVEN_COUNT, EVEN, &reference, &ignored, err);
         if (status)
             return status;
         for (size_t l = 0; l < EVEN_COUNT; l++)
@@ -136,20 +139,21 @@ static int profiles(enum block_model model, struct error *err) {
     return 0;
 }
 
-static int surfaces(enum block_model model, struct error *err) {
-    printf("surfaces, %s, 8 loads 0.01 to 0.5: time a load and in all\n",
-           model == MODEL_LAYERED ? "layered" : "halfspace");
-    for (size_t n = 256; n <= 2048; n *= 2) {
+static int surfaces(enum block_model model, bool open, struct error *err) {
+    printf("surfaces, %s%s, 8 loads 0.01 to 0.5: time a load and in all\n",
+           model == MODEL_LAYERED ? "layered" : "halfspace", open ? " in free space" : "");
+    for (size_t n = 256; n <= (open ? 1024 : 2048); n *= 2) {
         double area[WIDE_COUNT] = {0}, preparation;
         struct result result = {.area = area};
         struct grid grid = {n, n, 1, 1};
-        int status = measure(n, 2, 8, model, WIDE_COUNT, WIDE, &result, &preparation, err);
+        int status = measure(n, 2, 8, model, open, WIDE_COUNT, WIDE, &result, &preparation, err);
         if (status)
             return status;
         printf("%4zu^2 %9.1f ms %7.2f s  %5.1f iterations  violation %.1e  fractions %.4f %.4f "
                "%.4f  %6.0f MB  (prepared in %.0f ms)\n",
                n, result.ms, 1e-3 * WIDE_COUNT * result.ms, result.iterations, result.violation,
-               area[1], area[3], area[6], 1e-6 * contact_bytes(&grid), preparation);
+               area[1], area[3], area[6],
+               1e-6 * (contact_bytes(&grid) + (open ? free_space_bytes(&grid) : 0)), preparation);
     }
     return 0;
 }
@@ -158,7 +162,8 @@ int main(void) {
     struct error err = {0};
     setvbuf(stdout, NULL, _IOLBF, 0);
     if (profiles(MODEL_HALFSPACE, &err) || profiles(MODEL_LAYERED, &err) ||
-        surfaces(MODEL_HALFSPACE, &err) || surfaces(MODEL_LAYERED, &err)) {
+        surfaces(MODEL_HALFSPACE, false, &err) || surfaces(MODEL_HALFSPACE, true, &err) ||
+        surfaces(MODEL_LAYERED, false, &err)) {
         fprintf(stderr, "%s\n", err.text);
         return 1;
     }

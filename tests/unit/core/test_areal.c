@@ -21,7 +21,7 @@ static void a_double_wave(void **state) {
     struct correlation *correlation = NULL;
     struct areal areal;
     assert_int_equal(correlation_create(&correlation, &map, NULL), 0);
-    assert_int_equal(areal_measure(&map, correlation, &areal, NULL), 0);
+    assert_int_equal(areal_measure(&map, correlation, NULL, &areal, NULL), 0);
     double sampled = 2 / (16 * tan(M_PI / 16)); /* mean |cos| of 16 points a wave, for 2/pi */
     double difference = sin(M_PI / 16) * 2 / 0.5, bend = difference * difference;
     check_relative(areal.sa, height * sampled * sampled, 1e-9);
@@ -53,7 +53,7 @@ static void a_roof(void **state) {
         struct correlation *correlation = NULL;
         struct areal areal;
         assert_int_equal(correlation_create(&correlation, &map, NULL), 0);
-        assert_int_equal(areal_measure(&map, correlation, &areal, NULL), 0);
+        assert_int_equal(areal_measure(&map, correlation, NULL, &areal, NULL), 0);
         check_relative(areal.sdq, 1, 1e-12);
         check_relative(areal.sdr, sqrt(2) - 1, 1e-12);
         assert_true(isnan(areal.str));
@@ -122,7 +122,7 @@ static void hills_as_by_search(void **state) {
             for (size_t i = 0; i < grid.nx; i++)
                 if (whole[j * grid.nx + i] != 0 && !reaches_higher(&map, (long)i, (long)j, least))
                     expected++;
-        assert_int_equal(hills_find(&map, least, &hills, NULL), 0);
+        assert_int_equal(hills_find(&map, least, NULL, &hills, NULL), 0);
         assert_int_equal(hills.count, expected);
         if (marked > 0)
             check_relative(hills.density + 1,

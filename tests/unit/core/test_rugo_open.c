@@ -103,11 +103,35 @@ static void wrong_arguments_are_told(void **state) {
     assert_true(number == -1);
 }
 
+/* Hertz's sphere: area pi a^2 and approach a^2/R of a paraboloid, a = 2 and R = 50. */
+static void open_map_is_pressed(void **state) {
+    (void)state;
+    const struct rugo_grid grid = {60, 60, 6, 6};
+    struct rugo_contact *contact = NULL;
+    struct rugo_contact_state now;
+    struct rugo_error err = {0};
+    double z[3600], pressure = 4.0 / 3 * 8 / 50 / 36;
+    for (int i = 0; i < 3600; i++)
+        z[i] = -(pow(i % 60 / 10.0 - 3, 2) + pow(floor(i / 60.0) / 10 - 3, 2)) / 100;
+    assert_int_equal(rugo_contact_create_open(&contact, &grid, &err), 0);
+    assert_int_equal(rugo_contact_begin(contact, z, &err), 0);
+    assert_true(isnan(rugo_contact_approach(contact)));
+    assert_true(isnan(rugo_contact_full_pressure(contact)));
+    assert_int_equal(rugo_contact_press(contact, pressure, &now, &err), 0);
+    check_relative(now.area * 36, 4 * M_PI, 0.005);
+    check_relative(rugo_contact_approach(contact), 4.0 / 50, 0.005);
+    assert_int_equal(now.patches, 1);
+    rugo_contact_destroy(&contact);
+    assert_int_equal(rugo_contact_create_open(&contact, &(struct rugo_grid){1, 4, 1, 1}, &err),
+                     RUGO_ERROR_INPUT);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_piece_is_measured),
         cmocka_unit_test(areal_parameters_and_density),
         cmocka_unit_test(wrong_arguments_are_told),
+        cmocka_unit_test(open_map_is_pressed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
