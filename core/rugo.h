@@ -315,6 +315,10 @@ struct rugo_contact;
 /* Fails with INPUT for a block out of range or too deep a mesh, or with MEMORY. */
 RUGO_API int rugo_contact_create(struct rugo_contact **out, const struct rugo_grid *grid,
                                  const struct rugo_block *block, struct rugo_error *err);
+/* Of a map that does not repeat: an elastic half-space in free space, in contact within the grid's
+ * lx by ly alone. Fails as rugo_contact_create. */
+RUGO_API int rugo_contact_create_open(struct rugo_contact **out, const struct rugo_grid *grid,
+                                      struct rugo_error *err);
 RUGO_API void rugo_contact_destroy(struct rugo_contact **contact);
 /* Takes a surface (copies; any mean) that is not in contact yet: highest points touch first. INPUT
  * for a height that is not finite, and for the full model where the surface is too steep; there is
@@ -327,6 +331,11 @@ RUGO_API int rugo_contact_begin(struct rugo_contact *contact, const double *z,
  * reached, where there is no convergence; linear models then begin the next load anew. */
 RUGO_API int rugo_contact_press(struct rugo_contact *contact, double pressure,
                                 struct rugo_contact_state *out, struct rugo_error *err);
+/* Returns by how much the flat has come nearer since it first touched, under the last load: towards
+ * the mean plane of a face that repeats; in free space towards far points, of a profile (of which
+ * none is at rest) towards a place on the face at a distance lx from a line load. NaN before a
+ * load, and for the full model. */
+RUGO_API double rugo_contact_approach(const struct rugo_contact *contact);
 /* The least mean pressure of full contact of the surface begun; NaN where none is, and for the full
  * model. */
 RUGO_API double rugo_contact_full_pressure(const struct rugo_contact *contact);

@@ -13,7 +13,8 @@ struct rugo_contact {
     struct full *full;
     struct area_workspace *areas;
     struct patch_finder *patches;
-    bool begun; /* a surface has been taken */
+    bool begun;      /* a surface has been taken */
+    double approach; /* under the last load; NaN before */
 };
 
 struct rugo_block rugo_block_defaults(enum rugo_model model, const struct rugo_grid *grid) {
@@ -37,9 +38,10 @@ static int block_take(struct block *out, const struct rugo_block *from, struct e
     return 0;
 }
 
-static int solver_create(struct rugo_contact *contact, const struct grid *grid,
+static int solver_create(struct rugo_contact *contact, const struct grid *grid, bool open,
                          enum rugo_model model, const struct block *block, struct error *err) {
-    int status = compliance_create(&contact->compliance, grid, block, err);
+    int status = open ? compliance_create_open(&contact->compliance, grid, block, err)
+                      : compliance_create(&contact->compliance, grid, block, err);
     if (status == 0)
         status = model == RUGO_FULL ? full_create(&contact->full, grid, block, &FULL_DEFAULTS, err)
                                     : contact_create(&contact->linear, contact->compliance,
@@ -48,11 +50,14 @@ static int solver_create(struct rugo_contact *contact, const struct grid *grid,
         status = area_workspace_create(&contact->areas, contact->compliance, err);
     if (status == 0)
         status = patch_finder_create(&contact->patches, grid, err);
+    if (status == 0 && open)
+        patch_finder_open(contact->patches);
+    contact->approach = NAN;
     return status;
 }
 
-int rugo_contact_create(struct rugo_contact **out, const struct rugo_grid *grid,
-                        const struct rugo_block *block, struct rugo_error *err) {
+static int create(struct rugo_contact **out, const struct rugo_grid *grid, bool open,
+                  const struct rugo_block *block, struct rugo_error *err) {
     struct error why = {0};
     struct grid cell;
     struct block what;
@@ -63,12 +68,23 @@ int rugo_contact_create(struct rugo_contact **out, const struct rugo_grid *grid,
     if (status == 0)
         status = block_take(&what, block, &why);
     if (status == 0)
-        status = solver_create(contact, &cell, block->model, &what, &why);
+        status = solver_create(contact, &cell, open, block->model, &what, &why);
     if (status == 0)
         *out = contact;
     else
         rugo_contact_destroy(&contact);
     return error_give(status, &why, err);
+}
+
+int rugo_contact_create(struct rugo_contact **out, const struct rugo_grid *grid,
+                        const struct rugo_block *block, struct rugo_error *err) {
+    return create(out, grid, false, block, err);
+}
+
+int rugo_contact_create_open(struct rugo_contact **out, const struct rugo_grid *grid,
+                             struct rugo_error *err) {
+    struct rugo_block block = rugo_block_defaults(RUGO_HALFSPACE, grid);
+    return create(out, grid, true, &block, err);
 }
 
 void rugo_contact_destroy(struct rugo_contact **contact) {
@@ -89,6 +105,7 @@ int rugo_contact_begin(struct rugo_contact *contact, const double *z, struct rug
     int status = contact->full != NULL ? full_begin(contact->full, z, &why)
                                        : contact_begin(contact->linear, z, &why);
     contact->begun = status == 0;
+    contact->approach = NAN;
     return error_give(status, &why, err);
 }
 
@@ -112,6 +129,7 @@ int rugo_contact_press(struct rugo_contact *contact, double pressure,
         return error_give(status, &why, err);
     struct contact_area area;
     struct patches patches;
+    contact->approach = state.approach;
     contact_area(contact->areas, &state, &area);
     patches_find(contact->patches, state.p, &patches, NULL);
     *out = (struct rugo_contact_state){.pressure = state.pressure,
@@ -130,7 +148,11 @@ int rugo_contact_press(struct rugo_contact *contact, double pressure,
     return 0;
 }
 
+double rugo_contact_approach(const struct rugo_contact *contact) {
+    return contact->approach;
+}
+
 double rugo_contact_full_pressure(const struct rugo_contact *contact) {
-    return contact->linear != NULL && contact->begun ? contact_full_pressure(contact->linear)
-                                                     : (double)NAN;
+    bool known = contact->linear != NULL && contact->begun && !contact->compliance->open;
+    return known ? contact_full_pressure(contact->linear) : (double)NAN;
 }

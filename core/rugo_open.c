@@ -128,7 +128,7 @@ int rugo_areal(const struct rugo_grid *grid, const double *z, int open, struct r
     if (status == 0)
         status = correlation_create(&correlation, &map, &why);
     if (status == 0)
-        status = areal_measure(&map, correlation, &a, &why);
+        status = areal_measure(&map, correlation, NULL, &a, &why);
     if (status == 0)
         *out = (struct rugo_areal){a.sa,  a.sq,  a.ssk, a.sku, a.sp,  a.sv, a.sz,
                                    a.sdq, a.sdr, a.sal, a.str, a.spd, a.spc};

@@ -22,7 +22,8 @@ struct contact {
     double *z;                        /* heights, mean 0 */
     double *pressure, *gap;           /* results, in the user's units */
     double *opening; /* the weighted gap; the same array as gap without weighting */
-    double unit;     /* RMS height, the grid's length; 0 for a flat surface */
+    double unit;     /* RMS height, the grid's length; for a flat surface 0, where open lx */
+    double highest;  /* of the solver's heights */
     double full;     /* smallest mean pressure of full contact */
     double mean;     /* mean of the solver's p, the load that it solves; 0 before the first load */
     bool tangent;    /* the solver's q is the tangent at the last load, else the secant to it */
@@ -115,7 +116,8 @@ static int take_heights(struct contact *c, const double *z, struct error *err) {
     }
     double rms = sqrt(sum_value(&square) / (double)n);
     bool is_flat = !(rms > 1e-14);
-    c->unit = is_flat ? 0 : rms * most;
+    double flat = c->compliance->open ? c->compliance->grid.lx : 0;
+    c->unit = is_flat ? flat : rms * most;
     for (size_t i = 0; i < n; i++)
         c->z[i] = is_flat ? 0 : c->z[i] / rms;
     return 0;
@@ -132,6 +134,12 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
     memcpy(d->z, c->z, d->n * sizeof *d->z);
     if (c->compliance->weight != NULL)
         transform_filter(d->transform, c->compliance->weight, 1, c->z, d->z);
+    c->highest = 0;
+    for (size_t i = 0; i < d->n; i++)
+        c->highest = fmax(c->highest, d->z[i]);
+    c->full = INFINITY;
+    if (c->compliance->open)
+        return 0;
     transform_filter(d->transform, d->stiff, 1, d->z, d->w);
     c->full = 0;
     for (size_t i = 0; i < d->n; i++)
@@ -140,21 +148,18 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
 }
 
 double contact_full_pressure(const struct contact *c) {
-    return c->full * pressure_unit(c);
+    return c->compliance->open ? INFINITY : c->full * pressure_unit(c);
 }
 
 /* The state without contact: the highest point touches the flat without force. */
 static void fill_open(struct contact *c, struct contact_state *out) {
     const struct conjugate_gradient *d = &c->solver;
-    double highest = 0;
-    for (size_t i = 0; i < d->n; i++)
-        highest = fmax(highest, d->z[i]);
     for (size_t i = 0; i < d->n; i++) {
         c->pressure[i] = 0;
-        c->gap[i] = (highest - c->z[i]) * c->unit;
-        c->opening[i] = (highest - d->z[i]) * c->unit;
+        c->gap[i] = (c->highest - c->z[i]) * c->unit;
+        c->opening[i] = (c->highest - d->z[i]) * c->unit;
     }
-    out->mean_gap = highest * c->unit;
+    out->mean_gap = c->highest * c->unit;
 }
 
 /* The state of full contact: the pressures are those that flatten the surface (F9.3). */
@@ -165,6 +170,7 @@ static void fill_full(struct contact *c, double pressure, struct contact_state *
         c->pressure[i] = fmax(DBL_MIN, c->pressure[i] + pressure); /* in contact, if barely */
         c->gap[i] = c->opening[i] = 0;
     }
+    out->approach = c->highest * c->unit;
     out->stiffness = INFINITY;
     out->nodes = d->n;
     out->work = 2 * (double)d->n;
@@ -186,11 +192,14 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
         out->nodes += c->pressure[i] > 0;
     }
     out->mean_gap = sum_value(&gap) / (double)d->n * c->unit;
+    out->approach = (c->highest - end->approach) * c->unit;
     out->iterations = end->iterations;
     out->violation = fmax(end->inside, end->penetration);
     out->penetration = end->penetration;
     /* All nodes can be in contact when the load is a rounding error below that of full contact. */
-    bool full = out->nodes == d->n;
+    bool full = out->nodes == d->n && !c->compliance->open;
+    if (out->nodes == d->n && c->compliance->open)
+        out->mean_gap = 0; /* but for rounding */
     out->stiffness = full ? INFINITY : (double)NAN;
     if (c->tangent && !full) {
         out->stiffness = 1 / (conjugate_gradient_tangent(d) * d->largest);

@@ -3,7 +3,8 @@
  *
  * Unknown are the pressures p at the grid points. With u = S p (compliance.h), roughness z towards
  * the flat and an approach D, the gap is g = D + u - z; p >= 0, g >= 0, p g = 0, mean p = pressure.
- * Pressures are in units of E*, lengths in the grid's.
+ * Pressures are in units of E*, lengths in the grid's. In free space (compliance_create_open) the
+ * same holds within the grid's rectangle, outside of which nothing touches.
  *
  * A solver belongs to one thread and one grid; it keeps the surface and the last state, from which
  * the next load starts. Loads may rise and fall: the contact is elastic. */
@@ -33,10 +34,15 @@ struct contact_state {
                           in core/full over the face as pressed */
     const double *opening; /* grid_points: the weighted gap, which is 0 in contact */
     const double *tangent; /* grid_points, d p/d pressure with the contact held: mean 1, 0 where
-                              open; NULL where nothing or all touches, or without_tangent */
+                              open; NULL where nothing or (periodic) all touches, or
+                              without_tangent */
     double mean_gap;       /* the grid's length */
-    double stiffness;   /* -d pressure/d mean_gap, E* per length; INFINITY in full contact, 0 when
-                           nothing touches; NaN without_tangent */
+    double approach;    /* of the flat, from where it touches first, the grid's length: towards the
+                           mean plane of the face, in free space towards far points (free_space.h);
+                           NaN from core/full */
+    double stiffness;   /* d pressure/d approach, E* per length: periodic, -d pressure/d mean_gap.
+                           INFINITY in full contact of a periodic face, 0 when nothing touches; NaN
+                           without_tangent */
     size_t nodes;       /* in contact (p > 0) */
     size_t iterations;  /* of the conjugate gradients on this grid, 0 in full contact */
     double work;        /* points x transforms, over all grids: what the time is made of */
@@ -50,6 +56,7 @@ struct contact;
 int contact_create(struct contact **out, const struct compliance *compliance,
                    const struct contact_options *options, struct error *err);
 void contact_destroy(struct contact **contact);
+/* Of a periodic grid; in free space free_space_bytes come on top. */
 double contact_bytes(const struct grid *grid);
 /* From now on stop is called every few iterations; when it returns non-zero, contact_press fails
  * with ERROR_STOPPED, as it fails where it does not converge. NULL, the initial value, never stops.
@@ -63,7 +70,8 @@ int contact_begin(struct contact *contact, const double *z, struct error *err);
  * tolerance is not met; the state before is lost then, and the next load starts anew. */
 int contact_press(struct contact *contact, double pressure, struct contact_state *out,
                   struct error *err);
-/* Returns the smallest mean pressure of full contact, in E*; it is known from contact_begin on. */
+/* Returns the smallest mean pressure of full contact, in E*; it is known from contact_begin on.
+ * INFINITY in free space, where it is not known. */
 double contact_full_pressure(const struct contact *contact);
 
 #endif

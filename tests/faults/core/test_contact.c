@@ -26,6 +26,10 @@ static void heights(const struct grid *grid, double amplitude, double *z) {
                                                cos(2 * M_PI * (double)j / (double)grid->ny));
 }
 
+struct block_fault {
+    struct block block;
+    bool open;
+};
 struct pressed_fault {
     struct compliance *compliance;
     struct contact *contact;
@@ -33,13 +37,15 @@ struct pressed_fault {
     struct patch_finder *finder;
 };
 
-static int press_once(struct pressed_fault *p, const struct block *block, struct error *err) {
+static int press_once(struct pressed_fault *p, const struct block_fault *pressed,
+                      struct error *err) {
     double z[POINTS];
     struct contact_state state;
     struct contact_area area;
     struct patches patches;
     heights(&GRID, 0.1, z);
-    int status = compliance_create(&p->compliance, &GRID, block, err);
+    int status = pressed->open ? compliance_create_open(&p->compliance, &GRID, &pressed->block, err)
+                               : compliance_create(&p->compliance, &GRID, &pressed->block, err);
     if (status == 0)
         status = contact_create(&p->contact, p->compliance, &CONTACT_DEFAULTS, err);
     if (status == 0)
@@ -71,9 +77,10 @@ static int press(void *context, struct error *err) {
 
 static void linear_models(void **state) {
     (void)state;
-    struct block deep = DEEP, meshed = MESHED;
+    struct block_fault deep = {DEEP, false}, meshed = {MESHED, false}, open = {DEEP, true};
     each_allocation(&(struct failing_call){.name = "half-space", press, &deep});
     each_allocation(&(struct failing_call){.name = "layered", press, &meshed});
+    each_allocation(&(struct failing_call){.name = "free space", press, &open});
 }
 
 struct solid_case {

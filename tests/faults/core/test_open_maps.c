@@ -7,6 +7,7 @@
 #include "core/statistics/open_summits.h"
 #include "core/statistics/roughness.h"
 #include "core/statistics/seam.h"
+#include "core/statistics/spectrum_fit.h"
 #include "core/statistics/windowed_psd.h"
 #include "tests/support/failing/each_allocation.h"
 
@@ -59,7 +60,7 @@ static int measure(void *context, struct error *err) {
     if (status == 0)
         status = correlation_create(&correlation, &map, err);
     if (status == 0)
-        status = areal_measure(&map, correlation, &areal, err);
+        status = areal_measure(&map, correlation, NULL, &areal, err);
     if (status == 0)
         assert_true(areal.spd > 0 && areal.sal > 0);
     correlation_destroy(&correlation);
@@ -73,10 +74,33 @@ static void measures(void **state) {
         &(struct failing_call){.name = "measures of an open map", measure, NULL, .may_succeed = 1});
 }
 
+static int fit(void *context, struct error *err) {
+    (void)context;
+    double z[POINTS];
+    const struct measured_map map = {&GRID, z, BOUNDARY_OPEN};
+    struct map_spectrum *spectrum = NULL;
+    struct spectrum_fit found;
+    heights_fill(z);
+    int status = map_spectrum_create(&spectrum, &map, err);
+    if (status == 0)
+        status = spectrum_fit_measure(spectrum, &(struct spectrum_fit_request){.shortest = 2.5},
+                                      &found, err);
+    if (status == 0)
+        assert_true(found.fitted && found.hurst.low <= found.hurst.high);
+    map_spectrum_destroy(&spectrum);
+    return status;
+}
+
+static void fits(void **state) {
+    (void)state;
+    each_allocation(&(struct failing_call){.name = "the fit of a spectrum", fit, NULL});
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(summits),
         cmocka_unit_test(measures),
+        cmocka_unit_test(fits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

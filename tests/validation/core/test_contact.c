@@ -69,6 +69,25 @@ static void solutions_meet_the_conditions(void **state) {
         }
 }
 
+/* On long cells whole steps make long waves overshoot again and again; then 5500 careful steps
+ * followed, where some 300 do. */
+static void long_cells_converge(void **state) {
+    (void)state;
+    static const struct rough_surface rough = {.hurst = 0.8, .ratio = 8, .long_waves = 512};
+    static const struct grid grid = {32768, 1, 1, 1};
+    struct scene scene;
+    scene_open(&scene, grid, DEEP, 1e-5);
+    for (uint64_t run = 0; run < 3; run++) {
+        fill_rough(&grid, &rough, run, scene.z);
+        scene_begin(&scene);
+        scene_press(&scene, 0.03);
+        assert_true(scene.state.iterations < 1000);
+        scene_press(&scene, 0.06);
+        assert_true(scene.state.iterations < 1000);
+    }
+    scene_close(&scene);
+}
+
 /* --- Westergaard's wave --- */
 
 static void wave(struct scene *scene, size_t n, const struct block *block, double phase) {
@@ -452,6 +471,7 @@ static void rough_surfaces_of_elements(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solutions_meet_the_conditions),
+        cmocka_unit_test(long_cells_converge),
         cmocka_unit_test(areas_of_a_wave),
         cmocka_unit_test(pressures_of_a_wave),
         cmocka_unit_test(wave_in_two_directions),

@@ -1,0 +1,105 @@
+#include "core/contact/free_space.h"
+#include "core/surface/transform.h"
+#include <gsl/gsl_sf_expint.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const double PI = 3.14159265358979323846;
+static const double EULER = 0.57721566490153286061;
+
+/* The kernel is split in two, both known in closed form (F18.24): a smooth far part, whose waves
+ * are below erfc(SPLIT) beyond the grid's, and a near part, which is below erfc(NEAR) of its value
+ * beyond NEAR/alpha. */
+static const double SPLIT = 6, NEAR = 6;
+
+/* Returns the greater of the spacings, which waves of the grid are no shorter than twice of. */
+static double spacing_of(const struct grid *grid) {
+    return grid_is_profile(grid) ? grid_dx(grid) : fmax(grid_dx(grid), grid_dy(grid));
+}
+
+static double alpha_of(const struct grid *grid) {
+    return PI / (2 * SPLIT * spacing_of(grid));
+}
+
+/* Twice the side, so that no two points of the map meet across the padding; of small maps more, so
+ * that the near part does not reach across it either. */
+static size_t padded_count(size_t count, double step, double reach) {
+    double near = fmin(ceil(reach / step), 1e9); /* grid_check has bounded the counts */
+    size_t far = (size_t)near > count ? (size_t)near : count;
+    return transform_fast_count(count + far);
+}
+
+void free_space_padded(const struct grid *grid, struct grid *padded) {
+    double reach = NEAR / alpha_of(grid);
+    *padded = *grid;
+    padded->nx = padded_count(grid->nx, grid_dx(grid), reach);
+    padded->lx = grid_dx(grid) * (double)padded->nx;
+    if (grid_is_profile(grid))
+        return;
+    padded->ny = padded_count(grid->ny, grid_dy(grid), reach);
+    padded->ly = grid_dy(grid) * (double)padded->ny;
+}
+
+/* Far part of the displacement E* at a distance from a unit force, of a profile from a unit line
+ * load. */
+static double far_kernel(const struct grid *grid, double alpha, double distance) {
+    if (!grid_is_profile(grid))
+        return distance > 0 ? erf(alpha * distance) / (PI * distance) : 2 * alpha / pow(PI, 1.5);
+    double square = alpha * distance * alpha * distance;
+    if (!(square > 0))
+        return (EULER + 2 * log(alpha * grid->lx)) / PI;
+    double rest = square < 500 ? gsl_sf_expint_E1(square) : 0;
+    return -(2 * log(distance / grid->lx) + rest) / PI;
+}
+
+/* Transform of the near part. */
+static double near_symbol(double alpha, double k) {
+    return k > 0 ? 2 / k * erf(k / (2 * alpha)) : 2 / (alpha * sqrt(PI));
+}
+
+/* Returns the distance of a point of the padded grid to the first one, around either side. */
+static double fold(size_t at, size_t count, double step) {
+    return (double)(at <= count / 2 ? at : count - at) * step;
+}
+
+static void transform_far(struct transform *transform, const struct grid *grid,
+                          const struct grid *padded, double *row) {
+    for (size_t j = 0; j < padded->ny; j++) {
+        double y = grid_is_profile(grid) ? 0 : fold(j, padded->ny, grid_dy(grid));
+        for (size_t i = 0; i < padded->nx; i++)
+            row[i] = far_kernel(grid, alpha_of(grid), hypot(fold(i, padded->nx, grid_dx(grid)), y));
+        transform_forward_rows(transform, j, 1, row);
+    }
+    transform_forward_columns(transform);
+}
+
+int free_space_symbol(const struct grid *grid, const struct grid *padded, double *symbol,
+                      struct error *err) {
+    struct transform *transform = NULL;
+    double *row = array_create(padded->nx, sizeof *row);
+    int status = row == NULL
+                     ? error_memory(err, padded->nx * sizeof *row, "a compliance")
+                     : transform_create(&transform, padded, padded->nx / 2, padded->ny / 2, err);
+    if (status == 0) {
+        transform_far(transform, grid, padded, row);
+        const double complex *far = transform_spectrum(transform);
+        double area = padded->lx * (grid_is_profile(grid) ? 1 : padded->ly);
+        for (size_t mx = 0; mx <= padded->nx / 2; mx++)
+            for (size_t j = 0; j < padded->ny; j++) {
+                size_t my = j <= padded->ny / 2 ? j : padded->ny - j;
+                double qx = (double)mx / padded->lx, qy = my > 0 ? (double)my / padded->ly : 0;
+                symbol[mx * padded->ny + j] = area * creal(far[mx * padded->ny + j]) +
+                                              near_symbol(alpha_of(grid), 2 * PI * hypot(qx, qy));
+            }
+    }
+    transform_destroy(&transform);
+    free(row);
+    return status;
+}
+
+double free_space_bytes(const struct grid *grid) {
+    struct grid padded;
+    free_space_padded(grid, &padded);
+    double waves = ((double)padded.nx / 2 + 1) * (double)padded.ny;
+    return (sizeof(double _Complex) + 2 * sizeof(double)) * waves;
+}
