@@ -27,27 +27,28 @@ int base64_encode(const unsigned char *data, size_t size, char **out, struct err
     return 0;
 }
 
+/* The values of the characters from '+' to 'z'; -1 for what is no digit. */
+static const signed char VALUES[] = {
+    62, -1, -1, -1, 63, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, -1, -1, -1, -1, -1,
+    -1, -1, 0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17,
+    18, 19, 20, 21, 22, 23, 24, 25, -1, -1, -1, -1, -1, -1, 26, 27, 28, 29, 30, 31,
+    32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47, 48, 49, 50, 51};
+
 /* Returns the value of a digit; -1 for what is no digit. */
 static int digit_value(char c) {
-    if (c >= 'A' && c <= 'Z')
-        return c - 'A';
-    if (c >= 'a' && c <= 'z')
-        return c - 'a' + 26;
-    if (c >= '0' && c <= '9')
-        return c - '0' + 52;
-    return c == '+' ? 62 : c == '/' ? 63 : -1;
+    unsigned place = (unsigned)(unsigned char)c - '+';
+    return place < sizeof VALUES ? VALUES[place] : -1;
 }
 
 /* Four characters to 1..3 bytes; 0 when they are no base64. Only the last group may be padded. */
 static size_t group_decode(const char *text, bool last, unsigned char *bytes) {
     size_t count = last && text[3] == '=' ? (text[2] == '=' ? 1 : 2) : 3;
-    uint32_t group = 0;
-    for (size_t i = 0; i < 4; i++) {
-        int value = i <= count ? digit_value(text[i]) : 0;
-        if (value < 0)
-            return 0;
-        group = group << 6 | (uint32_t)value;
-    }
+    int first = digit_value(text[0]), second = digit_value(text[1]);
+    int third = count > 1 ? digit_value(text[2]) : 0, fourth = count > 2 ? digit_value(text[3]) : 0;
+    if (first < 0 || second < 0 || third < 0 || fourth < 0)
+        return 0;
+    uint32_t group =
+        (uint32_t)first << 18 | (uint32_t)second << 12 | (uint32_t)third << 6 | (uint32_t)fourth;
     /* Bits behind the last byte must be zero: one text for one value. */
     if ((count == 1 && (group & 0xffff) != 0) || (count == 2 && (group & 0xff) != 0))
         return 0;

@@ -91,19 +91,24 @@ static bool scan_escape(struct gate *gate) {
     return pair || refuse(gate, "half of a surrogate pair in a string");
 }
 
+/* Passes ASCII that stands for itself: most bytes by far, as results are base64. */
+static void skip_plain(struct gate *gate) {
+    const unsigned char *at = (const unsigned char *)gate->at;
+    const unsigned char *end = (const unsigned char *)gate->end;
+    while (at < end && *at >= 0x20 && *at < 0x80 && *at != '"' && *at != '\\')
+        at++;
+    gate->at = (const char *)at;
+}
+
 static bool scan_string(struct gate *gate) {
     gate->at++;
-    while (gate->at < gate->end && *gate->at != '"') {
+    for (skip_plain(gate); gate->at < gate->end && *gate->at != '"'; skip_plain(gate)) {
         unsigned char c = (unsigned char)*gate->at;
         if (c < 0x20)
             return refuse(gate, "a control character in a string");
         if (c == '\\') {
             if (!scan_escape(gate))
                 return false;
-            continue;
-        }
-        if (c < 0x80) { /* most bytes by far: results are base64 */
-            gate->at++;
             continue;
         }
         size_t length =
@@ -125,9 +130,13 @@ static bool scan_digits(struct gate *gate) {
     return gate->at > start || refuse(gate, "a malformed number");
 }
 
-/* Integers without point or exponent are meant exactly; a double holds them up to 2^53. */
+/* Integers without point or exponent are meant exactly; a double holds them up to 2^53, and so all
+ * of up to 15 digits. */
 static bool is_inexact_integer(const char *text, size_t length) {
+    enum { EXACT_DIGITS = 15 };
     char digits[64];
+    if (length <= EXACT_DIGITS || memchr(text, '.', length) != NULL)
+        return false;
     snprintf(digits, sizeof digits, "%.*s", (int)length, text);
     errno = 0;
     long long value = strtoll(digits, NULL, 10);
@@ -148,7 +157,8 @@ static bool scan_number(struct gate *gate) {
         if (!scan_digits(gate))
             return false;
     }
-    if (next_is(gate, 'e') || next_is(gate, 'E')) {
+    bool exponent = next_is(gate, 'e') || next_is(gate, 'E');
+    if (exponent) {
         gate->at++;
         if (next_is(gate, '+') || next_is(gate, '-'))
             gate->at++;
@@ -164,8 +174,8 @@ static bool scan_number(struct gate *gate) {
                       "an integer beyond 2^53, which would be changed; write a larger seed as "
                       "a decimal string");
     /* The text ends behind its last value with NUL or punctuation: strtod stops where the scan did.
-     */
-    if (!isfinite(strtod(start, NULL)))
+     * Of so few characters, none is beyond the range without an exponent. */
+    if (exponent && !isfinite(strtod(start, NULL)))
         return refuse(gate, "a number beyond the range of a double");
     return true;
 }

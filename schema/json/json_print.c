@@ -8,10 +8,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Counts and numbers of jobs: 15 digits or fewer, which need no search. */
+static bool is_short_integer(double number) {
+    return fabs(number) < 1e15 && number == trunc(number) && !(number == 0 && signbit(number));
+}
+
 void json_print_number(FILE *file, double number) {
     char text[32];
     if (!isfinite(number)) {
         fputs("null", file);
+        return;
+    }
+    if (is_short_integer(number)) {
+        fprintf(file, "%lld", (long long)number);
         return;
     }
     bool large = fabs(number) > 0x1p53; /* no integer to be read exactly: give it an exponent */
@@ -23,8 +32,16 @@ void json_print_number(FILE *file, double number) {
     fputs(text, file);
 }
 
-/* Prints strings, true, false and null; returns false when out of memory. */
-static bool put_plain(FILE *file, const cJSON *value) {
+/* Tells whether the text stands in quotes as it is. */
+static bool is_plain(const char *text) {
+    const unsigned char *at = (const unsigned char *)text;
+    while (*at >= 0x20 && *at != '"' && *at != '\\')
+        at++;
+    return *at == '\0';
+}
+
+/* Prints through cJSON; returns false when out of memory. */
+static bool put_by_cjson(FILE *file, const cJSON *value) {
     char *text = cJSON_PrintUnformatted(value);
     if (text != NULL)
         fputs(text, file);
@@ -32,11 +49,24 @@ static bool put_plain(FILE *file, const cJSON *value) {
     return text != NULL;
 }
 
+/* Most are names, which would take longer through cJSON than all else of a document. */
 bool json_print_text(FILE *file, const char *text) {
+    if (text != NULL && is_plain(text)) {
+        fputc('"', file);
+        fputs(text, file);
+        fputc('"', file);
+        return true;
+    }
     cJSON *value = cJSON_CreateStringReference(text);
-    bool done = value != NULL && put_plain(file, value);
+    bool done = value != NULL && put_by_cjson(file, value);
     cJSON_Delete(value);
     return done;
+}
+
+/* Prints strings, true, false and null; returns false when out of memory. */
+static bool put_plain(FILE *file, const cJSON *value) {
+    const char *text = cJSON_GetStringValue(value);
+    return text != NULL ? json_print_text(file, text) : put_by_cjson(file, value);
 }
 
 /* This stands for the indentation of a text on one line. */

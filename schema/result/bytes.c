@@ -86,16 +86,26 @@ static unsigned get_byte(struct byte_reader *reader) {
     return *reader->at++;
 }
 
+/* Reads up to `bits` bits of 64 or more: the first 63 of them in a word, which is most values. */
 static wide get_wide(struct byte_reader *reader, unsigned bits) {
-    wide value = 0;
-    for (unsigned shift = 0; shift < bits; shift += 7) {
+    uint64_t low = 0;
+    for (unsigned shift = 0; shift < 63; shift += 7) {
+        unsigned byte = get_byte(reader);
+        low |= (uint64_t)(byte & 0x7f) << shift;
+        if (byte < 0x80) {
+            reader->failed = reader->failed || (byte == 0 && shift > 0);
+            return reader->failed ? 0 : low;
+        }
+    }
+    wide value = low;
+    for (unsigned shift = 63; shift < bits; shift += 7) {
         unsigned byte = get_byte(reader);
         wide part = byte & 0x7f;
         if (shift + 7 > bits && part >> (bits - shift) != 0)
             break;
         value |= part << shift;
         if (byte < 0x80) {
-            if (byte == 0 && shift > 0)
+            if (byte == 0)
                 break;
             return reader->failed ? 0 : value;
         }

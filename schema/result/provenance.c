@@ -1,18 +1,13 @@
 #include "schema/result/provenance.h"
+#include "core/plain_text.h"
 #include "schema/json/field.h"
-
-/* Prints a text on one line, whatever is in it. */
-static void put_line(FILE *file, const char *text) {
-    for (; *text != '\0'; text++)
-        fputc((unsigned char)*text < ' ' ? ' ' : *text, file);
-}
 
 static void put_known(FILE *file, const char *before, const cJSON *object, const char *key) {
     const char *text = cJSON_GetStringValue(field_at(object, key));
     if (text == NULL)
         return;
     fputs(before, file);
-    put_line(file, text);
+    text_print_plain(file, text); /* on one line, whatever is in it */
 }
 
 static void put_run(FILE *file, const cJSON *run) {
@@ -24,12 +19,30 @@ static void put_run(FILE *file, const cJSON *run) {
     fputc('\n', file);
 }
 
+/* The measured surface that those of the study are like. */
+static void put_measured(FILE *file, const struct study_result *study) {
+    static const char *const TOLD[][2] = {{"# like: ", "/surface/like/file"},
+                                          {", SHA-256 ", "/surface/like/sha256"},
+                                          {", prepared by ", "/surface/like/prepared"}};
+    const struct case_result *first = study->case_count > 0 ? &study->cases[0] : NULL;
+    if (first == NULL || result_parameter(first, TOLD[0][1]) == NULL)
+        return;
+    for (size_t t = 0; t < sizeof TOLD / sizeof *TOLD; t++) {
+        const struct result_parameter *told = result_parameter(first, TOLD[t][1]);
+        if (told == NULL || told->text == NULL || *told->text == '\0')
+            continue;
+        fputs(TOLD[t][0], file);
+        text_print_plain(file, told->text);
+    }
+    fputc('\n', file);
+}
+
 void provenance_comment(FILE *file, const struct study_result *study) {
     const cJSON *provenance = study->provenance, *runs = field_at(provenance, "runs");
     if (provenance == NULL)
         return;
     fputs("# study: ", file);
-    put_line(file, study->name);
+    text_print_plain(file, study->name);
     fprintf(file, ", %s %s, %s", study->kind, study->id, study->state);
     put_known(file, ", seed ", provenance, "seed");
     fputs("\n# queued:", file);
@@ -37,6 +50,7 @@ void provenance_comment(FILE *file, const struct study_result *study) {
     put_known(file, " by rugo ", provenance, "program");
     put_known(file, ", ended ", provenance, "finished");
     fputc('\n', file);
+    put_measured(file, study);
     for (const cJSON *run = runs != NULL ? runs->child : NULL; run != NULL; run = run->next)
         put_run(file, run);
 }

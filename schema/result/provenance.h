@@ -13,8 +13,8 @@
 #include "schema/result/result.h"
 #include <stdio.h>
 
-/* Prints lines of text that begin with "# ", as the head of a table: what the study is, and its
- * provenance; nothing where that is not known. */
+/* Prints lines of text that begin with "# ", as the head of a table: what the study is, which
+ * measured surface its surfaces are like, and its provenance; nothing where that is not known. */
 void provenance_comment(FILE *file, const struct study_result *study);
 
 #endif

@@ -6,6 +6,9 @@
  * (BEGIN IMMEDIATE), or a savepoint within store_begin .. store_commit (group commit). Waiting for
  * another process's lock is polite and bounded; then ERROR_SYSTEM "the database is busy".
  *
+ * A handle whose file was moved, deleted or replaced commits nothing: ERROR_SYSTEM, until the file
+ * is back.
+ *
  * Leases run on CLOCK_BOOTTIME, not on the wall clock, and are void after a reboot. */
 #ifndef RUGO_SCHEMA_STORE_STORE_H
 #define RUGO_SCHEMA_STORE_STORE_H
@@ -17,7 +20,7 @@
 #include "schema/study/study.h"
 #include <stdbool.h>
 
-enum { STUDY_ID_SIZE = 17, TOKEN_SIZE = 33, ATTEMPTS_MOST = 3, OWNER_SIZE = 41 };
+enum { STUDY_ID_SIZE = 17, TOKEN_SIZE = 33, ATTEMPTS_MOST = 3, LOSSES_MOST = 10, OWNER_SIZE = 41 };
 
 struct store;
 struct store_options {
@@ -30,11 +33,18 @@ struct store_options {
 int store_open(struct store **out, const char *path, const struct store_options *options,
                struct error *err);
 void store_close(struct store **store);
+/* From now on whatever reads asks stop, again and again; non-zero ends it with ERROR_STOPPED. NULL:
+ * nothing is asked. Not for a handle within a change. */
+void store_set_stop(struct store *store, int (*stop)(void *context), void *context);
 
 /* Group commit: everything between is one transaction, each operation still all or nothing.
  * store_commit fails as a whole: then nothing since store_begin happened. */
 int store_begin(struct store *store, struct error *err);
 int store_commit(struct store *store, struct error *err);
+/* Undoes everything since store_begin. */
+void store_abandon(struct store *store);
+/* Writes what is there once more, to see whether writing works. */
+int store_probe(struct store *store, struct error *err);
 
 /* --- studies --- */
 /* Queues a study with its jobs. Where another has fewer realisations and is the same but for its
@@ -56,6 +66,7 @@ struct study_status {
     enum study_random random;
     uint64_t seed, cases, realisations; /* realisations of each case; 0: an error is asked for */
     double error_reached;               /* the largest of the cases, relative; NaN: none is told */
+    /* Those that wait, or were cancelled before they ran, as what is left is likely to be cut. */
     uint64_t jobs, jobs_done, jobs_failed, jobs_running, jobs_waiting, jobs_cancelled;
     uint64_t cases_failed; /* whose results cannot be published */
     uint64_t realisations_total, realisations_done,
@@ -111,7 +122,9 @@ int store_purge(struct store *store, bool (*stop)(void *context), void *context,
 /* A job that failed, or a case that cannot be published. */
 struct failure {
     int64_t job; /* 0: the case, with all realisations that it has */
-    uint64_t case_number, first, count, attempts;
+    uint64_t case_number, first, count;
+    uint64_t attempts;     /* that failed */
+    uint64_t losses;       /* leases that ran out, as of workers that were killed */
     char *worker, *reason; /* owned */
 };
 int store_failures(struct store *store, const char *id, struct failure **out, size_t *count,
@@ -145,16 +158,28 @@ struct claim {
     const char *const *kinds;  /* NULL-terminated; NULL: any */
     const char *study;         /* only this study; NULL: any */
     size_t count;              /* at most */
+    /* Claims on until the jobs are thought to take so long; 0: count alone decides. */
+    double seconds;
+    unsigned threads; /* of the worker, among which it divides its jobs; 0: one */
     /* The worker is of a program that draws by the number of the case, whatever the sequence: it
      * may have studies of independent cases, or of one case, alone. */
     bool independent_only;
 };
-/* Hands out waiting jobs and those whose lease ran out (which count an attempt; the last failed
- * attempt fails the job with "lease ran out ..."). Owners take turns, so that each gets its share
- * of the workers' time; of an owner the study of highest priority is first, then the oldest. *count
- * may be 0. */
+/* Hands out jobs. What waits is realisations; here they are cut into jobs: of 1000 or the kind's
+ * most, of about 5 s as measured of the case or estimated, and smaller where few wait, so that each
+ * thread seen (of workers that asked within two minutes) gets some of them. Of few small jobs a
+ * claim has no more than its share of the threads, and one for each of its own.
+ * Leases that ran out end first: each counts a loss, after which the job waits for a second, for
+ * two, four and so on up to about a minute; at LOSSES_MOST it fails. So jobs may come by time
+ * alone: who waits for one asks again. Owners take turns, so that each gets its share of the
+ * workers' time; of an owner the study of highest priority is first, then the oldest. *count may be
+ * 0. */
 int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs,
                 size_t *count, struct error *err);
+/* Sets *wait to whether a claim of any kind would find a job now. */
+int store_jobs_wait(struct store *store, bool *wait, struct error *err);
+/* Returns a number that rises with each change by this handle. */
+int64_t store_changes(const struct store *store);
 /* Returns whether the last claim failed a job for good, which may have left its case due. */
 bool store_claim_failed_jobs(const struct store *store);
 /* Sets the weight of an owner, above 0: its share of the workers' time beside those of others. It
@@ -169,12 +194,15 @@ int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_
  * store_complete makes those of a result without. */
 struct block_text {
     char *names, *scalars; /* owned */
+    int64_t seal;          /* of the block with these (store_seal.h) */
 };
 int block_text_create(struct block_text *out, const struct block_result *result, struct error *err);
 void block_text_clear(struct block_text *text);
 
 /* Stores the result once. Completing again with the same token is harmless (0, *first_time false);
- * a lost lease is ERROR_STATE and its result dropped. *case_done: no job of the case is left. */
+ * a lost lease is ERROR_STATE and its result dropped. *case_done: no job of the case is left.
+ * A result of fewer realisations than the job, from its first one on, is stored for these; the
+ * others wait again as if they had not been claimed, and the job is done. */
 int store_complete(struct store *store, int64_t job, const char *token,
                    const struct block_result *result, bool *first_time, bool *case_done,
                    struct error *err);
@@ -219,7 +247,7 @@ int store_publish_points(struct store *store, const char *study, uint64_t case_n
                          uint64_t revision, const struct case_result *result,
                          const struct point_texts *points, struct error *err);
 /* What is published of a case at this revision, without its parameters. *found: whether anything
- * is; *out is untouched where nothing is, and on failure. */
+ * is, and not damaged; *out is untouched where nothing is, and on failure. */
 struct published_part {
     const char *quantity; /* curves of this quantity alone; NULL: of all */
     bool scalars_only;    /* no curves at all */
@@ -241,6 +269,11 @@ struct due_case {
     char study[STUDY_ID_SIZE];
     uint64_t case_number, revision;
 };
+/* Tells, once, of a published case that a reading with this handle found damaged and told as not
+ * found, so that its results are merged anew. */
+bool store_found_damage(struct store *store, struct due_case *out);
+/* Has such a case published anew: it is due again. */
+int store_unpublish(struct store *store, const struct due_case *damaged, struct error *err);
 /* Sets *due to whether any case is due. */
 int store_is_due(struct store *store, bool *due, struct error *err);
 struct publication {
@@ -250,8 +283,6 @@ struct publication {
                    struct error *err);
     bool (*stop)(void *context); /* asked before each case; may be NULL */
     void *context;
-    const char *study; /* only this study's case; NULL: all that is due */
-    uint64_t case_number;
 };
 struct publish_counts {
     uint64_t published, failed;
@@ -277,6 +308,7 @@ struct component {
     char *role;             /* owned */
     uint64_t realisations;  /* asked for so far */
     struct study_cost cost; /* of one, as estimated: seconds and result_bytes alone */
+    uint64_t block;         /* realisations of a job at most */
 };
 /* In the order of their numbers; *count is 0 for a case without. */
 int store_components(struct store *store, const char *study, uint64_t case_number,
@@ -294,8 +326,15 @@ int store_grow(struct store *store, const char *study, uint64_t case_number,
                const struct next_round *next, bool *grown, struct error *err);
 
 /* --- upkeep --- */
-int store_snapshot(struct store *store, const char *path,
-                   struct error *err); /* VACUUM INTO; path must not exist */
+/* Copies the store as it is at one moment into the empty file of a part, which the caller publishes
+ * or takes away; others may change the store meanwhile. stop (may be NULL) is asked all along; then
+ * ERROR_STOPPED. */
+struct part_file;
+int store_copy(struct store *store, const struct part_file *part, bool (*stop)(void *context),
+               void *context, struct error *err);
+/* Copies it to a new file, which is there when it is whole and on the disk. */
+int store_snapshot(struct store *store, const char *path, bool (*stop)(void *context),
+                   void *context, struct error *err);
 /* A worker and a job that it holds; or one that holds none, and ended one within the last hour. */
 struct worker_activity {
     char *name, *host;        /* owned, as all texts here */

@@ -16,24 +16,17 @@ static int expire_one(struct store *store, struct error *err) {
     if (status <= 0)
         return status;
     int64_t id = sqlite3_column_int64(row, 0);
-    char reason[160];
-    snprintf(reason, sizeof reason, "lease ran out on worker %.100s",
-             (const char *)sqlite3_column_text(row, 1));
+    char worker[104];
+    snprintf(worker, sizeof worker, "%.100s", (const char *)sqlite3_column_text(row, 1));
     sqlite3_reset(row);
     struct job_row job;
+    bool failed = false;
     status = job_read(store, id, NULL, &job, err);
     if (status == 0)
-        status = job_give_up(store, &job, reason, false, err);
-    store->claim_failed_jobs |= status == 0 && job.attempts >= ATTEMPTS_MOST;
+        status = job_lose(store, &job, worker, &failed, err);
+    store->claim_failed_jobs |= failed;
     return status != 0 ? status : 1;
 }
-
-struct found_study {
-    int64_t id;
-    bool queued;
-    enum study_random random;
-    char owner[OWNER_SIZE];
-};
 
 /* The kinds of a claim as " one two ", the caller's to free; *out is NULL for any. */
 static int kinds_text(const char *const *kinds, char **out, struct error *err) {
@@ -50,27 +43,30 @@ static int kinds_text(const char *const *kinds, char **out, struct error *err) {
     return 0;
 }
 
-#define FOUND_COLUMNS "id, public, kind, seed, state = 'queued', random, owner"
-/* Studies that a worker may have: ?1 those of independent cases alone, ?2 of these kinds. */
+#define FOUND_COLUMNS                                                                              \
+    "id, public, kind, seed, state = 'queued', random, owner, jobs_waiting, realisations_waiting"
+/* Studies that a worker may have: ?1 those of independent cases alone, ?2 of these kinds. Not those
+ * all of whose jobs wait for a while after a loss: ?4 is now. */
 #define CLAIMABLE                                                                                  \
     "state IN ('queued', 'running') AND jobs_waiting > 0 AND (NOT ?1 OR random = 'independent' "   \
-    "OR (cases = 1 AND realisations > 0)) AND (?2 IS NULL OR instr(?2, ' ' || kind || ' ') > 0)"
+    "OR (cases = 1 AND realisations > 0)) AND (?2 IS NULL OR instr(?2, ' ' || kind || ' ') > 0) "  \
+    "AND EXISTS (SELECT 1 FROM job INDEXED BY job_waiting WHERE study_id = study.id AND "          \
+    "job.state = 'waiting' AND not_before <= ?4)"
 /* A study that a worker may have: of this owner the first in line, or the one that is asked for.
  * Fills job's study, kind and seed. 1, or 0 when there is none. */
-static int first_study(struct store *store, const struct claim *claim, int64_t only,
-                       const char *kinds, struct found_study *found, struct claimed_job *job,
-                       struct error *err) {
+static int first_study(struct store *store, const struct claiming *claiming,
+                       struct found_study *found, struct claimed_job *job, struct error *err) {
     sqlite3_stmt *row = NULL;
-    int64_t independent = claim->independent_only;
+    int64_t independent = claiming->claim->independent_only, now = store_now(store);
     int status =
-        only != 0
+        claiming->only != 0
             ? store_query(store, &row, err,
                           "SELECT " FOUND_COLUMNS " FROM study WHERE " CLAIMABLE " AND id = ?3",
-                          "iti", independent, kinds, only)
+                          "itii", independent, claiming->kinds, claiming->only, now)
             : store_query(store, &row, err,
                           "SELECT " FOUND_COLUMNS " FROM study INDEXED BY study_line WHERE "
                           "owner = ?3 AND " CLAIMABLE " ORDER BY priority DESC, id LIMIT 1",
-                          "itt", independent, kinds, found->owner);
+                          "itti", independent, claiming->kinds, found->owner, now);
     if (status == 0)
         status = store_step(store, row, err);
     if (status <= 0)
@@ -78,6 +74,8 @@ static int first_study(struct store *store, const struct claim *claim, int64_t o
     found->id = sqlite3_column_int64(row, 0);
     found->queued = sqlite3_column_int(row, 4);
     found->random = column_random(row, 5);
+    found->jobs_waiting = sqlite3_column_int64(row, 7);
+    found->realisations_waiting = sqlite3_column_int64(row, 8);
     snprintf(found->owner, sizeof found->owner, "%s", (const char *)sqlite3_column_text(row, 6));
     snprintf(job->study, sizeof job->study, "%s", (const char *)sqlite3_column_text(row, 1));
     job->seed = strtoull((const char *)sqlite3_column_text(row, 3), NULL, 10);
@@ -87,7 +85,7 @@ static int first_study(struct store *store, const struct claim *claim, int64_t o
 }
 
 /* Asks owner after owner, whose clock is least first. */
-static int next_study(struct store *store, const struct claim *claim, const char *kinds,
+static int next_study(struct store *store, const struct claiming *claiming,
                       struct found_study *found, struct claimed_job *job, struct error *err) {
     sqlite3_stmt *turn = NULL;
     int status = store_query(store, &turn, err,
@@ -97,147 +95,92 @@ static int next_study(struct store *store, const struct claim *claim, const char
     while (status == 0 && (status = store_step(store, turn, err)) == 1) {
         snprintf(found->owner, sizeof found->owner, "%s",
                  (const char *)sqlite3_column_text(turn, 0));
-        status = first_study(store, claim, 0, kinds, found, job, err);
+        status = first_study(store, claiming, found, job, err);
         if (status != 0)
             sqlite3_reset(turn);
     }
     return status;
 }
 
-static int find_study(struct store *store, const struct claim *claim, int64_t only,
-                      struct found_study *found, struct claimed_job *job, struct error *err) {
-    char *kinds = NULL;
-    int status = kinds_text(claim->kinds, &kinds, err);
+/* How many jobs the claim may have in all, when its first one comes from this study: its share of
+ * what waits, where few do, and one a thread in any case. */
+static int count_most(struct store *store, struct claiming *claiming,
+                      const struct found_study *study, size_t *most, struct error *err) {
+    const struct claim *claim = claiming->claim;
+    int64_t own = claim->threads > 0 ? (int64_t)claim->threads : 1, share = own;
+    int64_t enough = own < claiming->threads ? claiming->threads * (int64_t)claim->count / own : 0;
+    int status = 0;
+    *most = claim->count;
+    if (claim->count <= (size_t)own || study->jobs_waiting >= enough)
+        return 0;
+    status = count_elsewhere(store, study->id, enough, &claiming->elsewhere, err);
     if (status == 0)
-        status = only != 0 ? first_study(store, claim, only, kinds, found, job, err)
-                           : next_study(store, claim, kinds, found, job, err);
-    free(kinds);
+        share = (study->jobs_waiting + claiming->elsewhere) * own / claiming->threads;
+    if (share < own)
+        share = own;
+    if ((size_t)share < claim->count)
+        *most = (size_t)share;
     return status;
 }
 
-/* Leases the study's first job that waits. */
-static int lease_job(struct store *store, const struct claim *claim,
-                     const struct found_study *study, struct claimed_job *job, struct error *err) {
-    sqlite3_stmt *row = NULL;
-    int status =
-        store_query(store, &row, err,
-                    "SELECT id, case_number, first, count, attempts + 1 FROM job WHERE state = "
-                    "'waiting' AND study_id = ? ORDER BY id LIMIT 1",
-                    "i", study->id);
-    if (status == 0)
-        status = store_step(store, row, err);
-    if (status == 0)
-        return error_set(err, ERROR_SYSTEM, "study %s counts waiting jobs that are not there",
-                         job->study);
-    if (status < 0)
-        return status;
-    job->id = sqlite3_column_int64(row, 0);
-    job->case_number = (uint64_t)sqlite3_column_int64(row, 1);
-    job->sequence = study_sequence(study->random, job->case_number);
-    job->first = (uint64_t)sqlite3_column_int64(row, 2);
-    job->count = (uint64_t)sqlite3_column_int64(row, 3);
-    job->attempt = (uint64_t)sqlite3_column_int64(row, 4);
-    job->lease_ms = store->options.lease_ms;
-    sqlite3_reset(row);
-    status = random_text(job->token, TOKEN_SIZE - 1, err);
-    if (status != 0)
-        return status;
-    return store_run(
-        store, err,
-        "UPDATE job SET state = 'running', attempts = attempts + 1, token = ?, worker = ?, "
-        "host = ?, program = ?, claimed_ms = ?5, lease_until = ?5 + ?6, reported = 0, reported_ms "
-        "= 0, claimed = ?7 WHERE id = ?8",
-        "ttttiiti", job->token, claim->worker, claim->host, claim->program, store_now(store),
-        store->options.lease_ms, store_time(store), job->id);
-}
-
-/* *seconds: that the job takes, as measured of its case or, before, as estimated. */
-static int copy_case(struct store *store, int64_t study, struct claimed_job *job, double *seconds,
-                     struct error *err) {
-    sqlite3_stmt *row = NULL;
-    int status = store_query(store, &row, err,
-                             "SELECT parameters, sequence, CASE WHEN seconds > 0 AND "
-                             "realisations_done > 0 THEN seconds / realisations_done ELSE estimate "
-                             "END FROM study_case WHERE study_id = ? AND number = ?",
-                             "ii", study, (int64_t)job->case_number);
-    if (status == 0)
-        status = store_step(store, row, err);
-    if (status <= 0)
-        return status != 0
-                   ? status
-                   : error_set(err, ERROR_SYSTEM, "job %lld has no case", (long long)job->id);
-    if (sqlite3_column_type(row, 1) != SQLITE_NULL)
-        job->sequence = (uint64_t)sqlite3_column_int64(row, 1);
-    *seconds = sqlite3_column_double(row, 2) * (double)job->count;
-    status = column_json(row, 0, &job->parameters, err);
-    sqlite3_reset(row);
-    return status;
-}
-
-/* Moves the clock of the study's owner on. Jobs that take no time count a little, so that owners of
- * such take turns, too. */
-static int count_share(struct store *store, const struct found_study *study, double seconds,
-                       struct error *err) {
-    static const double LEAST = 1e-3;
-    return store_run(store, err,
-                     "UPDATE share SET begun = start, served = start + ?1 / weight FROM (SELECT "
-                     "max(served, (SELECT max(begun) FROM share)) AS start FROM share WHERE owner "
-                     "= ?2) WHERE owner = ?2",
-                     "dt", seconds > LEAST ? seconds : LEAST, study->owner);
-}
-
-/* The counters change with every claim; the state only with the first, as it is indexed. */
-static int count_claim(struct store *store, const struct found_study *study, struct error *err) {
-    int status = store_run(store, err,
-                           "UPDATE study SET jobs_waiting = jobs_waiting - 1, jobs_running = "
-                           "jobs_running + 1, revision = revision + 1 WHERE id = ?",
-                           "i", study->id);
-    if (status == 0 && study->queued)
-        status = store_run(store, err, "UPDATE study SET state = 'running' WHERE id = ?", "i",
-                           study->id);
-    return status;
-}
-
-/* Claims one job: returns 1, or 0 when nothing waits. */
-static int claim_one(struct store *store, const struct claim *claim, int64_t only,
+/* Claims one job: returns 1, 0 when nothing waits, or 2 where one failed in its place. *most: see
+ * count_most; 0 before the first. */
+static int claim_one(struct store *store, struct claiming *claiming, size_t *most,
                      struct claimed_job *job, struct error *err) {
     struct found_study study = {0};
-    double seconds = 0;
-    int status = find_study(store, claim, only, &study, job, err);
+    int status = claiming->only != 0 ? first_study(store, claiming, &study, job, err)
+                                     : next_study(store, claiming, &study, job, err);
     if (status <= 0)
         return status;
-    status = lease_job(store, claim, &study, job, err);
+    status = *most == 0 ? count_most(store, claiming, &study, most, err) : 0;
     if (status == 0)
-        status = count_claim(store, &study, err);
-    if (status == 0)
-        status = copy_case(store, study.id, job, &seconds, err);
-    if (status == 0)
-        status = count_share(store, &study, seconds, err);
-    return status != 0 ? status : 1;
+        status = block_lease(store, claiming, &study, job, err);
+    return status < 0 ? status : 1 + status;
+}
+
+/* Claims until there are enough: by their number, or by the seconds that they take. */
+static int claim_all(struct store *store, struct claiming *claiming, struct claimed_job *jobs,
+                     size_t *count, struct error *err) {
+    const struct claim *claim = claiming->claim;
+    size_t most = 0;
+    int status = 1;
+    while (status >= 1 && *count < claim->count && (*count == 0 || *count < most) &&
+           (claim->seconds <= 0 || *count == 0 || claiming->seconds < claim->seconds)) {
+        jobs[*count] = (struct claimed_job){0};
+        status = claim_one(store, claiming, &most, &jobs[*count], err);
+        if (status == 2)
+            claimed_job_clear(&jobs[*count]);
+        else if (status != 0) /* also after an error: what it holds is cleared later */
+            (*count)++;
+    }
+    return status < 0 ? status : 0;
+}
+
+/* Finds what a claim asks for, with what is known of other workers. */
+static int open_claim(struct store *store, struct claiming *claiming, struct error *err) {
+    const struct claim *claim = claiming->claim;
+    int status = kinds_text(claim->kinds, &claiming->kinds, err);
+    if (status == 0 && claim->study != NULL)
+        status = study_row(store, claim->study, &claiming->only, err);
+    return status != 0 ? status : seen_note(store, claim, &claiming->threads, err);
 }
 
 int store_claim(struct store *store, const struct claim *claim, struct claimed_job *jobs,
                 size_t *count, struct error *err) {
-    int64_t only = 0;
+    struct claiming claiming = {.claim = claim, .elsewhere = -1};
     size_t n = 0;
     *count = 0;
     store->claim_failed_jobs = false;
     int status = change_begin(store, err);
     if (status != 0)
         return status;
-    if (claim->study != NULL)
-        status = study_row(store, claim->study, &only, err);
+    status = open_claim(store, &claiming, err);
     while (status == 0 && (status = expire_one(store, err)) == 1)
         status = 0;
-    while (status == 0 && n < claim->count) {
-        jobs[n] = (struct claimed_job){0};
-        status = claim_one(store, claim, only, &jobs[n], err);
-        if (status == 0)
-            break;
-        n++; /* also after an error: what it holds is cleared below */
-        status = status == 1 ? 0 : status;
-    }
+    if (status == 0)
+        status = claim_all(store, &claiming, jobs, &n, err);
     status = change_end(store, status, err);
+    free(claiming.kinds);
     for (size_t i = 0; status != 0 && i < n; i++)
         claimed_job_clear(&jobs[i]);
     *count = status != 0 ? 0 : n;

@@ -1,5 +1,6 @@
 /* Completion: a result in, once. */
 #include "schema/store/store_internal.h"
+#include "schema/store/store_seal.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,11 +55,12 @@ static char *names_text(const struct block_result *result) {
 
 int block_text_create(struct block_text *out, const struct block_result *result,
                       struct error *err) {
-    struct block_text text = {names_text(result), scalars_text(result)};
+    struct block_text text = {.names = names_text(result), .scalars = scalars_text(result)};
     if (text.names == NULL || text.scalars == NULL) {
         block_text_clear(&text);
         return error_memory(err, result->size, "a result");
     }
+    text.seal = block_seal(result, text.names, text.scalars);
     *out = text;
     return 0;
 }
@@ -89,8 +91,10 @@ static int insert_result(struct store *store, const struct job_row *job,
     int status = names_row(store, text->names, &names, err);
     if (status == 0)
         status = store_run(
-            store, err, "INSERT INTO result (job_id, names_id, scalars, data) VALUES (?, ?, ?, ?)",
-            "iitb", job->id, names, text->scalars, (const void *)result->data, result->size);
+            store, err,
+            "INSERT INTO result (job_id, names_id, scalars, data, seal) VALUES (?, ?, ?, ?, ?)",
+            "iitbi", job->id, names, text->scalars, (const void *)result->data, result->size,
+            text->seal);
     return status;
 }
 
@@ -105,12 +109,28 @@ static int read_left(struct store *store, const struct job_row *job, int64_t *le
     return status;
 }
 
+static int read_cut(struct store *store, const struct job_row *job, struct cut *cut,
+                    struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status = store_query(store, &row, err,
+                             "SELECT " CUT_SECONDS
+                             ", block FROM study_case c WHERE study_id = ? AND number = ?",
+                             "ii", job->study, job->case_number);
+    if (status == 0)
+        status = store_step(store, row, err);
+    if (status <= 0)
+        return status;
+    *cut = column_cut(row, 0, 1);
+    sqlite3_reset(row);
+    return 0;
+}
+
 /* A query behind each update, not RETURNING: that makes a table for its row each time. */
 static int count_completion(struct store *store, const struct job_row *job,
                             const struct block_result *result, int64_t *left, struct error *err) {
     bool without = isnan(result->cpu_seconds);
     double seconds = result->seconds, cpu_seconds = without ? seconds : result->cpu_seconds;
-    int64_t undone = 0;
+    int64_t undone = 1;
     int status = store_run(
         store, err,
         "UPDATE study_case SET jobs_left = jobs_left - 1, realisations_done = realisations_done "
@@ -118,7 +138,8 @@ static int count_completion(struct store *store, const struct job_row *job,
         "jobs_without_cpu + ?6, revision = revision + 1, settled = CASE WHEN parent IS NULL "
         "THEN settled ELSE revision + 1 END WHERE study_id = ?1 AND number IN (?2, " CASE_PARENT
         ")",
-        "iiiddi", job->study, job->case_number, job->count, seconds, cpu_seconds, (int64_t)without);
+        "iiiddi", job->study, job->case_number, (int64_t)result->count, seconds, cpu_seconds,
+        (int64_t)without);
     if (status == 0)
         status = store_run(
             store, err,
@@ -126,20 +147,43 @@ static int count_completion(struct store *store, const struct job_row *job,
             "realisations_done = realisations_done + ?, seconds = seconds + ?, cpu_seconds = "
             "cpu_seconds + ?, jobs_without_cpu = jobs_without_cpu + ?, revision = revision + 1 "
             "WHERE id = ?",
-            "iddii", job->count, seconds, cpu_seconds, (int64_t)without, job->study);
+            "iddii", (int64_t)result->count, seconds, cpu_seconds, (int64_t)without, job->study);
     if (status == 0)
+        status = read_left(store, job, left, err);
+    if (status == 0 && *left == 0) /* else something of the study is left, too */
         status = store_integer(store, &undone, err,
                                "SELECT jobs_waiting + jobs_running FROM study WHERE id = ?", "i",
                                job->study);
-    if (status == 0 && undone == 0)
-        status = study_settle(store, job->study, err);
-    return status != 0 ? status : read_left(store, job, left, err);
+    return status == 0 && undone == 0 ? study_settle(store, job->study, err) : status;
+}
+
+/* What a partial result leaves waits again, as if it had never been leased. */
+static int queue_rest(struct store *store, const struct job_row *job,
+                      const struct block_result *result, struct error *err) {
+    struct job_row rest = *job;
+    struct queued queued = {0};
+    struct cut cut = {0};
+    rest.first += (int64_t)result->count;
+    rest.count -= (int64_t)result->count;
+    rest.attempts--;
+    int status = read_cut(store, job, &cut, err);
+    if (status == 0)
+        status = span_insert(store, &rest, &cut, &queued, err);
+    if (status == 0)
+        status = study_count_queued(store, job->study, &queued, err);
+    if (status == 0)
+        status = case_add_jobs(store, job->study, job->case_number, queued.jobs, err);
+    return status != 0 ? status
+                       : store_run(store, err, "UPDATE job SET count = ? WHERE id = ?", "ii",
+                                   (int64_t)result->count, job->id);
 }
 
 static int job_complete(struct store *store, const struct job_row *job,
                         const struct block_result *result, const struct block_text *text,
                         int64_t *left, struct error *err) {
     int status = insert_result(store, job, result, text, err);
+    if (status == 0 && (int64_t)result->count < job->count)
+        status = queue_rest(store, job, result, err);
     if (status == 0)
         status = store_run(
             store, err,
@@ -149,9 +193,12 @@ static int job_complete(struct store *store, const struct job_row *job,
     return status != 0 ? status : count_completion(store, job, result, left, err);
 }
 
+/* A result may be of the first realisations of a job alone, until the job is done. */
 static int check_block(const struct job_row *job, const struct block_result *result,
                        struct error *err) {
-    if (result->first == (uint64_t)job->first && result->count == (uint64_t)job->count)
+    uint64_t count = (uint64_t)job->count;
+    bool part = !job->done && result->count > 0 && result->count < count;
+    if (result->first == (uint64_t)job->first && (result->count == count || part))
         return 0;
     return error_set(err, ERROR_INPUT,
                      "a result of %llu realisations from %llu; job %lld is %lld from %lld",

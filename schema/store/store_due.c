@@ -11,19 +11,15 @@ struct cursor {
     struct due_case due;
 };
 
-/* The next case due behind the cursor, or the one that is asked for. 1, or 0 for none. */
-static int find_due(struct store *store, const struct publication *publication,
-                    struct cursor *cursor, struct error *err) {
+/* The next case due behind the cursor. 1, or 0 for none. */
+static int find_due(struct store *store, struct cursor *cursor, struct error *err) {
     sqlite3_stmt *row = NULL;
     int status =
         store_query(store, &row, err,
                     "SELECT study_id, number, revision, (SELECT public FROM study WHERE id = "
-                    "study_id) AS public FROM study_case INDEXED BY case_due WHERE " DUE
-                    " AND (study_id, number) > (?1, ?2) AND (?3 IS NULL OR (public = ?3 AND number "
-                    "IN (?4, (SELECT k.parent FROM study_case k WHERE k.study_id = "
-                    "study_case.study_id AND k.number = ?4)))) ORDER BY study_id, number LIMIT 1",
-                    "iiti", cursor->study, (int64_t)cursor->due.case_number, publication->study,
-                    (int64_t)publication->case_number);
+                    "study_id) FROM study_case INDEXED BY case_due WHERE " DUE
+                    " AND (study_id, number) > (?, ?) ORDER BY study_id, number LIMIT 1",
+                    "ii", cursor->study, (int64_t)cursor->due.case_number);
     if (status == 0)
         status = store_step(store, row, err);
     if (status <= 0)
@@ -102,7 +98,7 @@ int store_publish_due(struct store *store, const struct publication *publication
     struct cursor cursor = {0};
     int status = 0;
     *counts = (struct publish_counts){0};
-    while (status == 0 && (status = find_due(store, publication, &cursor, err)) == 1)
+    while (status == 0 && (status = find_due(store, &cursor, err)) == 1)
         if (publication->stop != NULL && publication->stop(publication->context))
             status = error_set(err, ERROR_STOPPED, "stopped");
         else

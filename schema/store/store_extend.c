@@ -1,40 +1,12 @@
 /* Extension: the realisations that a study lacks, behind those that it has. */
 #include "schema/store/store_internal.h"
-#include "schema/study/study_reader.h"
 #include <stdlib.h>
-
-int jobs_insert_missing(struct store *store, const struct job_row *all, int64_t block,
-                        int64_t *jobs, struct error *err) {
-    int64_t at = all->first, end = all->first + all->count, first = 0;
-    int status = 0;
-    while (status == 0 && at < end) {
-        status = store_integer(store, &first, err,
-                               "SELECT coalesce((SELECT first FROM job WHERE study_id = ?1 AND "
-                               "case_number = ?2 AND first >= ?3 ORDER BY first LIMIT 1), ?4)",
-                               "iiii", all->study, all->case_number, at, end);
-        if (status == 0 && first > at) {
-            struct job_row gap = *all;
-            gap.first = at;
-            gap.count = (first < end ? first : end) - at;
-            status = jobs_insert(store, &gap, block, err);
-            *jobs += (gap.count + block - 1) / block;
-        }
-        at = first;
-        if (status == 0 && at < end)
-            status = store_integer(store, &at, err,
-                                   "SELECT first + count FROM job WHERE study_id = ?1 AND "
-                                   "case_number = ?2 AND first = ?3",
-                                   "iii", all->study, all->case_number, first);
-    }
-    return status;
-}
 
 /* --- more realisations of a study --- */
 
-/* A case, and what a realisation of it costs: as measured where any was. */
 struct longer_case {
     int64_t number;
-    struct study_cost cost;
+    struct cut cut;
 };
 
 /* *out has room for all cases of the study. */
@@ -42,18 +14,13 @@ static int read_cases(struct store *store, int64_t study, struct longer_case *ou
                       struct error *err) {
     sqlite3_stmt *row = NULL;
     size_t n = 0;
-    int status = store_query(
-        store, &row, err,
-        "SELECT number, CASE WHEN seconds > 0 AND realisations_done > 0 THEN seconds / "
-        "realisations_done ELSE estimate END, coalesce(result_bytes, (SELECT max(1.0 * "
-        "length(r.data) / j.count) FROM job j JOIN result r ON r.job_id = j.id WHERE j.study_id = "
-        "study_case.study_id AND j.case_number = number), 0) FROM study_case WHERE study_id = ? "
-        "AND parent IS NULL ORDER BY number",
-        "i", study);
+    int status =
+        store_query(store, &row, err,
+                    "SELECT number, " CUT_SECONDS ", block FROM study_case c WHERE study_id "
+                    "= ? AND parent IS NULL ORDER BY number",
+                    "i", study);
     while (status == 0 && n < count && (status = store_step(store, row, err)) == 1) {
-        out[n++] = (struct longer_case){sqlite3_column_int64(row, 0),
-                                        {.seconds = sqlite3_column_double(row, 1),
-                                         .result_bytes = sqlite3_column_double(row, 2)}};
+        out[n++] = (struct longer_case){sqlite3_column_int64(row, 0), column_cut(row, 1, 2)};
         status = 0;
     }
     if (status == 0)
@@ -64,24 +31,18 @@ static int read_cases(struct store *store, int64_t study, struct longer_case *ou
 }
 
 static int extend_case(struct store *store, int64_t study, const struct longer_case *one,
-                       int64_t had, int64_t wanted, int64_t *jobs, struct error *err) {
+                       int64_t had, int64_t wanted, struct queued *queued, struct error *err) {
     const struct job_row all = {
         .study = study, .case_number = one->number, .first = had, .count = wanted - had};
-    int64_t block = (int64_t)study_block((uint64_t)all.count, &one->cost);
-    int64_t added = (all.count + block - 1) / block;
-    int status = jobs_insert(store, &all, block, err);
-    *jobs += added;
-    return status != 0
-               ? status
-               : store_run(store, err,
-                           "UPDATE study_case SET jobs = jobs + ?, jobs_left = jobs_left + ? WHERE "
-                           "study_id = ? AND number = ?",
-                           "iiii", added, added, study, one->number);
+    int64_t before = queued->jobs;
+    int status = span_insert(store, &all, &one->cut, queued, err);
+    return status != 0 ? status
+                       : case_add_jobs(store, study, one->number, queued->jobs - before, err);
 }
 
 /* had: the realisations that each case was to have. */
 static int extend_cases(struct store *store, int64_t study, int64_t had, int64_t wanted,
-                        int64_t *jobs, struct error *err) {
+                        struct queued *queued, struct error *err) {
     int64_t count = 0;
     int status =
         store_integer(store, &count, err, "SELECT cases FROM study WHERE id = ?", "i", study);
@@ -92,30 +53,32 @@ static int extend_cases(struct store *store, int64_t study, int64_t had, int64_t
         return error_memory(err, (size_t)count * sizeof *cases, "cases");
     status = read_cases(store, study, cases, (size_t)count, err);
     for (int64_t c = 0; c < count && status == 0; c++)
-        status = extend_case(store, study, &cases[c], had, wanted, jobs, err);
+        status = extend_case(store, study, &cases[c], had, wanted, queued, err);
     free(cases);
     return status;
 }
 
 static int extend(struct store *store, int64_t study, int64_t had, int64_t wanted, int64_t *jobs,
                   struct error *err) {
-    int64_t again = 0, added = 0;
+    struct queued queued = {0};
+    int64_t again = 0;
     int status = study_retry(store, study, &again, err);
     if (status == 0)
-        status = extend_cases(store, study, had, wanted, &added, err);
+        status = extend_cases(store, study, had, wanted, &queued, err);
     if (status == 0)
-        status = store_run(
-            store, err,
-            "UPDATE study SET realisations = ?, jobs = jobs + ?2, jobs_waiting = jobs_waiting + "
-            "?2, state = CASE WHEN jobs_running > 0 THEN 'running' ELSE 'queued' END, finished = "
-            "NULL, revision = revision + 1 WHERE id = ?3",
-            "iii", wanted, added, study);
+        status = study_count_queued(store, study, &queued, err);
+    if (status == 0)
+        status = store_run(store, err,
+                           "UPDATE study SET realisations = ?, state = CASE WHEN jobs_running > 0 "
+                           "THEN 'running' ELSE 'queued' END, finished = NULL, revision = revision "
+                           "+ 1 WHERE id = ?",
+                           "ii", wanted, study);
     if (status == 0)
         status = store_run(store, err,
                            "UPDATE study_source SET source = json_set(source, '$.realisations', "
                            "?) WHERE study_id = ?",
                            "ii", wanted, study);
-    *jobs = again + added;
+    *jobs = again + queued.jobs;
     return status != 0 ? status : study_count_work(store, study, err);
 }
 
@@ -200,8 +163,9 @@ static int copy_blocks(struct store *store, int64_t from, int64_t to, struct err
     if (status == 0)
         status = store_run(
             store, err,
-            "INSERT INTO result (job_id, names_id, scalars, data) SELECT n.id, r.names_id, "
-            "r.scalars, r.data FROM job n JOIN job j ON j.study_id = ?1 AND j.case_number = "
+            "INSERT INTO result (job_id, names_id, scalars, data, seal) SELECT n.id, r.names_id, "
+            "r.scalars, r.data, r.seal FROM job n JOIN job j ON j.study_id = ?1 AND j.case_number "
+            "= "
             "n.case_number AND j.first = n.first JOIN result r ON r.job_id = j.id WHERE "
             "n.study_id = ?2",
             "ii", from, to);

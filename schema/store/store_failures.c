@@ -24,6 +24,7 @@ static int append_failure(sqlite3_stmt *row, struct failure **list, size_t *numb
                                      (uint64_t)sqlite3_column_int64(row, 2),
                                      (uint64_t)sqlite3_column_int64(row, 3),
                                      (uint64_t)sqlite3_column_int64(row, 4),
+                                     (uint64_t)sqlite3_column_int64(row, 7),
                                      column_copy(row, 5),
                                      column_copy(row, 6)};
     if (larger[count].worker == NULL || larger[count].reason == NULL)
@@ -39,13 +40,14 @@ int store_failures(struct store *store, const char *id, struct failure **out, si
     size_t n = 0;
     int status = study_row(store, id, &row, err);
     if (status == 0)
-        status =
-            store_query(store, &statement, err,
-                        "SELECT id, case_number, first, count, attempts, worker, error FROM job "
-                        "WHERE study_id = ?1 AND state = 'failed' UNION ALL SELECT 0, number, 0, "
-                        "realisations_done, 0, NULL, publish_error FROM study_case WHERE study_id "
-                        "= ?1 AND publish_error IS NOT NULL ORDER BY 1, 2 LIMIT 1000",
-                        "i", row);
+        status = store_query(
+            store, &statement, err,
+            "SELECT id, case_number, first, count, attempts, worker, error, losses FROM "
+            "job "
+            "WHERE study_id = ?1 AND state = 'failed' UNION ALL SELECT 0, number, 0, "
+            "realisations_done, 0, NULL, publish_error, 0 FROM study_case WHERE study_id "
+            "= ?1 AND publish_error IS NOT NULL ORDER BY 1, 2 LIMIT 1000",
+            "i", row);
     while (status == 0 && (status = store_step(store, statement, err)) == 1)
         status = append_failure(statement, &list, &n, err);
     if (status < 0) {

@@ -2,22 +2,34 @@
 #ifndef RUGO_SCHEMA_STORE_STORE_INTERNAL_H
 #define RUGO_SCHEMA_STORE_STORE_INTERNAL_H
 
+#include "schema/digest.h"
 #include "schema/store/store.h"
 #include <sqlite3.h>
 #include <time.h>
 
-enum { STATEMENTS = 128, BOOT_SIZE = 40, BUSY_MS = 30000 /* waited for a lock */ };
+enum { STATEMENTS = 128, NOTED = 1024, BOOT_SIZE = 40, BUSY_MS = 30000 /* waited for a lock */ };
 
 struct store {
     sqlite3 *db;
     char *path;
     struct store_options options;
-    char boot[BOOT_SIZE]; /* of this boot of the machine; leases of another are void */
-    time_t time;          /* of time_text */
-    char time_text[24];   /* "" at first */
+    char boot[BOOT_SIZE];       /* of this boot of the machine; leases of another are void */
+    time_t time;                /* of time_text */
+    char time_text[24];         /* "" at first */
+    int (*stop)(void *context); /* store_set_stop; NULL: none */
+    void *stop_context;
     bool claim_failed_jobs;
-    bool shrinks; /* a study was purged, and its pages are not given back yet */
-    int batch;    /* inside store_begin .. store_commit */
+    bool shrinks;            /* a study was purged, and its pages are not given back yet */
+    int batch;               /* inside store_begin .. store_commit */
+    struct due_case damaged; /* store_found_damage; study "": none */
+    /* Workers that asked for jobs of late and their threads, as counted at seen_ms; 0: not yet. */
+    int64_t workers_seen, threads_seen, seen_ms;
+    /* Workers that this handle noted, by a hash of their names, and until when it need not again.
+     */
+    struct {
+        uint64_t worker;
+        int64_t from_ms, until_ms;
+    } noted[NOTED];
     /* Statements are prepared once, and found by the address of their text. */
     struct {
         const char *sql;
@@ -43,16 +55,21 @@ int store_execute(struct store *store, const char *sql, struct error *err);
 /* A change: all of it or nothing. End it with its status, which is returned, or the commit's. */
 int change_begin(struct store *store, struct error *err);
 int change_end(struct store *store, int status, struct error *err);
+/* Between the two the handle sees the store of one moment. */
+int read_begin(struct store *store, struct error *err);
+void read_end(struct store *store);
 
 /* Refuses what is no store, or one of a newer program; brings an older one up to date. */
 int version_bring_up(struct store *store, struct error *err);
+/* Compares tables, indices and views with those of a new store: *fault is a sentence about the
+ * first that differs, or "". SQLite keeps them as text without a checksum, of which a bit may
+ * change. */
+int version_check_layout(struct store *store, char *fault, size_t size, struct error *err);
 
 int store_error(struct store *store, struct error *err); /* from SQLite's last error */
 int64_t store_now(const struct store *store);
 /* Returns the time for people: UTC, ISO 8601; it is good until the next call. */
 const char *store_time(struct store *store);
-int random_text(char *text, size_t digits,
-                struct error *err); /* hex digits from the kernel, NUL-terminated */
 char *column_copy(sqlite3_stmt *statement, int column); /* "" for NULL; NULL out of memory */
 /* Reads how the study of this row draws its random numbers. */
 enum study_random column_random(sqlite3_stmt *row, int column);
@@ -85,6 +102,8 @@ struct work_left {
 int study_left(struct store *store, int64_t study, uint64_t realisations, size_t workers,
                struct work_left *out, struct error *err);
 
+/* Says that the parameters of a case are damaged; returns ERROR_INPUT. */
+int case_damaged(const char *study, uint64_t case_number, struct error *err);
 /* The results of this revision are published: takes the mark off that they cannot be. */
 int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t revision,
                 struct error *err);
@@ -96,26 +115,81 @@ int marks_clear(struct store *store, int64_t study, struct error *err);
 
 /* A change of a job needs to know this of it. */
 struct job_row {
-    int64_t id, study, case_number, first, count, attempts;
+    int64_t id, study, case_number, first, count;
+    int64_t attempts; /* with the one that runs */
+    int64_t losses;
     bool running, done, cancelled;
     bool owned; /* the token given is that of its last lease */
 };
-/* Queues the realisations 0 .. count - 1 of a case that no job has, as jobs of at most `block`
- * each, and adds these to *jobs. */
-int jobs_insert_missing(struct store *store, const struct job_row *all, int64_t block,
-                        int64_t *jobs, struct error *err);
+/* How realisations of a case are cut into jobs. */
+struct cut {
+    double seconds; /* of a realisation: processor time as measured or, before, estimated */
+    uint64_t most;  /* realisations of a job */
+};
+struct cut column_cut(sqlite3_stmt *row, int seconds, int most);
+/* The seconds of a cut, as a column of the case c. */
+#define CUT_SECONDS                                                                                \
+    "CASE WHEN c.cpu_seconds > 0 AND c.realisations_done > 0 THEN c.cpu_seconds / "                \
+    "c.realisations_done ELSE c.estimate END"
+/* Returns the jobs that so many realisations are cut into. */
+int64_t cut_jobs(const struct cut *cut, int64_t realisations);
+/* What was queued. */
+struct queued {
+    int64_t jobs, realisations;
+};
+/* Queues realisations of a case as one span; of all: study, case_number, first, count. Adds to
+ * *queued, and counts nothing in the store. */
+int span_insert(struct store *store, const struct job_row *all, const struct cut *cut,
+                struct queued *queued, struct error *err);
+/* The same of those realisations that no job has. */
+int spans_insert_missing(struct store *store, const struct job_row *all, const struct cut *cut,
+                         struct queued *queued, struct error *err);
+/* Counts in a study what was queued, beside what its cases count. */
+int study_count_queued(struct store *store, int64_t study, const struct queued *queued,
+                       struct error *err);
 /* Gives a study whose cases have no jobs yet the blocks of another that is the same but for its
  * name and has fewer realisations, the one that has most of them done; their number is *taken. */
 int study_take_blocks(struct store *store, int64_t study, int64_t *taken, struct error *err);
-/* Queues realisations of a case as jobs of `block` each; of all: study, case_number, first, count.
- * Counts nothing. */
-int jobs_insert(struct store *store, const struct job_row *all, int64_t block, struct error *err);
+/* Adds to the jobs of a case, and of the one that it is a component of, and to those left. */
+int case_add_jobs(struct store *store, int64_t study, int64_t case_number, int64_t jobs,
+                  struct error *err);
+/* Ends a job that runs for good. */
+int job_fail(struct store *store, const struct job_row *job, const char *reason, struct error *err);
 int job_read(struct store *store, int64_t id, const char *token, struct job_row *job,
              struct error *err);
 /* Fails with ERROR_STATE unless the job runs under this token. */
 int job_check_lease(const struct job_row *job, struct error *err);
-/* Ends an attempt that failed: the job waits again or has failed. */
-int job_give_up(struct store *store, const struct job_row *job, const char *reason, bool permanent,
-                struct error *err);
+/* Ends an attempt whose lease ran out on this worker: the job waits for longer each time, or has
+ * failed (*failed). */
+int job_lose(struct store *store, const struct job_row *job, const char *worker, bool *failed,
+             struct error *err);
+
+/* Notes that a worker asks for jobs, and tells how many threads of workers did of late; at least 1.
+ */
+int seen_note(struct store *store, const struct claim *claim, int64_t *threads, struct error *err);
+
+/* A study that jobs are claimed of. */
+struct found_study {
+    int64_t id, jobs_waiting, realisations_waiting;
+    bool queued;
+    enum study_random random;
+    char owner[OWNER_SIZE];
+};
+/* What a claim takes. */
+struct claiming {
+    const struct claim *claim;
+    int64_t only;      /* of this study; 0: of any */
+    char *kinds;       /* as " one two ", owned; NULL: of any */
+    int64_t threads;   /* of workers that asked of late */
+    int64_t elsewhere; /* jobs that wait in other studies than the first; -1: not counted */
+    double seconds;    /* of the jobs taken so far */
+};
+/* Leases a block off the front of the study's first span that may be taken, counts it, and fills
+ * the job but for study, kind and seed. 1 where the case is damaged, and its span has failed. */
+int block_lease(struct store *store, struct claiming *claiming, const struct found_study *study,
+                struct claimed_job *job, struct error *err);
+/* Counts the jobs that wait in other open studies, up to about as many as asked for. */
+int count_elsewhere(struct store *store, int64_t study, int64_t enough, int64_t *jobs,
+                    struct error *err);
 
 #endif

@@ -168,21 +168,23 @@ static int read_waiting(const struct reading *reading, double *waiting, struct e
     return 0;
 }
 
-/* The last jobs that wait, in their order, as seconds. */
+/* The last jobs that wait, in their order, as seconds: spans cut as they are counted. */
 static int read_last(const struct reading *reading, double last[LAST_JOBS], size_t *count,
                      struct error *err) {
     sqlite3_stmt *row = NULL;
     size_t n = 0;
     int status = store_query(
         reading->store, &row, err,
-        "SELECT j.case_number, j.count, CASE WHEN c.realisations_done > 0 THEN c.seconds / "
-        "c.realisations_done ELSE c.estimate * ?2 END FROM job j JOIN study_case c ON c.study_id = "
-        "j.study_id AND c.number = j.case_number WHERE j.state = 'waiting' AND j.study_id = ?1 "
-        "ORDER BY j.id DESC LIMIT ?3",
+        "SELECT j.case_number, 1.0 * j.count / j.blocks, CASE WHEN c.realisations_done > 0 THEN "
+        "c.seconds / c.realisations_done ELSE c.estimate * ?2 END, j.blocks FROM job j JOIN "
+        "study_case c ON c.study_id = j.study_id AND c.number = j.case_number WHERE j.state = "
+        "'waiting' AND j.study_id = ?1 ORDER BY j.case_number DESC, j.id DESC LIMIT ?3",
         "idi", reading->study, correction(reading), (int64_t)LAST_JOBS);
     while (status == 0 && n < LAST_JOBS && (status = store_step(reading->store, row, err)) == 1) {
         double rate = rate_of(reading, sqlite3_column_int64(row, 0), sqlite3_column_double(row, 2));
-        last[n++] = sqlite3_column_double(row, 1) * rate;
+        double seconds = sqlite3_column_double(row, 1) * rate;
+        for (int64_t b = sqlite3_column_int64(row, 3); b > 0 && n < LAST_JOBS; b--)
+            last[n++] = seconds;
         status = 0;
     }
     if (status == 0 && row != NULL)

@@ -21,8 +21,9 @@ int study_count_work(struct store *store, int64_t study, struct error *err) {
     "FROM share), "
 /* Of each study with jobs that wait: their seconds, as measured where any job was done. */
 #define WAITING                                                                                    \
-    "waiting AS (SELECT id, owner, priority, state, CASE WHEN jobs_done > 0 THEN seconds / "       \
-    "jobs_done ELSE work / jobs END * jobs_waiting AS left FROM study INDEXED BY study_line "      \
+    "waiting AS (SELECT id, owner, priority, state, CASE WHEN realisations_done > 0 THEN seconds " \
+    "/ realisations_done * realisations_waiting ELSE work / jobs * jobs_waiting END AS left FROM " \
+    "study INDEXED BY study_line "                                                                 \
     "WHERE state IN ('queued', 'running') AND jobs_waiting > 0), "
 /* When, on the clock of its owner, its first job begins. */
 #define LINE                                                                                       \

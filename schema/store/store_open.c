@@ -1,4 +1,5 @@
 #include "schema/store/store_internal.h"
+#include "schema/store/store_seal.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/magic.h>
@@ -53,7 +54,7 @@ static void set_limits(sqlite3 *db) {
     sqlite3_db_config(db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     sqlite3_db_config(db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(db, SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0, NULL);
-    sqlite3_limit(db, SQLITE_LIMIT_ATTACHED, 1); /* VACUUM INTO attaches its target */
+    sqlite3_limit(db, SQLITE_LIMIT_ATTACHED, 1); /* VACUUM attaches its target */
     sqlite3_busy_handler(db, wait_politely, NULL);
 }
 
@@ -72,6 +73,16 @@ static int void_old_leases(struct store *store, struct error *err) {
                        "UPDATE job SET lease_until = 0 WHERE state = 'running' AND NOT EXISTS "
                        "(SELECT 1 FROM boot WHERE id = ?)",
                        "t", store->boot);
+    /* so are pauses, and when workers were seen */
+    if (status == 0)
+        status = store_run(store, err,
+                           "UPDATE job SET not_before = 0 WHERE state = 'waiting' AND not_before > "
+                           "0 AND NOT EXISTS (SELECT 1 FROM boot WHERE id = ?)",
+                           "t", store->boot);
+    if (status == 0)
+        status = store_run(store, err,
+                           "DELETE FROM seen WHERE NOT EXISTS (SELECT 1 FROM boot WHERE id = ?)",
+                           "t", store->boot);
     if (status == 0)
         status = store_run(store, err, "DELETE FROM boot", "");
     if (status == 0)
@@ -83,9 +94,9 @@ static int configure(struct store *store, struct error *err) {
     set_limits(store->db);
     /* Of a file without tables yet, which then gives single pages back; of others when written
      * anew. */
-    int status = store->options.read_only
-                     ? 0
-                     : store_execute(store, "PRAGMA auto_vacuum = INCREMENTAL", err);
+    int status = seal_functions(store, err);
+    if (status == 0 && !store->options.read_only)
+        status = store_execute(store, "PRAGMA auto_vacuum = INCREMENTAL", err);
     if (status == 0)
         status = version_bring_up(store, err);
     if (status == 0 && !store->options.read_only)

@@ -3,6 +3,7 @@
 #include "schema/result/curve_bytes.h"
 #include "schema/result/result_json.h"
 #include "schema/store/store_internal.h"
+#include "schema/store/store_seal.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -184,7 +185,9 @@ static int write_case(const struct target *target, const struct case_texts *text
     if (status == 0)
         status = store_run(target->store, err,
                            "INSERT OR REPLACE INTO published (study_id, case_number, revision, "
-                           "document, report) VALUES (?, ?, ?, ?, ?)",
+                           "document, report, curves_seal, rows_seal, seal) VALUES (?1, ?2, ?3, "
+                           "?4, ?5, " CURVES_SEAL ", " ROWS_SEAL
+                           ", seal_of(?1, ?2, ?3, ?4, ?5, " CURVES_SEAL "))",
                            "iiitt", target->study, target->case_number, (int64_t)texts->revision,
                            texts->document, texts->report);
     return status;

@@ -12,12 +12,15 @@ void claimed_job_clear(struct claimed_job *job) {
 
 int job_read(struct store *store, int64_t id, const char *token, struct job_row *job,
              struct error *err) {
+    unsigned char digest[DIGEST_SIZE] = {0};
     sqlite3_stmt *row = NULL;
+    if (token != NULL)
+        digest_text(token, digest);
     int status =
         store_query(store, &row, err,
                     "SELECT study_id, case_number, first, count, attempts, state = 'running', "
-                    "state = 'done', state = 'cancelled', token IS ? FROM job WHERE id = ?",
-                    "ti", token, id);
+                    "state = 'done', state = 'cancelled', token IS ?, losses FROM job WHERE id = ?",
+                    "bi", (const void *)digest, token != NULL ? sizeof digest : 0, id);
     if (status == 0)
         status = store_step(store, row, err);
     if (status == 0)
@@ -33,7 +36,8 @@ int job_read(struct store *store, int64_t id, const char *token, struct job_row 
                             .running = sqlite3_column_int(row, 5),
                             .done = sqlite3_column_int(row, 6),
                             .cancelled = sqlite3_column_int(row, 7),
-                            .owned = sqlite3_column_int(row, 8)};
+                            .owned = sqlite3_column_int(row, 8),
+                            .losses = sqlite3_column_int64(row, 9)};
     sqlite3_reset(row);
     return 0;
 }
@@ -56,28 +60,33 @@ static int read_leased(struct store *store, int64_t id, const char *token, struc
 
 /* --- the end of an attempt that gave no result --- */
 
+/* The job waits again; its lease gave no attempt that counts, but for one that failed. pause_ms:
+ * until it may be claimed again. */
 static int job_requeue(struct store *store, const struct job_row *job, const char *reason,
-                       bool counts, struct error *err) {
+                       bool failed, int64_t pause_ms, struct error *err) {
     int status =
         store_run(store, err,
                   "UPDATE job SET state = 'waiting', token = NULL, reported = 0, attempts = "
-                  "attempts - ?, error = coalesce(?, error) WHERE id = ?",
-                  "iti", (int64_t)!counts, reason, job->id);
+                  "attempts - ?, losses = ?, not_before = ?, error = coalesce(?, error) WHERE id = "
+                  "?",
+                  "iiiti", (int64_t)!failed, job->losses,
+                  pause_ms > 0 ? store_now(store) + pause_ms : 0, reason, job->id);
     if (status == 0)
         status = store_run(store, err,
                            "UPDATE study SET jobs_running = jobs_running - 1, jobs_waiting = "
-                           "jobs_waiting + 1, revision = revision + 1 WHERE id = ?",
-                           "i", job->study);
+                           "jobs_waiting + 1, realisations_waiting = realisations_waiting + ?, "
+                           "revision = revision + 1 WHERE id = ?",
+                           "ii", job->count, job->study);
     return status;
 }
 
-static int job_fail(struct store *store, const struct job_row *job, const char *reason,
-                    struct error *err) {
+int job_fail(struct store *store, const struct job_row *job, const char *reason,
+             struct error *err) {
     int status =
         store_run(store, err,
-                  "UPDATE job SET state = 'failed', reported = 0, error = ?, ended = ? WHERE id = "
-                  "?",
-                  "tti", reason, store_time(store), job->id);
+                  "UPDATE job SET state = 'failed', reported = 0, attempts = ?, losses = ?, error "
+                  "= ?, ended = ? WHERE id = ?",
+                  "iitti", job->attempts, job->losses, reason, store_time(store), job->id);
     if (status == 0)
         status =
             store_run(store, err,
@@ -92,11 +101,35 @@ static int job_fail(struct store *store, const struct job_row *job, const char *
     return status != 0 ? status : study_settle(store, job->study, err);
 }
 
-int job_give_up(struct store *store, const struct job_row *job, const char *reason, bool permanent,
-                struct error *err) {
+static int job_give_up(struct store *store, const struct job_row *job, const char *reason,
+                       bool permanent, struct error *err) {
     if (permanent || job->attempts >= ATTEMPTS_MOST)
         return job_fail(store, job, reason, err);
-    return job_requeue(store, job, reason, true, err);
+    return job_requeue(store, job, reason, true, 0, err);
+}
+
+/* A second after the first loss, twice as long after each further one, up to about a minute. */
+static int64_t pause_after(int64_t losses) {
+    enum { PAUSE_MS = 1000, DOUBLINGS = 6 };
+    return PAUSE_MS << (losses <= DOUBLINGS ? losses - 1 : DOUBLINGS);
+}
+
+int job_lose(struct store *store, const struct job_row *job, const char *worker, bool *failed,
+             struct error *err) {
+    struct job_row lost = *job;
+    char reason[256];
+    lost.losses++;
+    *failed = lost.losses >= LOSSES_MOST;
+    if (!*failed) {
+        snprintf(reason, sizeof reason, "lease ran out on worker %.100s", worker);
+        return job_requeue(store, &lost, reason, false, pause_after(lost.losses), err);
+    }
+    lost.attempts--;
+    snprintf(reason, sizeof reason,
+             "lost with its worker %d times: killed, cut off or out of memory; the last lease ran "
+             "out on worker %.100s",
+             LOSSES_MOST, worker);
+    return job_fail(store, &lost, reason, err);
 }
 
 /* --- under a lease --- */
@@ -138,7 +171,7 @@ int store_release(struct store *store, int64_t job, const char *token, struct er
         return status;
     status = read_leased(store, job, token, &row, err);
     if (status == 0)
-        status = job_requeue(store, &row, NULL, false, err);
+        status = job_requeue(store, &row, NULL, false, 0, err);
     return change_end(store, status, err);
 }
 

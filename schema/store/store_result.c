@@ -1,5 +1,6 @@
 /* What a case is and holds: its parameters, its stored blocks, its cost. */
 #include "schema/store/store_internal.h"
+#include "schema/store/store_seal.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -11,18 +12,26 @@ void case_info_clear(struct case_info *info) {
     *info = (struct case_info){0};
 }
 
+int case_damaged(const char *study, uint64_t case_number, struct error *err) {
+    return error_set(err, ERROR_INPUT,
+                     "the parameters of case %llu of study %s are damaged in the database: their "
+                     "checksum does not match; rugo repair puts them back",
+                     (unsigned long long)case_number, study);
+}
+
 int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
                struct error *err) {
     int64_t row = 0;
     sqlite3_stmt *found = NULL;
     int status = study_row(store, study, &row, err);
     if (status == 0)
-        status = store_query(store, &found, err,
-                             "SELECT c.parameters, s.seed, coalesce(c.realisations, "
-                             "s.realisations), c.realisations_done, "
-                             "c.revision FROM study_case c JOIN study s ON s.id = c.study_id WHERE "
-                             "s.id = ? AND c.number = ?",
-                             "ii", row, (int64_t)case_number);
+        status = store_query(
+            store, &found, err,
+            "SELECT study_case.parameters, s.seed, coalesce(study_case.realisations, "
+            "s.realisations), study_case.realisations_done, study_case.revision, seal IS NULL OR "
+            "seal = " CASE_SEAL " FROM study_case JOIN study s ON s.id = study_id WHERE s.id = ? "
+            "AND number = ?",
+            "ii", row, (int64_t)case_number);
     if (status == 0)
         status = store_step(store, found, err);
     if (status == 0)
@@ -36,7 +45,8 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
         .realisations_done = (uint64_t)sqlite3_column_int64(found, 3),
         .revision = (uint64_t)sqlite3_column_int64(found, 4),
     };
-    status = column_json(found, 0, &info.parameters, err);
+    status = sqlite3_column_int(found, 5) != 0 ? column_json(found, 0, &info.parameters, err)
+                                               : case_damaged(study, case_number, err);
     sqlite3_reset(found);
     if (status == 0)
         *out = info;
@@ -71,7 +81,7 @@ static int fill_scalars(const struct stored_block *block, struct block_result *o
              value = value->next)
             scalars[s++] = cJSON_IsNumber(value) ? value->valuedouble : NAN;
     if (s != count * rows)
-        return error_set(err, ERROR_SYSTEM, "a stored result has %zu scalars instead of %zu", s,
+        return error_set(err, ERROR_INPUT, "a stored result has %zu scalars instead of %zu", s,
                          count * rows);
     return 0;
 }
@@ -82,19 +92,36 @@ static double column_number(sqlite3_stmt *row, int column) {
                                                            : sqlite3_column_double(row, column);
 }
 
+/* Compares the seal of a block with what it seals; a block of an older program has none. */
+static int check_seal(sqlite3_stmt *row, const struct block_result *result, struct error *err) {
+    const char *names = (const char *)sqlite3_column_text(row, 2);
+    const char *scalars = (const char *)sqlite3_column_text(row, 3);
+    if (sqlite3_column_type(row, 7) == SQLITE_NULL)
+        return 0;
+    if (names != NULL && scalars != NULL &&
+        block_seal(result, names, scalars) == sqlite3_column_int64(row, 7))
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "the stored result of realisations %llu to %llu is damaged: its checksum does "
+                     "not match; rugo repair computes it anew",
+                     (unsigned long long)result->first,
+                     (unsigned long long)(result->first + result->count - 1));
+}
+
 static int read_block(sqlite3_stmt *row, struct stored_block *block, struct block_result *result,
                       struct error *err) {
-    int status = column_json(row, 2, &block->names, err);
-    if (status == 0)
-        status = column_json(row, 3, &block->rows, err);
-    size_t count = status != 0 ? 0 : (size_t)cJSON_GetArraySize(block->names);
     *result = (struct block_result){.first = (uint64_t)sqlite3_column_int64(row, 0),
                                     .count = (uint64_t)sqlite3_column_int64(row, 1),
-                                    .scalar_count = count,
                                     .data = sqlite3_column_blob(row, 4),
                                     .size = (size_t)sqlite3_column_bytes(row, 4),
                                     .seconds = sqlite3_column_double(row, 5),
                                     .cpu_seconds = column_number(row, 6)};
+    int status = check_seal(row, result, err);
+    if (status == 0)
+        status = column_json(row, 2, &block->names, err);
+    if (status == 0)
+        status = column_json(row, 3, &block->rows, err);
+    result->scalar_count = status != 0 ? 0 : (size_t)cJSON_GetArraySize(block->names);
     if (status == 0)
         status = fill_scalars(block, result, err);
     return status;
@@ -109,7 +136,7 @@ int store_results(struct store *store, const char *study, uint64_t case_number, 
         status = store_query(
             store, &row, err,
             "SELECT job.first, job.count, scalar_names.names, result.scalars, "
-            "result.data, job.seconds, job.cpu_seconds FROM job JOIN result ON "
+            "result.data, job.seconds, job.cpu_seconds, result.seal FROM job JOIN result ON "
             "result.job_id = job.id JOIN scalar_names ON scalar_names.id = result.names_id "
             "WHERE job.study_id = ? AND job.case_number = ? ORDER BY job.first",
             "ii", id, (int64_t)case_number);
@@ -142,10 +169,12 @@ int store_cost(struct store *store, const char *study, uint64_t case_number, str
         status = store_query(
             store, &row, err,
             "SELECT realisations_done, coalesce(realisations, (SELECT nullif(realisations, 0) FROM "
-            "study WHERE id = study_id), realisations_done), jobs, (SELECT total(attempts) FROM "
+            "study WHERE id = study_id), realisations_done), jobs, (SELECT total(attempts + "
+            "losses) FROM "
             "job "
             "WHERE job.study_id = study_case.study_id AND job.case_number = number) + (SELECT "
-            "total(j.attempts) FROM study_case k INDEXED BY case_parent CROSS JOIN job j ON "
+            "total(j.attempts + j.losses) FROM study_case k INDEXED BY case_parent CROSS JOIN job "
+            "j ON "
             "j.study_id = k.study_id AND "
             "j.case_number = k.number WHERE k.study_id = study_case.study_id AND k.parent = "
             "study_case.number), seconds, cpu_seconds, "

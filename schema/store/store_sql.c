@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <time.h>
 
 int store_error(struct store *store, struct error *err) {
@@ -19,6 +18,8 @@ int store_error(struct store *store, struct error *err) {
         return error_set(err, ERROR_SYSTEM,
                          "the database is busy: %s was locked by another process for %d s",
                          store->path, BUSY_MS / 1000);
+    case SQLITE_INTERRUPT:
+        return error_set(err, ERROR_STOPPED, "reading the database was stopped");
     case SQLITE_FULL:
         return error_set(err, ERROR_SYSTEM, "the disk of database %s is full", store->path);
     case SQLITE_READONLY:
@@ -50,16 +51,6 @@ const char *store_time(struct store *store) {
         store->time = now;
     }
     return store->time_text;
-}
-
-int random_text(char *text, size_t digits, struct error *err) {
-    unsigned char bytes[32];
-    if (digits / 2 > sizeof bytes || getrandom(bytes, digits / 2, 0) != (ssize_t)(digits / 2))
-        return error_set(err, ERROR_SYSTEM, "no random numbers from the kernel");
-    for (size_t i = 0; i < digits; i++)
-        text[i] = "0123456789abcdef"[bytes[i / 2] >> (i % 2 != 0 ? 0 : 4) & 15];
-    text[digits] = 0;
-    return 0;
 }
 
 char *column_copy(sqlite3_stmt *statement, int column) {
@@ -142,7 +133,18 @@ int store_query(struct store *store, sqlite3_stmt **out, struct error *err, cons
     return status;
 }
 
+void store_set_stop(struct store *store, int (*stop)(void *context), void *context) {
+    enum { OPERATIONS = 10000 }; /* some tenths of a millisecond */
+    store->stop = stop;
+    store->stop_context = context;
+    sqlite3_progress_handler(store->db, stop != NULL ? OPERATIONS : 0, stop, context);
+}
+
 int store_step(struct store *store, sqlite3_stmt *statement, struct error *err) {
+    if (store->stop != NULL && store->stop(store->stop_context) != 0) {
+        sqlite3_reset(statement);
+        return error_set(err, ERROR_STOPPED, "reading the database was stopped");
+    }
     int code = sqlite3_step(statement);
     if (code == SQLITE_ROW)
         return 1;
@@ -206,7 +208,21 @@ int change_begin(struct store *store, struct error *err) {
     return store_run(store, err, store->batch != 0 ? "SAVEPOINT change" : "BEGIN IMMEDIATE", "");
 }
 
+/* What is written to a file without its name is lost, and what is written beside another file, such
+ * as to its write-ahead log, harms that. */
+static int check_place(struct store *store, struct error *err) {
+    int moved = 0;
+    sqlite3_file_control(store->db, "main", SQLITE_FCNTL_HAS_MOVED, &moved);
+    return moved == 0 ? 0
+                      : error_set(err, ERROR_SYSTEM,
+                                  "database %s was moved, deleted or replaced while it was open: "
+                                  "nothing is written until that very file is back",
+                                  store->path);
+}
+
 int change_end(struct store *store, int status, struct error *err) {
+    if (status == 0 && store->batch == 0)
+        status = check_place(store, err);
     if (status == 0)
         status = store_run(store, err, store->batch != 0 ? "RELEASE change" : "COMMIT", "");
     /* After a full disk SQLite may have rolled back by itself: then there is nothing left to undo.
@@ -217,6 +233,25 @@ int change_end(struct store *store, int status, struct error *err) {
         store_run(store, NULL, store->batch != 0 ? "RELEASE change" : ROLL_BACK, "");
     }
     return status;
+}
+
+int read_begin(struct store *store, struct error *err) {
+    sqlite3_stmt *undo;
+    int64_t tables;
+    int status = find_statement(store, ROLL_BACK, &undo, err);
+    if (status == 0 && sqlite3_get_autocommit(store->db) == 0)
+        status = store_run(store, err, ROLL_BACK, "");
+    if (status == 0)
+        status = store_run(store, err, "BEGIN", "");
+    /* it begins when something is read */
+    if (status == 0 && (status = store_integer(store, &tables, err,
+                                               "SELECT count(*) FROM sqlite_schema", "")) != 0)
+        read_end(store);
+    return status;
+}
+
+void read_end(struct store *store) {
+    store_run(store, NULL, ROLL_BACK, "");
 }
 
 int store_begin(struct store *store, struct error *err) {
@@ -231,4 +266,16 @@ int store_commit(struct store *store, struct error *err) {
         return error_set(err, ERROR_SYSTEM, "database %s: the transaction was rolled back",
                          store->path);
     return change_end(store, 0, err);
+}
+
+void store_abandon(struct store *store) {
+    store->batch = 0;
+    (void)change_end(store, ERROR_STATE, NULL);
+}
+
+int store_probe(struct store *store, struct error *err) {
+    int status = change_begin(store, err);
+    return status != 0
+               ? status
+               : change_end(store, store_run(store, err, "UPDATE boot SET id = id", ""), err);
 }

@@ -251,11 +251,12 @@ static int cancel_jobs(struct store *store, int64_t row, struct error *err) {
                            "state IN ('waiting', 'running')",
                            "ti", store_time(store), row);
     if (status == 0)
-        status = store_run(
-            store, err,
-            "UPDATE study SET state = 'cancelled', jobs_cancelled = jobs_cancelled + "
-            "jobs_waiting + jobs_running, jobs_waiting = 0, jobs_running = 0 WHERE id = ?",
-            "i", row);
+        status =
+            store_run(store, err,
+                      "UPDATE study SET state = 'cancelled', jobs_cancelled = jobs_cancelled + "
+                      "jobs_waiting + jobs_running, jobs_waiting = 0, realisations_waiting = 0, "
+                      "jobs_running = 0 WHERE id = ?",
+                      "i", row);
     if (status == 0)
         status = store_run(store, err, "UPDATE study_case SET jobs_left = 0 WHERE study_id = ?",
                            "i", row);
@@ -317,26 +318,30 @@ static int discard_results(struct store *store, int64_t row, struct error *err) 
 static int retry_jobs(struct store *store, int64_t row, struct error *err) {
     int status = marks_clear(store, row, err);
     if (status == 0)
-        status =
-            store_run(store, err,
-                      "UPDATE study_case SET jobs_left = jobs_left + (SELECT count(*) FROM job j "
-                      "WHERE j.study_id = study_case.study_id AND j.case_number = number AND "
-                      "j.state IN ('failed', 'cancelled')) + (SELECT count(*) FROM study_case k "
-                      "JOIN job j ON j.study_id = k.study_id AND j.case_number = k.number WHERE "
-                      "k.study_id = study_case.study_id AND k.parent = study_case.number AND "
-                      "j.state IN ('failed', 'cancelled')) WHERE study_id = ?",
-                      "i", row);
+        status = store_run(
+            store, err,
+            "WITH again AS (SELECT j.case_number AS number, c.parent, sum(j.blocks) AS n FROM job "
+            "j JOIN study_case c ON c.study_id = j.study_id AND c.number = j.case_number WHERE "
+            "j.study_id = ?1 AND j.state IN ('failed', 'cancelled') GROUP BY j.case_number) "
+            "UPDATE study_case SET jobs_left = jobs_left + of.n FROM (SELECT number, sum(n) AS n "
+            "FROM (SELECT number, n FROM again UNION ALL SELECT parent, n FROM again WHERE parent "
+            "IS NOT NULL) GROUP BY number) of WHERE study_id = ?1 AND study_case.number = "
+            "of.number",
+            "i", row);
     if (status == 0)
         status =
             store_run(store, err,
-                      "UPDATE job SET state = 'waiting', attempts = 0, token = NULL, ended = NULL "
+                      "UPDATE job SET state = 'waiting', attempts = 0, losses = 0, not_before = 0, "
+                      "token = NULL, ended = NULL "
                       "WHERE study_id = ? AND state IN ('failed', 'cancelled')",
                       "i", row);
     if (status == 0)
         status = store_run(
             store, err,
             "UPDATE study SET jobs_waiting = jobs_waiting + jobs_failed + jobs_cancelled, "
-            "jobs_failed = 0, jobs_cancelled = 0, realisations_failed = 0, state = "
+            "jobs_failed = 0, jobs_cancelled = 0, realisations_failed = 0, realisations_waiting = "
+            "(SELECT coalesce(sum(count), 0) FROM job WHERE study_id = study.id AND job.state = "
+            "'waiting'), state = "
             "CASE WHEN jobs_done + jobs_running > 0 THEN 'running' ELSE 'queued' END WHERE id = ?",
             "i", row);
     return status != 0 ? status : study_settle(store, row, err);

@@ -1,7 +1,9 @@
 /* Submission: a study with its cases, what these are made of, and their jobs. */
+#include "schema/hex.h"
 #include "schema/program.h"
 #include "schema/result/bytes.h"
 #include "schema/store/store_internal.h"
+#include "schema/store/store_seal.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,16 +14,6 @@ struct case_place {
     int64_t parent;      /* of a component: its case; else -1 */
     int64_t sequence;    /* of a component */
 };
-
-int jobs_insert(struct store *store, const struct job_row *all, int64_t block, struct error *err) {
-    int status = 0;
-    for (int64_t done = 0; status == 0 && done < all->count; done += block)
-        status = store_run(
-            store, err, "INSERT INTO job (study_id, case_number, first, count) VALUES (?, ?, ?, ?)",
-            "iiii", all->study, all->case_number, all->first + done,
-            all->count - done < block ? all->count - done : block);
-    return status;
-}
 
 static int insert_component(struct store *store, const struct study_case *one,
                             const struct case_place *place, struct error *err) {
@@ -38,12 +30,12 @@ static int insert_case(struct store *store, const struct study_case *one,
     char *parameters = json_print(one->parameters);
     if (parameters == NULL)
         return error_memory(err, 0, "the parameters of a case");
-    int status =
-        store_run(store, err,
-                  "INSERT INTO study_case (study_id, number, parameters, estimate, jobs, "
-                  "jobs_left, result_bytes) VALUES (?, ?, ?, ?, 0, 0, ?)",
-                  "iitdd", place->row, place->number, parameters,
-                  one->component_count > 0 ? 0 : one->cost.seconds, one->cost.result_bytes);
+    int status = store_run(store, err,
+                           "INSERT INTO study_case (study_id, number, parameters, estimate, jobs, "
+                           "jobs_left, result_bytes, block) VALUES (?, ?, ?, ?, 0, 0, ?, ?)",
+                           "iitddi", place->row, place->number, parameters,
+                           one->component_count > 0 ? 0 : one->cost.seconds, one->cost.result_bytes,
+                           (int64_t)one->block);
     *digest = hash_bytes(*digest, strlen(parameters) + 1, parameters);
     free(parameters);
     if (status == 0 && place->parent >= 0)
@@ -77,34 +69,28 @@ static int insert_cases(struct store *store, const struct study *study, int64_t 
     return status;
 }
 
-/* Queues what a case lacks, and counts it there; adds its jobs to *jobs. */
+/* Queues what a case lacks, and counts it there; adds to *queued. */
 static int queue_case(struct store *store, const struct study_case *one, int64_t row,
-                      int64_t number, int64_t *jobs, struct error *err) {
+                      int64_t number, struct queued *queued, struct error *err) {
     const struct job_row all = {
         .study = row, .case_number = number, .count = (int64_t)one->realisations};
-    int64_t added = 0;
-    int status = jobs_insert_missing(store, &all, (int64_t)one->block, &added, err);
-    *jobs += added;
-    return status != 0 || added == 0
-               ? status
-               : store_run(store, err,
-                           "UPDATE study_case SET jobs = jobs + ?1, jobs_left = jobs_left + ?1 "
-                           "WHERE study_id = ?2 AND number IN (?3, (SELECT parent FROM study_case "
-                           "WHERE study_id = ?2 AND number = ?3))",
-                           "iii", added, row, number);
+    const struct cut cut = {one->cost.seconds, one->block};
+    int64_t before = queued->jobs;
+    int status = spans_insert_missing(store, &all, &cut, queued, err);
+    return status != 0 ? status : case_add_jobs(store, row, number, queued->jobs - before, err);
 }
 
 /* Queues what the cases lack, in the order of their numbers; components follow their case. */
-static int queue_cases(struct store *store, const struct study *study, int64_t row, int64_t *jobs,
-                       struct error *err) {
+static int queue_cases(struct store *store, const struct study *study, int64_t row,
+                       struct queued *queued, struct error *err) {
     int status = 0;
     int64_t next = (int64_t)study->case_count;
     for (size_t c = 0; status == 0 && c < study->case_count; c++) {
         const struct study_case *one = &study->cases[c];
         if (one->component_count == 0)
-            status = queue_case(store, one, row, (int64_t)c, jobs, err);
+            status = queue_case(store, one, row, (int64_t)c, queued, err);
         for (size_t a = 0; status == 0 && a < one->component_count; a++)
-            status = queue_case(store, &one->components[a], row, next++, jobs, err);
+            status = queue_case(store, &one->components[a], row, next++, queued, err);
     }
     return status;
 }
@@ -136,23 +122,24 @@ static int insert_row(struct store *store, const struct study *study, const char
 
 static int insert_study(struct store *store, const struct study *study, const char *key,
                         const char *id, struct error *err) {
-    int64_t row = 0, jobs = 0, taken = 0;
+    int64_t row = 0, taken = 0;
+    struct queued queued = {0};
     bool shares = study->edition != 0 && study->realisations != 0;
     uint64_t digest = HASH_START;
     int status = insert_row(store, study, key, id, &row, err);
     if (status == 0)
         status = insert_cases(store, study, row, &digest, err);
+    if (status == 0)
+        status = cases_seal(store, row, err);
     if (status == 0 && shares)
         status = store_run(store, err, "UPDATE study SET digest = ?, edition = ? WHERE id = ?",
                            "iii", (int64_t)digest, (int64_t)study->edition, row);
     if (status == 0 && shares)
         status = study_take_blocks(store, row, &taken, err);
     if (status == 0)
-        status = queue_cases(store, study, row, &jobs, err);
+        status = queue_cases(store, study, row, &queued, err);
     if (status == 0)
-        status = store_run(store, err,
-                           "UPDATE study SET jobs = jobs + ?1, jobs_waiting = ?1 WHERE id = ?2",
-                           "ii", jobs, row);
+        status = study_count_queued(store, row, &queued, err);
     return status != 0 ? status : study_count_work(store, row, err);
 }
 
@@ -188,7 +175,7 @@ int store_submit(struct store *store, const struct study *study, const char *key
     status = find_key(store, study, key, id, err);
     bool found = status == 1;
     if (status == 0)
-        status = random_text(id, STUDY_ID_SIZE - 1, err);
+        status = hex_random(id, STUDY_ID_SIZE - 1, err);
     if (status == 0)
         status = insert_study(store, study, key, id, err);
     status = change_end(store, found ? 0 : status, err);

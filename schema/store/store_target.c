@@ -1,6 +1,5 @@
 /* Cases that ask for an error: what they are made of, and the rounds in which these grow. */
 #include "schema/store/store_internal.h"
-#include "schema/study/study_reader.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -20,7 +19,8 @@ static int append(sqlite3_stmt *row, struct component **list, size_t *count, str
                                         .role = column_copy(row, 1),
                                         .realisations = (uint64_t)sqlite3_column_int64(row, 2),
                                         .cost = {.seconds = sqlite3_column_double(row, 3),
-                                                 .result_bytes = sqlite3_column_double(row, 4)}};
+                                                 .result_bytes = sqlite3_column_double(row, 4)},
+                                        .block = column_cut(row, 3, 5).most};
     return larger[(*count)++].role != NULL ? 0 : error_memory(err, 0, "a component's role");
 }
 
@@ -31,7 +31,7 @@ static int read_components(struct store *store, int64_t study, uint64_t case_num
     size_t n = 0;
     int status = store_query(
         store, &row, err,
-        "SELECT number, role, realisations, estimate, result_bytes FROM study_case WHERE "
+        "SELECT number, role, realisations, estimate, result_bytes, block FROM study_case WHERE "
         "study_id = ? AND parent = ? ORDER BY number",
         "ii", study, (int64_t)case_number);
     while (status == 0 && (status = store_step(store, row, err)) == 1) {
@@ -57,53 +57,51 @@ int store_components(struct store *store, const char *study, uint64_t case_numbe
 
 /* --- a round --- */
 
-/* Queues the realisations that a component lacks; adds its new jobs to *jobs. */
+/* Queues the realisations that a component lacks; adds to *queued. */
 static int grow_component(struct store *store, int64_t study, const struct component *component,
-                          uint64_t wanted, int64_t *jobs, struct error *err) {
+                          uint64_t wanted, struct queued *queued, struct error *err) {
     if (wanted <= component->realisations)
         return 0;
-    uint64_t count = wanted - component->realisations;
-    int64_t block = (int64_t)study_block_shared(count, &component->cost);
-    int64_t added = ((int64_t)count + block - 1) / block;
-    struct job_row all = {.study = study,
-                          .case_number = (int64_t)component->number,
-                          .first = (int64_t)component->realisations,
-                          .count = (int64_t)count};
-    int status = jobs_insert(store, &all, block, err);
+    const struct job_row all = {.study = study,
+                                .case_number = (int64_t)component->number,
+                                .first = (int64_t)component->realisations,
+                                .count = (int64_t)(wanted - component->realisations)};
+    const struct cut cut = {component->cost.seconds, component->block};
+    int64_t before = queued->jobs;
+    int status = span_insert(store, &all, &cut, queued, err);
     if (status == 0)
-        status =
-            store_run(store, err,
-                      "UPDATE study_case SET realisations = ?, jobs = jobs + ?, jobs_left = "
-                      "jobs_left + ? WHERE study_id = ? AND number = ?",
-                      "iiiii", (int64_t)wanted, added, added, study, (int64_t)component->number);
-    *jobs += added;
-    return status;
+        status = store_run(store, err,
+                           "UPDATE study_case SET realisations = ? WHERE study_id = ? AND number "
+                           "= ?",
+                           "iii", (int64_t)wanted, study, all.case_number);
+    return status != 0 ? status
+                       : case_add_jobs(store, study, all.case_number, queued->jobs - before, err);
 }
 
 static int grow(struct store *store, int64_t study, uint64_t case_number,
-                const struct next_round *next, int64_t *jobs, struct error *err) {
+                const struct next_round *next, struct error *err) {
     struct component *components = NULL;
+    struct queued queued = {0};
     size_t count = 0;
     int status = read_components(store, study, case_number, &components, &count, err);
     for (size_t a = 0; a < count && status == 0; a++)
-        status = grow_component(store, study, &components[a], next->wanted[a], jobs, err);
+        status = grow_component(store, study, &components[a], next->wanted[a], &queued, err);
     components_free(components, count);
     if (status == 0)
-        status = store_run(store, err,
-                           "UPDATE study_case SET jobs = jobs + ?, jobs_left = jobs_left + ?, "
-                           "error_reached = ? WHERE study_id = ? AND number = ?",
-                           "iidii", *jobs, *jobs, next->error_reached, study, (int64_t)case_number);
+        status = store_run(
+            store, err, "UPDATE study_case SET error_reached = ? WHERE study_id = ? AND number = ?",
+            "dii", next->error_reached, study, (int64_t)case_number);
     if (status == 0)
-        status = store_run(store, err,
-                           "UPDATE study SET jobs = jobs + ?, jobs_waiting = jobs_waiting + ?, "
-                           "revision = revision + 1 WHERE id = ?",
-                           "iii", *jobs, *jobs, study);
+        status = study_count_queued(store, study, &queued, err);
+    if (status == 0)
+        status = store_run(store, err, "UPDATE study SET revision = revision + 1 WHERE id = ?", "i",
+                           study);
     return status != 0 ? status : study_count_work(store, study, err);
 }
 
 int store_grow(struct store *store, const char *study, uint64_t case_number,
                const struct next_round *next, bool *grown, struct error *err) {
-    int64_t row = 0, current = 0, jobs = 0;
+    int64_t row = 0, current = 0;
     int status = change_begin(store, err);
     if (status != 0)
         return status;
@@ -115,7 +113,7 @@ int store_grow(struct store *store, const char *study, uint64_t case_number,
                                "? AND c.number = ?",
                                "iii", (int64_t)next->revision, row, (int64_t)case_number);
     if (status == 0 && current != 0)
-        status = grow(store, row, case_number, next, &jobs, err);
+        status = grow(store, row, case_number, next, err);
     int64_t left = 0;
     if (status == 0)
         status = store_integer(store, &left, err,

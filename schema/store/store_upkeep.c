@@ -1,18 +1,7 @@
-/* Snapshots and figures about the store itself. */
+/* Figures about the store itself. */
 #include "schema/store/store_internal.h"
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
-
-int store_snapshot(struct store *store, const char *path, struct error *err) {
-    struct stat info;
-    if (lstat(path, &info) == 0)
-        return error_set(err, ERROR_INPUT, "%s exists; a snapshot needs a new file", path);
-    int status = store_run(store, err, "VACUUM INTO ?", "t", path);
-    if (status != 0)
-        remove(path); /* a copy cut short by a full disk */
-    return status != 0 ? error_context(err, "snapshot to %s", path) : 0;
-}
 
 static uint64_t file_bytes(const char *path, const char *suffix) {
     char name[4096];

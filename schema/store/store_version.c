@@ -75,8 +75,22 @@ static int mend_first_version(struct store *store, struct error *err) {
     return status;
 }
 
+/* Tokens of older stores, which kept them as they are, become digests: lease_digest(text). */
+static void lease_digest(sqlite3_context *context, int count, sqlite3_value **values) {
+    unsigned char digest[DIGEST_SIZE];
+    (void)count;
+    const char *text = (const char *)sqlite3_value_text(values[0]);
+    if (text == NULL)
+        return; /* NULL */
+    digest_text(text, digest);
+    sqlite3_result_blob(context, digest, sizeof digest, SQLITE_TRANSIENT);
+}
+
 static int migrate(struct store *store, int64_t version, struct error *err) {
     int status = version == 1 ? mend_first_version(store, err) : 0;
+    if (status == 0 && sqlite3_create_function(store->db, "lease_digest", 1, SQLITE_UTF8, NULL,
+                                               lease_digest, NULL, NULL) != 0)
+        status = store_error(store, err);
     for (const char *sql; status == 0 && (sql = migration_at(version)) != NULL; version++) {
         char pragma[96];
         snprintf(pragma, sizeof pragma, "PRAGMA application_id = %d; PRAGMA user_version = %d",
@@ -130,4 +144,64 @@ int version_bring_up(struct store *store, struct error *err) {
     if (status == 0)
         status = migrate(store, version, err);
     return change_end(store, status, err);
+}
+
+/* --- the layout --- */
+
+/* One row for each table, index and view: its name, and what it consists of, whichever migrations
+ * made it so: of tables what their columns, keys and indices are, in the order of their names. */
+static const char LAYOUT[] =
+    "SELECT type || ' ' || name, CASE type WHEN 'table' THEN (SELECT group_concat(one, ', ') FROM "
+    "(SELECT name || ' ' || type || ' ' || \"notnull\" || ' ' || coalesce(dflt_value, '') || ' ' "
+    "|| "
+    "pk || ' ' || hidden AS one FROM pragma_table_xinfo(s.name) UNION ALL SELECT 'refers ' || "
+    "\"from\" || ' ' || \"table\" || ' ' || coalesce(\"to\", '') || ' ' || on_delete FROM "
+    "pragma_foreign_key_list(s.name) UNION ALL SELECT 'index ' || l.name || ' ' || \"unique\" || ' "
+    "' "
+    "|| (SELECT group_concat(coalesce(x.name, ''), ' ') FROM pragma_index_xinfo(l.name) x) FROM "
+    "pragma_index_list(s.name) l UNION ALL SELECT 'table ' || wr || ' ' || strict FROM "
+    "pragma_table_list WHERE schema = 'main' AND name = s.name ORDER BY one)) ELSE sql END FROM "
+    "sqlite_schema s WHERE name NOT LIKE 'sqlite_stat%' ORDER BY 1";
+
+static bool column_is_same(sqlite3_stmt *one, sqlite3_stmt *other, int column) {
+    const char *a = (const char *)sqlite3_column_text(one, column);
+    const char *b = (const char *)sqlite3_column_text(other, column);
+    return a == b || (a != NULL && b != NULL && strcmp(a, b) == 0);
+}
+
+/* Rows of both are in the order of their names: the first that are not the same tell the fault. */
+static int compare_layouts(sqlite3_stmt *store, sqlite3_stmt *fresh, char *fault, size_t size) {
+    int code, wanted;
+    do {
+        code = sqlite3_step(store);
+        wanted = sqlite3_step(fresh);
+    } while (code == SQLITE_ROW && wanted == SQLITE_ROW && column_is_same(store, fresh, 0) &&
+             column_is_same(store, fresh, 1));
+    if (wanted != SQLITE_ROW && wanted != SQLITE_DONE)
+        return wanted;
+    if (code == SQLITE_DONE && wanted == SQLITE_DONE)
+        return SQLITE_OK;
+    const char *name = (const char *)sqlite3_column_text(wanted == SQLITE_ROW ? fresh : store, 0);
+    snprintf(fault, size, "the layout of %s is not that of a store of this program",
+             name != NULL ? name : "a table");
+    return SQLITE_OK;
+}
+
+int version_check_layout(struct store *store, char *fault, size_t size, struct error *err) {
+    struct store fresh = {.path = "a new store"};
+    sqlite3_stmt *has = NULL, *wants = NULL;
+    int status = 0;
+    *fault = '\0';
+    if (sqlite3_open(":memory:", &fresh.db) != SQLITE_OK)
+        status = store_error(&fresh, err);
+    if (status == 0)
+        status = migrate(&fresh, 0, err);
+    if (status == 0 && (sqlite3_prepare_v2(fresh.db, LAYOUT, -1, &wants, NULL) != SQLITE_OK ||
+                        sqlite3_prepare_v2(store->db, LAYOUT, -1, &has, NULL) != SQLITE_OK ||
+                        compare_layouts(has, wants, fault, size) != SQLITE_OK))
+        status = store_error(wants == NULL ? &fresh : store, err);
+    sqlite3_finalize(has);
+    sqlite3_finalize(wants);
+    sqlite3_close(fresh.db);
+    return status;
 }

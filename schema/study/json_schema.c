@@ -207,7 +207,8 @@ static bool require(cJSON *schema, const char *name) {
     return text != NULL && cJSON_AddItemToArray(required, text);
 }
 
-/* Puts a parameter where its pointer leads, with the objects on the way. */
+/* Puts a parameter where its pointer leads, with the objects on the way. What was read of a file is
+ * not there without the file's digest (study_reader.c). */
 static bool place(cJSON *schema, const struct parameter *parameter) {
     char name[128];
     const char *at = parameter->path + 1;
@@ -218,7 +219,8 @@ static bool place(cJSON *schema, const struct parameter *parameter) {
             return false;
         cJSON *properties = cJSON_GetObjectItemCaseSensitive(schema, "properties");
         if (at[length] == '\0')
-            return field_put(properties, name, parameter_schema(parameter));
+            return field_put(properties, name, parameter_schema(parameter)) &&
+                   (strcmp(name, "sha256") != 0 || require(schema, name));
         if (!cJSON_HasObjectItem(properties, name) && !field_put(properties, name, object_schema()))
             return false;
         schema = cJSON_GetObjectItemCaseSensitive(properties, name);

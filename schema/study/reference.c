@@ -247,6 +247,10 @@ static const char INTRODUCTION[] =
     "`hurst`, `shape`,\nscale or `wavelength_ratio` surfaces of the same phases: what differs "
     "between cases is no chance, and their errors go together.\nWith `\"random\": "
     "\"independent\"` each case has random numbers of its own.\n\n"
+    "**Limits.** A study has at most %d cases, and these 20 million values in all, with lists; a "
+    "case %d realisations;\na surface 2^31 points; a mesh of the model full 2.7e8 nodes; and a "
+    "worker must find room for a case in nine tenths of the\nmemory of the machine that reads the "
+    "study. A server refuses a study whose check takes more than a second of CPU time.\n\n"
     "Lengths are in units of lambda_s, the shortest wavelength. `-` as a unit: a pure number or "
     "none; as a default: absent unless given.\n";
 
@@ -300,7 +304,7 @@ int reference_markdown(FILE *file, const struct study_kind *const *kinds, struct
     int status = reference_open(&reference, kinds, err);
     if (status != 0)
         return status;
-    fprintf(file, INTRODUCTION, STUDY_CASES_MOST);
+    fprintf(file, INTRODUCTION, STUDY_CASES_MOST, STUDY_CASES_MOST, STUDY_REALISATIONS_MOST);
     write_tables(file, &reference, NULL, markdown_table);
     free(reference.names);
     return 0;

@@ -24,6 +24,7 @@ struct study_cost {
     double case_seconds;   /* the same of a case besides: merging and publishing it */
     double result_bytes;   /* of a realisation in a job's result, where they grow with these */
     double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
+    uint64_t runs_most;    /* realisations of a job at most; 0: as many as any job may have */
 };
 
 struct study_case;
@@ -49,7 +50,7 @@ struct study_kind {
 struct study_case {
     cJSON *parameters; /* owned: effective values, lists replaced, defaults filled in */
     struct study_cost cost;
-    uint64_t block; /* realisations a job */
+    uint64_t block; /* realisations of a job at most; as many as take 5 s where these are fewer */
     uint64_t
         realisations; /* to begin with; of a component 0: only where it turns out to be needed */
     /* Of a case that asks for an error: cases of which its answer is made. */

@@ -8,12 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double JOB_SECONDS = 60; /* a job takes about a minute */
+static const double JOB_SECONDS = 5; /* a job takes about so long, */
 /* and its result stays below a few MB */
-static const double JOB_REALISATIONS = 5000, JOB_BYTES = 4e6;
-
-enum { SHARES = 8 };                      /* jobs of a component in a round, */
-static const double SHARE_SECONDS = 0.25; /* unless these were shorter than that */
+static const double JOB_REALISATIONS = 1000, JOB_BYTES = 4e6;
+static const double SHARE_SECONDS = 0.1; /* what is shorter is not divided among workers */
 
 /* --- names --- */
 
@@ -82,10 +80,37 @@ static void suggestion(const struct study_kind *kind, const char *prefix, const 
     }
 }
 
+/* Whether a member stands for a file that nobody has read: its name, or an object of it without the
+ * digest. */
+static bool is_unread(const struct study_kind *kind, const cJSON *member, const char *pointer) {
+    char digest[POINTER_SIZE + 8];
+    snprintf(digest, sizeof digest, "%s/sha256", pointer);
+    return pointer_place(kind, digest) == PLACE_PARAMETER &&
+           (cJSON_IsString(member) ||
+            (cJSON_IsObject(member) && !cJSON_HasObjectItem(member, "sha256")));
+}
+
+static void check_names(const struct study_kind *kind, const cJSON *object, const char *prefix,
+                        struct fault_list *faults);
+
+static void check_inside(const struct study_kind *kind, const cJSON *member, const char *pointer,
+                         struct fault_list *faults) {
+    char text[48];
+    value_describe(member, text, sizeof text);
+    if (is_unread(kind, member, pointer))
+        fault_add(faults, pointer,
+                  "the file is not fitted: commands read it where they run, and rugo check --study "
+                  "STUDY.json prints the study with what was fitted, which can be sent");
+    else if (cJSON_IsObject(member))
+        check_names(kind, member, pointer, faults);
+    else
+        fault_add(faults, pointer, "%s is not an object", text);
+}
+
 static void check_names(const struct study_kind *kind, const cJSON *object, const char *prefix,
                         struct fault_list *faults) {
     for (const cJSON *member = object->child; member != NULL; member = member->next) {
-        char pointer[POINTER_SIZE], hint[96], text[48];
+        char pointer[POINTER_SIZE], hint[96];
         snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
         /* a name with a slash would make the pointer of another one */
         bool whole = strchr(member->string, '/') == NULL;
@@ -93,11 +118,7 @@ static void check_names(const struct study_kind *kind, const cJSON *object, cons
         case PLACE_PARAMETER:
             break;
         case PLACE_INSIDE:
-            value_describe(member, text, sizeof text);
-            if (cJSON_IsObject(member))
-                check_names(kind, member, pointer, faults);
-            else
-                fault_add(faults, pointer, "%s is not an object", text);
+            check_inside(kind, member, pointer, faults);
             break;
         case PLACE_UNKNOWN:
             suggestion(kind, prefix, member->string, hint, sizeof hint);
@@ -155,33 +176,42 @@ static void merge_faults(struct fault_list *all, const struct fault_list *found)
     }
 }
 
-uint64_t study_block(uint64_t realisations, const struct study_cost *cost) {
-    if (realisations == 0)
-        return 1;
+uint64_t study_block_most(const struct study_cost *cost) {
     double most =
-        cost->seconds > 0 ? floor(JOB_SECONDS / cost->seconds + 0.5) : (double)realisations;
+        cost->runs_most > 0 ? fmin((double)cost->runs_most, JOB_REALISATIONS) : JOB_REALISATIONS;
     if (cost->result_bytes > 0)
         most = fmin(most, floor(JOB_BYTES / cost->result_bytes));
-    most = fmin(fmax(most, 1), fmin(JOB_REALISATIONS, (double)realisations));
-    uint64_t blocks = (realisations + (uint64_t)most - 1) / (uint64_t)most;
-    return (realisations + blocks - 1) / blocks;
+    return most > 1 ? (uint64_t)most : 1;
 }
 
-uint64_t study_block_shared(uint64_t realisations, const struct study_cost *cost) {
-    double least = cost->seconds > 0 ? floor(SHARE_SECONDS / cost->seconds) : (double)realisations;
-    uint64_t share = (realisations + SHARES - 1) / SHARES;
-    double most = fmax(fmax((double)share, least), 1);
-    uint64_t block = study_block(realisations, cost);
+uint64_t study_block(uint64_t realisations, double seconds, uint64_t most) {
+    if (realisations == 0 || most == 0)
+        return 1;
+    double timely = seconds > 0 ? floor(JOB_SECONDS / seconds + 0.5) : (double)most;
+    uint64_t block = timely < (double)most ? (uint64_t)fmax(timely, 1) : most;
+    uint64_t blocks = realisations / block + (realisations % block != 0);
+    return realisations / blocks + (realisations % blocks != 0);
+}
+
+uint64_t study_share(uint64_t block, double seconds, uint64_t waiting, uint64_t workers) {
+    if (workers < 2)
+        return block;
+    uint64_t equal = waiting / workers + (waiting % workers != 0);
+    double share = (double)equal;
+    double least = seconds > 0 ? floor(SHARE_SECONDS / seconds) : (double)block;
+    double most = fmax(fmax(share, least), 1);
     return most < (double)block ? (uint64_t)most : block;
 }
 
-/* Checks one case, and cuts it into jobs. */
+/* Checks one case, and bounds its jobs. */
 static int check_case(const struct study_kind *kind, struct study_case *one, double memory_limit,
-                      struct fault_list *faults, struct error *err) {
+                      const struct study_reading *reading, struct fault_list *faults,
+                      struct error *err) {
     struct fault_list found = {0};
+    if (reading->stop != NULL && reading->stop(reading->stop_context) != 0)
+        return error_set(err, ERROR_STOPPED, "checking the study was stopped");
     int status = kind->check(kind, one->parameters, &found, &one->cost, err);
-    one->block = one->role != NULL ? study_block_shared(one->realisations, &one->cost)
-                                   : study_block(one->realisations, &one->cost);
+    one->block = study_block_most(&one->cost);
     one->cost.memory_bytes += (double)one->block * one->cost.result_bytes;
     if (status == 0 && found.count == 0 && memory_limit > 0 &&
         one->cost.memory_bytes > memory_limit)
@@ -198,14 +228,15 @@ static int check_case(const struct study_kind *kind, struct study_case *one, dou
 /* Checks the components of a case. One that begins later, where it is needed, and cannot be had is
  * none: the others answer without it. */
 static int check_components(const struct study_kind *kind, struct study_case *one,
-                            double memory_limit, struct fault_list *faults, struct error *err) {
+                            const struct study_reading *reading, struct fault_list *faults,
+                            struct error *err) {
     size_t kept = 0;
     int status = 0;
     for (size_t a = 0; a < one->component_count; a++) {
         struct study_case component = one->components[a];
         struct fault_list found = {0};
         if (status == 0)
-            status = check_case(kind, &component, memory_limit, &found, err);
+            status = check_case(kind, &component, reading->memory_limit, reading, &found, err);
         bool spare = status == 0 && component.realisations == 0 && found.count > 0;
         if (spare)
             cJSON_Delete(component.parameters);
@@ -220,8 +251,9 @@ static int check_components(const struct study_kind *kind, struct study_case *on
 }
 
 /* Of a case that asks for an error its components are what runs. */
-static int check_cases(struct study *study, const cJSON *document, double memory_limit,
-                       struct fault_list *faults, struct error *err) {
+static int check_cases(struct study *study, const cJSON *document,
+                       const struct study_reading *reading, struct fault_list *faults,
+                       struct error *err) {
     int status = 0;
     for (size_t c = 0; c < study->case_count && status == 0; c++) {
         struct study_case *one = &study->cases[c];
@@ -231,10 +263,11 @@ static int check_cases(struct study *study, const cJSON *document, double memory
         if (status == 0 && study->realisations == 0)
             status = study->kind->expand(document, one, faults, err);
         if (status == 0)
-            status = check_case(study->kind, one, one->component_count > 0 ? 0 : memory_limit,
-                                faults, err);
+            status =
+                check_case(study->kind, one, one->component_count > 0 ? 0 : reading->memory_limit,
+                           reading, faults, err);
         if (status == 0)
-            status = check_components(study->kind, one, memory_limit, faults, err);
+            status = check_components(study->kind, one, reading, faults, err);
     }
     return status;
 }
@@ -249,9 +282,9 @@ static int faulty(const struct fault_list *faults, struct error *err) {
     return error_set(err, ERROR_INPUT, "the study has %zu faults", faults->count);
 }
 
-static int fill(struct study *study, const cJSON *document, const struct study_kind *const *kinds,
-                double memory_limit, struct fault_list *faults, struct error *err) {
-    int status = common_read(study, document, kinds, faults, err);
+static int fill(struct study *study, const cJSON *document, const struct study_reading *reading,
+                struct fault_list *faults, struct error *err) {
+    int status = common_read(study, document, reading->kinds, faults, err);
     if (status != 0)
         return status;
     if (study->kind != NULL) {
@@ -265,7 +298,7 @@ static int fill(struct study *study, const cJSON *document, const struct study_k
         return error_memory(err, strlen(study->kind->name), "a study");
     status = sweep_open(study, document, faults, err);
     if (status == 0 && faults->count == 0)
-        status = check_cases(study, document, memory_limit, faults, err);
+        status = check_cases(study, document, reading, faults, err);
     if (status == 0 && faults->count != 0)
         status = faulty(faults, err);
     return status;
@@ -274,6 +307,15 @@ static int fill(struct study *study, const cJSON *document, const struct study_k
 int study_read(struct study **out, const char *text, size_t size, const char *const *overrides,
                const struct study_kind *const *kinds, double memory_limit,
                struct fault_list *faults, struct error *err) {
+    const struct study_reading reading = {
+        .overrides = overrides, .kinds = kinds, .memory_limit = memory_limit};
+    return study_read_ext(out, text, size, &reading, faults, err);
+}
+
+int study_read_ext(struct study **out, const char *text, size_t size,
+                   const struct study_reading *reading, struct fault_list *faults,
+                   struct error *err) {
+    const char *const *overrides = reading->overrides;
     cJSON *document = NULL;
     struct study *study = NULL;
     int status = json_parse(text, size, NULL, &document, err);
@@ -286,7 +328,7 @@ int study_read(struct study **out, const char *text, size_t size, const char *co
     if (status == 0 && (study = array_create(1, sizeof *study)) == NULL)
         status = error_memory(err, sizeof *study, "a study");
     if (status == 0)
-        status = fill(study, document, kinds, memory_limit, faults, err);
+        status = fill(study, document, reading, faults, err);
     cJSON_Delete(document);
     if (status != 0) {
         study_destroy(&study);

@@ -61,6 +61,11 @@ static bool range_check(const struct parameter *parameter, const cJSON *value, c
     return is_not(value, pointer, faults, what);
 }
 
+static bool number_fits(const struct parameter *parameter, const cJSON *value) {
+    return cJSON_IsNumber(value) && in_range(parameter, value->valuedouble) &&
+           (parameter->type != PARAMETER_INTEGER || value->valuedouble == rint(value->valuedouble));
+}
+
 static bool number_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
                          struct fault_list *faults) {
     bool integer = parameter->type == PARAMETER_INTEGER;
@@ -204,6 +209,8 @@ static bool numbers_check(const struct parameter *parameter, const cJSON *value,
     size_t i = 0;
     for (const cJSON *item = value->child; item != NULL; item = item->next, i++) {
         char at[POINTER_SIZE];
+        if (number_fits(parameter, item))
+            continue; /* of thousands of numbers no pointer is wanted */
         snprintf(at, sizeof at, "%s/%zu", pointer, i);
         good = number_check(parameter, item, at, faults) && good;
     }

@@ -13,6 +13,7 @@ struct values {
     size_t before;       /* faults there when the values were made */
     const char *misread; /* a path that a reader asked for in vain; borrowed */
     size_t count;        /* of rows */
+    size_t next;         /* behind the row found last */
     const cJSON **at;    /* owned array of count borrowed values; NULL: absent */
     cJSON **defaults; /* owned array of count owned values, of rows that are absent or came later */
 };
@@ -84,14 +85,30 @@ bool values_is_default(const struct values *values, size_t index) {
     return value == NULL || value == usual || (usual != NULL && cJSON_Compare(value, usual, true));
 }
 
+/* The row of a path; NULL where there is none. Readers ask in the order of the rows, mostly. */
+static const struct parameter *row_of(struct values *values, const char *path, size_t *index) {
+    for (size_t i = 0; i < values->count; i++) {
+        size_t p = (values->next + i) % values->count;
+        const struct parameter *row = parameter_row(values->tables, p);
+        if (row != NULL && strcmp(row->path, path) == 0) {
+            values->next = p + 1;
+            *index = p;
+            return row;
+        }
+    }
+    return NULL;
+}
+
 /* The row of a path and its value; NULL, and the path remembered, where it is no row of that type.
- */
+ * Integers are numbers. */
 static const struct parameter *find(struct values *values, const char *path,
                                     enum parameter_type type, const cJSON **value) {
     size_t index = 0;
-    const struct parameter *row = parameter_find(values->tables, path, &index);
+    const struct parameter *row = row_of(values, path, &index);
+    bool fits = row != NULL &&
+                (row->type == type || (type == PARAMETER_NUMBER && row->type == PARAMETER_INTEGER));
     *value = NULL;
-    if (row == NULL || row->type != type) {
+    if (!fits) {
         values->misread = path;
         return NULL;
     }
@@ -101,10 +118,7 @@ static const struct parameter *find(struct values *values, const char *path,
 
 double values_number(struct values *values, const char *path) {
     const cJSON *value;
-    size_t index;
-    const struct parameter *row = parameter_find(values->tables, path, &index);
-    bool integer = row != NULL && row->type == PARAMETER_INTEGER;
-    row = find(values, path, integer ? PARAMETER_INTEGER : PARAMETER_NUMBER, &value);
+    const struct parameter *row = find(values, path, PARAMETER_NUMBER, &value);
     return row != NULL && value != NULL ? value->valuedouble : NAN;
 }
 
@@ -117,6 +131,12 @@ int values_choice(struct values *values, const char *path) {
     const cJSON *value;
     const struct parameter *row = find(values, path, PARAMETER_CHOICE, &value);
     return row != NULL ? choice_value(row->choices, value) : 0;
+}
+
+const char *values_text(struct values *values, const char *path) {
+    const cJSON *value;
+    const struct parameter *row = find(values, path, PARAMETER_TEXT, &value);
+    return row != NULL ? cJSON_GetStringValue(value) : NULL;
 }
 
 size_t values_choices(struct values *values, const char *path, int *out) {

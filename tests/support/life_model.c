@@ -11,7 +11,8 @@ static bool is_of(const struct life_job *job, int study, int case_number) {
 static int count_of(const struct life *life, int study, int case_number, enum life_state state) {
     int n = 0;
     for (int j = 0; j < life->job_count; j++)
-        n += is_of(&life->jobs[j], study, case_number) && life->jobs[j].state == state;
+        if (is_of(&life->jobs[j], study, case_number) && life->jobs[j].state == state)
+            n += life->jobs[j].blocks;
     return n;
 }
 
@@ -31,13 +32,18 @@ int life_marks(const struct life *life, int study) {
     return n;
 }
 
-void life_submit(struct life *life, int cases, int blocks) {
+static int blocks_of(int64_t count) {
+    return (int)((count + LIFE_BLOCK - 1) / LIFE_BLOCK);
+}
+
+void life_submit(struct life *life, int cases, int realisations) {
     int study = life->study_count++;
     life->studies[study] = (struct life_study){.cases = cases};
     for (int c = 0; c < cases; c++)
-        for (int b = 0; b < blocks; b++)
-            life->jobs[life->job_count++] = (struct life_job){
-                .study = study, .case_number = c, .first = 2 * b, .count = b < blocks - 1 ? 2 : 1};
+        life->jobs[life->job_count++] = (struct life_job){.study = study,
+                                                          .case_number = c,
+                                                          .count = realisations,
+                                                          .blocks = blocks_of(realisations)};
 }
 
 /* --- jobs --- */
@@ -46,48 +52,93 @@ static void give_up(struct life_job *job, const char *reason, bool permanent) {
     bool last = permanent || job->attempts >= 3;
     snprintf(job->error, sizeof job->error, "%s", reason);
     job->state = last ? LIFE_FAILED : LIFE_WAITING;
+    job->not_before = 0;
     if (!last)
         job->token = 0;
 }
 
-static void expire(struct life *life, int64_t now_ms) {
+static void lose(struct life_job *job, int64_t now_ms) {
+    job->attempts--;
+    job->losses++;
+    bool last = job->losses >= 10;
+    snprintf(job->error, sizeof job->error, "%slease ran out on worker w%d",
+             last ? "lost with its worker 10 times: killed, cut off or out of memory; the last "
+                  : "",
+             job->worker);
+    job->state = last ? LIFE_FAILED : LIFE_WAITING;
+    if (last)
+        return;
+    job->token = 0;
+    job->not_before = now_ms + 1000 * (job->losses < 7 ? 1 << (job->losses - 1) : 64);
+}
+
+void life_expire(struct life *life, int64_t now_ms) {
     for (int j = 0; j < life->job_count; j++) {
         struct life_job *job = &life->jobs[j];
-        char reason[48];
-        snprintf(reason, sizeof reason, "lease ran out on worker w%d", job->worker);
         if (job->state == LIFE_RUNNING && job->lease_until <= now_ms)
-            give_up(job, reason, false);
+            lose(job, now_ms);
     }
 }
 
-int life_claim(struct life *life, int worker, int token, int64_t now_ms) {
-    expire(life, now_ms);
+int life_next(const struct life *life, int64_t now_ms) {
+    int found = -1;
     for (int j = 0; j < life->job_count; j++) {
-        struct life_job *job = &life->jobs[j];
-        if (job->state != LIFE_WAITING)
+        const struct life_job *job = &life->jobs[j], *best = &life->jobs[found < 0 ? 0 : found];
+        if (job->state != LIFE_WAITING || job->not_before > now_ms)
             continue;
-        job->state = LIFE_RUNNING;
-        job->attempts++;
-        job->worker = worker;
-        job->token = token;
-        job->lease_until = now_ms + LIFE_LEASE_MS;
-        life->studies[job->study].begun = true;
-        return j;
+        if (found < 0 || job->study < best->study ||
+            (job->study == best->study && job->case_number < best->case_number))
+            found = j;
     }
-    return -1;
+    return found;
+}
+
+int64_t life_block(const struct life_job *job) {
+    return (job->count + blocks_of(job->count) - 1) / blocks_of(job->count);
+}
+
+int life_lease(struct life *life, int job, int64_t count, int worker, int token, int64_t now_ms) {
+    struct life_job *one = &life->jobs[job];
+    if (count < one->count) {
+        struct life_job *span = one;
+        one = &life->jobs[life->job_count++];
+        *one = *span;
+        one->count = count;
+        span->first += count;
+        span->count -= count;
+        span->blocks = blocks_of(span->count);
+        *one->error = 0;
+    }
+    one->state = LIFE_RUNNING;
+    one->blocks = 1;
+    one->attempts++;
+    one->worker = worker;
+    one->token = token;
+    one->lease_until = now_ms + LIFE_LEASE_MS;
+    life->studies[one->study].begun = true;
+    return (int)(one - life->jobs);
 }
 
 static bool is_leased(const struct life_job *job, int token) {
     return job->state == LIFE_RUNNING && job->token == token;
 }
 
-bool life_complete(struct life *life, int job, int token, bool *again) {
+bool life_complete(struct life *life, int job, int token, int64_t count, bool *again) {
     struct life_job *one = &life->jobs[job];
     *again = one->state == LIFE_DONE && one->token == token;
     if (*again)
         return true;
     if (!is_leased(one, token))
         return false;
+    if (count < one->count)
+        life->jobs[life->job_count++] = (struct life_job){.study = one->study,
+                                                          .case_number = one->case_number,
+                                                          .first = one->first + count,
+                                                          .count = one->count - count,
+                                                          .blocks = blocks_of(one->count - count),
+                                                          .attempts = one->attempts - 1,
+                                                          .losses = one->losses};
+    one->count = count;
     one->state = LIFE_DONE;
     life->studies[one->study].of[one->case_number].revision++;
     return true;
@@ -105,6 +156,7 @@ bool life_release(struct life *life, int job, int token) {
     if (!is_leased(one, token))
         return false;
     one->state = LIFE_WAITING;
+    one->not_before = 0;
     one->token = 0;
     one->attempts--;
     return true;
@@ -145,8 +197,9 @@ int life_retry(struct life *life, int study) {
         if (job->study != study || (job->state != LIFE_FAILED && job->state != LIFE_CANCELLED))
             continue;
         job->state = LIFE_WAITING;
-        job->attempts = job->token = 0;
-        n++;
+        job->attempts = job->losses = job->token = 0;
+        job->not_before = 0;
+        n += job->blocks;
     }
     if (n > 0) {
         one->cancelled = false;

@@ -8,19 +8,22 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { LIFE_STUDIES = 3, LIFE_CASES = 2, LIFE_BLOCKS = 3, LIFE_LEASE_MS = 1000 };
-enum { LIFE_JOBS = LIFE_STUDIES * LIFE_CASES * LIFE_BLOCKS };
+enum { LIFE_STUDIES = 3, LIFE_CASES = 2, LIFE_BLOCK = 2, LIFE_LEASE_MS = 1000 };
+/* A case has at most so many realisations, and no more rows of jobs. */
+enum { LIFE_MOST = 5, LIFE_JOBS = LIFE_STUDIES * LIFE_CASES * LIFE_MOST };
 
 enum life_state { LIFE_WAITING, LIFE_RUNNING, LIFE_DONE, LIFE_FAILED, LIFE_CANCELLED, LIFE_STATES };
 
+/* A job; or a span of realisations that wait, or waited when they were cancelled. */
 struct life_job {
     int study, case_number;
     int64_t first, count; /* realisations */
+    int blocks;           /* jobs that it counts as */
     enum life_state state;
-    int attempts, worker; /* worker: of the last claim; 0: never claimed */
-    int token;            /* number of the last lease; 0: none */
-    int64_t lease_until;
-    char error[48]; /* of the last attempt that failed; "" none */
+    int attempts, losses, worker; /* worker: of the last claim; 0: never claimed */
+    int token;                    /* number of the last lease; 0: none */
+    int64_t lease_until, not_before;
+    char error[160]; /* of the last attempt that failed or was lost; "" none */
 };
 
 struct life_case {
@@ -45,12 +48,19 @@ struct life {
     int study_count, job_count;
 };
 
-/* Adds a study of so many cases, of `blocks` blocks each of two realisations, the last of one. */
-void life_submit(struct life *life, int cases, int blocks);
-/* Expires leases, then leases the first job that waits in the oldest study: its index, or -1. */
-int life_claim(struct life *life, int worker, int token, int64_t now_ms);
-/* These tell whether the store has to accept the change. token: of the lease that asks. */
-bool life_complete(struct life *life, int job, int token, bool *again);
+/* Adds a study of so many cases, of so many realisations each. */
+void life_submit(struct life *life, int cases, int realisations);
+/* Expires leases. */
+void life_expire(struct life *life, int64_t now_ms);
+/* The row of which the next job is claimed: the first that may be in the oldest study; or -1. */
+int life_next(const struct life *life, int64_t now_ms);
+/* The most realisations that a claim may take off a row. */
+int64_t life_block(const struct life_job *job);
+/* Leases so many realisations off the front of a row: the index of the job. */
+int life_lease(struct life *life, int job, int64_t count, int worker, int token, int64_t now_ms);
+/* These tell whether the store has to accept the change. token: of the lease that asks. count: of
+ * the realisations that are done, from the first one on. */
+bool life_complete(struct life *life, int job, int token, int64_t count, bool *again);
 bool life_fail(struct life *life, int job, int token, const char *reason, bool permanent);
 bool life_release(struct life *life, int job, int token);
 bool life_heartbeat(struct life *life, int job, int token, int64_t now_ms);
@@ -68,6 +78,7 @@ void life_publish(struct life *life, int study, int case_number, int64_t revisio
 /* The results of this revision cannot be published. */
 void life_mark(struct life *life, int study, int case_number, int64_t revision);
 
+/* Jobs of a study in this state, as they are counted. */
 int life_count(const struct life *life, int study, enum life_state state);
 /* Jobs of a case that have not ended. */
 int life_left(const struct life *life, int study, int case_number);

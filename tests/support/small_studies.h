@@ -2,7 +2,7 @@
 #ifndef RUGO_TESTS_SUPPORT_SMALL_STUDIES_H
 #define RUGO_TESTS_SUPPORT_SMALL_STUDIES_H
 
-/* Two cases, Gaussian and Weibull profiles, three blocks each (a block holds at most 5000). */
+/* Two cases, Gaussian and Weibull profiles, twelve blocks each (a block holds at most 1000). */
 #define SEVERAL_BLOCKS                                                                             \
     "{\"name\":\"blocks\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":12000,\"surface\":{" \
     "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4,"                     \

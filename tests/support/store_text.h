@@ -1,21 +1,15 @@
-/* What a store tells whoever queries its file. Include after check.h. */
+/* What a store tells whoever queries its file. */
 #ifndef RUGO_TESTS_SUPPORT_STORE_TEXT_H
 #define RUGO_TESTS_SUPPORT_STORE_TEXT_H
 
-#include <sqlite3.h>
+#include "tests/support/sql.h"
 #include <stdlib.h>
 #include <string.h>
 
 static inline char *read_text(const char *path, const char *sql) {
-    sqlite3 *db = NULL;
-    sqlite3_stmt *row = NULL;
-    assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
-    if (sqlite3_prepare_v2(db, sql, -1, &row, NULL))
-        print_error("%s\n", sqlite3_errmsg(db));
-    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
+    sqlite3_stmt *row = sql_row(path, sql);
     char *text = strdup((const char *)sqlite3_column_text(row, 0));
-    sqlite3_finalize(row);
-    sqlite3_close(db);
+    sql_end(row);
     return text;
 }
 

@@ -11,8 +11,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char STUDY[] = "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":20,\"seconds\":6,"
-                            "\"box\":{\"width\":1}}";
+static const char STUDY[] =
+    "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":20,\"seconds\":0.5,"
+    "\"box\":{\"width\":1}}";
 
 struct store_life {
     struct store *store;
@@ -94,8 +95,8 @@ static int publish_empty(void *context, struct store *store, const struct due_ca
     return store_publish(store, due->study, due->case_number, due->revision, &empty, err);
 }
 
-static int publish(struct store_life *life, const char *id, struct error *err) {
-    const struct publication publication = {.publish = publish_empty, .study = id};
+static int publish(struct store_life *life, struct error *err) {
+    const struct publication publication = {.publish = publish_empty};
     struct publish_counts counts;
     int status = store_publish_due(life->store, &publication, &counts, err);
     if (status == 0 && counts.postponed > 0) {
@@ -120,7 +121,7 @@ static int live(void *context, struct error *err) {
     if (status == 0)
         status = complete_jobs(life, jobs, count, err);
     if (status == 0)
-        status = publish(life, id, err);
+        status = publish(life, err);
     for (size_t n = 0; n < count; n++)
         claimed_job_clear(&jobs[n]);
     return status == 0 ? look(life, id, err) : status;
@@ -175,7 +176,7 @@ static int list(void *context, struct error *err) {
 
 static int snapshot(void *context, struct error *err) {
     struct store_life *life = context;
-    int status = store_snapshot(life->store, "snapshot.db", err);
+    int status = store_snapshot(life->store, "snapshot.db", NULL, NULL, err);
     unlink("snapshot.db");
     return status;
 }

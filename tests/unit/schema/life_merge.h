@@ -9,7 +9,7 @@
 #include "tests/support/life_model.h"
 
 struct life_sum {
-    double value, *first, *count; /* LIFE_BLOCKS each */
+    double value, *first, *count; /* LIFE_MOST each */
     size_t blocks;
     uint64_t realisations;
 };
@@ -17,7 +17,7 @@ struct life_sum {
 static inline int add_block(void *context, const struct block_result *block, struct error *err) {
     struct life_sum *sum = context;
     (void)err;
-    assert_true(sum->blocks < LIFE_BLOCKS);
+    assert_true(sum->blocks < LIFE_MOST);
     for (uint64_t r = 0; r < block->count; r++)
         sum->value += block->scalars[2 * r];
     sum->realisations += block->count;
@@ -28,9 +28,9 @@ static inline int add_block(void *context, const struct block_result *block, str
 
 /* The merged results of a case, as its kind would make them: one scalar, one curve. */
 static inline void merge(struct store *store, const struct due_case *due, struct case_result *out) {
-    struct life_sum sum = {.first = result_numbers(out, LIFE_BLOCKS),
-                           .count = result_numbers(out, LIFE_BLOCKS)};
-    double *errors = result_numbers(out, LIFE_BLOCKS);
+    struct life_sum sum = {.first = result_numbers(out, LIFE_MOST),
+                           .count = result_numbers(out, LIFE_MOST)};
+    double *errors = result_numbers(out, LIFE_MOST);
     assert_true(sum.first != NULL && sum.count != NULL && errors != NULL);
     assert_int_equal(store_results(store, due->study, due->case_number, add_block, &sum, NULL), 0);
     struct scalar scalar = {.name = "sum",

@@ -76,8 +76,8 @@ static inline void check_jobs(const struct world *world, sqlite3 *db, int s) {
         const struct life_job *job = &life->jobs[j];
         if (job->study != s)
             continue;
-        put(text, "%d %d %lld %lld %s %d ", j + 1, job->case_number, (long long)job->first,
-            (long long)job->count, LIFE_STATE_NAMES[job->state], job->attempts);
+        put(text, "%d %d %lld %lld %s %d %d ", j + 1, job->case_number, (long long)job->first,
+            (long long)job->count, LIFE_STATE_NAMES[job->state], job->attempts, job->losses);
         if (job->worker > 0)
             put(text, "w%d", job->worker);
         else
@@ -86,10 +86,18 @@ static inline void check_jobs(const struct world *world, sqlite3 *db, int s) {
     }
     check_rows(
         world, db, s,
-        "SELECT printf('%d %d %d %d %s %d %s %s', job, \"case\", first, count, state, attempts, "
-        "coalesce(worker, '-'), coalesce(error, '-')) FROM job_log WHERE study = ? "
+        "SELECT printf('%d %d %d %d %s %d %d %s %s', job, \"case\", first, count, state, attempts, "
+        "losses, coalesce(worker, '-'), coalesce(error, '-')) FROM job_log WHERE study = ? "
         "ORDER BY job",
         text);
+}
+
+/* The jobs that are published of a case, in the order of their realisations. */
+static inline void put_points(char text[TEXT_SIZE], const struct life *life, uint32_t jobs, int c) {
+    for (int64_t at = 0; at < LIFE_MOST; at++)
+        for (int j = 0; j < life->job_count; j++)
+            if ((jobs >> j & 1) != 0 && life->jobs[j].first == at)
+                put(text, "%d %lld %lld\n", c, (long long)at, (long long)life->jobs[j].count);
 }
 
 static inline void check_cases(const struct world *world, sqlite3 *db, int s) {
@@ -108,8 +116,8 @@ static inline void check_cases(const struct world *world, sqlite3 *db, int s) {
             for (int64_t r = 0; r < job->count; r++)
                 sum += value_of(job, r);
             n += job->count;
-            put(points, "%d %lld %lld\n", c, (long long)job->first, (long long)job->count);
         }
+        put_points(points, life, one->published_jobs, c);
         if (one->published > 0)
             put(scalars, "%d %.0f %lld\n", c, sum, (long long)n);
     }
@@ -132,11 +140,14 @@ static inline void check_cases(const struct world *world, sqlite3 *db, int s) {
 static inline void check_realisations(const struct world *world, sqlite3 *db, int s) {
     const struct life *life = &world->life;
     char text[TEXT_SIZE] = "";
-    for (int j = 0; j < life->job_count; j++) {
-        const struct life_job *job = &life->jobs[j];
-        for (int64_t r = 0; job->study == s && job->state == LIFE_DONE && r < job->count; r++)
-            put(text, "%d %" PRId64 " %.0f\n", job->case_number, job->first + r, value_of(job, r));
-    }
+    for (int c = 0; c < LIFE_CASES; c++)
+        for (int64_t r = 0; r < LIFE_MOST; r++)
+            for (int j = 0; j < life->job_count; j++) {
+                const struct life_job *job = &life->jobs[j];
+                if (job->study == s && job->case_number == c && job->state == LIFE_DONE &&
+                    job->first <= r && r < job->first + job->count)
+                    put(text, "%d %" PRId64 " %.0f\n", c, r, value_of(job, r - job->first));
+            }
     check_rows(world, db, s,
                "SELECT printf('%d %d %d', \"case\", realisation, cast(scalars ->> 'a' AS INTEGER)) "
                "FROM realisation_scalars WHERE study = ? ORDER BY \"case\", realisation",

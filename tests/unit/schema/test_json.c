@@ -133,6 +133,33 @@ static void numbers_come_back_with_their_bits(void **state) {
     cJSON_Delete(array);
 }
 
+static void values_are_printed_in_one_way(void **state) {
+    (void)state;
+    static const struct {
+        double number;
+        const char *text;
+    } NUMBERS[] = {{0, "0"},        {-0.0, "-0"}, {-7, "-7"}, {999999999999999, "999999999999999"},
+                   {1e15, "1e+15"}, {0.5, "0.5"}};
+    for (size_t n = 0; n < sizeof NUMBERS / sizeof *NUMBERS; n++) {
+        cJSON *number = json_number(NUMBERS[n].number);
+        char *text = json_print(number);
+        assert_string_equal(text, NUMBERS[n].text);
+        free(text);
+        cJSON_Delete(number);
+    }
+    static const char *const STRINGS[] = {"",         "a name",       "\"",
+                                          "a\\b",     "\x01\n\t\x1f", "\x7f/\'",
+                                          "\xc3\xa4", "\xe2\x82\xac", "behind\b"};
+    for (size_t n = 0; n < sizeof STRINGS / sizeof *STRINGS; n++) {
+        cJSON *string = cJSON_CreateString(STRINGS[n]);
+        char *text = json_print(string), *same = cJSON_PrintUnformatted(string);
+        assert_string_equal(text, same);
+        free(text);
+        cJSON_free(same);
+        cJSON_Delete(string);
+    }
+}
+
 static void a_text_for_people_has_a_line_a_value(void **state) {
     (void)state;
     static const char TEXT[] = "{\"a\":[9007199254740992,{}],\"b\":{\"c\":null,\"d\":[]}}";
@@ -192,6 +219,22 @@ static void base64_of_every_length(void **state) {
         assert_int_equal(base64_decode(BAD[b], &again, &length, NULL), ERROR_INPUT);
 }
 
+static void base64_has_64_digits(void **state) {
+    (void)state;
+    int digits = 0;
+    for (int c = 1; c < 256; c++) {
+        const char text[] = {'A', 'A', (char)c, 'A', '\0'};
+        bool digit = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+                     c == '+' || c == '/';
+        unsigned char *data = NULL;
+        size_t size = 0;
+        assert_int_equal(base64_decode(text, &data, &size, NULL), digit ? 0 : ERROR_INPUT);
+        digits += digit;
+        free(data);
+    }
+    assert_int_equal(digits, 64);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(malformed_texts_are_told_apart),
@@ -200,7 +243,9 @@ int main(void) {
         cmocka_unit_test(numbers_come_back_with_their_bits),
         cmocka_unit_test(a_text_for_people_has_a_line_a_value),
         cmocka_unit_test(pointers_lead_where_they_say),
+        cmocka_unit_test(values_are_printed_in_one_way),
         cmocka_unit_test(base64_of_every_length),
+        cmocka_unit_test(base64_has_64_digits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

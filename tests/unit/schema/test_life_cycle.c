@@ -2,6 +2,7 @@
  * workers, people and publishers do to a store, with commits that fail and processes that die at
  * any point, are done to a store and to a model of the states without SQL (life_model.h); after
  * each sequence the views say what the model says, and nothing is left due. */
+#include "schema/store/store_verify.h"
 #include "tests/unit/schema/life_merge.h"
 #include "tests/unit/schema/life_views.h"
 #include "tests/unit/schema/life_world.h"
@@ -26,18 +27,22 @@ static int submit(struct world *world, struct store *store) {
     char source[32];
     if (world->life.study_count == LIFE_STUDIES)
         return 0;
-    int blocks = 1 + below(world, LIFE_BLOCKS), count = 1 + below(world, LIFE_CASES);
+    int realisations = 1 + below(world, LIFE_MOST), count = 1 + below(world, LIFE_CASES);
+    /* where nothing is known of its seconds, a study is not divided among the workers seen */
+    double estimate = below(world, 2);
     int number = world->life.study_count;
     snprintf(source, sizeof source, "{\"number\":%d}", number);
     struct study study = {.name = (char[]){"life"},
                           .kind = &kind,
-                          .realisations = (uint64_t)(2 * blocks - 1),
+                          .realisations = (uint64_t)realisations,
                           .case_count = (size_t)count,
                           .cases = cases,
                           .source = source};
     for (int c = 0; c < count; c++) {
-        cases[c] = (struct study_case){
-            .parameters = cJSON_CreateObject(), .block = 2, .realisations = study.realisations};
+        cases[c] = (struct study_case){.parameters = cJSON_CreateObject(),
+                                       .block = LIFE_BLOCK,
+                                       .cost.seconds = estimate,
+                                       .realisations = study.realisations};
         assert_non_null(cases[c].parameters);
     }
     char id[STUDY_ID_SIZE];
@@ -47,35 +52,53 @@ static int submit(struct world *world, struct store *store) {
     if (status != 0)
         return status;
     memcpy(world->ids[number], id, sizeof id);
-    life_submit(&world->life, count, blocks);
+    life_submit(&world->life, count, realisations);
     for (int c = 0; c < count; c++)
         world->life.studies[number].of[c].poisoned = below(world, 6) == 0;
     return 0;
 }
 
+/* The model does as the store did, if that is what the store may do. */
+static void take(struct world *world, const struct claimed_job *job, int worker) {
+    int row = life_next(&world->life, world->now_ms);
+    expect(world, "a job to claim", row >= 0, true);
+    const struct life_job *span = &world->life.jobs[row];
+    int64_t most = life_block(span);
+    expect(world, "first realisation", (int)job->first, (int)span->first);
+    expect(world, "number of realisations", job->count >= 1 && (int64_t)job->count <= most, true);
+    int index =
+        life_lease(&world->life, row, (int64_t)job->count, worker, ++world->leases, world->now_ms);
+    const struct life_job *expected = &world->life.jobs[index];
+    expect(world, "number of the job claimed", (int)job->id, index + 1);
+    expect(world, "case", (int)job->case_number, expected->case_number);
+    expect(world, "attempt", (int)job->attempt, expected->attempts);
+    struct hold *hold = &world->holds[world->hold_count++ % HOLDS];
+    *hold = (struct hold){.job = index, .number = world->leases};
+    memcpy(hold->token, job->token, sizeof hold->token);
+}
+
 static int claim(struct world *world, struct store *store) {
+    enum { JOBS = 3 };
     char worker[8];
-    struct claimed_job job;
+    struct claimed_job jobs[JOBS];
     size_t count = 0;
     int number = 1 + below(world, 3);
     snprintf(worker, sizeof worker, "w%d", number);
-    struct claim what = {.worker = worker, .host = "here", .count = 1};
-    int status = store_claim(store, &what, &job, &count, NULL);
+    struct claim what = {.worker = worker,
+                         .host = "here",
+                         .count = (size_t)(1 + below(world, JOBS)),
+                         .seconds = below(world, 3),
+                         .threads = (unsigned)below(world, 3)};
+    int status = store_claim(store, &what, jobs, &count, NULL);
     if (status != 0)
         return status;
-    int index = life_claim(&world->life, number, ++world->leases, world->now_ms);
-    expect(world, "jobs claimed", (int)count, index >= 0);
-    if (index < 0)
-        return 0;
-    const struct life_job *expected = &world->life.jobs[index];
-    expect(world, "number of the job claimed", (int)job.id, index + 1);
-    expect(world, "first realisation", (int)job.first, (int)expected->first);
-    expect(world, "realisations", (int)job.count, (int)expected->count);
-    expect(world, "attempt", (int)job.attempt, expected->attempts);
-    struct hold *hold = &world->holds[world->hold_count++ % HOLDS];
-    *hold = (struct hold){.job = index, .number = world->leases};
-    memcpy(hold->token, job.token, sizeof hold->token);
-    claimed_job_clear(&job);
+    life_expire(&world->life, world->now_ms);
+    expect(world, "jobs claimed", count > 0, life_next(&world->life, world->now_ms) >= 0);
+    expect(world, "no more than asked for", count <= what.count, true);
+    for (size_t j = 0; j < count; j++) {
+        take(world, &jobs[j], number);
+        claimed_job_clear(&jobs[j]);
+    }
     return 0;
 }
 
@@ -94,13 +117,16 @@ static int complete(struct world *world, struct store *store) {
     if (hold == NULL)
         return 0;
     const struct life_job *job = &world->life.jobs[hold->job];
-    double scalars[4];
-    for (int r = 0; r < 2; r++) {
+    int64_t done = job->count; /* or some of them */
+    if (job->state == LIFE_RUNNING && done > 1 && below(world, 3) == 0)
+        done = 1;
+    double scalars[2 * LIFE_MOST];
+    for (int r = 0; r < LIFE_MOST; r++) {
         scalars[2 * r] = value_of(job, r);
         scalars[2 * r + 1] = r % 2 ? NAN : 0;
     }
     struct block_result result = {.first = (uint64_t)job->first,
-                                  .count = (uint64_t)job->count,
+                                  .count = (uint64_t)done,
                                   .scalar_count = 2,
                                   .names = names,
                                   .scalars = scalars,
@@ -112,7 +138,7 @@ static int complete(struct world *world, struct store *store) {
         store_complete(store, hold->job + 1, hold->token, &result, &first, &case_done, NULL);
     if (status == ERROR_SYSTEM)
         return status;
-    bool accepted = life_complete(&world->life, hold->job, hold->number, &again);
+    bool accepted = life_complete(&world->life, hold->job, hold->number, done, &again);
     expect(world, "completion", status, answer_of(accepted));
     if (accepted) {
         expect(world, "first time", first, !again);
@@ -350,11 +376,32 @@ static void step(struct world *world) {
 
 /* --- the test --- */
 
+static int fail_for_flaw(void *context, const struct flaw *flaw, struct error *err) {
+    const struct world *world = context;
+    (void)err;
+    fail_msg("sequence %d: study %s, case %lld, %llu+%llu: %s", world->sequence, flaw->study,
+             (long long)flaw->case_number, (unsigned long long)flaw->first,
+             (unsigned long long)flaw->count, flaw->text);
+    return 0;
+}
+
+/* What the store makes is whole for who looks for damage. */
+static void check_whole(struct world *world, struct store *store) {
+    const struct verification verification = {.found = fail_for_flaw, .context = world};
+    struct verify_counts counts = {0};
+    struct error err = {0};
+    if (store_verify(store, &verification, &counts, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_true(counts.unsealed == 0);
+}
+
 static void run_sequence(struct world *world) {
     bool due = true;
     copy_file(empty_path, path);
     for (int n = 10 + below(world, 45); n > 0; n--)
         step(world);
+    if (world->sequence % 8 == 0)
+        check_whole(world, any_handle(world));
     if (below(world, 2) == 0)
         close_handles(world); /* as after the death of all processes */
     struct store *store = any_handle(world);

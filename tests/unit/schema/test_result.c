@@ -247,7 +247,7 @@ static void csv_tells_the_study(void **state) {
     FILE *file = open_memstream(&text, &size);
     assert_true(file != NULL && csv_print(file, &study));
     assert_int_equal(fclose(file), 0);
-    static const char HEAD[] = "# study: two lines, contact 0123456789abcdef, done, seed 7\n"
+    static const char HEAD[] = "# study: two?lines, contact 0123456789abcdef, done, seed 7\n"
                                "# queued: 2026-01-02T03:04:05Z\n"
                                "# computed: 3 jobs on h by rugo 0.1.0+c0ffee, 2026-01-02T03:04:06Z "
                                "to 2026-01-02T03:05:00Z\n"

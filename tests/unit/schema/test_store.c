@@ -7,8 +7,8 @@
 #include "tests/support/check.h"
 #include "tests/support/fake_kind.h"
 #include "tests/support/sample_result.h"
+#include "tests/support/sql.h"
 #include "tests/support/store_text.h"
-#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,7 +37,7 @@ static void submit(struct store *store, int realisations, const char *key, char 
     struct study *study = NULL;
     struct fault_list faults = {0};
     snprintf(text, sizeof text,
-             "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":%d,\"seconds\":6,\"box\":{"
+             "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":%d,\"seconds\":0.5,\"box\":{"
              "\"width\":[0.5,1]}}",
              realisations);
     assert_int_equal(study_read(&study, text, strlen(text), NULL, FAKE_KINDS, 0, &faults, NULL), 0);
@@ -74,7 +74,8 @@ static int complete(struct store *store, const struct claimed_job *job, bool *fi
                                   .data = (const unsigned char *)"\0\1data",
                                   .size = 6,
                                   .seconds = 2,
-                                  .cpu_seconds = 0.5};
+                                  .cpu_seconds = 0.5 * (double)job->count};
+    assert_true(job->count <= 10);
     return store_complete(store, job->id, job->token, &result, first, case_done, err);
 }
 
@@ -132,7 +133,7 @@ static void a_study_runs_to_its_end(void **state) {
     assert_int_equal(store_status(store, id, &status, NULL), 0);
     assert_int_equal(status.realisations_done, 40);
     check_close(status.time.seconds, 8, 1e-12);
-    check_close(status.time.cpu_seconds, 2, 1e-12);
+    check_close(status.time.cpu_seconds, 20, 1e-12);
     assert_int_equal(status.time.jobs_without_cpu, 0);
     assert_true(status.seconds_left == 0 && *status.finished);
     study_status_clear(&status);
@@ -154,13 +155,17 @@ static void leases_run_out_and_fence(void **state) {
     clock_ms = 5900;
     assert_int_equal(store_heartbeat(store, slow.id, slow.token, 3, NULL), 0);
     clock_ms = 6500; /* beyond the first lease, within the renewed one */
-    assert_int_equal(claim(store, "quick", &quick), 1);
+    assert_int_equal(claim(store, "slow", &quick), 1);
     assert_true(quick.id != slow.id);
     claimed_job_clear(&quick);
-    clock_ms = 6900;
-    assert_int_equal(claim(store, "quick", &quick), 1);
+    clock_ms = 6900; /* it waits for a second from here on */
+    assert_int_equal(claim(store, "slow", &quick), 0);
+    clock_ms = 7899;
+    assert_int_equal(claim(store, "slow", &quick), 0);
+    clock_ms = 7900;
+    assert_int_equal(claim(store, "slow", &quick), 1);
     assert_int_equal(quick.id, slow.id);
-    assert_int_equal(quick.attempt, 2);
+    assert_int_equal(quick.attempt, 1);
     assert_int_equal(store_heartbeat(store, slow.id, slow.token, 4, &err), ERROR_STATE);
     assert_non_null(strstr(err.text, "lost"));
     assert_int_equal(complete(store, &slow, &first, &done, &err), ERROR_STATE);
@@ -217,26 +222,61 @@ static void three_attempts_then_failed_with_its_reason(void **state) {
     store_close(&store);
 }
 
-/* A job that kills its workers: leases run out three times. */
+/* A job that kills its workers, or whose workers are killed: it waits for longer each time, while
+ * other jobs go on, and fails with the tenth. The attempts that it fails are counted apart. */
 static void a_deadly_job_fails(void **state) {
     (void)state;
+    static const int PAUSES[] = {1, 2, 4, 8, 16, 32, 64, 64, 64};
     struct store *store = open_store("deadly.db");
     char id[STUDY_ID_SIZE];
     struct claimed_job job;
+    clock_ms = 0;
     submit(store, 10, NULL, id);
-    for (int death = 0; death < 4; death++) {
-        size_t found = claim(store, "victim", &job);
-        assert_int_equal(found, 1);
-        assert_int_equal(job.case_number, death < 3 ? 0 : 1);
+    for (int death = 0; death < 10; death++) {
+        assert_int_equal(claim(store, "victim", &job), 1);
+        assert_int_equal(job.case_number, 0);
+        assert_int_equal(job.attempt, death < 5 ? 1 : 2);
+        if (death == 4) { /* a failure between the losses */
+            assert_int_equal(store_fail(store, job.id, job.token, "no luck", false, NULL), 0);
+            claimed_job_clear(&job);
+            assert_int_equal(claim(store, "victim", &job), 1);
+        }
+        assert_false(store_claim_failed_jobs(store));
         claimed_job_clear(&job);
-        clock_ms += 2000;
+        clock_ms += 1000; /* the lease */
+        size_t found = claim(store, "other", &job);
+        assert_int_equal(found, 1); /* of the other case */
+        assert_int_equal(job.case_number, 1);
+        assert_int_equal(store_claim_failed_jobs(store), death == 9);
+        assert_int_equal(store_release(store, job.id, job.token, NULL), 0);
+        claimed_job_clear(&job);
+        clock_ms += death < 9 ? 1000 * PAUSES[death] - 1 : 0;
+        assert_int_equal(claim(store, "other", &job), 1);
+        assert_int_equal(job.case_number, 1); /* not yet */
+        assert_int_equal(store_release(store, job.id, job.token, NULL), 0);
+        claimed_job_clear(&job);
+        clock_ms += 1;
     }
     struct failure *failures;
     size_t count;
     assert_int_equal(store_failures(store, id, &failures, &count, NULL), 0);
     assert_int_equal(count, 1);
-    assert_string_equal(failures[0].reason, "lease ran out on worker victim");
+    assert_string_equal(failures[0].reason,
+                        "lost with its worker 10 times: killed, cut off or out of memory; the last "
+                        "lease ran out on worker victim");
+    assert_int_equal(failures[0].losses, 10);
+    assert_int_equal(failures[0].attempts, 1);
     failures_free(failures, count);
+    uint64_t retried;
+    assert_int_equal(store_retry(store, id, &retried, NULL), 0);
+    assert_int_equal(claim(store, "victim", &job), 1);
+    assert_int_equal(job.case_number, 0);
+    claimed_job_clear(&job);
+    clock_ms += 1000;
+    assert_int_equal(claim(store, "other", &job), 1);
+    assert_int_equal(job.case_number, 1);
+    claimed_job_clear(&job);
+    check_text("deadly.db", "SELECT sum(losses) FROM job_log WHERE \"case\" = 0", "1");
     store_close(&store);
 }
 
@@ -371,9 +411,9 @@ static void results_and_views(void **state) {
     assert_int_equal(due_cases(store), 2);
     result_clear(&sample);
     case_info_clear(&info);
-    assert_int_equal(store_snapshot(store, "copy.db", NULL), 0);
+    assert_int_equal(store_snapshot(store, "copy.db", NULL, NULL, NULL), 0);
     struct error err = {0};
-    assert_int_equal(store_snapshot(store, "copy.db", &err), ERROR_INPUT);
+    assert_int_equal(store_snapshot(store, "copy.db", NULL, NULL, &err), ERROR_INPUT);
     check_text("copy.db", "SELECT state || percent FROM study_progress", "running100.0");
     check_text("copy.db",
                "SELECT count(*) || max(realisation) FROM realisation_scalars WHERE \"case\" = 1",
@@ -431,19 +471,12 @@ static void results_and_views(void **state) {
 
 /* --- files that are not ours --- */
 
-static void execute(const char *path, const char *sql) {
-    sqlite3 *db = NULL;
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
-    sqlite3_close(db);
-}
-
 static void other_files_are_refused_with_a_word(void **state) {
     (void)state;
     struct store *store = open_store("newer.db");
     store_close(&store);
-    execute("newer.db", "PRAGMA user_version = 99");
-    execute("other.db", "CREATE TABLE t (x)");
+    sql_change("newer.db", "PRAGMA user_version = 99");
+    sql_change("other.db", "CREATE TABLE t (x)");
     FILE *file = fopen("junk.db", "w");
     assert_non_null(file);
     for (int i = 0; i < 5000; i++)
@@ -480,12 +513,16 @@ static void leases_of_another_boot_are_void(void **state) {
     int64_t first = job.id;
     claimed_job_clear(&job);
     store_close(&store);
-    execute("boot.db", "UPDATE boot SET id = 'another'");
+    sql_change("boot.db", "UPDATE boot SET id = 'another'");
     store = open_store("boot.db");
     clock_ms = 10; /* the boot clock began anew */
     assert_int_equal(claim(store, "after", &job), 1);
+    assert_true(job.id != first);
+    claimed_job_clear(&job);
+    clock_ms = 1010; /* the lost one waits a second */
+    assert_int_equal(claim(store, "after", &job), 1);
     assert_int_equal(job.id, first);
-    assert_int_equal(job.attempt, 2);
+    assert_int_equal(job.attempt, 1);
     claimed_job_clear(&job);
     store_close(&store);
 }
@@ -525,9 +562,9 @@ static void processes_share_a_file(void **state) {
         assert_int_equal(status, 0);
     }
     check_text("shared.db",
-               "SELECT count(*) || '/' || sum(attempts) || '/' || (SELECT state FROM "
+               "SELECT sum(count) || '/' || sum(attempts - 1) || '/' || (SELECT state FROM "
                "study_progress) FROM job_log WHERE state = 'done'",
-               "200/200/running");
+               "2000/0/running");
 }
 
 /* Cases of a study that shares random numbers are of sequence 0, others of their own number,
@@ -540,7 +577,7 @@ static void jobs_tell_their_sequence(void **state) {
     for (uint64_t n = 0; n < 2; n++) {
         char text[200], id[STUDY_ID_SIZE];
         snprintf(text, sizeof text,
-                 "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":10,\"seconds\":6,"
+                 "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":10,\"seconds\":0.5,"
                  "\"random\":\"%s\",\"box\":{\"width\":[0.5,1]}}",
                  RANDOM[n]);
         struct study *study = read_study(text);

@@ -21,7 +21,7 @@ static struct store *open_store(const char *path) {
 
 static void submit(struct store *store, const char *key, char id[STUDY_ID_SIZE]) {
     static const char TEXT[] =
-        "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":20,\"seconds\":6,\"box\":{\"width\":"
+        "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":20,\"seconds\":0.5,\"box\":{\"width\":"
         "[0.5,1]}}";
     struct study *study = NULL;
     struct fault_list faults = {0};

@@ -23,17 +23,17 @@ static struct store *open_store(const char *path) {
     return store;
 }
 
-/* A study of one case and `jobs` jobs; a realisation takes seconds, a job at most a minute. */
-static void submit(struct store *store, const char *owner, int priority, int jobs, int seconds,
+/* A study of one case and `jobs` jobs; a realisation takes `seconds`, and a job five at least. */
+static void submit(struct store *store, const char *owner, int priority, int jobs, double seconds,
                    char id[STUDY_ID_SIZE]) {
     char text[240];
     struct study *study = NULL;
     struct fault_list faults = {0};
     snprintf(
         text, sizeof text,
-        "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":%d,\"seconds\":%d,\"priority\":%d,"
+        "{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":%d,\"seconds\":%g,\"priority\":%d,"
         "\"box\":{\"width\":1}}",
-        jobs * (seconds < 60 ? 60 / seconds : 1), seconds, priority);
+        jobs * (seconds < 5 ? (int)(5 / seconds) : 1), seconds, priority);
     assert_int_equal(study_read(&study, text, strlen(text), NULL, FAKE_KINDS, 0, &faults, NULL), 0);
     study->owner = strdup(owner);
     assert_int_equal(store_submit(store, study, NULL, id, NULL, NULL), 0);
@@ -58,8 +58,8 @@ static void next(struct store *store, bool ends, char id[STUDY_ID_SIZE]) {
                                         .scalars = scalars,
                                         .data = (const unsigned char *)"block",
                                         .size = 5,
-                                        .seconds = 60,
-                                        .cpu_seconds = 60};
+                                        .seconds = 5,
+                                        .cpu_seconds = 5};
     if (ends)
         assert_int_equal(store_complete(store, job.id, job.token, &result, &first, &done, NULL), 0);
     claimed_job_clear(&job);
@@ -80,9 +80,9 @@ static void a_short_study_does_not_wait_for_a_long_one(void **state) {
     (void)state;
     struct store *store = open_store("short.db");
     char week[STUDY_ID_SIZE], small[STUDY_ID_SIZE], got[STUDY_ID_SIZE];
-    submit(store, "anna", 0, 200, 6, week);
+    submit(store, "anna", 0, 200, 0.5, week);
     assert_int_equal(share_of(store, week, 50), 50);
-    submit(store, "bert", 0, 4, 6, small);
+    submit(store, "bert", 0, 4, 0.5, small);
     next(store, true, got);
     assert_string_equal(got, small);
     /* it has no claim to what it did not use before: they take turns */
@@ -95,8 +95,8 @@ static void shares_are_of_time_and_weight(void **state) {
     (void)state;
     struct store *store = open_store("weight.db");
     char anna[STUDY_ID_SIZE], bert[STUDY_ID_SIZE];
-    submit(store, "anna", 0, 60, 6, anna);
-    submit(store, "bert", 0, 60, 6, bert);
+    submit(store, "anna", 0, 60, 0.5, anna);
+    submit(store, "bert", 0, 60, 0.5, bert);
     assert_int_equal(store_share(store, "bert", 3, NULL), 0);
     assert_in_range(share_of(store, bert, 40), 29, 31);
     assert_int_equal(store_share(store, "bert", 0, NULL), ERROR_INPUT);
@@ -123,10 +123,10 @@ static void of_one_owner_priority_comes_first(void **state) {
     (void)state;
     struct store *store = open_store("priority.db");
     char low[STUDY_ID_SIZE], first[STUDY_ID_SIZE], second[STUDY_ID_SIZE], high[STUDY_ID_SIZE];
-    submit(store, "", -1, 2, 6, low);
-    submit(store, "", 0, 2, 6, first);
-    submit(store, "", 0, 2, 6, second);
-    submit(store, "", 7, 2, 6, high);
+    submit(store, "", -1, 2, 0.5, low);
+    submit(store, "", 0, 2, 0.5, first);
+    submit(store, "", 0, 2, 0.5, second);
+    submit(store, "", 7, 2, 0.5, high);
     assert_int_equal(share_of(store, high, 2), 2);
     assert_int_equal(share_of(store, first, 2), 2);
     assert_int_equal(share_of(store, second, 2), 2);
@@ -148,24 +148,24 @@ static void a_place_in_line_is_told(void **state) {
     struct store *store = open_store("place.db");
     char week[STUDY_ID_SIZE], mine[STUDY_ID_SIZE], later[STUDY_ID_SIZE], small[STUDY_ID_SIZE],
         got[STUDY_ID_SIZE];
-    submit(store, "anna", 0, 21, 6, week);
+    submit(store, "anna", 0, 21, 0.5, week);
     check_place(store, week, 1, NAN); /* nobody is at work */
     next(store, false, got);
-    submit(store, "anna", 0, 3, 6, mine);
-    submit(store, "bert", 0, 2, 6, small);
-    submit(store, "bert", 0, 2, 6, later);
-    /* bert's clock is a minute behind that of anna, of whom a job runs for a minute */
+    submit(store, "anna", 0, 3, 0.5, mine);
+    submit(store, "bert", 0, 2, 0.5, small);
+    submit(store, "bert", 0, 2, 0.5, later);
+    /* bert's clock is five seconds behind that of anna, of whom a job runs so long */
     check_place(store, week, 0, NAN); /* it runs */
-    check_place(store, small, 1, 60);
-    clock_ms += 20000;
-    check_place(store, small, 1, 40);
-    /* the two jobs before it, and anna's in that time: from her minute to his second one */
-    check_place(store, later, 2, 40 + 180);
+    check_place(store, small, 1, 5);
+    clock_ms += 2000;
+    check_place(store, small, 1, 3);
+    /* the two jobs before it, and anna's in that time: from her first job to his second one */
+    check_place(store, later, 2, 3 + 15);
     /* 20 jobs of the week, and the four of bert */
-    check_place(store, mine, 3, 40 + 24 * 60);
+    check_place(store, mine, 3, 3 + 24 * 5);
     next(store, false, got); /* two at work */
     assert_string_equal(got, small);
-    check_place(store, mine, 2, (40 + 60 + 23 * 60) / 2.0);
+    check_place(store, mine, 2, (3 + 5 + 23 * 5) / 2.0);
     store_close(&store);
 }
 
@@ -179,7 +179,7 @@ static void a_claim_may_name_kinds(void **state) {
     struct claimed_job job = {0};
     size_t count = 9;
     char id[STUDY_ID_SIZE];
-    submit(store, "anna", 0, 2, 6, id);
+    submit(store, "anna", 0, 2, 0.5, id);
     assert_int_equal(store_claim(store, &claim, &job, &count, NULL), 0);
     assert_int_equal(count, 0);
     claim.kinds = BOXES;

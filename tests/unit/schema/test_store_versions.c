@@ -2,8 +2,8 @@
  * out, and a store of every earlier version opens, is brought up to date and reads as before. */
 #include "schema/store/store.h"
 #include "tests/support/check.h"
+#include "tests/support/sql.h"
 #include <inttypes.h>
-#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,19 +34,6 @@ static uint64_t hash_of(const char *text, size_t size) {
     return hash;
 }
 
-static int64_t integer_of(const char *path, const char *sql) {
-    sqlite3 *db = NULL;
-    sqlite3_stmt *row = NULL;
-    assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
-    if (sqlite3_prepare_v2(db, sql, -1, &row, NULL) != SQLITE_OK)
-        fail_msg("%s: %s", sql, sqlite3_errmsg(db));
-    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
-    int64_t value = sqlite3_column_int64(row, 0);
-    sqlite3_finalize(row);
-    sqlite3_close(db);
-    return value;
-}
-
 /* Whoever has to change a table writes a new migration: stores of these versions exist. */
 static void released_migrations_are_frozen(void **state) {
     (void)state;
@@ -65,7 +52,9 @@ static void released_migrations_are_frozen(void **state) {
                   {"schema/store/migrations/010.sql", 0xae4e92da6ff3d2c9u},
                   {"schema/store/migrations/011.sql", 0xfd1ef60cd56112aau},
                   {"schema/store/migrations/012.sql", 0x13877ee471321076u},
-                  {"schema/store/migrations/013.sql", 0x2fdb199e1e71779fu}};
+                  {"schema/store/migrations/013.sql", 0x2fdb199e1e71779fu},
+                  {"schema/store/migrations/014.sql", 0x883758ebd0e18cd7u},
+                  {"schema/store/migrations/015.sql", 0x2325eccfabc89770u}};
     for (size_t f = 0; f < sizeof FROZEN / sizeof *FROZEN; f++) {
         size_t size = 0;
         char *text = read_source(FROZEN[f].name, &size);
@@ -93,13 +82,72 @@ static void every_migration_is_linked_in(void **state) {
     assert_true(files >= 1);
     assert_int_equal(store_open(&store, "new.db", NULL, NULL), 0);
     store_close(&store);
-    assert_int_equal(integer_of("new.db", "PRAGMA user_version"), files);
+    assert_int_equal(sql_integer("new.db", "PRAGMA user_version"), files);
+}
+
+/* Runs statements on a file that this program does not have open. */
+static void execute(sqlite3 *db, const char *sql) {
+    char *why = NULL;
+    if (sqlite3_exec(db, sql, NULL, NULL, &why) != SQLITE_OK)
+        fail_msg("%s", why);
+}
+
+/* Before version 15 the token of a lease was in the store as it is. It becomes a digest there,
+ * under which its holder goes on; nothing of it is left in the file. */
+static void a_live_lease_outlives_the_digests(void **state) {
+    (void)state;
+    static const char TOKEN[] = "00112233445566778899aabbccddeeff";
+    sqlite3 *db = NULL;
+    struct store *store = NULL;
+    assert_int_equal(sqlite3_open("plain.db", &db), SQLITE_OK);
+    for (int n = 1; n <= 14; n++) {
+        char name[64];
+        size_t size = 0;
+        snprintf(name, sizeof name, "schema/store/migrations/%03d.sql", n);
+        char *text = read_source(name, &size);
+        assert_non_null(text);
+        execute(db, text);
+        free(text);
+    }
+    execute(db,
+            "PRAGMA application_id = 0x5255474f; PRAGMA user_version = 14;"
+            "INSERT INTO study (id, public, name, kind, seed, realisations, state, cases, jobs, "
+            "jobs_waiting, jobs_running, jobs_done, created) VALUES (1, 's', 's', 'boxes', '1', "
+            "30, 'running', 1, 3, 1, 1, 1, '');"
+            "INSERT INTO study_case (study_id, number, parameters, estimate, jobs, jobs_left) "
+            "VALUES (1, 0, '{}', 0.1, 3, 2);"
+            "INSERT INTO job (id, study_id, case_number, first, count, state, token) VALUES (1, "
+            "1, 0, 0, 10, 'done', '00112233445566778899aabbccddeeee'), (2, 1, 0, 10, 10, "
+            "'running', '00112233445566778899aabbccddeeff'), (3, 1, 0, 20, 10, 'waiting', NULL)");
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+    assert_int_equal(store_open(&store, "plain.db", NULL, NULL), 0);
+    assert_int_equal(store_heartbeat(store, 2, TOKEN, 1, NULL), 0);
+    assert_int_equal(store_heartbeat(store, 2, "00112233445566778899aabbccddeef0", 1, NULL),
+                     ERROR_STATE);
+    struct claim claim = {.worker = "w", .count = 1};
+    struct claimed_job job = {0};
+    size_t count = 0;
+    assert_int_equal(store_claim(store, &claim, &job, &count, NULL), 0);
+    assert_true(count == 1 && job.id == 3 && job.count == 10); /* as it was cut */
+    claimed_job_clear(&job);
+    store_close(&store);
+    size_t size = 0;
+    FILE *file = fopen("plain.db", "rb");
+    char *bytes = malloc(1 << 20);
+    assert_true(file != NULL && bytes != NULL);
+    size = fread(bytes, 1, 1 << 20, file);
+    fclose(file);
+    assert_true(size > 0 && memmem(bytes, size, "00112233", 8) == NULL);
+    free(bytes);
+    assert_int_equal(sql_integer("plain.db", "SELECT count(*) FROM job WHERE token IS NULL"), 1);
+    assert_int_equal(sql_integer("plain.db", "SELECT realisations_waiting FROM study"), 0);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(released_migrations_are_frozen),
         cmocka_unit_test(every_migration_is_linked_in),
+        cmocka_unit_test(a_live_lease_outlives_the_digests),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

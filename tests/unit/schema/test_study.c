@@ -247,23 +247,39 @@ static void seeds_are_read_whole(void **state) {
     }
 }
 
-/* Blocks of about a minute and of equal size, never beyond 5000 realisations. */
-static void blocks_take_about_a_minute(void **state) {
+/* Blocks of about five seconds and of equal size, never beyond 1000 realisations. */
+static void blocks_take_about_five_seconds(void **state) {
     (void)state;
     static const struct {
-        const char *text;
+        uint64_t realisations;
+        double seconds;
+        uint64_t most, block;
+    } BLOCKS[] = {{100, 0.1, 1000, 50}, {100, 100, 1000, 1}, {100, 1e-3, 1000, 100},
+                  {2400, 0, 1000, 800}, {101, 1e-3, 20, 17}, {UINT64_MAX, 1e-9, 1000, 1000},
+                  {7, 0, 0, 1},         {0, 1, 5, 1}};
+    for (size_t b = 0; b < sizeof BLOCKS / sizeof *BLOCKS; b++)
+        assert_int_equal(study_block(BLOCKS[b].realisations, BLOCKS[b].seconds, BLOCKS[b].most),
+                         BLOCKS[b].block);
+    assert_int_equal(study_block_most(&(struct study_cost){.seconds = 9}), 1000);
+    assert_int_equal(study_block_most(&(struct study_cost){.runs_most = 20}), 20);
+    assert_int_equal(study_block_most(&(struct study_cost){.result_bytes = 1e5}), 40);
+    assert_int_equal(study_block_most(&(struct study_cost){.result_bytes = 1e9}), 1);
+}
+
+/* Each of the workers gets some of few realisations, unless these take next to nothing. */
+static void few_realisations_are_shared(void **state) {
+    (void)state;
+    static const struct {
         uint64_t block;
-    } BLOCKS[] = {{STUDY("\"realisations\":100,\"seconds\":1,\"box\":{\"width\":1}"), 50},
-                  {STUDY("\"realisations\":100,\"seconds\":1000,\"box\":{\"width\":1}"), 1},
-                  {STUDY("\"realisations\":100,\"seconds\":0.001,\"box\":{\"width\":1}"), 100},
-                  {STUDY("\"realisations\":12000,\"seconds\":0,\"box\":{\"width\":1}"), 4000}};
-    for (size_t b = 0; b < 4; b++) {
-        struct fault_list faults = {0};
-        struct study *study = NULL;
-        assert_int_equal(read_text(BLOCKS[b].text, &study, &faults, NULL), 0);
-        assert_int_equal(study->cases[0].block, BLOCKS[b].block);
-        study_destroy(&study);
-    }
+        double seconds;
+        uint64_t waiting, workers, share;
+    } SHARES[] = {{50, 0.1, 100, 8, 13}, {50, 0.1, 1000, 8, 50}, {50, 0.1, 100, 1, 50},
+                  {3, 0.1, 4, 100, 1},   {50, 1e-3, 60, 8, 50},  {500, 1e-3, 600, 8, 100},
+                  {50, 0, 100, 8, 50},   {5, 1e-9, 6, 8, 5}};
+    for (size_t n = 0; n < sizeof SHARES / sizeof *SHARES; n++)
+        assert_int_equal(
+            study_share(SHARES[n].block, SHARES[n].seconds, SHARES[n].waiting, SHARES[n].workers),
+            SHARES[n].share);
 }
 
 static void overrides_change_the_document(void **state) {
@@ -322,6 +338,31 @@ static void schema_has_what_the_reader_asks(void **state) {
     cJSON_Delete(schema);
 }
 
+static int stop_at_zero(void *context) {
+    int *left = context;
+    return *left == 0 || --*left == 0;
+}
+
+/* Whoever asks for a check and leaves costs no more. */
+static void a_check_stops_between_cases(void **state) {
+    (void)state;
+    static const char text[] = STUDY("\"box\":{\"width\":[0.1,0.2,0.3,0.4,0.5]}");
+    for (int most = 1; most <= 6; most++) {
+        struct fault_list faults = {0};
+        struct study *study = NULL;
+        struct error err = {0};
+        int left = most;
+        const struct study_reading reading = {
+            .kinds = FAKE_KINDS, .stop = stop_at_zero, .stop_context = &left};
+        int status = study_read_ext(&study, text, strlen(text), &reading, &faults, &err);
+        assert_int_equal(status, most <= 5 ? ERROR_STOPPED : 0);
+        assert_int_equal(left, most <= 5 ? 0 : 1);
+        assert_true((study != NULL) == (status == 0));
+        study_destroy(&study);
+        fault_list_clear(&faults);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(faults_are_told_with_pointer_and_range),
@@ -331,7 +372,9 @@ int main(void) {
         cmocka_unit_test(sweeps_run_in_the_order_of_the_file),
         cmocka_unit_test(too_many_cases_are_refused_before_they_are_made),
         cmocka_unit_test(seeds_are_read_whole),
-        cmocka_unit_test(blocks_take_about_a_minute),
+        cmocka_unit_test(blocks_take_about_five_seconds),
+        cmocka_unit_test(few_realisations_are_shared),
+        cmocka_unit_test(a_check_stops_between_cases),
         cmocka_unit_test(overrides_change_the_document),
         cmocka_unit_test(schema_has_what_the_reader_asks),
     };
