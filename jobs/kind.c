@@ -28,13 +28,31 @@ uint64_t kind_edition(const struct job_kind *kind) {
     return hash_bytes(hash, sizeof marks, marks);
 }
 
-int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
-                    struct fault_list *faults, struct error *err) {
-    int status = study_read(out, text, size, overrides, JOB_KINDS, MEMORY_PART * memory_available(),
-                            faults, err);
+static int read_study(struct study **out, const char *text, size_t size,
+                      const struct study_reading *reading, struct fault_list *faults,
+                      struct error *err) {
+    int status = study_read_ext(out, text, size, reading, faults, err);
     if (status == 0)
         (*out)->edition = kind_edition(kind_of((*out)->kind));
     return status;
+}
+
+int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
+                    struct fault_list *faults, struct error *err) {
+    const struct study_reading reading = {.overrides = overrides,
+                                          .kinds = JOB_KINDS,
+                                          .memory_limit = MEMORY_PART * memory_available()};
+    return read_study(out, text, size, &reading, faults, err);
+}
+
+int kind_read_study_until(struct study **out, const char *text, size_t size,
+                          int (*stop)(void *context), void *context, struct fault_list *faults,
+                          struct error *err) {
+    const struct study_reading reading = {.kinds = JOB_KINDS,
+                                          .memory_limit = MEMORY_PART * memory_available(),
+                                          .stop = stop,
+                                          .stop_context = context};
+    return read_study(out, text, size, &reading, faults, err);
 }
 
 int kind_case_create(void **out, const struct job_kind *kind, const cJSON *parameters,

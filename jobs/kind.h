@@ -104,6 +104,9 @@ struct job_kind {
     int (*tally_create)(void *tally, const void *study, const struct surface_basis *basis,
                         struct error *err);
     void (*tally_clear)(void *tally);
+    /* realise may stop half way, and leave traces of its realisation in the tally that it was
+     * given: a runner then gives it one of its own for each, to merge those that end. */
+    bool stops_half_way;
     /* Adds a realisation, and fills scalars (as many as there are; NaN: none). */
     int (*realise)(void *workspace, const struct realisation *realisation, void *tally,
                    double *scalars, struct error *err);
@@ -155,6 +158,11 @@ struct job_kind {
      * Nothing is written on failure. NULL for kinds without meshes. */
     int (*write_mesh)(const char *path, const void *study, const double *z, double pressure,
                       struct error *err);
+    /* Measures a measured surface, z as pieces of the surfaces of the case are cut (like_case.h),
+     * in the way in which these are measured beside the realisations, and adds what it finds to the
+     * object "like" of the study. Nothing where the case cuts no pieces. NULL for kinds that
+     * measure nothing of them but what like_fit has. */
+    int (*measure_like)(const void *study, const double *z, struct cJSON *like, struct error *err);
 };
 
 /* All kinds, in a fixed order, NULL at the end; each is the head of a struct job_kind. kinds.c
@@ -176,6 +184,10 @@ uint64_t kind_edition(const struct job_kind *kind);
 /* Reads a study of these kinds; a case may need as much memory as the machine has. */
 int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
                     struct fault_list *faults, struct error *err);
+/* The same until stop says so (study_read_ext). */
+int kind_read_study_until(struct study **out, const char *text, size_t size,
+                          int (*stop)(void *context), void *context, struct fault_list *faults,
+                          struct error *err);
 /* Reads a case into memory of its own, zeroed and filled; kind_case_destroy accepts NULL. */
 int kind_case_create(void **out, const struct job_kind *kind, const cJSON *parameters,
                      struct fault_list *faults, struct error *err);

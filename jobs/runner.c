@@ -182,22 +182,51 @@ static int realise(struct job_runner *runner, uint64_t number, struct progress *
     return status != 0 ? error_context(err, "realisation %llu", (unsigned long long)number) : 0;
 }
 
-/* Runs all realisations of a block into a result that has room for them. */
+/* Adds a realisation to the tally: by way of a tally of its own where the kind may stop half way,
+ * so that the others can be handed out. */
+static int realise_into(struct job_runner *runner, uint64_t number, struct progress *progress,
+                        void *tally, double *scalars, struct error *err) {
+    const struct job_kind *kind = runner->kind;
+    if (!kind->stops_half_way)
+        return realise(runner, number, progress, tally, scalars, err);
+    void *one = array_create(1, kind->tally_size);
+    if (one == NULL)
+        return error_memory(err, kind->tally_size, "a tally");
+    int status = kind->tally_create(one, runner->study, &runner->basis, err);
+    if (status == 0)
+        status = realise(runner, number, progress, one, scalars, err);
+    if (status == 0)
+        status = kind->merge(tally, one, err);
+    kind->tally_clear(one);
+    free(one);
+    return status;
+}
+
+/* Runs the realisations of a block into a result that has room for them. Where it is told to stop,
+ * the count of the result becomes that of those which are done; ERROR_STOPPED where none is. */
 static int realise_all(struct job_runner *runner, const struct job_control *control,
-                       const struct block_result *result, void *tally, double *scalars,
+                       struct block_result *result, void *tally, double *scalars,
                        struct error *err) {
     struct progress progress = {.control = control};
-    for (uint64_t r = 0; r < result->count; r++) {
+    bool whole = true; /* the tally is of the realisations that are done */
+    int status = 0;
+    for (uint64_t r = 0; r < result->count && status == 0; r += status == 0) {
         progress.done = r;
-        if (is_stopped(&progress) != 0)
-            return error_set(err, ERROR_STOPPED, "stopped after %llu of %llu realisations",
-                             (unsigned long long)r, (unsigned long long)result->count);
-        int status = realise(runner, result->first + r, &progress, tally,
-                             scalars + r * result->scalar_count, err);
-        if (status != 0)
-            return status;
+        if (is_stopped(&progress) != 0) {
+            status = error_set(err, ERROR_STOPPED, "stopped after %llu of %llu realisations",
+                               (unsigned long long)r, (unsigned long long)result->count);
+        } else {
+            status = realise_into(runner, result->first + r, &progress, tally,
+                                  scalars + r * result->scalar_count, err);
+            whole = status == 0 || runner->kind->stops_half_way;
+        }
+        progress.done += status == 0;
     }
-    return 0;
+    if (status == ERROR_STOPPED && whole && progress.done > 0) {
+        result->count = progress.done;
+        return 0;
+    }
+    return status;
 }
 
 static int block_fill(struct job_runner *runner, const struct job_control *control, void *tally,

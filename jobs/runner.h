@@ -8,7 +8,7 @@
 #include "jobs/kind.h"
 
 /* Asked between realisations, and again and again within one that may take long: how many of the
- * block are done; non-zero stops with ERROR_STOPPED. */
+ * block are done; non-zero stops the block. */
 struct job_control {
     int (*poll)(void *context, uint64_t done);
     void *context;
@@ -29,7 +29,8 @@ int runner_create(struct job_runner **out, const struct job_kind *kind, const cJ
                   struct error *err);
 void runner_destroy(struct job_runner **runner);
 /* Runs realisations first .. first + count - 1 into out (untouched on failure), the caller's to
- * clear. control may be NULL. */
+ * clear. control may be NULL. A block that is stopped has the realisations that were done, fewer
+ * than count; ERROR_STOPPED where none was. */
 int runner_run(struct job_runner *runner, uint64_t first, uint64_t count,
                const struct job_control *control, struct block_result *out, struct error *err);
 

@@ -177,8 +177,8 @@ static bool band_has_mode(const struct surface_case *surface) {
     return plane_has_mode(low, low * ratio, along_y / low);
 }
 
-/* The cell is to hold the longest waves along x, too; Nayak's parameter is that of isotropic ones.
- */
+/* The cell is to hold the longest waves of a self-affine surface along x, too; Nayak's parameter is
+ * that of isotropic ones. */
 static void read_anisotropy(struct surface_case *out, struct values *values) {
     static const char path[] = "/surface/anisotropy";
     double anisotropy = values_number(values, path);
@@ -187,7 +187,8 @@ static void read_anisotropy(struct surface_case *out, struct values *values) {
         return;
     if (out->dimension == 1)
         values_fault(values, path, "%g: profiles have one direction", anisotropy);
-    if (anisotropy > out->length_ratio * (1 + ROUNDING))
+    if (out->spectrum.type == SPECTRUM_SELF_AFFINE &&
+        anisotropy > out->length_ratio * (1 + ROUNDING))
         values_fault(values, path, "%g is more than length_ratio, %g: no longest wave fits along x",
                      anisotropy, out->length_ratio);
     if (!isnan(values_number(values, "/surface/nayak_alpha")))
@@ -270,6 +271,7 @@ static int read_table(struct surface_case *out, struct values *values, double po
                       struct error *err) {
     double *wave_number = NULL, *density = NULL;
     size_t n = 0, densities = 0;
+    read_anisotropy(out, values);
     int status = values_numbers(values, "/surface/spectrum/wave_number", &wave_number, &n, err);
     if (status == 0)
         status = values_numbers(values, "/surface/spectrum/density", &density, &densities, err);

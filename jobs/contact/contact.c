@@ -2,6 +2,7 @@
  */
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_curves.h"
+#include "jobs/contact/contact_like.h"
 #include "jobs/contact/contact_loads.h"
 #include "jobs/contact/contact_pairs.h"
 #include "jobs/contact/contact_press.h"
@@ -9,6 +10,10 @@
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/contact_target.h"
 #include "jobs/contact/contact_view.h"
+#include "schema/json/field.h"
+#include "schema/json/json.h"
+#include <math.h>
+#include <stdlib.h>
 
 static int read_case(void *one_case, const cJSON *parameters, struct fault_list *faults,
                      struct error *err) {
@@ -127,6 +132,8 @@ static int result(const void *one_case, const struct surface_basis *basis, const
     int status = contact_scalars(one_case, &basis->moments, contact, realisations, out, err);
     if (status == 0)
         status = contact_curves(one_case, basis->modes, &basis->moments, contact, out, err);
+    if (status == 0)
+        status = contact_like_curves(contact, out, err);
     return status != 0 ? status : notes_result(&contact->notes, out, err);
 }
 
@@ -139,6 +146,29 @@ static int scalar_values(const void *tally, const struct realisations *realisati
                          double *values, double *weights, struct error *err) {
     (void)weights;
     return contact_scalar_values(tally, realisations, scalar, values, err);
+}
+
+/* Nothing is told of a map on which no answer is found. */
+static int measure_like(const void *one_case, const double *z, cJSON *like, struct error *err) {
+    const struct contact_case *contact = one_case;
+    size_t n = contact->load_count;
+    if (!like_case_is_cut(&contact->like))
+        return 0;
+    double *areas = array_create(2 * n, sizeof *areas);
+    if (areas == NULL)
+        return error_memory(err, 2 * n * sizeof *areas, "contact of a map");
+    int status = contact_like_measure(contact, z, areas, areas + n, err);
+    bool all = status == 0, put = true;
+    for (size_t k = 0; k < 2 * n && all; k++)
+        all = isfinite(areas[k]);
+    if (all)
+        put =
+            field_put(like, "contact_loads", json_numbers(contact->loads, n)) &&
+            field_put(like, "contact_scale", json_number(contact->surface.spectrum.scale_value)) &&
+            field_put(like, "contact_areas", json_numbers(areas, n)) &&
+            field_put(like, "contact_gaps", json_numbers(areas + n, n));
+    free(areas);
+    return put ? status : error_memory(err, 2 * n * sizeof *areas, "contact of a map");
 }
 
 /* The first model that has a mesh writes it. */
@@ -179,6 +209,7 @@ const struct job_kind CONTACT_KIND = {
     .tally_size = sizeof(struct contact_tally),
     .tally_create = sums_create,
     .tally_clear = sums_clear,
+    .stops_half_way = true,
     .realise = realise,
     .merge = merge,
     .format = 0x434f, /* "CO" */
@@ -193,4 +224,5 @@ const struct job_kind CONTACT_KIND = {
     .scalar_values = scalar_values,
     .press = contact_press_once,
     .write_mesh = write_mesh,
+    .measure_like = measure_like,
 };

@@ -1,11 +1,12 @@
 #include "jobs/contact/contact_case.h"
+#include "jobs/like_parameters.h"
 #include "jobs/surface_parameters.h"
 #include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
 
 const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
-                                                        &TARGET_PARAMETERS, NULL};
+                                                        &LIKE_PARAMETERS, &TARGET_PARAMETERS, NULL};
 
 bool contact_case_has_scale(const struct contact_case *one_case) {
     enum spectrum_scale scale = one_case->surface.spectrum.scale;
@@ -46,6 +47,8 @@ void contact_case_clear(struct contact_case *one_case) {
     surface_case_clear(&one_case->surface);
     free(one_case->loads);
     free(one_case->pdf_loads);
+    free(one_case->like_areas);
+    free(one_case->like_gaps);
     *one_case = (struct contact_case){0};
 }
 

@@ -9,10 +9,11 @@
 #include "jobs/contact/contact_parameters.h"
 #include "jobs/contact/model.h"
 #include "jobs/kind.h"
+#include "jobs/like_case.h"
 #include "jobs/surface_paths.h"
 #include "schema/study/fault.h"
 
-/* Tables of the kind: CONTACT_PARAMETERS, then SURFACE_PARAMETERS. */
+/* Tables of the kind: CONTACT_PARAMETERS, SURFACE_PARAMETERS, LIKE_PARAMETERS and others. */
 extern const struct parameter_table *const CONTACT_TABLES[];
 
 /* A mesh on which every realisation is solved: the own grid sampled at other points. */
@@ -44,6 +45,7 @@ enum { PATHS_OWN, PATHS_FOUND, PATHS_SERIES = PATHS_FOUND + SURFACE_PATHS };
 
 struct contact_case {
     struct surface_case surface; /* and its own grid, on which realisations are generated */
+    struct like_case like;       /* a measured surface that these are like */
     struct surface_band band;    /* of a realisation on its own grid */
     size_t model_count;
     const struct contact_model *models[CONTACT_MODELS_MOST]; /* in the order given */
@@ -59,6 +61,9 @@ struct contact_case {
     uint64_t probe_interval;    /* else: of realisations, one of which is probed; 2^n */
     struct contact_surfaces lengths[CONTACT_LENGTHS]; /* no points: there are none */
     struct contact_paths paths;
+    /* Of a measured surface that these are like, and pressed as pieces of these are, one a load:
+     * owned; NULL: nothing is pressed beside it. */
+    double *like_areas, *like_gaps;
     size_t load_count;
     double *loads;                /* owned: p/(E* h'), rising, > 0 */
     bool nodes, edges, perimeter; /* estimators shown */
@@ -114,15 +119,24 @@ static inline size_t contact_case_length_cell(const struct contact_case *one_cas
         series += contact_case_has_length(one_case, other);
     return contact_case_probe_cell(one_case, series, load);
 }
-/* And behind these, of the surfaces found in other ways and of the own one beside them, by load;
- * and how many cells there are in all. */
+/* And behind these, of the surfaces found in other ways and of the own one beside them, by load. */
 static inline size_t contact_case_path_cell(const struct contact_case *one_case, size_t series,
                                             size_t load) {
     return contact_case_length_cell(one_case, CONTACT_LENGTHS, 0) + series * one_case->load_count +
            load;
 }
+static inline bool contact_case_has_like(const struct contact_case *one_case) {
+    return one_case->like_areas != NULL;
+}
+/* And behind these, of the mirrored pieces, by load; and how many cells there are in all. */
+static inline size_t contact_case_like_cell(const struct contact_case *one_case, size_t load) {
+    return contact_case_path_cell(one_case, contact_case_has_paths(one_case) ? PATHS_SERIES : 0,
+                                  0) +
+           load;
+}
 static inline size_t contact_case_all_cells(const struct contact_case *one_case) {
-    return contact_case_path_cell(one_case, contact_case_has_paths(one_case) ? PATHS_SERIES : 0, 0);
+    return contact_case_like_cell(one_case,
+                                  contact_case_has_like(one_case) ? one_case->load_count : 0);
 }
 
 /* By how much the height of a model's block changes what is measured, relative to it, at most:

@@ -1,4 +1,5 @@
 #include "jobs/contact/contact_case_read.h"
+#include "core/full/mesh.h"
 #include "jobs/contact/contact_cell.h"
 #include "jobs/contact/contact_generation.h"
 #include "jobs/contact/contact_loads.h"
@@ -175,21 +176,36 @@ static int read_levels(struct contact_case *out, struct values *values, struct e
     return 0;
 }
 
-/* Checks the layers that a block takes on each mesh. */
-static void check_layers(const struct contact_case *one_case, struct values *values) {
+/* Checks the layers that a block takes on one grid, and where a model meshes them (write_mesh) the
+ * nodes; false after a fault. */
+static bool check_mesh(const struct contact_level *level, const struct block *block,
+                       const struct contact_model *model, struct values *values) {
     double thickness[LAYERS_MOST];
+    if (!isfinite(block->height) || !isfinite(block->layer_growth))
+        return true; /* at fault already, or no mesh */
+    size_t layers = block_layers(&level->grid, block, thickness);
+    double nodes = model->write_mesh != NULL ? mesh_nodes_bound(&level->grid, layers) : 0;
+    if (layers == 0)
+        values_fault(values, "/contact/block_height",
+                     "the block takes more than %d layers at %g points a shortest wave; take "
+                     "a lower block, or a larger layer_growth",
+                     LAYERS_MOST, level->points);
+    else if (nodes > MESH_NODES_MOST)
+        values_fault(
+            values, "/contact/model",
+            "%s: %zu layers under %zu by %zu points would have up to %.2g nodes; the model "
+            "can mesh %.2g. Take fewer points_per_wavelength (levels), or a smaller cell",
+            contact_model_name(model), layers, level->grid.nx, level->grid.ny, nodes,
+            MESH_NODES_MOST);
+    return layers != 0 && nodes <= MESH_NODES_MOST;
+}
+
+static void check_meshes(const struct contact_case *one_case, struct values *values) {
+    bool good = true;
     for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t l = 0; l < one_case->level_count; l++)
-            if (one_case->models[m]->elements && isfinite(one_case->blocks[m].height) &&
-                isfinite(one_case->blocks[m].layer_growth) &&
-                block_layers(&one_case->levels[l].grid, &one_case->blocks[m], thickness) == 0) {
-                values_fault(
-                    values, "/contact/block_height",
-                    "the block takes more than %d layers at %g points a shortest wave; take "
-                    "a lower block, or a larger layer_growth",
-                    LAYERS_MOST, one_case->levels[l].points);
-                return;
-            }
+        for (size_t l = 0; good && one_case->models[m]->elements && l < one_case->level_count; l++)
+            good =
+                check_mesh(&one_case->levels[l], &one_case->blocks[m], one_case->models[m], values);
 }
 
 /* Returns the position of a load among the study's; load_count where it is none of them. */
@@ -245,7 +261,38 @@ static int read_contact(struct contact_case *out, struct values *values, struct 
     if (status == 0)
         status = read_pdf(out, values, err);
     if (status == 0)
-        check_layers(out, values);
+        check_meshes(out, values);
+    return status;
+}
+
+/* Whether the map was pressed to the loads of the case. */
+static bool same_loads(const struct contact_case *one_case, size_t n, const double *loads,
+                       double scale) {
+    bool same = n == one_case->load_count && scale == one_case->surface.spectrum.scale_value;
+    for (size_t k = 0; k < n && same; k++)
+        same = loads[k] == one_case->loads[k];
+    return same && like_case_is_cut(&one_case->like);
+}
+
+/* Reads the contact of a measured surface, where it is that of this case. */
+static int read_like(struct contact_case *out, struct values *values, struct error *err) {
+    double scale = values_number(values, "/surface/like/contact_scale"), *loads = NULL;
+    size_t n = 0, areas = 0, gaps = 0;
+    int status = values_numbers(values, "/surface/like/contact_loads", &loads, &n, err);
+    if (status == 0)
+        status =
+            values_numbers(values, "/surface/like/contact_areas", &out->like_areas, &areas, err);
+    if (status == 0)
+        status = values_numbers(values, "/surface/like/contact_gaps", &out->like_gaps, &gaps, err);
+    if (status == 0 && (n != areas || n != gaps))
+        values_fault(values, "/surface/like/contact_areas", "%zu areas and %zu gaps at %zu loads",
+                     areas, gaps, n);
+    else if (status == 0 && !same_loads(out, n, loads, scale)) {
+        free(out->like_areas);
+        free(out->like_gaps);
+        out->like_areas = out->like_gaps = NULL;
+    }
+    free(loads);
     return status;
 }
 
@@ -270,7 +317,11 @@ int contact_case_read(struct contact_case *out, const cJSON *parameters, struct 
     if (status == 0)
         status = surface_case_fill(&out->surface, values, err);
     if (status == 0)
+        status = like_case_fill(&out->like, values, &out->surface, err);
+    if (status == 0)
         status = read_contact(out, values, err);
+    if (status == 0)
+        status = read_like(out, values, err);
     if (status == 0)
         status = values_status(values, err);
     if (status == 0)

@@ -32,8 +32,20 @@ static size_t model_width(const struct contact_case *one_case) {
     return kept_below(one_case, MEASURE_COUNT) * one_case->load_count;
 }
 
+/* Of mirrored pieces. */
+static const enum contact_measure LIKE_MEASURES[] = {MEASURE_EDGES, MEASURE_GAP};
+enum { LIKE_MEASURE_COUNT = sizeof LIKE_MEASURES / sizeof *LIKE_MEASURES };
+
 size_t contact_rows_width(const struct contact_case *one_case) {
-    return one_case->model_count * model_width(one_case);
+    size_t pieces = contact_case_has_like(one_case) ? LIKE_MEASURE_COUNT * one_case->load_count : 0;
+    return one_case->model_count * model_width(one_case) + pieces;
+}
+
+size_t contact_rows_like_column(const struct contact_case *one_case, enum contact_measure measure) {
+    size_t place = 0;
+    while (place < LIKE_MEASURE_COUNT && LIKE_MEASURES[place] != measure)
+        place++;
+    return one_case->model_count * model_width(one_case) + place * one_case->load_count;
 }
 
 double contact_rows_bytes(const struct contact_case *one_case) {
@@ -82,6 +94,10 @@ void contact_rows_append(struct contact_rows *rows, const struct contact_case *o
             if (contact_rows_column(one_case, m, (enum contact_measure)a, &column))
                 memcpy(row + column, values + a * all + contact_case_cell(one_case, m, finest, 0),
                        one_case->load_count * sizeof *row);
+    for (size_t a = 0; a < LIKE_MEASURE_COUNT && contact_case_has_like(one_case); a++)
+        memcpy(row + contact_rows_like_column(one_case, LIKE_MEASURES[a]),
+               values + (size_t)LIKE_MEASURES[a] * all + contact_case_like_cell(one_case, 0),
+               one_case->load_count * sizeof *row);
     rows->realisation[rows->count++] = realisation;
 }
 

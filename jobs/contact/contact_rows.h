@@ -1,7 +1,8 @@
 /* What each realisation gave on the finest level, a row each: differences between cases of the same
  * random numbers are known by pairs of realisations, which sums over them do not tell.
  *
- * A row holds, by model, the measures that contact_rows_column knows, by load. */
+ * A row holds, by model, the measures that contact_rows_column knows, by load; then, of a case that
+ * is like a measured surface, the areas by edges and the gaps of the mirrored piece. */
 #ifndef RUGO_JOBS_CONTACT_CONTACT_ROWS_H
 #define RUGO_JOBS_CONTACT_CONTACT_ROWS_H
 
@@ -22,6 +23,9 @@ double contact_rows_bytes(const struct contact_case *one_case);
  * not kept. */
 bool contact_rows_column(const struct contact_case *one_case, size_t model,
                          enum contact_measure measure, size_t *column);
+/* Returns where the values of a mirrored piece (contact_like.h) stand, one a load, of a case that
+ * has them; measure: MEASURE_EDGES or MEASURE_GAP. */
+size_t contact_rows_like_column(const struct contact_case *one_case, enum contact_measure measure);
 void contact_rows_clear(struct contact_rows *rows);
 /* Makes room for so many more rows, whatever the number of those that follow. */
 int contact_rows_reserve(struct contact_rows *rows, size_t more, struct error *err);

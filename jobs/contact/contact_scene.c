@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_scene.h"
 #include "core/contact/pressures.h"
 #include "jobs/contact/contact_cell.h"
+#include "jobs/contact/contact_like.h"
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_probe.h"
 #include "jobs/contact/contact_sample.h"
@@ -20,6 +21,7 @@ struct contact_scene {
     struct contact_probe *probe; /* NULL: none is needed */
     struct contact_cell *cell;   /* likewise, as the next */
     struct contact_generation *generation;
+    struct contact_like *like;
     double *z; /* a level's sampling; room for the finest */
 };
 
@@ -86,6 +88,8 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
         status = contact_cell_create(&scene->cell, one_case, err);
     if (status == 0)
         status = contact_generation_create(&scene->generation, one_case, moments, err);
+    if (status == 0)
+        status = contact_like_create(&scene->like, one_case, moments, err);
     if (status != 0)
         contact_scene_destroy(&scene);
     *out = scene;
@@ -108,6 +112,7 @@ void contact_scene_destroy(struct contact_scene **scene) {
     contact_probe_destroy(&s->probe);
     contact_cell_destroy(&s->cell);
     contact_generation_destroy(&s->generation);
+    contact_like_destroy(&s->like);
     free(s->z);
     free(s->shares);
     free(s);
@@ -252,5 +257,7 @@ int contact_scene_solve(struct contact_scene *scene, const struct contact_surfac
         status = contact_cell_solve(scene->cell, surface->key, tally, &stopper, err);
     if (status == 0 && scene->generation != NULL)
         status = contact_generation_solve(scene->generation, surface, tally, &stopper, err);
+    if (status == 0 && scene->like != NULL)
+        status = contact_like_solve(scene->like, surface->z, tally, &stopper, err);
     return status;
 }

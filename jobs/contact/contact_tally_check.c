@@ -78,6 +78,11 @@ static bool rows_fit(const struct contact_tally *tally) {
                 fit = column_fits(tally, column + k, a,
                                   contact_case_cell(one_case, m, one_case->level_count - 1, k));
         }
+    for (size_t k = 0; k < one_case->load_count && contact_case_has_like(one_case) && fit; k++)
+        fit = column_fits(tally, contact_rows_like_column(one_case, MEASURE_EDGES) + k,
+                          MEASURE_EDGES, contact_case_like_cell(one_case, k)) &&
+              column_fits(tally, contact_rows_like_column(one_case, MEASURE_GAP) + k, MEASURE_GAP,
+                          contact_case_like_cell(one_case, k));
     return fit;
 }
 

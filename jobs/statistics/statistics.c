@@ -38,6 +38,7 @@ struct statistics_workspace {
     struct levels_workspace *levels; /* NULL without levels */
     struct spectra spectra;
     struct statistics_generation *generation; /* NULL for Gaussian heights */
+    struct like_patch *patch;                 /* NULL: no pieces are cut */
     struct summit_list summits[SIDES];        /* of a symmetric case the first has all of them */
 };
 
@@ -63,6 +64,8 @@ static int workspace_create(void *workspace, const void *one_case,
                                          limited ? modes->mode_y : grid->ny / 2, err);
     if (status == 0)
         status = spectra_create(&work->spectra, statistics, modes, err);
+    if (status == 0 && like_case_is_cut(&statistics->like))
+        status = like_patch_create(&work->patch, &statistics->like, grid, err);
     if (status != 0)
         return status;
     return statistics_generation_create(&work->generation, statistics, &work->moments, work->finder,
@@ -72,6 +75,7 @@ static int workspace_create(void *workspace, const void *one_case,
 static void workspace_clear(void *workspace) {
     struct statistics_workspace *work = workspace;
     statistics_generation_destroy(&work->generation);
+    like_patch_destroy(&work->patch);
     summit_finder_destroy(&work->finder);
     levels_workspace_destroy(&work->levels);
     spectra_clear(&work->spectra);
@@ -138,6 +142,10 @@ static int realise(void *workspace, const struct realisation *realisation, void 
                                                   .summits = work->summits,
                                                   .report = &realisation->report};
     statistics_scalars_measure(work->one_case, &work->moments, &measures, scalars);
+    if (work->patch != NULL)
+        status = like_patch_measure(work->patch, realisation->z, scalars + SCALAR_PATCH, err);
+    if (status != 0)
+        return status;
     return statistics_generation_measure(work->generation, realisation->key, &realisation->report,
                                          scalars, err);
 }
@@ -238,7 +246,7 @@ const struct job_kind STATISTICS_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x5354, /* "ST" */
-    .format_version = 5,
+    .format_version = 6,
     .put = put,
     .get = get,
     .adds_up = adds_up,

@@ -1,4 +1,5 @@
 #include "jobs/statistics/statistics_case.h"
+#include "jobs/like_parameters.h"
 #include "jobs/surface_parameters.h"
 #include "jobs/target.h"
 #include <math.h>
@@ -8,7 +9,7 @@ enum { BINS_MOST = 10000, JOINT_MOST = 1000000 };
 static const char LEVELS[] = "/statistics/levels";
 
 const struct parameter_table *const STATISTICS_TABLES[] = {
-    &SURFACE_PARAMETERS, &STATISTICS_PARAMETERS, &TARGET_PARAMETERS, NULL};
+    &SURFACE_PARAMETERS, &LIKE_PARAMETERS, &STATISTICS_PARAMETERS, &TARGET_PARAMETERS, NULL};
 
 /* Every level takes a whole part of the points of the surface; its own is among them or not. */
 static void add_level(struct statistics_case *out, struct values *values, double own,
@@ -64,6 +65,8 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
     int status = values_create(&values, parameters, STATISTICS_TABLES, faults, err);
     if (status == 0)
         status = surface_case_fill(&out->surface, values, err);
+    if (status == 0)
+        status = like_case_fill(&out->like, values, &out->surface, err);
     if (status == 0)
         status = read_levels(out, values, err);
     if (status == 0) {

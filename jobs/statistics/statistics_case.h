@@ -5,11 +5,12 @@
 #include "core/statistics/histogram.h"
 #include "core/statistics/summits.h"
 #include "jobs/kind.h"
+#include "jobs/like_case.h"
 #include "jobs/surface_case.h"
 #include "schema/study/fault.h"
 
 extern const struct parameter_table STATISTICS_PARAMETERS;
-/* Tables of the kind: SURFACE_PARAMETERS and the above. */
+/* Tables of the kind: SURFACE_PARAMETERS, LIKE_PARAMETERS and the above. */
 extern const struct parameter_table *const STATISTICS_TABLES[];
 
 /* Coarser levels at most. */
@@ -17,6 +18,7 @@ enum { STATISTICS_LEVELS_MOST = 4 };
 
 struct statistics_case {
     struct surface_case surface;
+    struct like_case like; /* a measured surface that these are like */
     enum summit_stencil stencil;
     enum summit_curvature curvature;
     struct bins height;     /* of z* = z/sqrt(m0) */

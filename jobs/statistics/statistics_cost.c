@@ -24,7 +24,7 @@ static double expected_seconds(const struct statistics_case *one_case) {
         nanoseconds += summits / (one_case->surface.dimension == 2 ? part * part : part);
     }
     return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points) +
-           statistics_generation_seconds(one_case);
+           statistics_generation_seconds(one_case) + like_patch_seconds(&one_case->like);
 }
 
 /* The theories of a bin of summit heights take so many CPU seconds, as in publishing_cost.h. */
@@ -69,7 +69,8 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
         surface_case_bytes(surface) + statistics_generation_bytes(one_case) +
         summit_finder_bytes(grid, one_case->stencil, one_case->curvature, own.x, own.y) +
         statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
-        6 * summits * sizeof(struct summit) + (exact ? 0 : 26 * points) + 6e6;
+        like_patch_bytes(&one_case->like) + 6 * summits * sizeof(struct summit) +
+        (exact ? 0 : 26 * points) + 6e6;
     out->seconds = expected_seconds(one_case);
     out->case_seconds = expected_case_seconds(one_case, summits);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */

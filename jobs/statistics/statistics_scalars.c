@@ -3,6 +3,7 @@
 #include "core/theory/nayak.h"
 #include "core/theory/sampled_field.h"
 #include "jobs/estimate.h"
+#include "jobs/like_percentile.h"
 #include "jobs/statistics/statistics_theory.h"
 #include "jobs/statistics/summit_heights.h"
 #include <math.h>
@@ -48,7 +49,8 @@ static const char *const NAMES[SCALAR_COUNT] = {
     [SCALAR_EPS_S0_AMPLITUDE] = "eps_s0_amplitude",
 #define OTHER_NAME(scalar, name) [SCALAR_OTHER_##scalar] = "other_" name,
 #define LONGER_NAME(scalar, name) [SCALAR_LONGER_##scalar] = "longer_" name,
-    GENERATION_SCALARS(OTHER_NAME) GENERATION_SCALARS(LONGER_NAME)};
+#define PIECE_NAME(quantity, name, power) [SCALAR_PATCH + PATCH_##quantity] = "piece_" name,
+    GENERATION_SCALARS(OTHER_NAME) GENERATION_SCALARS(LONGER_NAME) PATCH_QUANTITIES(PIECE_NAME)};
 
 #define OWN_SCALAR(scalar, name) SCALAR_##scalar,
 const unsigned char GENERATION_OWN[GENERATION_COUNT] = {GENERATION_SCALARS(OWN_SCALAR)};
@@ -348,5 +350,6 @@ int statistics_scalars(const struct statistics_case *one_case, const struct surf
         realisations_column(realisations, a, columns.values + a * columns.n);
     int status = add_scalars(out, one_case, basis, &columns, err);
     free(columns.values);
-    return status;
+    return status != 0 ? status
+                       : like_scalars(&one_case->like, realisations, SCALAR_PATCH, out, err);
 }

@@ -2,6 +2,7 @@
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_SCALARS_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_SCALARS_H
 
+#include "core/statistics/patch.h"
 #include "core/statistics/roughness.h"
 #include "jobs/kind.h"
 #include "jobs/realisations.h"
@@ -75,7 +76,8 @@ enum statistics_scalar {
     SCALAR_EPS_S0_AMPLITUDE,
     SCALAR_OWN, /* so many are of the surface itself */
     SCALAR_BEFORE_OTHER = SCALAR_OWN - 1,
-    GENERATION_SCALARS(GENERATION_OTHER) GENERATION_SCALARS(GENERATION_LONGER) SCALAR_COUNT
+    GENERATION_SCALARS(GENERATION_OTHER) GENERATION_SCALARS(GENERATION_LONGER) SCALAR_PATCH,
+    SCALAR_COUNT = SCALAR_PATCH + PATCH_QUANTITY_COUNT /* of a piece as large as a measured map */
 };
 enum { SCALAR_OTHER = SCALAR_OWN, SCALAR_LONGER = SCALAR_OTHER + GENERATION_COUNT };
 /* The scalars of pits stand behind those of summits, in the same order, by so many. */

@@ -192,6 +192,10 @@ static void faults(void **state) {
         {STUDY(PROFILE ", \"rms_slope\": 0.1",
                "\"model\": [\"layered\", \"full\"], \"block_height\": {\"rms_heights\": 1}"),
          "/contact/block_height", "1 RMS heights of the surface: the model full needs 4 or more"},
+        {"{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 16, \"length_ratio\": 4, "
+         "\"points_per_wavelength\": 128, \"rms_slope\": 0.1}, \"contact\": {\"model\": "
+         "\"full\"}}",
+         "/contact/model", "layers under 8192 by 8192 points"},
         {STUDY(PROFILE ", \"rms_height\": 0.1",
                "\"model\": \"full\", \"block_height\": {\"lengths\": 0.045}"),
          "/contact/block_height", "3.6 RMS heights"},

@@ -129,19 +129,32 @@ static void no_realisation_yet(void **state) {
     merger_destroy(&merger);
 }
 
-static int stop_at_two(void *context, uint64_t done) {
-    (void)context;
-    return done == 2;
+/* The number of realisations to stop after. */
+static int stop_at(void *context, uint64_t done) {
+    const uint64_t *most = context;
+    return done == *most;
 }
 
+/* What is done when a block is stopped is handed out, as if no more had been asked for. */
 static void stopping(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(GAUSSIAN);
-    const struct job_control control = {stop_at_two, NULL};
-    struct block_result result = {.first = 77};
+    uint64_t most = 2;
+    const struct job_control control = {stop_at, &most};
+    struct block_result result = {.first = 77}, two = {0};
     struct error err = {0};
+    assert_int_equal(runner_run(runner, 0, 5, &control, &result, &err), 0);
+    assert_int_equal(result.count, 2);
+    assert_int_equal(runner_run(runner, 0, 2, NULL, &two, &err), 0);
+    assert_int_equal(result.size, two.size);
+    assert_memory_equal(result.data, two.data, two.size);
+    assert_memory_equal(result.scalars, two.scalars, 2 * two.scalar_count * sizeof *two.scalars);
+    block_result_clear(&two);
+    block_result_clear(&result);
+    most = 0;
+    result.first = 77;
     assert_int_equal(runner_run(runner, 0, 5, &control, &result, &err), ERROR_STOPPED);
-    assert_non_null(strstr(err.text, "2 of 5"));
+    assert_non_null(strstr(err.text, "0 of 5"));
     assert_true(result.first == 77 && result.data == NULL);
     runner_destroy(&runner);
 }

@@ -1,0 +1,296 @@
+/* Protects: a measured surface becomes the parameters of random surfaces like it: the spectrum and
+ * the scale of the surface it was cut from, its heights, its size and points; what the study says
+ * stands; maps that cannot be fitted are refused by name. */
+#include "core/random.h"
+#include "core/surface/surface.h"
+#include "jobs/like_case.h"
+#include "jobs/like_fit.h"
+#include "jobs/statistics/statistics_case.h"
+#include "schema/json/json.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define DIGEST "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff"
+static const struct like_source SOURCE = {.file = "patch.npy",
+                                          .format = "npy",
+                                          .prepared = "detrend: plane",
+                                          .sha256 = DIGEST,
+                                          .bytes = 12,
+                                          .detrend = DETREND_PLANE};
+static const double SHORTEST = 0.004, SLOPE = 0.2; /* metres, and no unit */
+
+/* A quarter of a self-affine surface of known spectrum and slope, less a plane. */
+static struct height_map patch_of(bool profile, double anisotropy, uint64_t realisation) {
+    enum { SIDE = 256, PROFILE = 2048 };
+    size_t n = profile ? PROFILE : SIDE, rows = profile ? 1 : n;
+    double length = SHORTEST / 4 * (double)n;
+    const struct grid cell = {n, rows, length, length};
+    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                      .hurst = 0.7,
+                                      .wavelength_long = length / 2,
+                                      .wavelength_rolloff = length / 8,
+                                      .wavelength_short = SHORTEST,
+                                      .anisotropy = anisotropy,
+                                      .scale = SCALE_RMS_SLOPE,
+                                      .scale_value = SLOPE};
+    struct surface_options options = SURFACE_DEFAULTS;
+    options.amplitudes = AMPLITUDES_RANDOM;
+    struct generator *generator = NULL;
+    struct height_map map = {.xy_unit = "m", .z_unit = "m"};
+    struct trend trend;
+    double *z = calloc(n * rows, sizeof *z);
+    assert_non_null(z);
+    assert_int_equal(generator_create(&generator, &spectrum, &cell, &options, NULL), 0);
+    assert_int_equal(
+        generator_run(generator, (struct random_key){7, 0, realisation}, z, NULL, NULL), 0);
+    generator_destroy(&generator);
+    assert_int_equal(height_map_shape(&map, profile ? 1 : n / 2, n / 2, SHORTEST / 4, NULL), 0);
+    map.z = calloc(grid_points(&map.grid), sizeof *map.z);
+    assert_non_null(map.z);
+    for (size_t j = 0; j < map.grid.ny; j++)
+        for (size_t i = 0; i < map.grid.nx; i++)
+            map.z[j * map.grid.nx + i] = z[j * n + i];
+    free(z);
+    assert_int_equal(detrend(&map.grid, map.z, DETREND_PLANE, &trend, NULL), 0);
+    return map;
+}
+
+static struct height_map patch(bool profile, uint64_t realisation) {
+    return patch_of(profile, 1, realisation);
+}
+
+static cJSON *fitted_by(const char *surface, const struct height_map *map,
+                        const struct like_source *source) {
+    cJSON *object = cJSON_Parse(surface);
+    struct error err = {0};
+    assert_non_null(object);
+    if (like_fit(object, map, source, &err) != 0)
+        fail_msg("%s", err.text);
+    return object;
+}
+
+static cJSON *fitted(const char *surface, const struct height_map *map) {
+    return fitted_by(surface, map, &SOURCE);
+}
+
+static double number(const cJSON *surface, const char *pointer) {
+    double value = json_number_at(surface, pointer, NAN);
+    if (isnan(value))
+        fail_msg("no %s", pointer);
+    return value;
+}
+
+static void recovers(bool profile) {
+    enum { PATCHES = 4 };
+    double slope = 0, shortest = 0;
+    for (uint64_t r = 0; r < PATCHES; r++) {
+        struct height_map map = patch(profile, r);
+        cJSON *surface = fitted("{}", &map);
+        slope += number(surface, "/rms_slope") / PATCHES;
+        shortest += number(surface, "/like/wavelength") / PATCHES;
+        double cell = number(surface, "/length_ratio") * number(surface, "/wavelength_ratio") *
+                      number(surface, "/points_per_wavelength");
+        assert_true(fabs(cell - 2 * (double)map.grid.nx) < 1e-6);
+        assert_true(number(surface, "/like/points/0") == (double)map.grid.nx);
+        cJSON_Delete(surface);
+        height_map_clear(&map);
+    }
+    print_message("slope %.4f of %g, shortest wave %.5f of %g\n", slope, SLOPE, shortest, SHORTEST);
+    assert_true(fabs(slope / SLOPE - 1) < 0.04);
+    assert_true(shortest < SHORTEST * 1.02 && shortest > SHORTEST * 0.85);
+}
+
+static void slope_and_band_are_found_again(void **state) {
+    (void)state;
+    recovers(false);
+    recovers(true);
+}
+
+/* What was fitted makes a case of a study, whose pieces are as large as the map. */
+static void makes_a_case(void **state) {
+    (void)state;
+    struct height_map map = patch(false, 3);
+    cJSON *parameters = cJSON_CreateObject();
+    cJSON_AddItemToObject(parameters, "surface", fitted("{\"points_per_wavelength\": 9}", &map));
+    struct statistics_case one_case;
+    struct error err = {0};
+    assert_int_equal(statistics_case_read(&one_case, parameters, NULL, &err), 0);
+    const cJSON *table = json_at(parameters, "/surface/spectrum/wave_number");
+    assert_int_equal(one_case.surface.spectrum.table_count, cJSON_GetArraySize(table));
+    assert_int_equal(one_case.surface.options.amplitudes, AMPLITUDES_RANDOM);
+    assert_int_equal(one_case.surface.options.heights.type, HEIGHTS_TABLE);
+    assert_int_equal(one_case.like.nx, map.grid.nx);
+    assert_true(one_case.like.detrend == DETREND_PLANE);
+    assert_false(like_case_is_cut(&one_case.like)); /* 9 points are no multiple of the map's */
+    assert_true(one_case.like.measured[PATCH_RMS_SLOPE] > 0.1);
+    statistics_case_clear(&one_case);
+    cJSON_DeleteItemFromObject(cJSON_GetObjectItem(parameters, "surface"), "points_per_wavelength");
+    double points = 2 / number(parameters, "/surface/like/spacing");
+    cJSON_AddNumberToObject(cJSON_GetObjectItem(parameters, "surface"), "points_per_wavelength",
+                            points);
+    assert_int_equal(statistics_case_read(&one_case, parameters, NULL, &err), 0);
+    assert_int_equal(one_case.like.stride, 2);
+    statistics_case_clear(&one_case);
+    cJSON_Delete(parameters);
+    height_map_clear(&map);
+}
+
+/* Lengths in any unit give the same study, but for the unit. */
+static void units_do_not_matter(void **state) {
+    (void)state;
+    struct height_map map = patch(false, 4);
+    cJSON *metres = fitted("{}", &map);
+    map.grid.lx *= 1e6;
+    map.grid.ly *= 1e6;
+    for (size_t i = 0; i < grid_points(&map.grid); i++)
+        map.z[i] *= 1e6;
+    cJSON *others = fitted("{}", &map);
+    static const char *const SAME[] = {"/rms_slope",
+                                       "/wavelength_ratio",
+                                       "/points_per_wavelength",
+                                       "/spectrum/wave_number/3",
+                                       "/heights/quantile/5",
+                                       "/like/measured/0",
+                                       "/like/measured/2",
+                                       "/like/measured/10"};
+    for (size_t s = 0; s < sizeof SAME / sizeof *SAME; s++)
+        assert_true(fabs(number(metres, SAME[s]) / number(others, SAME[s]) - 1) < 1e-9);
+    assert_true(
+        fabs(number(others, "/like/wavelength") / number(metres, "/like/wavelength") - 1e6) < 1);
+    cJSON_Delete(metres);
+    cJSON_Delete(others);
+    height_map_clear(&map);
+}
+
+static void the_study_stands(void **state) {
+    (void)state;
+    struct height_map map = patch(false, 5);
+    cJSON *surface = fitted("{\"hurst\": 0.5, \"wavelength_ratio\": 8, \"rms_slope\": 0.05,"
+                            " \"points_per_wavelength\": 8, \"length_ratio\": 3,"
+                            " \"amplitudes\": \"fixed\", \"heights\": {\"distribution\":"
+                            " \"weibull_min\", \"shape\": 2}}",
+                            &map);
+    assert_null(json_at(surface, "/spectrum"));
+    assert_null(json_at(surface, "/heights/quantile"));
+    assert_true(number(surface, "/wavelength_ratio") == 8);
+    assert_true(number(surface, "/length_ratio") == 3);
+    assert_true(number(surface, "/rms_slope") == 0.05);
+    assert_string_equal(cJSON_GetStringValue(json_at(surface, "/amplitudes")), "fixed");
+    assert_string_equal(cJSON_GetStringValue(json_at(surface, "/like/spectrum")), "given");
+    assert_string_equal(cJSON_GetStringValue(json_at(surface, "/like/heights")), "given");
+    assert_true(fabs(number(surface, "/like/wavelength") - 2 * SHORTEST) < 1e-12);
+    cJSON_Delete(surface);
+    height_map_clear(&map);
+}
+
+/* The law of the surfaces, and Gaussian heights, by the fitted law. */
+static void laws(void **state) {
+    (void)state;
+    enum { PATCHES = 4 };
+    struct like_source source = SOURCE;
+    double hurst = 0;
+    source.spectrum = LIKE_SPECTRUM_FIT;
+    source.heights = LIKE_HEIGHTS_FIT;
+    for (uint64_t r = 0; r < PATCHES; r++) {
+        struct height_map map = patch(false, r);
+        cJSON *surface = fitted_by("{}", &map, &source);
+        hurst += number(surface, "/hurst") / PATCHES;
+        assert_null(json_at(surface, "/spectrum"));
+        assert_true(fabs(number(surface, "/like/wavelength") / SHORTEST - 1) < 0.2);
+        assert_true(fabs(number(surface, "/rms_slope") / SLOPE - 1) < 0.3);
+        assert_non_null(json_at(surface, "/heights/distribution"));
+        assert_true(number(surface, "/like/trusted/0") > number(surface, "/like/trusted/1"));
+        cJSON *parameters = cJSON_CreateObject();
+        struct statistics_case one_case;
+        struct error err = {0};
+        cJSON_AddItemToObject(parameters, "surface", surface);
+        if (statistics_case_read(&one_case, parameters, NULL, &err) != 0)
+            fail_msg("%s", err.text);
+        assert_true(like_case_is_cut(&one_case.like));
+        assert_int_equal(one_case.surface.grid.nx, 2 * map.grid.nx);
+        statistics_case_clear(&one_case);
+        cJSON_Delete(parameters);
+        height_map_clear(&map);
+    }
+    print_message("H = %.3f of 0.7\n", hurst);
+    assert_true(fabs(hurst - 0.7) < 0.12);
+}
+
+static void turn(struct height_map *map) {
+    size_t n = map->grid.nx;
+    assert_int_equal(map->grid.ny, n);
+    for (size_t j = 0; j < n; j++)
+        for (size_t i = 0; i < j; i++) {
+            double z = map->z[j * n + i];
+            map->z[j * n + i] = map->z[i * n + j];
+            map->z[i * n + j] = z;
+        }
+}
+
+static void refused(const struct height_map *map, const char *words);
+
+/* Grooves along x become the anisotropy; those along y are refused, with what to do. */
+static void grooves(void **state) {
+    (void)state;
+    struct height_map map = patch_of(false, 3, 1);
+    cJSON *surface = fitted("{}", &map);
+    double found = number(surface, "/anisotropy");
+    print_message("anisotropy %.3f of 3\n", found);
+    assert_true(found > 2.4 && found < 3.6);
+    assert_true(fabs(number(surface, "/rms_slope") / SLOPE - 1) < 0.2);
+    cJSON_Delete(surface);
+    turn(&map);
+    refused(&map, "turn the map");
+    height_map_clear(&map);
+}
+
+static void refused(const struct height_map *map, const char *words) {
+    cJSON *surface = cJSON_CreateObject();
+    struct error err = {0};
+    assert_int_equal(like_fit(surface, map, &SOURCE, &err), ERROR_INPUT);
+    if (strstr(err.text, words) == NULL)
+        fail_msg("\"%s\" lacks \"%s\"", err.text, words);
+    cJSON_Delete(surface);
+}
+
+static void maps_that_cannot_be_fitted(void **state) {
+    (void)state;
+    struct height_map map = patch(false, 6);
+    double ly = map.grid.ly;
+    map.grid.ly *= 1.001;
+    refused(&map, "resample");
+    map.grid.ly = ly;
+    strcpy(map.z_unit, "V");
+    refused(&map, "z_unit");
+    strcpy(map.z_unit, "m");
+    for (size_t i = 0; i < grid_points(&map.grid); i++)
+        map.z[i] = 1;
+    refused(&map, "flat");
+    height_map_clear(&map);
+    assert_int_equal(height_map_shape(&map, 5, 5, 1, NULL), 0);
+    map.z = calloc(25, sizeof *map.z);
+    assert_non_null(map.z);
+    for (size_t i = 0; i < 25; i++)
+        map.z[i] = sin((double)(i * i));
+    refused(&map, "too small");
+    height_map_clear(&map);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slope_and_band_are_found_again),
+        cmocka_unit_test(makes_a_case),
+        cmocka_unit_test(units_do_not_matter),
+        cmocka_unit_test(the_study_stands),
+        cmocka_unit_test(maps_that_cannot_be_fitted),
+        cmocka_unit_test(laws),
+        cmocka_unit_test(grooves),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
