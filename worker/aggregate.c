@@ -11,10 +11,10 @@
 /* --- merging --- */
 
 int aggregate_merge(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
-                    const cJSON *parameters, struct job_merger **out, struct case_result *result,
-                    struct error *err) {
+                    const struct case_info *info, struct job_merger **out,
+                    struct case_result *result, struct error *err) {
     int status =
-        case_merge(store, aggregate->kind, aggregate->about.id, case_number, parameters, out, err);
+        case_merge(store, aggregate->kind, aggregate->about.id, case_number, info, out, err);
     if (status == 0)
         status = merger_result(*out, result, err);
     if (status != 0) {
@@ -25,9 +25,9 @@ int aggregate_merge(struct store *store, const struct aggregate *aggregate, uint
 }
 
 static int merge_case(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
-                      const cJSON *parameters, struct case_result *out, struct error *err) {
+                      const struct case_info *info, struct case_result *out, struct error *err) {
     struct job_merger *merger = NULL;
-    int status = aggregate_merge(store, aggregate, case_number, parameters, &merger, out, err);
+    int status = aggregate_merge(store, aggregate, case_number, info, &merger, out, err);
     merger_destroy(&merger);
     return status;
 }
@@ -100,7 +100,7 @@ static int fresh_result(struct store *store, const struct aggregate *aggregate,
         status = answer_case(store, aggregate, case_number, info, out, &found, NULL, err);
     if (status != 0 || found)
         return status;
-    return merge_case(store, aggregate, case_number, info->parameters, out, err);
+    return merge_case(store, aggregate, case_number, info, out, err);
 }
 
 /* Returns whether it is the case's stored results that are at fault: trying again does not help,
@@ -201,8 +201,7 @@ static int publish_merged(struct store *store, const struct aggregate *aggregate
                           uint64_t case_number, const struct case_info *info,
                           struct case_result *result, struct error *err) {
     struct job_merger *merger = NULL;
-    int status =
-        aggregate_merge(store, aggregate, case_number, info->parameters, &merger, result, err);
+    int status = aggregate_merge(store, aggregate, case_number, info, &merger, result, err);
     if (status == 0) {
         const struct point_texts texts = realisation_values(merger);
         status = store_publish_points(store, aggregate->about.id, case_number, info->revision,

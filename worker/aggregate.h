@@ -37,8 +37,8 @@ int aggregate_case(struct store *store, const struct aggregate *aggregate, uint6
 /* Merges all stored blocks of a case in the order of their realisations; fills an empty result from
  * the merger, which is the caller's to destroy. */
 int aggregate_merge(struct store *store, const struct aggregate *aggregate, uint64_t case_number,
-                    const cJSON *parameters, struct job_merger **out, struct case_result *result,
-                    struct error *err);
+                    const struct case_info *info, struct job_merger **out,
+                    struct case_result *result, struct error *err);
 int aggregate_case_report(struct store *store, const struct aggregate *aggregate,
                           uint64_t case_number, struct case_report *out, struct error *err);
 /* Merges what a case has and publishes it; or, of one that asks for an error and has not reached

@@ -1,7 +1,7 @@
 #include "worker/client.h"
 #include "schema/json/json.h"
+#include "worker/client_internal.h"
 
-#include <curl/curl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +9,7 @@
 enum {
     CONNECT_MS = 10000,
     TOTAL_MS = 30000,
+    QUIET_SECONDS = 60,    /* an answer may wait this long, and pause: curves are merged for it */
     SILENCE_SECONDS = 300, /* a download may wait this long: the server first copies the database */
     REPLY_BYTES_MOST = 256 << 20,
 };
@@ -20,6 +21,7 @@ struct client {
     char *url;           /* scheme://host:port, no slash behind it */
     char *authorisation; /* the header line with the token, or NULL; never printed */
     char detail[CURL_ERROR_SIZE];
+    bool lost; /* the last request was sent, at least begun, and has no answer */
 };
 
 struct reply {
@@ -48,38 +50,6 @@ void client_global_cleanup(void) {
 
 /* --- set-up --- */
 
-static bool is_loopback(const char *host) {
-    return strcmp(host, "localhost") == 0 || strcmp(host, "[::1]") == 0 ||
-           strncmp(host, "127.", 4) == 0;
-}
-
-/* The one thing of the URL that curl must be told beforehand; refuses what is not
- * scheme://host:port. */
-static int url_check(const char *url, bool *loopback, struct error *err) {
-    char *scheme = NULL, *host = NULL, *path = NULL, *user = NULL, *query = NULL;
-    CURLU *parts = curl_url();
-    if (parts == NULL)
-        return error_memory(err, 1, "a URL");
-    bool good = curl_url_set(parts, CURLUPART_URL, url, 0) == CURLUE_OK &&
-                curl_url_get(parts, CURLUPART_SCHEME, &scheme, 0) == CURLUE_OK &&
-                curl_url_get(parts, CURLUPART_HOST, &host, 0) == CURLUE_OK &&
-                curl_url_get(parts, CURLUPART_PATH, &path, 0) == CURLUE_OK &&
-                curl_url_get(parts, CURLUPART_USER, &user, 0) == CURLUE_NO_USER &&
-                curl_url_get(parts, CURLUPART_QUERY, &query, 0) == CURLUE_NO_QUERY &&
-                (strcmp(scheme, "http") == 0 || strcmp(scheme, "https") == 0) &&
-                strcmp(path, "/") == 0;
-    *loopback = good && is_loopback(host);
-    curl_free(scheme);
-    curl_free(host);
-    curl_free(path);
-    curl_free(user);
-    curl_free(query);
-    curl_url_cleanup(parts);
-    return good ? 0
-                : error_set(err, ERROR_INPUT,
-                            "the server's URL must be http(s)://HOST:PORT, without user or path");
-}
-
 /* A line break in a token would start another header. */
 static bool token_is_valid(const char *token) {
     for (; *token != '\0'; token++)
@@ -88,7 +58,9 @@ static bool token_is_valid(const char *token) {
     return true;
 }
 
-static int client_options(struct client *client, bool loopback, struct error *err) {
+static int client_options(struct client *client, const struct client_trust *trust,
+                          const struct client_url *where, struct error *err) {
+    bool loopback = where->loopback || trust->own;
     CURL *curl = client->curl;
     /* CURLOPT_PROXY "" switches off what the environment names. */
     bool good =
@@ -104,10 +76,12 @@ static int client_options(struct client *client, bool loopback, struct error *er
         (!loopback || curl_easy_setopt(curl, CURLOPT_PROXY, "") == CURLE_OK) &&
         /* a line is slower than zlib, this machine is not */
         (loopback || curl_easy_setopt(curl, CURLOPT_ACCEPT_ENCODING, "gzip") == CURLE_OK);
-    return good ? 0 : error_set(err, ERROR_SYSTEM, "libcurl refuses an option");
+    return good ? client_trust_set(curl, trust, where, err)
+                : error_set(err, ERROR_SYSTEM, "libcurl refuses an option");
 }
 
-static int client_fill(struct client *client, const char *url, const char *token, bool loopback,
+static int client_fill(struct client *client, const char *url, const char *token,
+                       const struct client_trust *trust, const struct client_url *where,
                        struct error *err) {
     size_t length = strlen(url);
     client->url = strdup(url);
@@ -123,20 +97,28 @@ static int client_fill(struct client *client, const char *url, const char *token
             return error_memory(err, size, "a header");
         snprintf(client->authorisation, size, "Authorization: Bearer %s", token);
     }
-    return client_options(client, loopback, err);
+    return client_options(client, trust, where, err);
 }
 
-int client_create(struct client **out, const char *url, const char *token, struct error *err) {
-    bool loopback = false;
-    int status = url_check(url, &loopback, err);
+int client_create(struct client **out, const char *url, const char *token,
+                  const struct client_trust *trust, struct error *err) {
+    static const struct client_trust NOBODY_ELSE = {0};
+    struct client_url where = {0};
+    trust = trust != NULL ? trust : &NOBODY_ELSE;
+    int status = client_url_read(url, &where, err);
     if (status != 0)
         return status;
     if (token != NULL && !token_is_valid(token))
         return error_set(err, ERROR_INPUT, "the token holds a space or a control character");
+    if (token != NULL && !where.tls && !where.loopback && !trust->insecure && !trust->own)
+        return error_set(err, ERROR_INPUT,
+                         "%.200s would get the token in clear text over the network: use https://, "
+                         "or --insecure where the way there is safe without",
+                         url);
     struct client *client = calloc(1, sizeof *client);
     if (client == NULL)
         return error_memory(err, sizeof *client, "a client");
-    status = client_fill(client, url, token, loopback, err);
+    status = client_fill(client, url, token, trust, &where, err);
     if (status != 0) {
         client_destroy(&client);
         return status;
@@ -213,6 +195,19 @@ static bool header_add(struct curl_slist **headers, const char *name, const char
     return longer != NULL;
 }
 
+static bool wait_add(struct curl_slist **headers, unsigned seconds) {
+    char value[24];
+    snprintf(value, sizeof value, "wait=%u", seconds);
+    return seconds == 0 || header_add(headers, "Prefer", value);
+}
+
+/* As CURLOPT_XFERINFOFUNCTION; how many bytes came and went is nothing to us. */
+static int is_stopped(void *context, curl_off_t a, curl_off_t b, curl_off_t c, curl_off_t d) {
+    const struct request *request = context;
+    (void)(a + b + c + d);
+    return request->stop(request->context);
+}
+
 static bool headers_make(const struct client *client, const struct request *request,
                          struct curl_slist **headers) {
     if (client->authorisation != NULL) {
@@ -222,7 +217,7 @@ static bool headers_make(const struct client *client, const struct request *requ
     }
     return header_add(headers, "Accept",
                       request->accept != NULL ? request->accept : "application/json") &&
-           header_add(headers, "Expect", "") &&
+           header_add(headers, "Expect", "") && wait_add(headers, request->wait_s) &&
            (request->body == NULL || header_add(headers, "Content-Type", "application/json")) &&
            (request->idempotency_key == NULL ||
             header_add(headers, "Idempotency-Key", request->idempotency_key));
@@ -232,16 +227,20 @@ static bool request_options(CURL *curl, const struct request *request, const cha
                             struct curl_slist *headers, struct sink *sink) {
     bool post = strcmp(request->method, "POST") == 0;
     const char *body = request->body != NULL ? request->body : "";
-    long total = request->timeout_ms != 0 ? request->timeout_ms : TOTAL_MS;
+    bool change = strcmp(request->method, "GET") != 0;
+    long total = request->timeout_ms != 0 || !change ? request->timeout_ms : TOTAL_MS;
+    long silence = sink->file != NULL ? SILENCE_SECONDS : total == 0 ? QUIET_SECONDS : 0;
     bool good =
         curl_easy_setopt(curl, CURLOPT_URL, url) == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers) == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, sink_write) == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_WRITEDATA, sink) == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, sink->file != NULL ? 0L : total) == CURLE_OK &&
-        curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, sink->file != NULL ? 1L : 0L) == CURLE_OK &&
-        curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME,
-                         sink->file != NULL ? (long)SILENCE_SECONDS : 0L) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, silence != 0 ? 1L : 0L) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, silence) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_NOPROGRESS, request->stop == NULL ? 1L : 0L) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_XFERINFOFUNCTION, is_stopped) == CURLE_OK &&
+        curl_easy_setopt(curl, CURLOPT_XFERINFODATA, (const void *)request) == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_HTTPGET, 1L) == CURLE_OK;
     if (good && post) {
         good = curl_easy_setopt(curl, CURLOPT_POST, 1L) == CURLE_OK &&
@@ -255,12 +254,21 @@ static bool request_options(CURL *curl, const struct request *request, const cha
 static int perform(struct client *client, struct sink *sink, struct error *err) {
     client->detail[0] = '\0';
     CURLcode code = curl_easy_perform(client->curl);
+    if (code == CURLE_ABORTED_BY_CALLBACK)
+        return error_set(err, ERROR_STOPPED, "stopped");
     if (code != 0) {
+        long sent = 0;
+        client->lost =
+            curl_easy_getinfo(client->curl, CURLINFO_REQUEST_SIZE, &sent) == CURLE_OK && sent > 0;
         const char *detail = client->detail[0] != '\0' ? client->detail : curl_easy_strerror(code);
-        return error_set(err, ERROR_SYSTEM, "%s: %s", client->url,
-                         sink->fault ? sink->fault : detail);
+        const char *hint = client_trust_hint(code);
+        /* asking a server again that is another than it should be does not help */
+        return error_set(err, *hint != '\0' ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s%s", client->url,
+                         sink->fault != NULL ? sink->fault : detail, hint);
     }
     curl_easy_getinfo(client->curl, CURLINFO_RESPONSE_CODE, &sink->reply->status);
+    /* a proxy says so of a server that it has no answer of */
+    client->lost = sink->reply->status == 502 || sink->reply->status == 504;
     return 0;
 }
 
@@ -268,6 +276,7 @@ static int perform(struct client *client, struct sink *sink, struct error *err) 
 static int exchange(struct client *client, const struct request *request, FILE *file,
                     struct reply *reply, struct error *err) {
     *reply = (struct reply){0};
+    client->lost = false;
     struct sink sink = {.curl = client->curl, .reply = reply, .file = file};
     struct curl_slist *headers = NULL;
     size_t size = strlen(client->url) + strlen(request->path) + 1;
@@ -308,7 +317,7 @@ static int status_code(long status) {
     }
 }
 
-/* Appends "; POINTER: DETAIL" of each fault as far as it fits; faults (or NULL) gets them all. */
+/* Appends "; POINTER: DETAIL" of each fault that text does not tell; faults (or NULL) gets all. */
 static void append_faults(const cJSON *problem, char *text, size_t size,
                           struct fault_list *faults) {
     const cJSON *fault;
@@ -318,11 +327,12 @@ static void append_faults(const cJSON *problem, char *text, size_t size,
         const char *detail =
             cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(fault, "detail"));
         size_t length = strlen(text);
-        if (pointer != NULL && detail != NULL) {
+        if (pointer == NULL || detail == NULL)
+            continue;
+        if (*pointer != '\0' || strcmp(detail, text) != 0)
             snprintf(text + length, size - length, "; %s: %s", pointer, detail);
-            if (faults != NULL)
-                fault_add(faults, pointer, "%s", detail);
-        }
+        if (faults != NULL)
+            fault_add(faults, pointer, "%s", detail);
     }
 }
 
@@ -334,9 +344,11 @@ static int reply_error(const struct reply *reply, struct fault_list *faults, str
     const char *detail = NULL;
     if (json_parse(reply->body, reply->size, NULL, &problem, &ignored) == 0) {
         detail = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(problem, "detail"));
-        detail = detail != NULL
-                     ? detail
-                     : cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(problem, "title"));
+        if (detail == NULL)
+            detail = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(problem, "title"));
+        if (detail == NULL) /* of /healthz */
+            detail = cJSON_GetStringValue(
+                cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(problem, "reasons"), 0));
     }
     if (detail != NULL) {
         snprintf(text, sizeof text, "%s", detail);
@@ -358,6 +370,7 @@ int client_json(struct client *client, const struct request *request, cJSON **ou
     if (reply.status < 200 || reply.status > 299) {
         status = reply_error(&reply, request->faults, err);
     } else if (reply.size == 0 && reply.status != 204) { /* cut off within the headers, too */
+        client->lost = true;
         status = error_set(err, ERROR_SYSTEM, "the server's answer is empty");
     } else if (reply.size > 0) {
         status = json_parse(reply.body, reply.size, &REPLY_LIMITS, &value, err);
@@ -380,4 +393,8 @@ int client_download(struct client *client, const char *path, FILE *file, struct 
         status = reply_error(&reply, NULL, err);
     reply_clear(&reply);
     return status;
+}
+
+bool client_lost_answer(const struct client *client) {
+    return client->lost;
 }

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "schema/study/fault.h"
+#include "worker/client_trust.h"
 #include <cjson/cJSON.h>
 #include <stdio.h>
 
@@ -14,8 +15,11 @@ void client_global_cleanup(void);
 
 struct client;
 
-/* Makes a client; url is http(s)://host:port without path, token may be NULL. */
-int client_create(struct client **out, const char *url, const char *token, struct error *err);
+/* Makes a client; url is http(s)://host:port without path, token may be NULL, trust likewise, for
+ * the system's authorities alone. ERROR_INPUT where the token would cross a network in clear text.
+ */
+int client_create(struct client **out, const char *url, const char *token,
+                  const struct client_trust *trust, struct error *err);
 void client_destroy(struct client **client);
 
 struct request {
@@ -24,13 +28,25 @@ struct request {
     const char *accept;          /* NULL: application/json */
     const char *idempotency_key; /* or NULL */
     struct fault_list *faults;   /* client_json adds those of a refusal; or NULL */
-    long timeout_ms;             /* 0: 30 000 */
+    /* Most time for the whole; 0: 30 000, but of a GET as long as a byte comes every minute. */
+    long timeout_ms;
+    unsigned wait_s;            /* asks the server to wait for what is asked for; 0: not */
+    int (*stop)(void *context); /* asked each second: non-zero gives ERROR_STOPPED; or NULL */
+    void *context;
 };
 /* One exchange; parses the body (NULL for a 204). ERROR_SYSTEM without an answer: try again later.
  * A status >= 400 is an error with the problem's detail and pointers: 404 ERROR_ABSENT, 409
  * ERROR_STATE, 4xx ERROR_INPUT, 5xx ERROR_SYSTEM. */
 int client_json(struct client *client, const struct request *request, cJSON **out,
                 struct error *err);
+enum { KEY_SIZE = 33, KEY_MOST = 200 };
+/* Writes a key that nobody else has: of 128 random bits. */
+int key_make(char key[KEY_SIZE], struct error *err);
+/* Likewise of a request that changes something: it carries a key (its own, or one made for it), and
+ * is sent again with it while answers are lost, within timeout_ms in all. `doubt` says what may
+ * have been done where the time is over, for the message: nobody knows then. */
+int client_change(struct client *client, const struct request *request, const char *doubt,
+                  cJSON **out, struct error *err);
 /* Streams a body to a file (snapshot). */
 int client_download(struct client *client, const char *path, FILE *file, struct error *err);
 

@@ -42,8 +42,8 @@ static int read_case(struct store *store, const struct aggregate *aggregate, uin
         status = error_set(err, ERROR_STATE, "case %llu has no realisations yet",
                            (unsigned long long)case_number);
     if (status == 0)
-        status = aggregate_merge(store, aggregate, case_number, info.parameters, &out->merger,
-                                 &out->result, err);
+        status =
+            aggregate_merge(store, aggregate, case_number, &info, &out->merger, &out->result, err);
     if (status == 0)
         status = result_set_parameters(&out->result, info.parameters, err);
     out->result.case_number = case_number;

@@ -1,6 +1,7 @@
 #include "worker/log.h"
 
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -107,7 +108,16 @@ size_t log_format(char *line, size_t size, int64_t time_ms, enum log_level level
     return made.length;
 }
 
+/* Of the process, as its standard error is: set by the command line alone. */
+static atomic_int least_level = LEVEL_INFO;
+
+void log_set_least(enum log_level least) {
+    atomic_store(&least_level, least);
+}
+
 void log_line(enum log_level level, const struct log_about *about, const char *format, ...) {
+    if ((int)level < atomic_load(&least_level))
+        return;
     char message[LOG_LINE_MOST], line[LOG_LINE_MOST];
     va_list arguments;
     va_start(arguments, format);

@@ -13,6 +13,7 @@
 
 enum { LOG_LINE_MOST = 1024 };
 enum log_level { LEVEL_DEBUG, LEVEL_INFO, LEVEL_WARNING, LEVEL_ERROR };
+#define LOG_LEVELS "debug|info|warning|error" /* in the order of the numbers */
 
 /* A line is about these. Fields left zero are left out; all are borrowed. */
 struct log_about {
@@ -24,6 +25,8 @@ struct log_about {
     double seconds;      /* how long it took */
 };
 
+/* Leaves out lines below this level from now on, in the whole process; LEVEL_INFO at first. */
+void log_set_least(enum log_level least);
 /* Writes one line; about may be NULL. A line that cannot be written is lost: nobody is left to
  * tell. */
 __attribute__((format(printf, 3, 4))) void

@@ -31,10 +31,3 @@ int publish_due(struct store *store, bool (*stop)(void *context), void *context,
     struct publish_counts own;
     return store_publish_due(store, &publication, counts != NULL ? counts : &own, err);
 }
-
-int publish_case(struct store *store, const char *study, uint64_t case_number, struct error *err) {
-    struct publication publication = {
-        .publish = publish_one, .study = study, .case_number = case_number};
-    struct publish_counts counts;
-    return store_publish_due(store, &publication, &counts, err);
-}

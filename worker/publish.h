@@ -9,7 +9,5 @@
  * NULL, says how many and why. stop (may be NULL) is asked between cases; then ERROR_STOPPED. */
 int publish_due(struct store *store, bool (*stop)(void *context), void *context,
                 struct publish_counts *counts, struct error *err);
-/* Does the same for one case, if it is due. */
-int publish_case(struct store *store, const char *study, uint64_t case_number, struct error *err);
 
 #endif

@@ -2,6 +2,7 @@
 #include "schema/program.h"
 #include "worker/source_backend.h"
 #include "worker/wire.h"
+#include "worker/worker_name.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +24,8 @@ static int name_copy(char *out, size_t size, const char *what, const char *name,
         return error_set(err, ERROR_INPUT, "%s '%.40s...' is longer than %zu bytes", what, name,
                          size - 1);
     }
+    if (name != NULL && !worker_name_is_plain(name))
+        return error_set(err, ERROR_INPUT, "the %s has a control character", what);
     if (name != NULL)
         memcpy(out, name, length + 1);
     return 0;
@@ -71,37 +74,28 @@ void source_destroy(struct source **source) {
     *source = NULL;
 }
 
-int source_claim(struct source *source, struct claimed_job *job, int *found, struct error *err) {
+int source_claim(struct source *source, const struct wish *wish, struct claimed_job *jobs,
+                 size_t *count, bool *due, struct error *err) {
     struct claim claim = {
         .worker = source->worker,
         .host = source->host,
         .program = source->program,
         .kinds = source->kinds,
         .study = source->study[0] != '\0' ? source->study : NULL,
-        .count = 1,
+        .count = wish->count,
+        .seconds = wish->seconds,
+        .threads = wish->threads,
     };
-    return source->backend->claim(source->self, &claim, job, found, err);
+    return source->backend->claim(source->self, &claim, wish, jobs, count, due, err);
 }
 
-int source_left(struct source *source, int *left, struct error *err) {
-    return source->backend->left(source->self, left, err);
+int source_report(struct source *source, struct report *reports, size_t count, bool *due,
+                  struct error *err) {
+    for (size_t n = 0; n < count; n++)
+        reports[n].status = 0;
+    return source->backend->report(source->self, reports, count, due, err);
 }
 
-int source_heartbeat(struct source *source, const struct claimed_job *job, uint64_t done,
-                     struct error *err) {
-    return source->backend->heartbeat(source->self, job, done, err);
-}
-
-int source_complete(struct source *source, const struct claimed_job *job,
-                    const struct block_result *result, struct error *err) {
-    return source->backend->complete(source->self, job, result, err);
-}
-
-int source_fail(struct source *source, const struct claimed_job *job, const char *reason,
-                int permanent, struct error *err) {
-    return source->backend->fail(source->self, job, reason, permanent, err);
-}
-
-int source_release(struct source *source, const struct claimed_job *job, struct error *err) {
-    return source->backend->release(source->self, job, err);
+int source_left(struct source *source, int *left, bool *due, struct error *err) {
+    return source->backend->left(source->self, left, due, err);
 }

@@ -5,25 +5,26 @@
 
 #include "jobs/kind.h"
 #include "schema/store/store.h"
+#include "worker/report.h"
 #include "worker/source_options.h"
+#include "worker/wish.h"
 
 struct source;
+
 int source_create(struct source **out, const struct source_options *options, struct error *err);
 void source_destroy(struct source **source);
 
-/* Failures have the codes of store.h: ERROR_STATE when the lease is lost or the study cancelled,
- * ERROR_SYSTEM when there is no answer or the store is busy, so that a retry may succeed. */
-int source_claim(struct source *source, struct claimed_job *job, int *found, struct error *err);
+/* Failures have the codes of store.h; ERROR_SYSTEM when there is no answer or the store is busy, so
+ * that a retry may succeed. *due becomes true where cases of the local store are to be published,
+ * and is left alone otherwise. */
+int source_claim(struct source *source, const struct wish *wish, struct claimed_job *jobs,
+                 size_t *count, bool *due, struct error *err);
+/* Each report has a status of its own then: ERROR_STATE when its lease is lost or the study
+ * cancelled. A failure is that of the request as a whole. */
+int source_report(struct source *source, struct report *reports, size_t count, bool *due,
+                  struct error *err);
 /* *left: whether a job waits or runs anywhere, so that one may still have to be claimed. Of a
  * server, only studies that this token may list count; *left is 0 when it may list none. */
-int source_left(struct source *source, int *left, struct error *err);
-int source_heartbeat(struct source *source, const struct claimed_job *job, uint64_t done,
-                     struct error *err);
-/* A source of a store also publishes the case after its last block. */
-int source_complete(struct source *source, const struct claimed_job *job,
-                    const struct block_result *result, struct error *err);
-int source_fail(struct source *source, const struct claimed_job *job, const char *reason,
-                int permanent, struct error *err);
-int source_release(struct source *source, const struct claimed_job *job, struct error *err);
+int source_left(struct source *source, int *left, bool *due, struct error *err);
 
 #endif

@@ -2,19 +2,21 @@
 #include "schema/json/field.h"
 #include "worker/client.h"
 #include "worker/source_backend.h"
-#include "worker/wire.h"
+#include "worker/wire_report.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    HEARTBEAT_MS = 10000, /* one that is not answered must not hold up those of other threads */
+    HEARTBEAT_MS = 10000, /* one that is not answered must not hold up what follows */
+    CLAIM_MS = 20000,
     RESULT_MS = 60000,
 };
 
 struct remote {
     struct client *client;
+    bool older; /* the server takes no report but alone */
 };
 
 static void remote_destroy(void *self) {
@@ -29,7 +31,7 @@ static int remote_create(void **self, const struct source_options *options, stru
     struct remote *remote = calloc(1, sizeof *remote);
     if (remote == NULL)
         return error_memory(err, sizeof *remote, "a source of jobs");
-    int status = client_create(&remote->client, options->url, options->token, err);
+    int status = client_create(&remote->client, options->url, options->token, &options->trust, err);
     if (status != 0) {
         remote_destroy(remote);
         return status;
@@ -39,72 +41,111 @@ static int remote_create(void **self, const struct source_options *options, stru
 }
 
 /* Takes body (NULL: out of memory) and posts it; *answer may be NULL for an empty one. */
-static int remote_post(struct remote *remote, const char *path, cJSON *body, long timeout_ms,
-                       cJSON **answer, struct error *err) {
+static int remote_post(struct remote *remote, struct request *request, cJSON *body, cJSON **answer,
+                       struct error *err) {
     char *text = body != NULL ? json_print(body) : NULL;
     cJSON_Delete(body);
     if (text == NULL)
         return error_set(err, ERROR_MEMORY, "no memory left for a request");
-    struct request request = {
-        .method = "POST", .path = path, .body = text, .timeout_ms = timeout_ms};
-    int status = client_json(remote->client, &request, answer, err);
+    request->method = "POST";
+    request->body = text;
+    int status = client_json(remote->client, request, answer, err);
     free(text);
     return status;
 }
 
-static int remote_claim(void *self, const struct claim *claim, struct claimed_job *job, int *found,
-                        struct error *err) {
+static int remote_claim(void *self, const struct claim *claim, const struct wish *wish,
+                        struct claimed_job *jobs, size_t *count, bool *due, struct error *err) {
     cJSON *answer = NULL;
-    int status = remote_post(self, "/v1/jobs/claim", wire_claim(claim), 0, &answer, err);
+    struct request request = {
+        .path = "/v1/jobs/claim",
+        .timeout_ms = CLAIM_MS + 1000 * (long)wish->wait_s,
+        .wait_s = wish->wait_s,
+        .stop = wish->stop,
+        .context = wish->context,
+    };
+    (void)due;
+    int status = remote_post(self, &request, wire_claim(claim), &answer, err);
     if (status == ERROR_STATE) /* of no job of ours: the server cannot do it just now */
         return err->code = ERROR_SYSTEM;
     if (status != 0)
         return status;
-    size_t count = 0;
+    *count = 0;
     if (answer != NULL)
-        status = wire_jobs_read(answer, job, 1, &count, err);
+        status = wire_jobs_read(answer, jobs, wish->count, count, err);
     cJSON_Delete(answer);
     if (status == ERROR_INPUT) { /* what came is wrong, not what was asked */
         err->code = ERROR_SYSTEM;
         status = error_context(err, "the server's answer to a claim");
     }
-    if (status == 0)
-        *found = count > 0;
     return status;
 }
 
-/* One request about a job. A server that does not know the job has lost it for us: its database is
- * another one by now. */
-static int remote_report(struct remote *remote, const struct claimed_job *job, const char *verb,
-                         cJSON *body, long timeout_ms, struct error *err) {
-    char path[64];
+static bool has_results(const struct report *reports, size_t count) {
+    for (size_t n = 0; n < count; n++)
+        if (reports[n].verb == REPORT_COMPLETE)
+            return true;
+    return false;
+}
+
+/* A server that does not know a job has lost it for us: its database is another one by now. */
+static void lose_absent(struct report *report) {
+    if (report->status == ERROR_ABSENT)
+        report->status = report->err.code = ERROR_STATE;
+}
+
+/* To an older server. Where one is not answered the batch fails as a whole: those before it may be
+ * told again. */
+static int report_alone(struct remote *remote, struct report *reports, size_t count,
+                        struct error *err) {
+    for (size_t n = 0; n < count; n++) {
+        struct report *report = &reports[n];
+        cJSON *answer = NULL;
+        char path[64];
+        struct request request = {
+            .path = path,
+            .timeout_ms = has_results(report, 1) ? RESULT_MS : HEARTBEAT_MS,
+        };
+        snprintf(path, sizeof path, "/v1/jobs/%lld/%s", (long long)report->job->id,
+                 wire_verb(report->verb));
+        report->status =
+            remote_post(remote, &request, wire_report_body(report), &answer, &report->err);
+        cJSON_Delete(answer);
+        lose_absent(report);
+        if (report->status == ERROR_SYSTEM || report->status == ERROR_MEMORY) {
+            *err = report->err;
+            return report->status;
+        }
+    }
+    return 0;
+}
+
+static int remote_report(void *self, struct report *reports, size_t count, bool *due,
+                         struct error *err) {
+    struct remote *remote = self;
     cJSON *answer = NULL;
-    snprintf(path, sizeof path, "/v1/jobs/%lld/%s", (long long)job->id, verb);
-    int status = remote_post(remote, path, body, timeout_ms, &answer, err);
+    struct request request = {
+        .path = "/v1/jobs/report",
+        .timeout_ms = has_results(reports, count) ? RESULT_MS : HEARTBEAT_MS,
+    };
+    (void)due;
+    if (remote->older)
+        return report_alone(remote, reports, count, err);
+    int status = remote_post(remote, &request, wire_reports(reports, count), &answer, err);
+    if (status == ERROR_ABSENT) {
+        remote->older = true;
+        return report_alone(remote, reports, count, err);
+    }
+    if (status == 0)
+        status = wire_answers_read(answer, reports, count, err);
     cJSON_Delete(answer);
-    if (status == ERROR_ABSENT)
-        status = err->code = ERROR_STATE;
+    if (status == ERROR_INPUT && answer != NULL) {
+        err->code = ERROR_SYSTEM;
+        status = error_context(err, "the server's answer to reports");
+    }
+    for (size_t n = 0; n < count && status == 0; n++)
+        lose_absent(&reports[n]);
     return status;
-}
-
-static int remote_heartbeat(void *self, const struct claimed_job *job, uint64_t done,
-                            struct error *err) {
-    return remote_report(self, job, "heartbeat", wire_heartbeat(job->token, done), HEARTBEAT_MS,
-                         err);
-}
-
-static int remote_complete(void *self, const struct claimed_job *job,
-                           const struct block_result *result, struct error *err) {
-    return remote_report(self, job, "complete", wire_result(job->token, result), RESULT_MS, err);
-}
-
-static int remote_fail(void *self, const struct claimed_job *job, const char *reason, int permanent,
-                       struct error *err) {
-    return remote_report(self, job, "fail", wire_fail(job->token, reason, permanent != 0), 0, err);
-}
-
-static int remote_release(void *self, const struct claimed_job *job, struct error *err) {
-    return remote_report(self, job, "release", wire_release(job->token), HEARTBEAT_MS, err);
 }
 
 /* By its jobs, for its state is "running" until the server has published it, which no worker waits
@@ -117,7 +158,8 @@ static bool study_goes_on(const cJSON *study) {
 }
 
 /* Pages through the server's list of studies until one goes on. */
-static int remote_left(void *self, int *left, struct error *err) {
+static int remote_left(void *self, int *left, bool *due, struct error *err) {
+    (void)due;
     struct remote *remote = self;
     char after[STUDY_ID_SIZE] = "";
     bool more = true, found = false;
@@ -150,9 +192,6 @@ const struct source_backend SOURCE_SERVER = {
     .create = remote_create,
     .destroy = remote_destroy,
     .claim = remote_claim,
-    .heartbeat = remote_heartbeat,
-    .complete = remote_complete,
-    .fail = remote_fail,
-    .release = remote_release,
+    .report = remote_report,
     .left = remote_left,
 };

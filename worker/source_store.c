@@ -1,6 +1,5 @@
 /* Jobs out of a local store, which other processes may have open as well. */
-#include "worker/log.h"
-#include "worker/publish.h"
+#include "worker/checker.h"
 #include "worker/source_backend.h"
 
 #include <stdio.h>
@@ -9,6 +8,8 @@
 
 struct local {
     struct store *store;
+    struct checker *checker;   /* that of all sources, or the own one */
+    struct checker *own;       /* NULL: none */
     char study[STUDY_ID_SIZE]; /* "": any */
 };
 
@@ -16,6 +17,7 @@ static void local_destroy(void *self) {
     struct local *local = self;
     if (local != NULL) {
         store_close(&local->store);
+        checker_destroy(&local->own);
         free(local);
     }
 }
@@ -26,8 +28,13 @@ static int local_create(void **self, const struct source_options *options, struc
         return error_memory(err, sizeof *local, "a source of jobs");
     if (options->study != NULL)
         snprintf(local->study, sizeof local->study, "%s", options->study);
-    struct store_options store_options = {.lease_ms = options->lease_ms};
+    struct store_options store_options = {.lease_ms = options->lease_ms, .existing = true};
     int status = store_open(&local->store, options->database, &store_options, err);
+    local->checker = options->checker;
+    if (status == 0 && local->checker == NULL) {
+        status = checker_create(&local->own, err);
+        local->checker = local->own;
+    }
     if (status != 0) {
         local_destroy(local);
         return status;
@@ -36,73 +43,64 @@ static int local_create(void **self, const struct source_options *options, struc
     return 0;
 }
 
-static int local_claim(void *self, const struct claim *claim, struct claimed_job *job, int *found,
-                       struct error *err) {
+static int local_claim(void *self, const struct claim *claim, const struct wish *wish,
+                       struct claimed_job *jobs, size_t *count, bool *due, struct error *err) {
     struct local *local = self;
-    size_t count = 0;
-    int status = store_claim(local->store, claim, job, &count, err);
-    if (status == 0)
-        *found = count > 0;
-    if (status == 0 && store_claim_failed_jobs(local->store)) {
-        struct error unpublished = {0}; /* which leaves the cases due */
-        (void)publish_due(local->store, NULL, NULL, NULL, &unpublished);
-    }
+    (void)wish;
+    int status = store_claim(local->store, claim, jobs, count, err);
+    *due |= status == 0 && store_claim_failed_jobs(local->store);
     return status;
 }
 
-/* A job that is not there was of a study that is deleted: it is lost. */
-static int lost(int status, struct error *err) {
-    return status == ERROR_ABSENT ? (err->code = ERROR_STATE) : status;
-}
-
-static int local_heartbeat(void *self, const struct claimed_job *job, uint64_t done,
-                           struct error *err) {
-    struct local *local = self;
-    return lost(store_heartbeat(local->store, job->id, job->token, done, err), err);
-}
-
-/* What the worker did is safe by now: a case that is not published stays due. */
-static void local_publish(struct local *local, const struct claimed_job *job) {
-    struct error err = {0};
-    if (publish_case(local->store, job->study, job->case_number, &err) != 0) {
-        struct log_about about = {.study = job->study};
-        log_line(LEVEL_WARNING, &about, "case %llu is not published: %s",
-                 (unsigned long long)job->case_number, err.text);
+/* Does what one report says, within a change of all. */
+static int local_tell(struct local *local, const struct report *report, bool *due,
+                      struct error *err) {
+    const struct claimed_job *job = report->job;
+    bool first_time = false, case_done = false;
+    int status = 0;
+    switch (report->verb) {
+    case REPORT_HEARTBEAT:
+        return store_heartbeat(local->store, job->id, job->token, report->done, err);
+    case REPORT_COMPLETE:
+        status = store_complete(local->store, job->id, job->token, report->result, &first_time,
+                                &case_done, err);
+        *due |= status == 0 && case_done;
+        return status;
+    case REPORT_FAIL:
+        status =
+            store_fail(local->store, job->id, job->token, report->reason, report->permanent, err);
+        *due |= status == 0;
+        return status;
+    default:
+        return store_release(local->store, job->id, job->token, err);
     }
 }
 
-static int local_complete(void *self, const struct claimed_job *job,
-                          const struct block_result *result, struct error *err) {
+/* A job that is not there was of a study that is deleted: it is lost. */
+static int local_report(void *self, struct report *reports, size_t count, bool *due,
+                        struct error *err) {
     struct local *local = self;
-    bool first_time = false, case_done = false;
-    int status =
-        store_complete(local->store, job->id, job->token, result, &first_time, &case_done, err);
-    if (status == 0 && case_done)
-        local_publish(local, job);
-    return lost(status, err);
-}
-
-static int local_fail(void *self, const struct claimed_job *job, const char *reason, int permanent,
-                      struct error *err) {
-    struct local *local = self;
-    int status = store_fail(local->store, job->id, job->token, reason, permanent != 0, err);
-    if (status == 0)
-        local_publish(local, job);
-    return lost(status, err);
-}
-
-static int local_release(void *self, const struct claimed_job *job, struct error *err) {
-    struct local *local = self;
-    return lost(store_release(local->store, job->id, job->token, err), err);
+    for (size_t n = 0; n < count; n++)
+        if (reports[n].verb == REPORT_COMPLETE)
+            reports[n].status =
+                checker_check(local->checker, reports[n].job, reports[n].result, &reports[n].err);
+    int status = store_begin(local->store, err);
+    if (status != 0)
+        return status;
+    for (size_t n = 0; n < count; n++) {
+        struct report *report = &reports[n];
+        if (report->status == 0)
+            report->status = local_tell(local, report, due, &report->err);
+        if (report->status == ERROR_ABSENT)
+            report->status = report->err.code = ERROR_STATE;
+    }
+    return store_commit(local->store, err);
 }
 
 /* What is due may be a round of a case that asks for an error, which queues jobs. */
-static int local_left(void *self, int *left, struct error *err) {
+static int local_left(void *self, int *left, bool *due, struct error *err) {
     struct local *local = self;
-    bool due = false;
-    int found = store_is_due(local->store, &due, err);
-    if (found == 0 && due)
-        found = publish_due(local->store, NULL, NULL, NULL, err);
+    int found = store_is_due(local->store, due, err);
     if (found != 0)
         return found;
     if (local->study[0] != '\0') {
@@ -125,9 +123,6 @@ const struct source_backend SOURCE_STORE = {
     .create = local_create,
     .destroy = local_destroy,
     .claim = local_claim,
-    .heartbeat = local_heartbeat,
-    .complete = local_complete,
-    .fail = local_fail,
-    .release = local_release,
+    .report = local_report,
     .left = local_left,
 };

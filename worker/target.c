@@ -14,7 +14,7 @@ static int part_read(struct store *store, const struct target_case *of, size_t a
     const struct component *component = &of->components[at];
     int status = store_case(store, of->study, component->number, &part->info, err);
     if (status == 0)
-        status = case_merge(store, of->kind, of->study, component->number, part->info.parameters,
+        status = case_merge(store, of->kind, of->study, component->number, &part->info,
                             &part->merger, err);
     if (status != 0)
         return error_context(err, "component %s", component->role);

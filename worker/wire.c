@@ -1,8 +1,10 @@
 #include "worker/wire.h"
 #include "schema/json/field.h"
 #include "schema/program.h"
+#include "worker/worker_name.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,12 +38,15 @@ static int read_seed(const cJSON *object, uint64_t *out, struct error *err) {
 cJSON *wire_claim(const struct claim *claim) {
     cJSON *value = cJSON_CreateObject();
     return fields_finish(
-        value, value != NULL && field_put_text(value, "worker", claim->worker) &&
-                   field_put_text(value, "host", claim->host != NULL ? claim->host : "") &&
-                   (claim->program == NULL || field_put_text(value, "program", claim->program)) &&
-                   (claim->kinds == NULL || field_put(value, "kinds", texts(claim->kinds))) &&
-                   field_put_count(value, "count", claim->count) &&
-                   field_put(value, "sequence", cJSON_CreateBool(!claim->independent_only)));
+        value,
+        value != NULL && field_put_text(value, "worker", claim->worker) &&
+            field_put_text(value, "host", claim->host != NULL ? claim->host : "") &&
+            (claim->program == NULL || field_put_text(value, "program", claim->program)) &&
+            (claim->kinds == NULL || field_put(value, "kinds", texts(claim->kinds))) &&
+            field_put_count(value, "count", claim->count) &&
+            (claim->seconds <= 0 || field_put(value, "seconds", json_number(claim->seconds))) &&
+            (claim->threads == 0 || field_put_count(value, "threads", claim->threads)) &&
+            field_put(value, "sequence", cJSON_CreateBool(!claim->independent_only)));
 }
 
 static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
@@ -63,24 +68,35 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
         return error_set(err, ERROR_INPUT, "a claim must be an object");
     struct claim claim = {0};
     const char *kinds[WIRE_KINDS_MOST + 1] = {NULL};
-    uint64_t count = 1;
+    uint64_t count = 1, threads = 0;
     bool sequence = false;
     int status = field_text(value, "worker", 256, &claim.worker, err);
+    if (status == 0 && !worker_name_is_plain(claim.worker))
+        status = field_fault("worker", "a text without control characters", err);
     const cJSON *host = field_at(value, "host");
     if (status == 0 && host != NULL && !cJSON_IsString(host))
         status = field_fault("host", "a string", err);
     claim.host = host != NULL ? cJSON_GetStringValue(host) : "";
+    if (status == 0 && !worker_name_is_plain(claim.host))
+        status = field_fault("host", "a text without control characters", err);
     if (status == 0 && field_at(value, "program") != NULL)
         status = field_text(value, "program", PROGRAM_SIZE, &claim.program, err);
+    if (status == 0 && claim.program != NULL && !worker_name_is_plain(claim.program))
+        status = field_fault("program", "a text without control characters", err);
     if (status == 0 && field_at(value, "kinds") != NULL)
         status = read_kinds(field_at(value, "kinds"), kinds, err);
     if (status == 0 && field_at(value, "count") != NULL)
         status = field_count(value, "count", &count, err);
+    if (status == 0 && field_at(value, "seconds") != NULL)
+        status = field_seconds(value, "seconds", &claim.seconds, err);
+    if (status == 0 && field_at(value, "threads") != NULL)
+        status = field_count(value, "threads", &threads, err);
     if (status == 0)
         status = field_bool(value, "sequence", &sequence, err);
     if (status != 0)
         return status;
     claim.independent_only = !sequence;
+    claim.threads = threads < UINT_MAX ? (unsigned)threads : UINT_MAX;
     claim.count = count < WIRE_JOBS_MOST ? (size_t)count : WIRE_JOBS_MOST;
     memcpy(out->kinds, kinds, sizeof kinds);
     claim.kinds = field_at(value, "kinds") != NULL ? out->kinds : NULL;

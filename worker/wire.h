@@ -1,7 +1,8 @@
 /* Jobs and results as they cross the network between worker and server: one encoder and one decoder
  * for both ends, so that they cannot disagree.
  *
- *     POST /v1/jobs/claim            {worker, host, program, kinds: […], count, sequence: true}
+ *     POST /v1/jobs/claim            {worker, host, program, kinds: […], count, seconds, threads,
+ *                                     sequence: true}
  *       200 {"jobs": [{id, study, kind, case, seed: "decimal", sequence, first, count,
  *                      attempt, token, lease_seconds, parameters: {…}}]},
  *       or 204 when there is none

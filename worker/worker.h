@@ -1,9 +1,8 @@
 /* The worker: threads that claim a job, run it, report it, until told to stop or the queue is
  * empty.
  *
- * Each thread has its own source and runner; one more thread sends heartbeats, so that a long
- * realisation does not lose its lease. A server or store that is away is waited for with growing,
- * jittered pauses (at most 30 s); a finished result is kept and sent again until taken or refused.
+ * Each thread has its own runner; one more, the dispatcher (dispatcher.h), claims, keeps leases and
+ * hands results in for all of them, so that a process has one connection to its server.
  */
 #ifndef RUGO_WORKER_WORKER_H
 #define RUGO_WORKER_WORKER_H

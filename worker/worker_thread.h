@@ -1,11 +1,10 @@
-/* One worker thread, which claims jobs, runs them and reports how they ended, until its pool ends.
+/* One worker thread, which takes jobs, runs them and hands in how they ended, until its pool ends.
  * Private to worker/.
  *
- *     claim -> hold the lease -> runner of the case -> run -> complete
- *                                                         -> fail      (with the reason)
- *                                                         -> release   (the pool ends)
- *                                                         -> nothing   (the lease is lost or the
- *                                                                       study cancelled) */
+ *     take -> runner of the case -> run -> complete  (with what is done, where the pool ends)
+ *                                       -> fail      (with the reason)
+ *                                       -> release   (the pool ends, and nothing is done)
+ *                                       -> nothing   (the lease is lost or the study cancelled) */
 #ifndef RUGO_WORKER_WORKER_THREAD_H
 #define RUGO_WORKER_WORKER_THREAD_H
 
@@ -13,10 +12,10 @@
 
 struct worker_thread {
     struct worker_pool *pool; /* borrowed */
-    unsigned slot;            /* the thread's number, and its slot in the lease keeper */
+    unsigned number;
     pthread_t handle;
     char name[NAME_MOST + 16];
-    struct source *source; /* owned by worker.c */
+    struct lease *lease; /* the job that it runs; NULL: none */
     /* The runner of the last job, or NULL. It is kept because all jobs of a case use the same
      * Fourier transform plans and matrix factorisations. */
     struct job_runner *runner;
@@ -27,7 +26,7 @@ struct worker_thread {
     uint64_t case_number;
 };
 
-/* The thread's body; context is a struct worker_thread with pool, slot, name and source set. */
+/* The thread's body; context is a struct worker_thread with pool, number and name set. */
 void *worker_thread_main(void *context);
 
 #endif

@@ -3,6 +3,7 @@
 #include "jobs/kind.h"
 #include "jobs/runner.h"
 #include "worker/aggregate.h"
+#include "worker/publish.h"
 #include "worker/source.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,13 +32,15 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Claims a job, runs it and hands it in; what source_complete takes is its case published. */
-static int run_case(struct source *source, double *ms, struct error *err) {
+/* Claims a job, runs it, hands it in, and publishes its case, of which it is the only one. */
+static int run_case(struct source *source, struct store *store, double *ms, struct error *err) {
     struct claimed_job job = {0};
     struct job_runner *runner = NULL;
     struct block_result result = {0};
-    int found = 0;
-    int status = source_claim(source, &job, &found, err);
+    struct report report = {.verb = REPORT_COMPLETE, .job = &job, .result = &result};
+    size_t count = 0;
+    bool due = false;
+    int status = source_claim(source, &(struct wish){.count = 1}, &job, &count, &due, err);
     if (status == 0)
         status = runner_create(&runner, kind_find(job.kind), job.parameters, NULL, job.seed,
                                job.case_number, err);
@@ -45,7 +48,9 @@ static int run_case(struct source *source, double *ms, struct error *err) {
         status = runner_run(runner, job.first, job.count, NULL, &result, err);
     double start = cpu_ms();
     if (status == 0)
-        status = source_complete(source, &job, &result, err);
+        status = source_report(source, &report, 1, &due, err);
+    if (status == 0 && due)
+        status = publish_due(store, NULL, NULL, NULL, err);
     *ms = cpu_ms() - start;
     runner_destroy(&runner);
     block_result_clear(&result);
@@ -70,7 +75,7 @@ static int bench(const char *text, const char *what, struct error *err) {
     if (status == 0)
         status = source_create(&source, &options, err);
     for (size_t c = 0; c < CASES && status == 0; c++) {
-        status = run_case(source, &ms[c], err);
+        status = run_case(source, store, &ms[c], err);
         told = 1e3 * study->cases[c].cost.case_seconds;
     }
     qsort(ms, CASES, sizeof *ms, by_size);

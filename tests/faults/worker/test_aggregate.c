@@ -78,10 +78,7 @@ static int open_study(void **state) {
     fixture_open(&fixture);
     fixture_submit(&fixture, SMALL_STUDY, 24, NULL, 0);
     const struct worker_options options = {
-        .source = {.database = fixture.database, .worker = "test"},
-        .threads = 1,
-        .drain = 1,
-        .quiet = 1};
+        .source = {.database = fixture.database, .worker = "test"}, .threads = 1, .drain = 1};
     return workers_run(&options, &err);
 }
 

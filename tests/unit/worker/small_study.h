@@ -44,8 +44,9 @@ static inline void fixture_open(struct fixture *fixture) {
     }
 }
 
-/* Queues a study in jobs of `block` realisations. parameters (may be NULL) replaces the value at a
- * key of every case's "surface", behind the back of the study reader. */
+/* Queues a study in jobs of `block` realisations, as nothing is known of the seconds that these
+ * take. parameters (may be NULL) replaces the value at a key of every case's "surface", behind the
+ * back of the study reader. */
 static inline void fixture_submit(struct fixture *fixture, const char *text, uint64_t block,
                                   const char *key, double value) {
     struct error err = {0};
@@ -57,6 +58,7 @@ static inline void fixture_submit(struct fixture *fixture, const char *text, uin
     }
     for (size_t c = 0; c < study->case_count; c++) {
         study->cases[c].block = block;
+        study->cases[c].cost.seconds = 0;
         if (key) {
             cJSON *surface = cJSON_GetObjectItem(study->cases[c].parameters, "surface");
             cJSON_ReplaceItemInObject(surface, key, cJSON_CreateNumber(value));

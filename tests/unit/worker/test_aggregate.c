@@ -2,14 +2,15 @@
 #include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "tests/support/result_tree.h"
+#include "tests/support/sql.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/aggregate.h"
+#include "worker/publish.h"
 #include "worker/realisation_values.h"
 #include "worker/source.h"
 #include "worker/worker.h"
 
 #include <math.h>
-#include <sqlite3.h>
 
 static int read_curves(struct fixture *fixture, const char *study, int64_t case_number,
                        const char *quantity, cJSON **out, struct error *err) {
@@ -54,7 +55,6 @@ static void run_all(struct fixture *fixture) {
         .source = {.database = fixture->database, .worker = "test"},
         .threads = 1,
         .drain = 1,
-        .quiet = 1,
     };
     struct error err = {0};
     if (workers_run(&options, &err) != 0) {
@@ -70,15 +70,20 @@ static void run_one(struct fixture *fixture) {
     struct claimed_job job = {0};
     struct job_runner *runner = NULL;
     struct block_result result = {0};
-    int found = 0;
+    size_t count = 0;
+    bool due = false;
     assert_int_equal(source_create(&source, &options, &err), 0);
-    assert_int_equal(source_claim(source, &job, &found, &err), 0);
-    assert_int_equal(found, 1);
+    assert_int_equal(source_claim(source, &(struct wish){.count = 1}, &job, &count, &due, &err), 0);
+    assert_int_equal(count, 1);
     const struct job_kind *kind = kind_find(job.kind);
     assert_int_equal(
         runner_create(&runner, kind, job.parameters, NULL, job.seed, job.case_number, &err), 0);
     assert_int_equal(runner_run(runner, job.first, job.count, NULL, &result, &err), 0);
-    assert_int_equal(source_complete(source, &job, &result, &err), 0);
+    struct report report = {.verb = REPORT_COMPLETE, .job = &job, .result = &result};
+    assert_int_equal(source_report(source, &report, 1, &due, &err), 0);
+    assert_int_equal(report.status, 0);
+    if (due)
+        assert_int_equal(publish_due(fixture->store, NULL, NULL, NULL, &err), 0);
     runner_destroy(&runner);
     block_result_clear(&result);
     claimed_job_clear(&job);
@@ -409,19 +414,6 @@ static void cases_not_begun_are_empty(void **state) {
     fixture_close(&fixture);
 }
 
-static double number_of(const struct fixture *fixture, const char *sql) {
-    sqlite3 *db = NULL;
-    sqlite3_stmt *row = NULL;
-    assert_int_equal(sqlite3_open(fixture->database, &db), SQLITE_OK);
-    if (sqlite3_prepare_v2(db, sql, -1, &row, NULL) != SQLITE_OK)
-        fail_msg("%s: %s", sql, sqlite3_errmsg(db));
-    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
-    double number = sqlite3_column_double(row, 0);
-    sqlite3_finalize(row);
-    sqlite3_close(db);
-    return number;
-}
-
 /* Areas, gaps and stiffnesses of single realisations on the finest level, whose means are the
  * curves; loads are found as a person writes them. */
 static void realisations_are_told_at_each_load(void **state) {
@@ -430,20 +422,21 @@ static void realisations_are_told_at_each_load(void **state) {
     fixture_open(&fixture);
     fixture_submit(&fixture, CONTACT_STUDY, 2, NULL, 0);
     run_all(&fixture);
-    double count = number_of(&fixture, "SELECT count(DISTINCT realisation) FROM realisation_points "
-                                       "WHERE \"case\" = 1 AND x = 0.15 AND model = 'layered' AND "
-                                       "quantity = 'stiffness'");
+    double count =
+        sql_real(fixture.database, "SELECT count(DISTINCT realisation) FROM realisation_points "
+                                   "WHERE \"case\" = 1 AND x = 0.15 AND model = 'layered' AND "
+                                   "quantity = 'stiffness'");
     assert_true(count ==
-                number_of(&fixture, "SELECT max(realisation) + 1 FROM realisation_scalars"));
+                sql_real(fixture.database, "SELECT max(realisation) + 1 FROM realisation_scalars"));
     assert_true(count > 2);
-    assert_true(number_of(&fixture,
-                          "SELECT count(DISTINCT quantity || series || model || \"case\" || "
-                          "x) FROM realisation_points WHERE level = 16") == 4 * 2 * 2 * 4);
+    assert_true(sql_real(fixture.database,
+                         "SELECT count(DISTINCT quantity || series || model || \"case\" || "
+                         "x) FROM realisation_points WHERE level = 16") == 4 * 2 * 2 * 4);
     assert_true(
-        number_of(&fixture,
-                  "SELECT max(abs(c.y / r.mean - 1)) FROM curve_points c JOIN (SELECT \"case\", "
-                  "quantity, series, model, level, x, avg(y) AS mean FROM realisation_points GROUP "
-                  "BY 1, 2, 3, 4, 5, 6) r USING (\"case\", quantity, series, model, level, x)") <
+        sql_real(fixture.database,
+                 "SELECT max(abs(c.y / r.mean - 1)) FROM curve_points c JOIN (SELECT \"case\", "
+                 "quantity, series, model, level, x, avg(y) AS mean FROM realisation_points GROUP "
+                 "BY 1, 2, 3, 4, 5, 6) r USING (\"case\", quantity, series, model, level, x)") <
         1e-9);
     fixture_close(&fixture);
 }
@@ -492,14 +485,15 @@ static void missing_realisations_are_null(void **state) {
 static void spoil(struct fixture *fixture, int case_number) {
     char sql[600], *fault = NULL;
     sqlite3 *db = NULL;
-    snprintf(sql, sizeof sql,
-             "INSERT OR IGNORE INTO scalar_names (names) VALUES (json_array('colour'));"
-             "UPDATE result SET names_id = (SELECT id FROM scalar_names WHERE names = "
-             "json_array('colour')) WHERE job_id IN (SELECT id FROM job WHERE %d IN (-1, "
-             "case_number));"
-             "DELETE FROM published WHERE %d IN (-1, case_number);"
-             "UPDATE study_case SET settled = 0 WHERE %d IN (-1, number);",
-             case_number, case_number, case_number);
+    snprintf(
+        sql, sizeof sql,
+        "INSERT OR IGNORE INTO scalar_names (names) VALUES (json_array('colour'));"
+        "UPDATE result SET names_id = (SELECT id FROM scalar_names WHERE names = "
+        "json_array('colour')), seal = NULL WHERE job_id IN (SELECT id FROM job WHERE %d IN (-1, "
+        "case_number));"
+        "DELETE FROM published WHERE %d IN (-1, case_number);"
+        "UPDATE study_case SET settled = 0 WHERE %d IN (-1, number);",
+        case_number, case_number, case_number);
     assert_int_equal(sqlite3_open(fixture->database, &db), SQLITE_OK);
     if (sqlite3_exec(db, sql, NULL, NULL, &fault) != SQLITE_OK)
         fail_msg("%s", fault);

@@ -6,7 +6,7 @@
 static struct client *client_of(const char *url, const char *token) {
     struct client *client = NULL;
     struct error err = {0};
-    assert_int_equal(client_create(&client, url, token, &err), 0);
+    assert_int_equal(client_create(&client, url, token, NULL, &err), 0);
     return client;
 }
 
@@ -162,6 +162,19 @@ static void statuses_become_errors(void **state) {
     }
 }
 
+static void a_fault_of_the_whole_is_told_once(void **state) {
+    (void)state;
+    static const char answer[] =
+        "HTTP/1.1 422 Unprocessable Content\r\nContent-Type: application/problem+json\r\n"
+        "Content-Length: 75\r\n\r\n"
+        "{\"detail\":\"too few rows\",\"errors\":[{\"pointer\":\"\",\"detail\":\"too few rows\"}]}";
+    struct stub stub = {.manner = ANSWER, .answer = answer};
+    struct error err = {0};
+    assert_int_equal(strlen(strstr(answer, "\r\n\r\n") + 4), 75);
+    assert_int_equal(ask(&stub, &err), ERROR_INPUT);
+    assert_string_equal(err.text, "too few rows");
+}
+
 /* A server must not send a worker, with its token, elsewhere. */
 static void redirects_are_not_followed(void **state) {
     (void)state;
@@ -228,13 +241,13 @@ static void wrong_addresses_and_tokens_are_refused(void **state) {
     struct client *client = NULL;
     struct error err = {0};
     for (size_t n = 0; n < sizeof urls / sizeof urls[0]; n++) {
-        if (client_create(&client, urls[n], NULL, &err) != ERROR_INPUT) {
+        if (client_create(&client, urls[n], NULL, NULL, &err) != ERROR_INPUT) {
             fail_msg("'%s' was taken", urls[n]);
         }
         assert_null(client);
     }
-    assert_int_equal(client_create(&client, "http://h:1", "a\r\nX: y", &err), ERROR_INPUT);
-    assert_int_equal(client_create(&client, "https://[::1]:8080/", "a", &err), 0);
+    assert_int_equal(client_create(&client, "http://h:1", "a\r\nX: y", NULL, &err), ERROR_INPUT);
+    assert_int_equal(client_create(&client, "https://[::1]:8080/", "a", NULL, &err), 0);
     client_destroy(&client);
     client_destroy(&client);
 }
@@ -260,6 +273,7 @@ int main(void) {
         cmocka_unit_test(broken_answers_are_errors),
         cmocka_unit_test(endless_answer_is_cut),
         cmocka_unit_test(statuses_become_errors),
+        cmocka_unit_test(a_fault_of_the_whole_is_told_once),
         cmocka_unit_test(redirects_are_not_followed),
         cmocka_unit_test(download_goes_to_the_file),
         cmocka_unit_test(refused_download_leaves_the_file_empty),

@@ -26,10 +26,8 @@ static void run(const char *format, const char *random, unsigned threads, uint64
     snprintf(text, sizeof text, format, random);
     fixture_open(&fixture);
     fixture_submit(&fixture, text, block, NULL, 0);
-    struct worker_options options = {.source = {.database = fixture.database, .worker = "test"},
-                                     .threads = threads,
-                                     .drain = 1,
-                                     .quiet = 1};
+    struct worker_options options = {
+        .source = {.database = fixture.database, .worker = "test"}, .threads = threads, .drain = 1};
     if (workers_run(&options, &err) != 0 ||
         aggregate_study(fixture.store, fixture.study, &filter, out, &err) != 0)
         fail_msg("%s", err.text);

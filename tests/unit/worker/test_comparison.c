@@ -6,10 +6,8 @@
 #include <math.h>
 
 static void run_all(struct fixture *fixture) {
-    struct worker_options options = {.source = {.database = fixture->database, .worker = "test"},
-                                     .threads = 1,
-                                     .drain = 1,
-                                     .quiet = 1};
+    struct worker_options options = {
+        .source = {.database = fixture->database, .worker = "test"}, .threads = 1, .drain = 1};
     struct error err = {0};
     if (workers_run(&options, &err) != 0)
         fail_msg("%s", err.text);

@@ -48,8 +48,7 @@ static void same_bits(const char *study, bool noted) {
         fixture_submit(&fixture, study, table[n].block, NULL, 0);
         struct worker_options options = {.source = {.database = fixture.database, .worker = "test"},
                                          .threads = table[n].threads,
-                                         .drain = 1,
-                                         .quiet = 1};
+                                         .drain = 1};
         if (workers_run(&options, &err) != 0) {
             fail_msg("%s", err.text);
         }

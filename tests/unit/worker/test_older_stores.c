@@ -2,10 +2,11 @@
  * opens with this one, which goes on where it was, and ends with the curves of a fresh run, bit for
  * bit; or it is refused with a word. tests/fixtures/stores/README.md says how the fixtures were
  * made. */
+#include "tests/support/sql.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/aggregate.h"
+#include "worker/verify.h"
 #include "worker/worker.h"
-#include <sqlite3.h>
 
 enum { STUDIES = 5, ROWS_MOST = 1 << 20 };
 
@@ -56,7 +57,7 @@ static char *rows_of(const char *path, const char *sql, const char *study) {
 
 static void work_off(const char *database) {
     struct worker_options options = {
-        .source = {.database = database, .worker = "new"}, .threads = 1, .drain = 1, .quiet = 1};
+        .source = {.database = database, .worker = "new"}, .threads = 1, .drain = 1};
     struct error err = {0};
     if (workers_run(&options, &err) != 0)
         fail_msg("%s", err.text);
@@ -207,14 +208,6 @@ static void a_store_of_version_3_goes_on(void **state) {
     store_close(&store);
 }
 
-static void execute(const char *path, const char *sql) {
-    sqlite3 *db = NULL;
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    if (sqlite3_exec(db, sql, NULL, NULL, NULL) != SQLITE_OK)
-        fail_msg("%s: %s", sql, sqlite3_errmsg(db));
-    sqlite3_close(db);
-}
-
 /* Its tables lack columns that curves got later: what it published stays, and what this program
  * publishes finds its place. */
 static void an_early_layout_is_mended(void **state) {
@@ -234,8 +227,8 @@ static void an_early_layout_is_mended(void **state) {
         assert_string_equal(progress, "published\n");
         free(kept);
         free(progress);
-        execute("early.db", "DELETE FROM curve; DELETE FROM point; DELETE FROM published; "
-                            "UPDATE study_case SET settled = 0");
+        sql_change("early.db", "DELETE FROM curve; DELETE FROM point; DELETE FROM published; "
+                               "UPDATE study_case SET settled = 0");
         retry_failed(store, "early.db");
         store_close(&store);
     }
@@ -251,6 +244,33 @@ static void a_reader_reads_it(void **state) {
     if (store_open(&store, "read.db", &options, &err) != 0)
         fail_msg("%s", err.text);
     store_close(&store);
+}
+
+static int refuse_structure(void *context, const struct flaw *flaw, struct error *err) {
+    (void)context;
+    (void)err;
+    if (flaw->kind == FLAW_FILE || flaw->kind == FLAW_REFERENCE)
+        fail_msg("%s", flaw->text);
+    return 0;
+}
+
+/* Migrations make of each older store what they make of an empty one. */
+static void a_store_brought_up_is_like_a_new_one(void **state) {
+    (void)state;
+    static const char *const FIXTURES[] = {"version-1.sql", "version-3.sql", "early-layout.sql"};
+    for (size_t f = 0; f < sizeof FIXTURES / sizeof *FIXTURES; f++) {
+        const struct verification verification = {.found = refuse_structure};
+        struct verify_report report = {0};
+        struct store *store = NULL;
+        struct error err;
+        char path[40];
+        snprintf(path, sizeof path, "%s.db", FIXTURES[f]);
+        load(FIXTURES[f], path);
+        assert_int_equal(store_open(&store, path, NULL, &err), 0);
+        assert_int_equal(verify_store(store, &verification, true, &report, &err), 0);
+        assert_true(report.counts.cases > 0);
+        store_close(&store);
+    }
 }
 
 static void the_first_layout_is_refused(void **state) {
@@ -272,6 +292,7 @@ int main(void) {
         cmocka_unit_test(a_store_of_version_3_goes_on),
         cmocka_unit_test(an_early_layout_is_mended),
         cmocka_unit_test(a_reader_reads_it),
+        cmocka_unit_test(a_store_brought_up_is_like_a_new_one),
         cmocka_unit_test(the_first_layout_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,10 +2,11 @@
 #include "tests/unit/worker/stub_server.h"
 #include "worker/client.h"
 #include "worker/source.h"
-#include "worker/wire.h"
+#include "worker/wire_report.h"
 
 #include <math.h>
 
+static const struct wish WISH = {.count = 1, .seconds = 5, .threads = 2, .wait_s = 7};
 static const char TOKEN[] = "0123456789abcdef0123456789abcdef";
 
 /* A reply of this status line and body, into text. */
@@ -32,10 +33,16 @@ static int claim(const char *status, const char *body, struct claimed_job *job, 
     struct stub stub = {.manner = ANSWER, .answer = reply(text, sizeof text, status, body)};
     stub_start(&stub);
     struct source *source = source_of(&stub);
-    int code = source_claim(source, job, found, &err);
+    size_t count = (size_t)*found;
+    bool due = false;
+    int code = source_claim(source, &WISH, job, &count, &due, &err);
+    if (code == 0)
+        *found = (int)count;
     source_destroy(&source);
     stub_stop(&stub);
     assert_non_null(strstr(stub.request, "POST /v1/jobs/claim "));
+    assert_non_null(strstr(stub.request, "Prefer: wait=7\r\n"));
+    assert_non_null(strstr(stub.request, "\"seconds\":5,\"threads\":2"));
     assert_non_null(strstr(stub.request, "\"worker\":\"w-0\""));
     assert_non_null(strstr(stub.request, "\"kinds\":[\"")); /* those that this program knows */
     return code;
@@ -72,47 +79,151 @@ static void no_content_is_no_job(void **state) {
     (void)state;
     struct error err = {0};
     struct claimed_job job = {0};
-    int found = -1;
+    size_t count = 9;
+    bool due = false;
     struct stub stub = {.manner = ANSWER, .answer = "HTTP/1.1 204 No Content\r\n\r\n"};
     stub_start(&stub);
     struct source *source = source_of(&stub);
-    assert_int_equal(source_claim(source, &job, &found, &err), 0);
-    assert_int_equal(found, 0);
+    assert_int_equal(source_claim(source, &WISH, &job, &count, &due, &err), 0);
+    assert_true(count == 0 && !due);
     source_destroy(&source);
     stub_stop(&stub);
 }
 
-/* Lost is what another worker took, what was cancelled, and what a new database never had. */
+static int at_once(void *context) {
+    (void)context;
+    return 1;
+}
+
+/* A claim that waits at the server ends when the worker is to end. */
+static void waiting_claims_can_be_stopped(void **state) {
+    (void)state;
+    struct error err = {0};
+    struct claimed_job job = {0};
+    size_t count = 0;
+    bool due = false;
+    struct wish wish = WISH;
+    wish.stop = at_once;
+    struct stub stub = {.manner = SILENT};
+    stub_start(&stub);
+    struct source *source = source_of(&stub);
+    assert_int_equal(source_claim(source, &wish, &job, &count, &due, &err), ERROR_STOPPED);
+    source_destroy(&source);
+    stub_stop(&stub);
+}
+
+/* Lost is what another worker took, what was cancelled, and what a new database never had: each
+ * report has its own answer. */
 static void lost_leases_are_told_apart(void **state) {
     (void)state;
+    static const char answers[] =
+        "{\"reports\":[{\"job\":7,\"status\":200},{\"job\":8,\"status\":409,\"detail\":\"the "
+        "lease of job 8 is lost\"},{\"job\":9,\"status\":404},{\"job\":10,\"status\":503},{\"job\""
+        ":11,\"status\":422,\"detail\":\"no\"}]}";
+    static const int codes[] = {0, ERROR_STATE, ERROR_STATE, ERROR_SYSTEM, ERROR_INPUT};
+    struct claimed_job jobs[5] = {{0}};
+    struct report reports[5];
+    char text[512];
+    struct error err = {0};
+    bool due = false;
+    for (size_t n = 0; n < 5; n++) {
+        jobs[n].id = 7 + (int64_t)n;
+        memcpy(jobs[n].token, TOKEN, sizeof TOKEN);
+        reports[n] = (struct report){.verb = n == 0   ? REPORT_HEARTBEAT
+                                             : n == 1 ? REPORT_FAIL
+                                                      : REPORT_RELEASE,
+                                     .job = &jobs[n],
+                                     .done = 3,
+                                     .reason = "no convergence",
+                                     .permanent = true};
+    }
+    struct stub stub = {.manner = ANSWER, .answer = reply(text, sizeof text, "200 OK", answers)};
+    stub_start(&stub);
+    struct source *source = source_of(&stub);
+    assert_int_equal(source_report(source, reports, 5, &due, &err), 0);
+    source_destroy(&source);
+    stub_stop(&stub);
+    for (size_t n = 0; n < 5; n++)
+        assert_int_equal(reports[n].status, codes[n]);
+    assert_string_equal(reports[1].err.text, "the lease of job 8 is lost");
+    assert_int_equal(stub.requests, 1);
+    assert_non_null(strstr(stub.request, "POST /v1/jobs/report "));
+    assert_non_null(strstr(stub.request, "\"done\":3,\"verb\":\"heartbeat\",\"job\":7"));
+    assert_non_null(strstr(stub.request, "\"reason\":\"no convergence\",\"permanent\":true"));
+    assert_non_null(strstr(stub.request, "\"verb\":\"release\",\"job\":11"));
+}
+
+/* What refuses the request as a whole, or answers other reports, answers none. */
+static void whole_requests_fail(void **state) {
+    (void)state;
     static const struct {
-        const char *status;
+        const char *status, *body;
         int code;
     } table[] = {
-        {"200 OK", 0},
-        {"409 Conflict", ERROR_STATE},
-        {"404 Not Found", ERROR_STATE},
-        {"500 Internal Server Error", ERROR_SYSTEM},
-        {"403 Forbidden", ERROR_INPUT},
+        {"500 Internal Server Error", "{}", ERROR_SYSTEM},
+        {"403 Forbidden", "{}", ERROR_INPUT},
+        {"200 OK", "{}", ERROR_SYSTEM},
+        {"200 OK", "{\"reports\":[]}", ERROR_SYSTEM},
+        {"200 OK", "{\"reports\":[{\"job\":8,\"status\":200}]}", ERROR_SYSTEM},
+        {"200 OK", "{\"reports\":[{\"job\":7}]}", ERROR_SYSTEM},
     };
     struct claimed_job job = {.id = 7};
     memcpy(job.token, TOKEN, sizeof TOKEN);
     for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
+        struct report one = {.verb = REPORT_RELEASE, .job = &job};
         char text[256];
         struct error err = {0};
+        bool due = false;
         struct stub stub = {.manner = ANSWER,
-                            .answer = reply(text, sizeof text, table[n].status, "{}")};
+                            .answer = reply(text, sizeof text, table[n].status, table[n].body)};
         stub_start(&stub);
         struct source *source = source_of(&stub);
-        assert_int_equal(source_heartbeat(source, &job, 3, &err), table[n].code);
-        assert_int_equal(source_release(source, &job, &err), table[n].code);
-        assert_int_equal(source_fail(source, &job, "no convergence", 1, &err), table[n].code);
+        assert_int_equal(source_report(source, &one, 1, &due, &err), table[n].code);
         source_destroy(&source);
         stub_stop(&stub);
-        assert_int_equal(stub.connections, 1);
-        assert_non_null(strstr(stub.request, "POST /v1/jobs/7/fail "));
-        assert_non_null(strstr(stub.request, "\"reason\":\"no convergence\""));
-        assert_non_null(strstr(stub.request, "\"permanent\":true"));
+    }
+}
+
+/* A server that knows single reports alone is asked about many once. Here it does not know the job
+ * either. */
+static void older_servers_get_reports_alone(void **state) {
+    (void)state;
+    struct claimed_job jobs[2] = {{.id = 7}, {.id = 8}};
+    struct report reports[2];
+    char text[256];
+    struct error err = {0};
+    bool due = false;
+    for (size_t n = 0; n < 2; n++) {
+        memcpy(jobs[n].token, TOKEN, sizeof TOKEN);
+        reports[n] = (struct report){
+            .verb = n == 0 ? REPORT_RELEASE : REPORT_HEARTBEAT, .job = &jobs[n], .done = 3};
+    }
+    struct stub stub = {.manner = ANSWER,
+                        .answer = reply(text, sizeof text, "404 Not Found", "{}")};
+    stub_start(&stub);
+    struct source *source = source_of(&stub);
+    assert_int_equal(source_report(source, reports, 2, &due, &err), 0);
+    assert_int_equal(reports[0].status, ERROR_STATE);
+    assert_int_equal(reports[1].status, ERROR_STATE);
+    assert_int_equal(source_report(source, reports, 2, &due, &err), 0);
+    source_destroy(&source);
+    stub_stop(&stub);
+    assert_int_equal(stub.requests, 1 + 2 + 2);
+    assert_non_null(strstr(stub.request, "POST /v1/jobs/8/heartbeat "));
+    assert_non_null(strstr(stub.request, "\"done\":3"));
+    assert_null(strstr(stub.request, "verb"));
+}
+
+static void names_have_no_control_characters(void **state) {
+    (void)state;
+    static const char *const names[] = {"a\x1b[31m", "a\nb", "a\x7f", "a\xc2\x9b"};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        struct source_options options = {.url = "http://127.0.0.1:1", .worker = names[n]};
+        struct source *source = NULL;
+        struct error err = {0};
+        assert_int_equal(source_create(&source, &options, &err), ERROR_INPUT);
+        assert_non_null(strstr(err.text, "control character"));
+        assert_null(strchr(err.text, '\x1b'));
     }
 }
 
@@ -140,27 +251,33 @@ static void result_arrives(void **state) {
     memcpy(job.token, TOKEN, sizeof TOKEN);
     char text[256];
     struct error err = {0};
+    bool due = false;
+    struct report one = {.verb = REPORT_COMPLETE, .job = &job, .result = &result};
     struct stub stub = {.manner = ANSWER,
-                        .answer = reply(text, sizeof text, "200 OK", "{\"case_done\":true}")};
+                        .answer = reply(text, sizeof text, "200 OK",
+                                        "{\"reports\":[{\"job\":9000000000,\"status\":200}]}")};
     stub_start(&stub);
     struct source *source = source_of(&stub);
-    assert_int_equal(source_complete(source, &job, &result, &err), 0);
+    assert_int_equal(source_report(source, &one, 1, &due, &err), 0);
+    assert_int_equal(one.status, 0);
     source_destroy(&source);
     stub_stop(&stub);
-    assert_non_null(strstr(stub.request, "POST /v1/jobs/9000000000/complete "));
     const char *body = strstr(stub.request, "\r\n\r\n") + 4;
     cJSON *value = NULL;
-    struct block_result got;
-    char token[TOKEN_SIZE];
+    struct wire_item *item = NULL;
+    size_t count = 0;
     assert_int_equal(json_parse(body, strlen(body), NULL, &value, &err), 0);
-    assert_int_equal(wire_result_read(value, token, &got, &err), 0);
-    assert_string_equal(token, TOKEN);
+    assert_int_equal(wire_reports_read(value, &item, &count, &err), 0);
+    assert_true(count == 1 && item->verb == REPORT_COMPLETE && item->status == 0);
+    assert_true(item->job == 9000000000);
+    assert_string_equal(item->report.token, TOKEN);
+    struct block_result got = item->block;
     assert_int_equal(got.scalar_count, result.scalar_count);
     assert_true(isnan(got.scalars[0]));
     assert_true(got.scalars[1] == scalars[1]);
     assert_string_equal(got.names[1], kind->scalar(1));
     assert_memory_equal(got.data, data, sizeof data);
-    block_result_clear(&got);
+    wire_items_free(item, count);
     cJSON_Delete(value);
 }
 
@@ -191,7 +308,8 @@ static void studies_with_jobs_are_left(void **state) {
                             .answer = reply(text, sizeof text, table[n].status, table[n].body)};
         stub_start(&stub);
         struct source *source = source_of(&stub);
-        assert_int_equal(source_left(source, &left, &err), table[n].code);
+        bool due = false;
+        assert_int_equal(source_left(source, &left, &due, &err), table[n].code);
         assert_int_equal(left, table[n].left);
         source_destroy(&source);
         stub_stop(&stub);
@@ -212,8 +330,14 @@ static int tear_down(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(claims_mean_what_they_say),  cmocka_unit_test(no_content_is_no_job),
-        cmocka_unit_test(lost_leases_are_told_apart), cmocka_unit_test(result_arrives),
+        cmocka_unit_test(claims_mean_what_they_say),
+        cmocka_unit_test(no_content_is_no_job),
+        cmocka_unit_test(waiting_claims_can_be_stopped),
+        cmocka_unit_test(lost_leases_are_told_apart),
+        cmocka_unit_test(whole_requests_fail),
+        cmocka_unit_test(older_servers_get_reports_alone),
+        cmocka_unit_test(names_have_no_control_characters),
+        cmocka_unit_test(result_arrives),
         cmocka_unit_test(studies_with_jobs_are_left),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

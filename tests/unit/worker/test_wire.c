@@ -1,36 +1,13 @@
 /* Jobs and results cross the network unchanged, bit for bit, and nothing malformed gets in. */
 #include "tests/support/seed.h"
+#include "tests/unit/worker/crossing.h"
 #include "worker/wire.h"
-
 #include <float.h>
 #include <math.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <setjmp.h>
-
-#include <cmocka.h>
-
-static const char TOKEN[] = "0123456789abcdef0123456789abcdef";
 static const char STUDY[] = "0123456789abcdef";
-
-/* The value as the other end sees it: printed, and read through the strict gate. */
-static cJSON *cross(cJSON *value) {
-    struct error err = {0};
-    cJSON *read = NULL;
-    assert_non_null(value);
-    char *text = json_print(value);
-    assert_non_null(text);
-    cJSON_Delete(value);
-    if (json_parse(text, strlen(text), NULL, &read, &err) != 0) {
-        fail_msg("%s", err.text);
-    }
-    free(text);
-    return read;
-}
 
 static const char PARAMETERS[] = "{\"surface\":{\"hurst\":0.1,\"list\":[1,2.5e-300,null]}}";
 

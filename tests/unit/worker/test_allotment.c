@@ -1,0 +1,124 @@
+/* A worker's threads by its allotment: quotas of control groups of both versions, on trees made
+ * here, and what Slurm says. */
+#include "worker/allotment.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+/* Makes the file and the folders above it. */
+static void put(const char *path, const char *text) {
+    char folder[256];
+    snprintf(folder, sizeof folder, "%s", path);
+    for (char *at = strchr(folder, '/'); at != NULL; at = strchr(at + 1, '/')) {
+        *at = '\0';
+        (void)mkdir(folder, 0777);
+        *at = '/';
+    }
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+#define UNIFIED "31 23 0:28 / /sys/fs/cgroup rw,nosuid shared:9 - cgroup2 cgroup2 rw,nsdelegate\n"
+
+static void version_two_by_its_groups(void **state) {
+    (void)state;
+    put("two/proc/self/mountinfo", "22 1 8:1 / / rw - ext4 /dev/sda1 rw\n" UNIFIED);
+    put("two/proc/self/cgroup", "0::/slice/job/step\n");
+    assert_int_equal(allotment_of_groups("two"), 0); /* nothing restricts */
+    put("two/sys/fs/cgroup/slice/job/step/cpu.max", "max 100000\n");
+    assert_int_equal(allotment_of_groups("two"), 0);
+    put("two/sys/fs/cgroup/slice/cpu.max", "800000 100000\n");
+    assert_int_equal(allotment_of_groups("two"), 8); /* of a group above */
+    put("two/sys/fs/cgroup/slice/job/cpu.max", "150000 100000\n");
+    assert_int_equal(allotment_of_groups("two"), 2); /* rounded up, and the least of all */
+    put("two/sys/fs/cgroup/slice/job/step/cpu.max", "5000 100000\n");
+    assert_int_equal(allotment_of_groups("two"), 1);
+    put("two/sys/fs/cgroup/slice/job/step/cpu.max", "damaged\n");
+    assert_int_equal(allotment_of_groups("two"), 2);
+}
+
+static void version_one_by_the_cpu_controller(void **state) {
+    (void)state;
+    put("one/proc/self/mountinfo",
+        "32 31 0:29 / /sys/fs/cgroup/cpu,cpuacct rw - cgroup cgroup rw,cpu,cpuacct\n"
+        "34 31 0:31 / /sys/fs/cgroup/cpuset rw - cgroup cgroup rw,cpuset\n");
+    put("one/proc/self/cgroup", "5:cpuset:/other\n4:cpu,cpuacct:/job\n1:name=systemd:/job\n");
+    put("one/sys/fs/cgroup/cpuset/other/cpu.cfs_quota_us", "100000\n"); /* of no meaning there */
+    put("one/sys/fs/cgroup/cpuset/other/cpu.cfs_period_us", "100000\n");
+    put("one/sys/fs/cgroup/cpu,cpuacct/job/cpu.cfs_quota_us", "-1\n");
+    put("one/sys/fs/cgroup/cpu,cpuacct/job/cpu.cfs_period_us", "100000\n");
+    assert_int_equal(allotment_of_groups("one"), 0);
+    put("one/sys/fs/cgroup/cpu,cpuacct/job/cpu.cfs_quota_us", "300000\n");
+    assert_int_equal(allotment_of_groups("one"), 3);
+}
+
+/* A container sees its own group as the top of what is mounted, by whichever name. */
+static void a_container_by_what_is_mounted(void **state) {
+    (void)state;
+    put("box/proc/self/mountinfo",
+        "41 31 0:38 /docker/abc /sys/fs/cgroup ro - cgroup2 cgroup rw\n");
+    put("box/sys/fs/cgroup/cpu.max", "400000 100000\n");
+    static const char *const groups[] = {"0::/docker/abc\n", "0::/\n", "0::/../other\n"};
+    for (size_t n = 0; n < sizeof groups / sizeof *groups; n++) {
+        put("box/proc/self/cgroup", groups[n]);
+        assert_int_equal(allotment_of_groups("box"), 4);
+    }
+    put("box/proc/self/cgroup", "0::/docker/abc/inner\n");
+    put("box/sys/fs/cgroup/inner/cpu.max", "100000 100000\n");
+    assert_int_equal(allotment_of_groups("box"), 1);
+}
+
+static void nothing_mounted_restricts_nothing(void **state) {
+    (void)state;
+    assert_int_equal(allotment_of_groups("absent"), 0);
+    put("none/proc/self/mountinfo", "damaged\n1 2 - cgroup2\n\n3 4 0:1 / - cgroup2 a b\n");
+    put("none/proc/self/cgroup", "damaged\n::\n0:\n");
+    assert_int_equal(allotment_of_groups("none"), 0);
+}
+
+static void slurm_by_task_and_node(void **state) {
+    (void)state;
+    assert_int_equal(allotment_of_slurm(NULL, NULL), 0);
+    assert_int_equal(allotment_of_slurm("1", "16"), 1);
+    assert_int_equal(allotment_of_slurm(NULL, "16"), 16);
+    assert_int_equal(allotment_of_slurm("8", NULL), 8);
+    assert_int_equal(allotment_of_slurm("0", "-3"), 0);
+    assert_int_equal(allotment_of_slurm("4x", ""), 0);
+    assert_int_equal(allotment_of_slurm("99999999999999999999", "2"), 2);
+}
+
+static void the_least_holds(void **state) {
+    (void)state;
+    unsetenv("SLURM_CPUS_ON_NODE");
+    unsetenv("SLURM_CPUS_PER_TASK");
+    unsigned own = allotment_threads();
+    assert_true(own >= 1 && own <= (unsigned)sysconf(_SC_NPROCESSORS_CONF));
+    setenv("SLURM_CPUS_ON_NODE", "1", 1);
+    assert_int_equal(allotment_threads(), 1);
+    setenv("SLURM_CPUS_ON_NODE", "4096", 1);
+    assert_int_equal(allotment_threads(), own);
+    unsetenv("SLURM_CPUS_ON_NODE");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(version_two_by_its_groups),
+        cmocka_unit_test(version_one_by_the_cpu_controller),
+        cmocka_unit_test(a_container_by_what_is_mounted),
+        cmocka_unit_test(nothing_mounted_restricts_nothing),
+        cmocka_unit_test(slurm_by_task_and_node),
+        cmocka_unit_test(the_least_holds),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

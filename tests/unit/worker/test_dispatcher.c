@@ -1,0 +1,155 @@
+/* The dispatcher on a local store: many small jobs at once, one offer each, and all of them back
+ * or done in the end. */
+#include "tests/unit/worker/small_study.h"
+#include "worker/dispatcher.h"
+#include "worker/publish.h"
+
+#include "jobs/runner.h"
+#include <time.h>
+
+struct scene {
+    struct fixture fixture;
+    struct source_options source;
+    struct dispatcher *dispatcher;
+};
+
+/* 48 jobs of a realisation. */
+static void scene_open(struct scene *scene, unsigned threads, bool drain) {
+    struct error err = {0};
+    *scene = (struct scene){0};
+    fixture_open(&scene->fixture);
+    fixture_submit(&scene->fixture, SMALL_STUDY, 1, NULL, 0);
+    scene->source = (struct source_options){
+        .database = scene->fixture.database, .worker = "test", .lease_ms = 600};
+    struct dispatcher_options options = {
+        .source = &scene->source, .threads = threads, .drain = drain};
+    if (dispatcher_create(&scene->dispatcher, &options, &err) != 0)
+        fail_msg("%s", err.text);
+}
+
+static void scene_close(struct scene *scene) {
+    dispatcher_destroy(&scene->dispatcher);
+    fixture_close(&scene->fixture);
+}
+
+static void expect(struct scene *scene, uint64_t waiting, uint64_t running, uint64_t done) {
+    struct study_status status = fixture_status(&scene->fixture);
+    assert_int_equal(status.jobs_running, running);
+    assert_int_equal(status.realisations_done, done);
+    assert_true((status.jobs_waiting > 0) == (waiting > 0));
+    study_status_clear(&status);
+}
+
+static struct lease *take(struct scene *scene) {
+    struct lease *lease = NULL;
+    assert_int_equal(dispatcher_take(scene->dispatcher, true, &lease), OFFER_JOB);
+    assert_non_null(lease);
+    return lease;
+}
+
+static void run(struct scene *scene, struct lease *lease) {
+    const struct claimed_job *job = lease_job(lease);
+    struct job_end end = {.verb = REPORT_COMPLETE};
+    struct job_runner *runner = NULL;
+    struct error err = {0};
+    assert_int_equal(runner_create(&runner, kind_find(job->kind), job->parameters, NULL, job->seed,
+                                   job->sequence, &err),
+                     0);
+    assert_int_equal(runner_run(runner, job->first, job->count, NULL, &end.result, &err), 0);
+    runner_destroy(&runner);
+    dispatcher_hand_in(scene->dispatcher, &lease, &end);
+    assert_null(lease);
+    assert_null(end.result.data);
+}
+
+/* One claim brings more than one job; those not begun are given back at the end, those handed in
+ * are stored. */
+static void the_stock_is_given_back(void **state) {
+    (void)state;
+    struct scene scene;
+    scene_open(&scene, 1, false);
+    struct lease *lease = take(&scene);
+    struct study_status status = fixture_status(&scene.fixture);
+    assert_true(status.jobs_running > 1);
+    study_status_clear(&status);
+    run(&scene, lease);
+    dispatcher_end(scene.dispatcher);
+    assert_int_equal(dispatcher_take(scene.dispatcher, true, &lease), OFFER_END);
+    dispatcher_destroy(&scene.dispatcher);
+    expect(&scene, 1, 0, 1);
+    scene_close(&scene);
+}
+
+/* Jobs in stock and at work keep leases that are far shorter than the wait. */
+static void all_leases_are_kept(void **state) {
+    (void)state;
+    struct scene scene;
+    scene_open(&scene, 1, false);
+    struct lease *lease = take(&scene);
+    nanosleep(&(struct timespec){.tv_sec = 1, .tv_nsec = 500000000}, NULL);
+    struct claim claim = {.worker = "rival", .count = 100};
+    struct claimed_job jobs[100];
+    struct error err = {0};
+    size_t count = 0;
+    assert_int_equal(store_claim(scene.fixture.store, &claim, jobs, &count, &err), 0);
+    for (size_t n = 0; n < count; n++) { /* of what waited, none of what was lost */
+        assert_int_equal(jobs[n].attempt, 1);
+        claimed_job_clear(&jobs[n]);
+    }
+    assert_false(lease_is_lost(lease));
+    run(&scene, lease);
+    scene_close(&scene);
+}
+
+/* What still runs when the time is over is lost to the thread that has it. */
+static void running_jobs_are_given_back(void **state) {
+    (void)state;
+    struct scene scene;
+    scene_open(&scene, 1, false);
+    struct lease *lease = take(&scene);
+    dispatcher_end(scene.dispatcher);
+    dispatcher_give_back(scene.dispatcher);
+    for (int tries = 0; !lease_is_lost(lease) && tries < 1000; tries++)
+        nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+    assert_true(lease_is_lost(lease));
+    run(&scene, lease); /* too late */
+    dispatcher_destroy(&scene.dispatcher);
+    expect(&scene, 1, 0, 0);
+    scene_close(&scene);
+}
+
+/* A drained queue ends the offers, once what is due is published. */
+static void a_drained_queue_is_the_end(void **state) {
+    (void)state;
+    struct scene scene;
+    enum offer offer;
+    struct lease *lease = NULL;
+    int jobs = 0, publishings = 0;
+    scene_open(&scene, 1, true);
+    while ((offer = dispatcher_take(scene.dispatcher, true, &lease)) != OFFER_END) {
+        if (offer == OFFER_JOB) {
+            run(&scene, lease);
+            jobs++;
+        } else {
+            struct error err = {0};
+            assert_int_equal(offer, OFFER_PUBLISH);
+            assert_int_equal(publish_due(scene.fixture.store, NULL, NULL, NULL, &err), 0);
+            publishings++;
+            dispatcher_published(scene.dispatcher, false);
+        }
+    }
+    assert_int_equal(jobs, 48);
+    assert_true(publishings > 0);
+    expect(&scene, 0, 0, 48);
+    scene_close(&scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_stock_is_given_back),
+        cmocka_unit_test(all_leases_are_kept),
+        cmocka_unit_test(running_jobs_are_given_back),
+        cmocka_unit_test(a_drained_queue_is_the_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

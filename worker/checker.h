@@ -1,0 +1,18 @@
+/* Checks results before they are stored: once stored, one that its kind cannot merge
+ * would keep its case from being merged at all.
+ *
+ * A merger of a case may take seconds to make (it sums a whole spectrum), and results of few cases
+ * come at a time: the mergers used last are kept. Safe from many threads. */
+#ifndef RUGO_WORKER_CHECKER_H
+#define RUGO_WORKER_CHECKER_H
+
+#include "schema/store/store.h"
+
+struct checker;
+int checker_create(struct checker **out, struct error *err);
+void checker_destroy(struct checker **checker);
+/* Fails with ERROR_INPUT when the result is none of this job's case. */
+int checker_check(struct checker *checker, const struct claimed_job *job,
+                  const struct block_result *result, struct error *err);
+
+#endif
