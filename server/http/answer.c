@@ -1,4 +1,5 @@
 /* Answers of the routes: documents, texts, problems. */
+#include "core/plain_text.h"
 #include "schema/json/field.h"
 #include "server/http/compress.h"
 #include "server/http/http.h"
@@ -74,22 +75,9 @@ void answer_text(struct exchange *exchange, unsigned status, const char *type, c
         tell_coding(exchange, false);
 }
 
-/* Bytes of a well-formed UTF-8 sequence (RFC 3629); 0 if it is none. Reads no further than a NUL.
- */
-static size_t character_length(const unsigned char *s) {
-    static const unsigned char LEAST_SECOND[5] = {[3] = 0xa0, [4] = 0x90};
-    size_t length = s[0] < 0x80 ? 1 : s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
-    for (size_t i = 1; i < length; i++)
-        if ((s[i] & 0xc0) != 0x80)
-            return 0;
-    bool overlong = (s[0] == 0xe0 || s[0] == 0xf0) && s[1] < LEAST_SECOND[length];
-    bool beyond = s[0] > 0xf4 || (s[0] == 0xf4 && s[1] > 0x8f) || (s[0] == 0xed && s[1] > 0x9f);
-    return overlong || beyond ? 0 : length;
-}
-
 void answer_mend(char *text) {
     for (size_t length; text != NULL && *text != '\0'; text += length != 0 ? length : 1)
-        if ((length = character_length((unsigned char *)text)) == 0)
+        if ((length = text_character(text)) == 0)
             *text = '?';
 }
 
@@ -114,13 +102,32 @@ void answer_static(struct exchange *exchange, const char *type, const char *data
         tell_coding(exchange, false);
 }
 
+static ssize_t end_at_once(void *context, uint64_t position, char *buffer, size_t room) {
+    (void)context;
+    (void)position;
+    (void)buffer;
+    (void)room;
+    return MHD_CONTENT_READER_END_OF_STREAM;
+}
+
+/* Headers alone, without a length that is not known. Of chunks the library would send the end, and
+ * so it is told to send none. */
+static void answer_head(struct exchange *exchange, const char *type) {
+    enum { PART = 1024 };
+    struct MHD_Response *response =
+        MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, PART, end_at_once, NULL, NULL);
+    if (response != NULL)
+        MHD_set_response_options(response, MHD_RF_HTTP_VERSION_1_0_ONLY, MHD_RO_END);
+    finish(exchange, 200, type, response);
+}
+
 void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
                    MHD_ContentReaderCallback read, void *context,
                    MHD_ContentReaderFreeCallback free_context) {
     enum { PART = 32768 };
     if (size == MHD_SIZE_UNKNOWN && strcmp(exchange->method, "HEAD") == 0) {
-        free_context(context); /* the library would send an end of chunks */
-        answer_static(exchange, type, "", 0);
+        free_context(context);
+        answer_head(exchange, type);
         return;
     }
     finish(exchange, 200, type,
@@ -213,9 +220,10 @@ void answer_error(struct exchange *exchange, const struct error *err) {
         status = 404;
     else if (err->code == ERROR_STATE)
         status = 409;
-    else if (err->code == ERROR_SYSTEM || err->code == ERROR_MEMORY)
+    else if (err->code == ERROR_SYSTEM || err->code == ERROR_MEMORY || err->code == ERROR_STOPPED)
         status = 503;
-    if (status >= 500) { /* the server's trouble: whoever runs it must see why */
+    if (status >= 500 &&
+        err->code != ERROR_STOPPED) { /* the server's trouble: whoever runs it must see why */
         struct log_about about = {.request = exchange->path, .status = (long)status};
         log_line(LEVEL_ERROR, &about, "%s", err->text);
     }

@@ -1,59 +1,41 @@
 #include "server/http/http.h"
+#include "server/http/http_internal.h"
 #include "worker/clock.h"
 #include "worker/log.h"
 #include <arpa/inet.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
-#include <time.h>
 #include <unistd.h>
 
 enum {
-    BODY_MOST = 16 << 20,
-    BODY_SMALL = 64 << 10,   /* always taken: heartbeats must not wait for large bodies */
-    BODIES_MOST = 256 << 20, /* of all larger ones at a time */
     HEADERS_MOST = 32 << 10, /* the library's memory a connection */
-    IDLE_MS = 60000,         /* between two requests of a connection */
-    END_MS = 10000,          /* for running requests when the server ends */
+    STACK = 512 << 10,       /* of a connection's thread: handlers have used 76 KiB of it */
+    RESERVE = 32,            /* connections beyond the limit */
+    CLOSING_MOST = 512,      /* shut ones whose threads have not ended */
+    OTHER_FILES = 512,       /* descriptors of the store, its readers, workers' connections */
+    LATE_MS = 500,           /* by which a connection may pass its deadline */
+    END_MS = 1200,           /* for running requests when the server ends */
 };
-
-/* The library's own timeout counts idleness only: one byte a second would hold a connection for
- * ever. So each connection has a deadline, and a watchdog shuts those past it. */
-struct connection {
-    int socket;
-    int64_t deadline_ms;
-    struct connection *next, **link;
-};
-
-struct http {
-    struct service *service;
-    struct http_options options;
-    struct MHD_Daemon *daemon;
-    uint16_t port;
-    pthread_t watchdog;
-    pthread_mutex_t mutex; /* guards the list, requests, stopping and ending */
-    pthread_cond_t changed;
-    struct connection *connections;
-    unsigned requests; /* being answered */
-    bool stopping;     /* http_stop waits for the requests */
-    bool ending;
-    atomic_size_t bodies; /* bytes that running requests with larger bodies may bring */
-};
-
-static int64_t now_ns(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
-}
 
 /* --- connections --- */
 
-static int socket_of(struct MHD_Connection *connection) {
+/* Before the handshake. The session of a connection that is shut has none, and ends with it. */
+static void lend_identity(struct http *http, struct MHD_Connection *connection,
+                          struct connection *entry) {
+    if (http->options.certificate == NULL)
+        return;
     const union MHD_ConnectionInfo *info =
-        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
-    return info != NULL ? info->connect_fd : -1;
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_GNUTLS_SESSION);
+    if (entry == NULL)
+        gnutls_session_set_ptr(info->tls_session, NULL);
+    else
+        *connection_identity(entry) =
+            certificate_lend(http->options.certificate, info->tls_session);
 }
 
 static void on_connection(void *context, struct MHD_Connection *connection, void **slot,
@@ -61,224 +43,63 @@ static void on_connection(void *context, struct MHD_Connection *connection, void
     struct http *http = context;
     struct connection *entry = *slot;
     if (code == MHD_CONNECTION_NOTIFY_CLOSED) {
-        if (entry == NULL)
-            return;
-        pthread_mutex_lock(&http->mutex);
-        *entry->link = entry->next;
-        if (entry->next != NULL)
-            entry->next->link = entry->link;
-        pthread_mutex_unlock(&http->mutex);
-        atomic_fetch_sub(&http->service->connections, 1);
-        free(entry);
+        if (entry != NULL)
+            certificate_give_back(http->options.certificate, *connection_identity(entry));
+        atomic_fetch_sub(&http->service->connections, entry != NULL);
+        connections_remove(http->connections, &entry);
         *slot = NULL;
         return;
     }
-    int socket = socket_of(connection);
-    entry = calloc(1, sizeof *entry);
-    if (entry == NULL) {
-        shutdown(socket, SHUT_RDWR); /* it would have no deadline */
-        return;
-    }
-    entry->socket = socket;
-    entry->deadline_ms = clock_ms() + 1000 * (int64_t)http->options.deadline_s;
-    pthread_mutex_lock(&http->mutex);
-    entry->next = http->connections;
-    entry->link = &http->connections;
-    if (entry->next != NULL)
-        entry->next->link = &entry->next;
-    http->connections = entry;
-    pthread_mutex_unlock(&http->mutex);
-    atomic_fetch_add(&http->service->connections, 1);
-    *slot = entry;
+    const union MHD_ConnectionInfo *file =
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    int socket = file->connect_fd;
+    const union MHD_ConnectionInfo *address =
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
+    *slot =
+        connections_add(http->connections, socket, address != NULL ? address->client_addr : NULL);
+    lend_identity(http, connection, *slot);
+    if (*slot == NULL)
+        shutdown(socket, SHUT_RDWR);
+    else
+        atomic_fetch_add(&http->service->connections, 1);
 }
 
-static void set_deadline(struct http *http, struct MHD_Connection *connection,
-                         int64_t deadline_ms) {
-    const union MHD_ConnectionInfo *info =
-        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
-    struct connection *entry = info != NULL ? info->socket_context : NULL;
-    if (entry == NULL)
-        return;
-    pthread_mutex_lock(&http->mutex);
-    entry->deadline_ms = deadline_ms;
-    pthread_mutex_unlock(&http->mutex);
+/* Says that connections were closed for want of room; false where none were since it was told. */
+static bool log_crowding(const struct http *http, const struct connection_counts *now,
+                         struct connection_counts *told) {
+    if (now->evicted == told->evicted && now->refused == told->refused)
+        return false;
+    log_line(LEVEL_ERROR, NULL,
+             "%u connections are open, of %u (--connections): %llu silent ones were closed to make "
+             "room, %llu new ones were refused",
+             now->open, http->options.connections,
+             (unsigned long long)(now->evicted - told->evicted),
+             (unsigned long long)(now->refused - told->refused));
+    *told = *now;
+    return true;
 }
 
-void exchange_renew(struct exchange *exchange) {
-    int64_t time = 1000 * (int64_t)exchange->http->options.deadline_s;
-    set_deadline(exchange->http, exchange->connection, clock_ms() + time);
-}
-
+/* The library's own timeout counts idleness only: one byte a second would hold a connection for
+ * ever. */
 static void *watchdog_thread(void *context) {
+    enum { CROWDING_MS = 60000 };
     struct http *http = context;
+    struct connection_counts told = {0};
+    int64_t tell_ms = 0;
     pthread_mutex_lock(&http->mutex);
     while (!http->ending) {
-        int64_t now = clock_ms();
-        for (struct connection *entry = http->connections; entry != NULL; entry = entry->next)
-            if (entry->deadline_ms <= now) {
-                shutdown(entry->socket, SHUT_RDWR);
-                entry->deadline_ms = INT64_MAX; /* once is enough */
-            }
-        clock_cond_wait(&http->changed, &http->mutex, now + 500);
+        connections_shut_late(http->connections);
+        struct connection_counts counts = connections_count(http->connections);
+        atomic_store(&http->service->crowded_out, counts.evicted + counts.refused);
+        if (clock_ms() >= tell_ms && log_crowding(http, &counts, &told))
+            tell_ms = clock_ms() + CROWDING_MS;
+        clock_cond_wait(&http->changed, &http->mutex, clock_ms() + LATE_MS);
     }
     pthread_mutex_unlock(&http->mutex);
     return NULL;
 }
 
-/* --- exchanges --- */
-
-static void count_request(struct http *http, int change) {
-    pthread_mutex_lock(&http->mutex);
-    http->requests = (unsigned)((int)http->requests + change);
-    if (http->stopping) /* else the watchdog would walk its list twice a request */
-        pthread_cond_broadcast(&http->changed);
-    pthread_mutex_unlock(&http->mutex);
-}
-
-static struct exchange *exchange_create(struct http *http, struct MHD_Connection *connection,
-                                        const char *method, const char *path) {
-    struct exchange *exchange = calloc(1, sizeof *exchange);
-    if (exchange == NULL)
-        return NULL;
-    exchange->service = http->service;
-    exchange->http = http;
-    exchange->connection = connection;
-    exchange->method = method;
-    exchange->path = path;
-    exchange->start_ns = now_ns();
-    exchange_renew(exchange);
-    count_request(http, 1);
-    return exchange;
-}
-
-/* Idle workers ask for a job several times a second, and get none: nobody looks for that. */
-static bool is_idle_claim(const struct exchange *exchange) {
-    return exchange->status == 204 && strcmp(exchange->path, "/v1/jobs/claim") == 0;
-}
-
-static void log_exchange(const struct exchange *exchange, bool whole) {
-    char request[160];
-    if (whole && is_idle_claim(exchange))
-        return;
-    snprintf(request, sizeof request, "%.16s %.120s", exchange->method, exchange->path);
-    struct log_about about = {.request = request,
-                              .status = (long)exchange->status,
-                              .seconds = 1e-9 * (double)(now_ns() - exchange->start_ns)};
-    log_line(exchange->status >= 500 ? LEVEL_ERROR : LEVEL_INFO, &about,
-             whole ? "answered" : "cut off");
-}
-
-static size_t bytes_counted(const struct exchange *exchange) {
-    return exchange->body_room > BODY_SMALL ? exchange->body_room : 0;
-}
-
-static void on_completed(void *context, struct MHD_Connection *connection, void **slot,
-                         enum MHD_RequestTerminationCode code) {
-    struct http *http = context;
-    struct exchange *exchange = *slot;
-    if (exchange == NULL)
-        return;
-    unsigned hundred = exchange->status / 100;
-    if (hundred < STATUS_CLASSES)
-        atomic_fetch_add(&http->service->answers[hundred], 1);
-    log_exchange(exchange, code == MHD_REQUEST_TERMINATED_COMPLETED_OK);
-    if (exchange->response != NULL)
-        MHD_destroy_response(exchange->response);
-    atomic_fetch_sub(&http->bodies, bytes_counted(exchange));
-    free(exchange->body);
-    free(exchange);
-    *slot = NULL;
-    count_request(http, -1);
-    set_deadline(http, connection, clock_ms() + IDLE_MS);
-}
-
-static enum MHD_Result send_answer(struct exchange *exchange) {
-    if (exchange->response == NULL)
-        return MHD_NO; /* out of memory for any answer: the connection is closed */
-    if (atomic_load(&exchange->service->stopping))
-        answer_header(exchange, "Connection", "close");
-    enum MHD_Result queued =
-        MHD_queue_response(exchange->connection, exchange->status, exchange->response);
-    MHD_destroy_response(exchange->response);
-    exchange->response = NULL;
-    return queued;
-}
-
-/* Room for the body that is announced, or for the largest one where chunks come without a length.
- */
-static void reserve_body(struct exchange *exchange) {
-    const char *length = exchange_header(exchange, "Content-Length");
-    unsigned long long room = length != NULL ? strtoull(length, NULL, 10) : 0;
-    if (length == NULL && exchange_header(exchange, "Transfer-Encoding") != NULL)
-        room = BODY_MOST;
-    if (room > BODY_MOST) {
-        answer_problem(exchange, 413, "a body may have up to 16 MiB", NULL);
-        return;
-    }
-    exchange->body_room = (size_t)room;
-    size_t bytes = bytes_counted(exchange); /* given back by on_completed */
-    if (atomic_fetch_add(&exchange->http->bodies, bytes) + bytes > BODIES_MOST && bytes != 0)
-        answer_problem(exchange, 503, "too many large bodies at a time", NULL);
-}
-
-static bool keep_body(struct exchange *exchange, const char *data, size_t size) {
-    if (size > exchange->body_room - exchange->body_size)
-        return false;
-    if (exchange->body == NULL && (exchange->body = malloc(exchange->body_room + 1)) == NULL)
-        return false;
-    memcpy(exchange->body + exchange->body_size, data, size);
-    exchange->body_size += size;
-    exchange->body[exchange->body_size] = 0;
-    return true;
-}
-
-static enum MHD_Result begin(struct http *http, struct MHD_Connection *connection,
-                             const char *method, const char *path, void **slot) {
-    struct exchange *exchange = exchange_create(http, connection, method, path);
-    *slot = exchange;
-    if (exchange == NULL)
-        return MHD_NO;
-    route_refuse_early(exchange);
-    if (exchange->status == 0)
-        reserve_body(exchange);
-    /* An answer before the body closes the connection: what an early refusal wants. */
-    return exchange->status != 0 ? send_answer(exchange) : MHD_YES;
-}
-
-static enum MHD_Result on_request(void *context, struct MHD_Connection *connection,
-                                  const char *path, const char *method, const char *version,
-                                  const char *data, size_t *size, void **slot) {
-    struct exchange *exchange = *slot;
-    (void)version;
-    if (exchange == NULL)
-        return begin(context, connection, method, path, slot);
-    if (*size != 0) {
-        /* A chunked body past the cap can only be cut. */
-        bool kept = keep_body(exchange, data, *size);
-        *size = 0;
-        return kept ? MHD_YES : MHD_NO;
-    }
-    int64_t start_ns = now_ns();
-    set_deadline(exchange->http, connection, INT64_MAX); /* the work is ours, not the peer's */
-    route_answer(exchange);
-    exchange_renew(exchange);
-    atomic_fetch_add(&exchange->service->nanoseconds, (uint_fast64_t)(now_ns() - start_ns));
-    return send_answer(exchange);
-}
-
-const char *exchange_query(const struct exchange *exchange, const char *name) {
-    return MHD_lookup_connection_value(exchange->connection, MHD_GET_ARGUMENT_KIND, name);
-}
-
-const char *exchange_header(const struct exchange *exchange, const char *name) {
-    return MHD_lookup_connection_value(exchange->connection, MHD_HEADER_KIND, name);
-}
-
-int exchange_socket(const struct exchange *exchange) {
-    return socket_of(exchange->connection);
-}
-
-/* --- start and stop --- */
+/* --- the daemon --- */
 
 /* Writes the name in a Host header without its port and brackets. */
 static void host_name(const char *host, char *name, size_t size) {
@@ -298,7 +119,8 @@ bool http_host_allowed(const struct http *http, const char *host) {
          allowed++)
         if (strcasecmp(*allowed, name) == 0)
             return true;
-    return false;
+    /* The server's own certificate tells its names as well. */
+    return http->options.certificate != NULL && certificate_names(http->options.certificate, name);
 }
 
 static bool socket_address(const struct http_options *options, struct sockaddr_storage *storage) {
@@ -339,20 +161,74 @@ static int start_daemon(struct http *http, struct error *err) {
                      MHD_USE_POLL | MHD_USE_ITC | MHD_USE_ERROR_LOG;
     if (address.ss_family == AF_INET6)
         flags |= MHD_USE_IPv6;
+    bool tls = http->options.certificate != NULL;
+    if (tls)
+        flags |= MHD_USE_TLS;
     http->daemon = MHD_start_daemon(
-        flags, http->options.port, NULL, NULL, on_request, http, MHD_OPTION_EXTERNAL_LOGGER,
-        no_library_log, NULL, MHD_OPTION_SOCK_ADDR, (struct sockaddr *)&address,
-        MHD_OPTION_CONNECTION_LIMIT, http->options.connections, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-        http->options.per_address, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MOST,
+        flags, http->options.port, NULL, NULL, exchange_on_request, http,
+        MHD_OPTION_EXTERNAL_LOGGER, no_library_log, NULL, MHD_OPTION_SOCK_ADDR,
+        (struct sockaddr *)&address, MHD_OPTION_CONNECTION_LIMIT,
+        http->options.connections + RESERVE + CLOSING_MOST, MHD_OPTION_THREAD_STACK_SIZE,
+        (size_t)STACK, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MOST,
         MHD_OPTION_NOTIFY_CONNECTION, on_connection, http, MHD_OPTION_NOTIFY_COMPLETED,
-        on_completed, http, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_UNESCAPE_CALLBACK, unescape,
-        NULL, MHD_OPTION_LISTEN_BACKLOG_SIZE, 128u, MHD_OPTION_END);
+        exchange_on_completed, http, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_UNESCAPE_CALLBACK,
+        unescape, NULL, MHD_OPTION_LISTEN_BACKLOG_SIZE, 1024u,
+        /* without TLS the options end here */
+        tls ? MHD_OPTION_HTTPS_PRIORITIES : MHD_OPTION_END, CERTIFICATE_PRIORITIES,
+        MHD_OPTION_HTTPS_CERT_CALLBACK2, certificate_retrieve, MHD_OPTION_END);
     if (http->daemon == NULL)
         return error_set(err, ERROR_SYSTEM, "cannot listen on %s port %u (in use?)",
                          http->options.address, http->options.port);
     const union MHD_DaemonInfo *info = MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_BIND_PORT);
     http->port = info != NULL ? info->port : http->options.port;
     return 0;
+}
+
+/* Asks the system for as many files as connections need; where it gives fewer, there are fewer
+ * connections. */
+static int limit_connections(struct http *http, struct error *err) {
+    struct rlimit files;
+    const rlim_t others = RESERVE + CLOSING_MOST + OTHER_FILES;
+    const rlim_t wanted = http->options.connections + others;
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0)
+        return error_set(err, ERROR_SYSTEM, "no limit of open files is known: %s", strerror(errno));
+    if (files.rlim_cur < wanted) {
+        files.rlim_cur = wanted < files.rlim_max ? wanted : files.rlim_max;
+        if (setrlimit(RLIMIT_NOFILE, &files) != 0)
+            (void)getrlimit(RLIMIT_NOFILE, &files);
+    }
+    if (files.rlim_cur >= wanted)
+        return 0;
+    unsigned left =
+        files.rlim_cur > others + RESERVE ? (unsigned)(files.rlim_cur - others) : RESERVE;
+    if (left < http->options.connections)
+        log_line(LEVEL_ERROR, NULL,
+                 "%u connections at a time, not %u: the limit of open files is %llu (ulimit -n)",
+                 left, http->options.connections, (unsigned long long)files.rlim_cur);
+    http->options.connections = left < http->options.connections ? left : http->options.connections;
+    return 0;
+}
+
+static int start(struct http *http, struct error *err) {
+    int status = limit_connections(http, err);
+    const struct connection_limits limits = {.most = http->options.connections,
+                                             .reserve = RESERVE,
+                                             .per_address = http->options.per_address,
+                                             .deadline_ms =
+                                                 1000 * (int64_t)http->options.deadline_s};
+    if (status == 0)
+        status = connections_create(&http->connections, &limits, err);
+    if (status == 0 && clock_cond_init(&http->changed) != 0)
+        status = error_set(err, ERROR_SYSTEM, "no condition variable");
+    if (status == 0)
+        status = start_daemon(http, err);
+    if (status == 0 && pthread_create(&http->watchdog, NULL, watchdog_thread, http) != 0) {
+        MHD_stop_daemon(http->daemon);
+        status = error_set(err, ERROR_SYSTEM, "cannot start the watchdog's thread");
+    }
+    if (status != 0)
+        connections_destroy(&http->connections);
+    return status;
 }
 
 int http_start(struct http **out, struct service *service, const struct http_options *options,
@@ -363,13 +239,7 @@ int http_start(struct http **out, struct service *service, const struct http_opt
     http->service = service;
     http->options = *options;
     pthread_mutex_init(&http->mutex, NULL);
-    int status = clock_cond_init(&http->changed) != 0
-                     ? error_set(err, ERROR_SYSTEM, "no condition variable")
-                     : start_daemon(http, err);
-    if (status == 0 && pthread_create(&http->watchdog, NULL, watchdog_thread, http) != 0) {
-        MHD_stop_daemon(http->daemon);
-        status = error_set(err, ERROR_SYSTEM, "cannot start the watchdog's thread");
-    }
+    int status = start(http, err);
     if (status != 0) {
         free(http);
         return status;
@@ -399,6 +269,7 @@ void http_stop(struct http **http) {
     MHD_stop_daemon(h->daemon);
     if (listening != MHD_INVALID_SOCKET)
         close(listening);
+    connections_destroy(&h->connections);
     pthread_mutex_destroy(&h->mutex);
     pthread_cond_destroy(&h->changed);
     free(h);

@@ -5,23 +5,18 @@
 
 #include "schema/json/json.h"
 #include "schema/study/fault.h"
+#include "server/http/http_options.h"
 #include "server/http/service.h"
 #include <cjson/cJSON.h>
 #include <microhttpd.h>
 
-struct http_options {
-    const char *address;               /* numeric; owned by the caller, as are all strings */
-    uint16_t port;                     /* 0: a free one */
-    unsigned connections, per_address; /* most at a time; per_address 0: no limit */
-    unsigned deadline_s;               /* for one request */
-    const char *const *hosts;          /* names of this server beside localhost, NULL-terminated */
-};
 struct http;
 
 int http_start(struct http **out, struct service *service, const struct http_options *options,
                struct error *err);
 uint16_t http_port(const struct http *http);
-/* Takes no more connections, lets running requests end (10 s at most), closes. */
+/* Takes no more connections, lets running requests end (1.2 s at most), closes. Handlers that
+ * do not ask exchange_is_lost hold it up. */
 void http_stop(struct http **http);
 
 /* --- for the routes --- */
@@ -31,9 +26,12 @@ struct exchange {
     struct service *service;
     struct http *http;
     struct MHD_Connection *connection;
+    struct connection *peer; /* borrowed: its place among the others */
     const char *method, *path;
     char *body;                  /* NUL-terminated, NULL without one */
     size_t body_size, body_room; /* room without the NUL */
+    size_t body_most;            /* bytes that it may have */
+    bool has_file;               /* it is a file, which is counted among those (service.h) */
     int64_t start_ns;
 
     /* Who asks: the name of the token, "" without; and whether it may change the studies of all. */
@@ -42,12 +40,25 @@ struct exchange {
 
     unsigned status;               /* 0 until answered */
     struct MHD_Response *response; /* owned until queued */
+    struct handed_out *handed_out; /* owned: jobs of a claim, until their answer has arrived */
 };
 
 const char *exchange_query(const struct exchange *exchange, const char *name); /* NULL if absent */
 const char *exchange_header(const struct exchange *exchange, const char *name);
 
 int exchange_socket(const struct exchange *exchange);
+/* Work for an answer asks this from time to time; context is the exchange. Not 0 once the peer has
+ * gone, or the server ends. */
+int exchange_is_lost(void *context);
+/* Lends a reader of the store, which stops with ERROR_STOPPED once the exchange is lost; to be
+ * given back to the service. */
+int exchange_reader(struct exchange *exchange, struct store **out, struct error *err);
+/* The peer may ask for what it asks for: its connection is not the first to go at the limit. */
+void exchange_vouch(struct exchange *exchange);
+/* Whether the connection is of the reserve (connections.h), and whether it may ask for anything
+ * there all the same. */
+bool exchange_is_reserved(const struct exchange *exchange);
+bool exchange_takes_turn(struct exchange *exchange);
 
 /* Answers with a document, which it takes. */
 void answer_json(struct exchange *exchange, unsigned status, cJSON *document);

@@ -4,10 +4,10 @@ static int results(const void *context, const struct result_filter *filter,
                    struct study_result *out, struct error *err) {
     const struct origin *origin = context;
     struct store *reader;
-    int status = service_reader(origin->service, &reader, err);
+    int status = exchange_reader(origin->exchange, &reader, err);
     if (status == 0)
         status = aggregate_study(reader, origin->id, filter, out, err);
-    service_give_back(origin->service, reader);
+    service_give_back(origin->exchange->service, reader);
     return status;
 }
 
@@ -15,10 +15,10 @@ static int difference(const void *context, const struct comparison *comparison,
                       struct study_result *out, struct error *err) {
     const struct origin *origin = context;
     struct store *reader;
-    int status = service_reader(origin->service, &reader, err);
+    int status = exchange_reader(origin->exchange, &reader, err);
     if (status == 0)
         status = comparison_make(reader, origin->id, comparison, out, err);
-    service_give_back(origin->service, reader);
+    service_give_back(origin->exchange->service, reader);
     return status;
 }
 

@@ -2,14 +2,15 @@
 #ifndef RUGO_SERVER_HTTP_ORIGIN_H
 #define RUGO_SERVER_HTTP_ORIGIN_H
 
-#include "server/http/service.h"
+#include "server/http/http.h"
 #include "server/show/picture_source.h"
 
 struct origin {
-    struct service *service;
+    struct exchange *exchange; /* which asks */
     const char *id;
 };
-/* Borrows the origin. A reader of the store is lent for each question. */
+/* Borrows the origin. A reader of the store is lent for each question, until
+ * the exchange is lost. */
 struct picture_source origin_source(const struct origin *origin);
 
 #endif

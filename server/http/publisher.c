@@ -6,13 +6,16 @@
 
 /* Between attempts at cases whose publishing failed for a reason that may pass. */
 enum { RETRY_FIRST_MS = 60000, RETRY_MOST_MS = 3600000 };
+enum { DAMAGED_MOST = 16 }; /* cases at a time; others are found again when they are read again */
 
 struct publisher {
     struct store *store; /* its own handle */
     pthread_t thread;
-    pthread_mutex_t mutex; /* guards the two below */
+    pthread_mutex_t mutex; /* guards all below */
     pthread_cond_t woken;
     bool work, stopping;
+    struct due_case damaged[DAMAGED_MOST]; /* to be published anew */
+    size_t damaged_count;
 };
 
 static bool is_stopping(void *context) {
@@ -31,6 +34,30 @@ static bool publish_all(struct publisher *publisher) {
     if (status != 0 && status != ERROR_STOPPED)
         log_line(LEVEL_ERROR, NULL, "publishing: %s", err.text);
     return status != 0 || counts.postponed > 0;
+}
+
+/* Takes one case that was found damaged back. */
+static bool take_damaged(struct publisher *publisher, struct due_case *out) {
+    pthread_mutex_lock(&publisher->mutex);
+    bool any = publisher->damaged_count > 0;
+    if (any)
+        *out = publisher->damaged[--publisher->damaged_count];
+    pthread_mutex_unlock(&publisher->mutex);
+    return any;
+}
+
+/* Makes cases that were found damaged due again. */
+static void unpublish_damaged(struct publisher *publisher) {
+    struct due_case damaged;
+    while (take_damaged(publisher, &damaged)) {
+        struct log_about about = {.study = damaged.study};
+        struct error err = {0};
+        log_line(LEVEL_WARNING, &about,
+                 "what is published of case %llu is damaged, and is made anew",
+                 (unsigned long long)damaged.case_number);
+        if (store_unpublish(publisher->store, &damaged, &err) != 0)
+            log_line(LEVEL_ERROR, &about, "publishing anew: %s", err.text);
+    }
 }
 
 static bool has_work(void *context) {
@@ -67,6 +94,7 @@ static void *publisher_thread(void *context) {
     struct publisher *publisher = context;
     int64_t pause_ms = RETRY_FIRST_MS;
     while (!is_stopping(publisher)) {
+        unpublish_damaged(publisher);
         bool left = publish_all(publisher);
         left = purge(publisher) || left;
         wait_for_work(publisher, left ? clock_ms() + pause_ms : INT64_MAX);
@@ -100,6 +128,15 @@ int publisher_create(struct publisher **out, const char *database, struct error 
 
 void publisher_wake(struct publisher *publisher) {
     pthread_mutex_lock(&publisher->mutex);
+    publisher->work = true;
+    pthread_cond_signal(&publisher->woken);
+    pthread_mutex_unlock(&publisher->mutex);
+}
+
+void publisher_mend(struct publisher *publisher, const struct due_case *damaged) {
+    pthread_mutex_lock(&publisher->mutex);
+    if (publisher->damaged_count < DAMAGED_MOST)
+        publisher->damaged[publisher->damaged_count++] = *damaged;
     publisher->work = true;
     pthread_cond_signal(&publisher->woken);
     pthread_mutex_unlock(&publisher->mutex);

@@ -1,5 +1,6 @@
 /* Who may ask for what, and who answers. */
 #include "server/http/route.h"
+#include "server/http/headers.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,10 +31,17 @@ static const struct route {
     {"GET", "/v1/studies/*/events", ROLE_READ, handle_events, {NULL}},
     {"GET", "/v1/studies/*/contents", ROLE_READ, handle_contents, {NULL}},
     {"GET", "/v1/studies/*/cases/*/realisations/*/map", ROLE_READ, handle_map, {"field", "load"}},
+    {"POST",
+     "/v1/characterise",
+     ROLE_READ,
+     handle_characterise,
+     {"name", "layer", "dx", "unit", "z_unit", "crop", "detrend", "fill", "filter", "resample",
+      "window", "boundary", "trust_from", "trust_to", "format"}},
     {"POST", "/v1/check", ROLE_SUBMIT, handle_check, {NULL}},
     {"GET", "/v1/templates", ROLE_NONE, handle_templates, {NULL}},
     {"GET", "/v1/workers", ROLE_READ, handle_workers, {NULL}},
     {"POST", "/v1/jobs/claim", ROLE_WORK, handle_claim, {NULL}},
+    {"POST", "/v1/jobs/report", ROLE_WORK, handle_report_many, {NULL}},
     {"POST", "/v1/jobs/*/heartbeat", ROLE_WORK, handle_heartbeat, {NULL}},
     {"POST", "/v1/jobs/*/complete", ROLE_WORK, handle_complete, {NULL}},
     {"POST", "/v1/jobs/*/fail", ROLE_WORK, handle_fail, {NULL}},
@@ -114,42 +122,13 @@ static void refuse_route(struct exchange *exchange) {
 
 /* --- what the headers must be --- */
 
-struct header_counts {
-    unsigned lengths, hosts, encodings, keys;
-};
-
-static enum MHD_Result count_header(void *context, enum MHD_ValueKind kind, const char *name,
-                                    const char *value) {
-    struct header_counts *counts = context;
-    (void)kind;
-    (void)value;
-    counts->lengths += strcasecmp(name, "Content-Length") == 0;
-    counts->encodings += strcasecmp(name, "Transfer-Encoding") == 0;
-    counts->keys += strcasecmp(name, "Idempotency-Key") == 0;
-    counts->hosts += strcasecmp(name, "Host") == 0;
-    return MHD_YES;
-}
-
-/* Two lengths, or a length beside an encoding, let two readers see two requests in one (RFC
- * 9112, 6.3). */
 static bool check_headers(struct exchange *exchange) {
-    struct header_counts counts = {0};
-    MHD_get_connection_values(exchange->connection, MHD_HEADER_KIND, count_header, &counts);
-    const char *encoding = exchange_header(exchange, "Transfer-Encoding"), *detail = NULL;
-    bool unknown = encoding != NULL && strcasecmp(encoding, "chunked") != 0; /* to the library */
-    if (counts.lengths > 1)
-        detail = "more than one Content-Length";
-    else if (counts.lengths != 0 && counts.encodings != 0)
-        detail = "Content-Length beside Transfer-Encoding";
-    else if (counts.hosts > 1)
-        detail = "more than one Host";
-    else if (counts.keys > 1)
-        detail = "more than one Idempotency-Key";
-    else if (counts.encodings > 1 || unknown)
-        detail = "a Transfer-Encoding other than chunked";
-    if (detail != NULL)
-        answer_problem(exchange, 400, detail, NULL);
-    return detail == NULL;
+    const char *detail = headers_fault(exchange->connection);
+    if (detail == NULL)
+        return true;
+    answer_problem(exchange, 400, detail, NULL);
+    answer_header(exchange, "Connection", "close"); /* where the next request begins is not known */
+    return false;
 }
 
 /* A page of another site, or a name that somebody pointed at this address, may not use this
@@ -173,8 +152,12 @@ static bool check_origin(struct exchange *exchange) {
 
 static bool check_token(struct exchange *exchange, unsigned wanted) {
     exchange->admin = exchange->service->tokens == NULL;
-    if (wanted == ROLE_NONE || exchange->service->tokens == NULL)
+    if (wanted == ROLE_NONE)
         return true;
+    if (exchange->service->tokens == NULL) {
+        exchange_vouch(exchange);
+        return true;
+    }
     const char *authorization = exchange_header(exchange, "Authorization");
     bool bearer = authorization != NULL && strncasecmp(authorization, "Bearer ", 7) == 0;
     const struct token_holder holder =
@@ -182,13 +165,34 @@ static bool check_token(struct exchange *exchange, unsigned wanted) {
     unsigned roles = holder.roles;
     memcpy(exchange->owner, holder.name, sizeof exchange->owner);
     exchange->admin = (roles & ROLE_ADMIN) != 0;
-    if ((roles & wanted) != 0)
+    if ((roles & wanted) != 0) {
+        exchange_vouch(exchange);
         return true;
+    }
     if (roles != 0)
         answer_problem(exchange, 403, "the token's role does not allow this", NULL);
     else
         answer_problem(exchange, 401, bearer ? "the token is unknown" : "no Bearer token", NULL);
     return false;
+}
+
+/* In the reserve there is room for what a server at its limit must hear and say: workers, which
+ * keep their jobs by it, and whoever watches it. Of all else, one request at a time; no streams,
+ * which last. */
+static bool check_reserve(struct exchange *exchange, const struct route *route) {
+    bool vital = strncmp(exchange->path, "/v1/jobs/", 9) == 0 || route->handler == handle_health ||
+                 route->handler == handle_metrics;
+    if (!exchange_is_reserved(exchange) || vital ||
+        (route->handler != handle_events && exchange_takes_turn(exchange)))
+        return true;
+    answer_problem(exchange, 503, "all connections of this server are in use; try again", NULL);
+    answer_header(exchange, "Retry-After", "1");
+    return false;
+}
+
+/* The body is a file, in place of JSON. */
+static bool takes_file(const struct route *route) {
+    return route->handler == handle_characterise;
 }
 
 static bool has_body(const struct exchange *exchange) {
@@ -197,12 +201,15 @@ static bool has_body(const struct exchange *exchange) {
            exchange_header(exchange, "Transfer-Encoding") != NULL;
 }
 
-static bool check_media(struct exchange *exchange) {
+static bool check_media(struct exchange *exchange, const struct route *route) {
+    const char *wanted = takes_file(route) ? "application/octet-stream" : "application/json";
     const char *type = exchange_header(exchange, "Content-Type");
     size_t length = type != NULL ? strcspn(type, "; \t") : 0;
-    if (!has_body(exchange) || (length == 16 && strncasecmp(type, "application/json", 16) == 0))
+    char detail[64];
+    if (!has_body(exchange) || (length == strlen(wanted) && strncasecmp(type, wanted, length) == 0))
         return true;
-    answer_problem(exchange, 415, "a body must be application/json", NULL);
+    snprintf(detail, sizeof detail, "a body must be %s", wanted);
+    answer_problem(exchange, 415, detail, NULL);
     return false;
 }
 
@@ -213,16 +220,17 @@ void route_refuse_early(struct exchange *exchange) {
     const struct route *route = find_route(exchange, id);
     if (route == NULL)
         refuse_route(exchange);
-    else if (check_token(exchange, route->roles) && check_media(exchange) &&
-             strncmp(exchange->path, "/v1/", 4) == 0)
-        query_check(exchange, route->queries);
+    else if (check_token(exchange, route->roles) && check_reserve(exchange, route) &&
+             check_media(exchange, route) && strncmp(exchange->path, "/v1/", 4) == 0 &&
+             query_check(exchange, route->queries) && takes_file(route))
+        (void)characterise_enter(exchange);
 }
 
 /* Finds the study that a path names; false after an answer that there is none, or several. */
 static bool find_study(struct exchange *exchange, const char *given, char id[STUDY_ID_SIZE]) {
     struct store *reader;
     struct error err = {0};
-    int status = service_reader(exchange->service, &reader, &err);
+    int status = exchange_reader(exchange, &reader, &err);
     if (status == 0)
         status = store_find(reader, given, id, &err);
     service_give_back(exchange->service, reader);

@@ -5,16 +5,22 @@
 
 #include "server/http/http.h"
 
-enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 13 };
+enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 16 };
 typedef void route_handler(struct exchange *exchange, const char *id);
 
 route_handler handle_study_create, handle_study_list, handle_study, handle_document,
     handle_study_cancel, handle_study_retry, handle_study_extend, handle_curves, handle_report,
     handle_plot, handle_table, handle_events;
-route_handler handle_claim, handle_heartbeat, handle_complete, handle_fail, handle_release;
+route_handler handle_claim, handle_report_many, handle_heartbeat, handle_complete, handle_fail,
+    handle_release;
 route_handler handle_health, handle_metrics, handle_snapshot, handle_openapi, handle_schema,
     handle_page, handle_asset, handle_client, handle_templates, handle_contents, handle_map,
-    handle_check, handle_workers;
+    handle_check, handle_workers, handle_characterise;
+
+/* A peer wants to send a file: sets how large it may be, and counts it; false after an answer that
+ * there are enough of them, or that none are taken. Who entered leaves. */
+bool characterise_enter(struct exchange *exchange);
+void characterise_leave(struct exchange *exchange);
 
 /* Returns whether there is a body; false after a 400. */
 bool check_body(struct exchange *exchange);
@@ -38,5 +44,13 @@ int answer_study(struct exchange *exchange, const struct study_result *study, bo
 /* Likewise with a difference. */
 int send_difference(struct exchange *exchange, const char *id, const struct comparison *comparison,
                     bool csv, struct error *err);
+
+/* Answers 422 to a message of a worker that cannot be read, with what is wrong. */
+void refuse_message(struct exchange *exchange, const struct error *err);
+/* Checks a result against the job that its worker has under this token. */
+int check_result(struct exchange *exchange, int64_t number, const char *token,
+                 const struct block_result *result, struct error *err);
+/* Forgets the jobs of a claim whose answer arrived; gives them back where it did not. */
+void claim_settle(struct exchange *exchange, bool arrived);
 
 #endif

@@ -104,7 +104,7 @@ static int read_case(struct stream *stream, struct error *err) {
     struct store *reader;
     struct case_result result = {0};
     struct case_report report = {0};
-    int status = service_reader(service, &reader, err);
+    int status = exchange_reader(stream->exchange, &reader, err);
     if (status == 0)
         status = stream->report
                      ? aggregate_case_report(reader, &stream->study, stream->next, &report, err)
@@ -136,7 +136,8 @@ static ssize_t next_part(void *context, uint64_t position, char *buffer, size_t 
         return MHD_CONTENT_READER_END_WITH_ERROR;
     if (stream->text == NULL && read_case(stream, &err) != 0) {
         struct log_about about = {.study = stream->study.about.id};
-        log_line(LEVEL_ERROR, &about, "%s: %s", stream->report ? "report" : "curves", err.text);
+        if (err.code != ERROR_STOPPED)
+            log_line(LEVEL_ERROR, &about, "%s: %s", stream->report ? "report" : "curves", err.text);
         return MHD_CONTENT_READER_END_WITH_ERROR;
     }
     size_t left = strlen(stream->text + stream->sent), part = left < room ? left : room;
@@ -156,7 +157,7 @@ static int open_stream(struct stream *stream, const char *id, const struct resul
     struct service *service = stream->exchange->service;
     const char *quantity = filter->part.quantity;
     struct store *reader;
-    int status = service_reader(service, &reader, err);
+    int status = exchange_reader(stream->exchange, &reader, err);
     if (status == 0)
         status = aggregate_begin(reader, id, &stream->study, err);
     if (status == 0)
@@ -238,7 +239,7 @@ static int send_csv(struct exchange *exchange, const char *id, const struct resu
         return error_set(err, ERROR_INPUT,
                          "%llu cases are too many for one table; ask for each with ?case=",
                          (unsigned long long)cases);
-    int status = service_reader(exchange->service, &reader, err);
+    int status = exchange_reader(exchange, &reader, err);
     if (status == 0)
         status = aggregate_study(reader, id, filter, &study, err);
     service_give_back(exchange->service, reader);
@@ -261,7 +262,7 @@ static bool matches(const struct exchange *exchange, const char *etag) {
 static int find_study(struct exchange *exchange, const char *id, struct study_status *out,
                       struct error *err) {
     struct store *reader;
-    int status = service_reader(exchange->service, &reader, err);
+    int status = exchange_reader(exchange, &reader, err);
     if (status == 0)
         status = store_status(reader, id, out, err);
     service_give_back(exchange->service, reader);
@@ -308,7 +309,7 @@ static int send_picture(struct exchange *exchange, const char *id, struct error 
     struct study_report report = {0};
     struct memory_file picture;
     char *text = NULL;
-    int status = service_reader(exchange->service, &reader, err);
+    int status = exchange_reader(exchange, &reader, err);
     if (status == 0)
         status = aggregate_report(reader, id, &report, err);
     service_give_back(exchange->service, reader);

@@ -37,7 +37,7 @@ int send_difference(struct exchange *exchange, const char *id, const struct comp
                     bool csv, struct error *err) {
     struct store *reader;
     struct study_result study = {0};
-    int status = service_reader(exchange->service, &reader, err);
+    int status = exchange_reader(exchange, &reader, err);
     if (status == 0)
         status = comparison_make(reader, id, comparison, &study, err);
     service_give_back(exchange->service, reader);

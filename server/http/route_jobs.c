@@ -1,13 +1,12 @@
-/* The queue over HTTP; worker/wire.h says what crosses. */
-#include "server/http/checker.h"
+/* Single reports of workers; worker/wire.h says what crosses. */
 #include "server/http/route.h"
+#include "worker/checker.h"
 #include "worker/wire.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Answers 422 to a message that cannot be read, with what is wrong. */
-static void refuse_message(struct exchange *exchange, const struct error *err) {
+void refuse_message(struct exchange *exchange, const struct error *err) {
     struct fault_list faults = {0};
     fault_add(&faults, "", "%s", err->text);
     answer_problem(exchange, err->code == ERROR_MEMORY ? 503 : 422, err->text, &faults);
@@ -22,39 +21,6 @@ static bool job_number(struct exchange *exchange, const char *id, int64_t *job) 
     if (!good)
         answer_problem(exchange, 404, "there is no such job", NULL);
     return good;
-}
-
-/* --- claim --- */
-
-struct claiming {
-    struct wire_claim wire;
-    struct claimed_job jobs[WIRE_JOBS_MOST];
-    size_t count;
-};
-
-static int claim_change(struct store *store, void *context, struct error *err) {
-    struct claiming *claiming = context;
-    return store_claim(store, &claiming->wire.claim, claiming->jobs, &claiming->count, err);
-}
-
-void handle_claim(struct exchange *exchange, const char *id) {
-    (void)id;
-    struct claiming claiming = {.count = 0};
-    struct error err = {0};
-    cJSON *body = body_json(exchange);
-    if (body == NULL)
-        return;
-    if (wire_claim_read(body, &claiming.wire, &err) != 0)
-        refuse_message(exchange, &err);
-    else if (writer_do(exchange->service->writer, claim_change, &claiming, &err) != 0)
-        answer_error(exchange, &err);
-    else if (claiming.count == 0)
-        answer_empty(exchange, 204);
-    else
-        answer_json(exchange, 200, wire_jobs(claiming.jobs, claiming.count));
-    for (size_t j = 0; j < claiming.count; j++)
-        claimed_job_clear(&claiming.jobs[j]);
-    cJSON_Delete(body);
 }
 
 /* --- heartbeat, fail, release --- */
@@ -123,16 +89,16 @@ static int complete_change(struct store *store, void *context, struct error *err
     return store_complete(store, c->job, c->token, &c->block, &c->first_time, &c->case_done, err);
 }
 
-static int check_against_job(struct exchange *exchange, const struct completing *completing,
-                             struct error *err) {
+int check_result(struct exchange *exchange, int64_t number, const char *token,
+                 const struct block_result *result, struct error *err) {
     struct store *reader;
     struct claimed_job job = {0};
-    int status = service_reader(exchange->service, &reader, err);
+    int status = exchange_reader(exchange, &reader, err);
     if (status == 0)
-        status = store_job(reader, completing->job, completing->token, &job, err);
+        status = store_job(reader, number, token, &job, err);
     service_give_back(exchange->service, reader);
     if (status == 0)
-        status = checker_check(exchange->service->checker, &job, &completing->block, err);
+        status = checker_check(exchange->service->checker, &job, result, err);
     claimed_job_clear(&job);
     return status;
 }
@@ -140,7 +106,8 @@ static int check_against_job(struct exchange *exchange, const struct completing 
 static void complete(struct exchange *exchange, struct completing *completing) {
     struct block_text text = {0};
     struct error err = {0};
-    int status = check_against_job(exchange, completing, &err);
+    int status =
+        check_result(exchange, completing->job, completing->token, &completing->block, &err);
     if (status == 0)
         status = block_text_create(&text, &completing->block, &err);
     completing->block.text = &text;

@@ -102,7 +102,7 @@ static int find_case(struct exchange *exchange, const struct map_question *quest
                      struct map_order *order, struct case_info *info, struct error *err) {
     struct store *reader;
     struct study_status study = {0};
-    int status = service_reader(exchange->service, &reader, err);
+    int status = exchange_reader(exchange, &reader, err);
     if (status == 0)
         status = store_status(reader, question->id, &study, err);
     if (status == 0)

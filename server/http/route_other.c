@@ -1,5 +1,7 @@
 /* Health, metrics, snapshot, and the schema of studies. */
+#include "core/part_file.h"
 #include "jobs/kind.h"
+#include "server/http/health.h"
 #include "server/http/route.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -17,23 +19,32 @@ void handle_schema(struct exchange *exchange, const char *id) {
     answer_text(exchange, 200, "application/json", text);
 }
 
+/* Adds what is wrong; false out of memory. */
+static bool add_reasons(cJSON *document, const struct health *health) {
+    cJSON *reasons = cJSON_AddArrayToObject(document, "reasons");
+    for (size_t r = 0; r < health->count && reasons != NULL; r++) {
+        char text[sizeof health->reasons[r].text];
+        snprintf(text, sizeof text, "%s", health->reasons[r].text);
+        answer_mend(text);
+        if (!cJSON_AddItemToArray(reasons, cJSON_CreateString(text)))
+            return false;
+    }
+    return reasons != NULL;
+}
+
 void handle_health(struct exchange *exchange, const char *id) {
     (void)id;
-    struct store *reader;
-    struct error err = {0};
-    struct store_metrics metrics;
-    int status = service_reader(exchange->service, &reader, &err);
-    if (status == 0)
-        status = store_metrics(reader, &metrics, &err);
-    service_give_back(exchange->service, reader);
-    if (status != 0) {
-        answer_error(exchange, &err);
-        return;
-    }
+    struct health health;
+    service_health(exchange->service, &health);
     cJSON *document = cJSON_CreateObject();
     if (document != NULL)
-        cJSON_AddStringToObject(document, "status", "ok");
-    answer_json(exchange, 200, document);
+        cJSON_AddStringToObject(document, "status", health.count == 0 ? "ok" : "failing");
+    if (document != NULL && health.count > 0 && !add_reasons(document, &health)) {
+        cJSON_Delete(document);
+        document = NULL;
+    }
+    answer_json(exchange, health.count == 0 ? 200 : 503, document);
+    answer_header(exchange, "Cache-Control", "no-store");
 }
 
 void handle_metrics(struct exchange *exchange, const char *id) {
@@ -72,27 +83,34 @@ static void download_free(void *context) {
     free(download);
 }
 
-/* Copies beside the database, where there is room of the same kind, and opens the copy without a
- * name: it is gone with the connection, whatever ends it. */
+static bool is_lost(void *context) {
+    return exchange_is_lost(context) != 0;
+}
+
+/* Copies beside the database, where there is room of the same kind, and keeps the copy open without
+ * a name: it is gone with the connection, whatever ends it. */
 static int snapshot_file(struct download *download, uint64_t *size, struct error *err) {
     struct service *service = download->service;
     struct store *reader;
-    char path[4200];
+    struct part_file part = {0};
     struct stat info;
-    snprintf(path, sizeof path, "%s.snapshot-%d-%p", service->database, (int)getpid(),
-             (void *)download);
-    int status = service_reader(service, &reader, err);
+    char path[SNAPSHOT_PATH_SIZE];
+    int status = service_snapshot_path(service, path, err);
     if (status == 0)
-        status = store_snapshot(reader, path, err);
-    service_give_back(service, reader);
+        status = service_reader(service, &reader, err);
     if (status != 0)
         return status;
-    download->file = open(path, O_RDONLY | O_CLOEXEC);
-    unlink(path);
-    if (download->file < 0 || fstat(download->file, &info) != 0)
-        return error_set(err, ERROR_SYSTEM, "the snapshot cannot be read: %s", strerror(errno));
-    *size = (uint64_t)info.st_size;
-    return 0;
+    status = part_file_create(&part, path, err);
+    if (status == 0)
+        status = store_copy(reader, &part, is_lost, download->exchange, err);
+    service_give_back(service, reader);
+    if (status == 0 && ((download->file = fcntl(part.file, F_DUPFD_CLOEXEC, 0)) < 0 ||
+                        fstat(download->file, &info) != 0))
+        status = error_set(err, ERROR_SYSTEM, "the snapshot cannot be read: %s", strerror(errno));
+    part_file_destroy(&part);
+    if (status == 0)
+        *size = (uint64_t)info.st_size;
+    return status;
 }
 
 void handle_snapshot(struct exchange *exchange, const char *id) {

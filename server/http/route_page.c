@@ -15,6 +15,7 @@
     ASSET("session.js", "text/javascript; charset=utf-8", server_web_session_js)                   \
     ASSET("studies.js", "text/javascript; charset=utf-8", server_web_studies_js)                   \
     ASSET("study.js", "text/javascript; charset=utf-8", server_web_study_js)                       \
+    ASSET("surface.js", "text/javascript; charset=utf-8", server_web_surface_js)                   \
     ASSET("table.js", "text/javascript; charset=utf-8", server_web_table_js)                       \
     ASSET("workers.js", "text/javascript; charset=utf-8", server_web_workers_js)                   \
     ASSET("uplot.js", "text/javascript; charset=utf-8", server_web_vendor_uplot_js)                \

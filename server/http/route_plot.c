@@ -54,7 +54,7 @@ static bool read_axes(struct exchange *exchange, int *axes) {
 
 void handle_plot(struct exchange *exchange, const char *id) {
     struct error err = {0};
-    struct origin origin = {exchange->service, id};
+    struct origin origin = {exchange, id};
     struct comparison comparison = {.quantity = exchange_query(exchange, "quantity")};
     const char *const where[] = {exchange_query(exchange, "where"), NULL};
     struct picture_request request = {.quantity = comparison.quantity,

@@ -8,10 +8,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /* --- changes, through the writer --- */
 
 enum { KEY_MOST = 200 };
+static const double CHECK_SECONDS = 1;
 
 struct submission {
     const struct study *study;
@@ -65,6 +67,40 @@ static void answer_plan(struct exchange *exchange, const struct study *study) {
     answer_error(exchange, &err);
 }
 
+/* How long a study is checked for. */
+struct checking {
+    struct exchange *exchange;
+    double begin, seconds; /* of this thread's CPU time */
+    bool too_long;
+};
+
+static double cpu_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int checked_enough(void *context) {
+    struct checking *checking = context;
+    checking->too_long = cpu_seconds() - checking->begin > checking->seconds;
+    return checking->too_long || exchange_is_lost(checking->exchange);
+}
+
+static void refuse_unchecked(struct exchange *exchange, const struct checking *checking,
+                             const struct error *err) {
+    struct fault_list faults = {0};
+    if (!checking->too_long) {
+        answer_error(exchange, err);
+        return;
+    }
+    fault_add(&faults, "",
+              "checking its cases takes more than %g s of this server's time; submit them as "
+              "several studies",
+              checking->seconds);
+    answer_problem(exchange, 422, "the study is not valid", &faults);
+    fault_list_clear(&faults);
+}
+
 /* Reads the study on the connection's thread: ten thousand cases must not hold up the writer. */
 static void with_study(struct exchange *exchange,
                        void (*answer)(struct exchange *exchange, const struct study *study)) {
@@ -73,11 +109,16 @@ static void with_study(struct exchange *exchange,
     struct error err = {0};
     if (!check_body(exchange))
         return;
-    int status = kind_read_study(&study, exchange->body, exchange->body_size, NULL, &faults, &err);
+    struct checking checking = {
+        .exchange = exchange, .begin = cpu_seconds(), .seconds = CHECK_SECONDS};
+    int status = kind_read_study_until(&study, exchange->body, exchange->body_size, checked_enough,
+                                       &checking, &faults, &err);
     if (status == 0 && (study->owner = strdup(exchange->owner)) == NULL)
         status = error_memory(&err, sizeof exchange->owner, "a study's owner");
     if (status == 0)
         answer(exchange, study);
+    else if (status == ERROR_STOPPED)
+        refuse_unchecked(exchange, &checking, &err);
     else if (faults.count != 0)
         answer_problem(exchange, 422, "the study is not valid", &faults);
     else if (status == ERROR_INPUT) /* no JSON */
@@ -170,13 +211,24 @@ void handle_study_retry(struct exchange *exchange, const char *id) {
     answer_change(exchange, (struct study_change){.id = id, .api = api_retry});
 }
 
+static int check_members(const cJSON *body, struct error *err) {
+    for (const cJSON *member = cJSON_IsObject(body) ? body->child : NULL; member != NULL;
+         member = member->next)
+        if (strcmp(member->string, "realisations") != 0)
+            return error_set(err, ERROR_INPUT, "/%.64s: unknown name; allowed: realisations",
+                             member->string);
+    return 0;
+}
+
 void handle_study_extend(struct exchange *exchange, const char *id) {
     struct study_change change = {.id = id};
     struct error err = {0};
     cJSON *body = body_json(exchange);
     if (body == NULL)
         return;
-    int status = field_count(body, "realisations", &change.realisations, &err);
+    int status = check_members(body, &err);
+    if (status == 0)
+        status = field_count(body, "realisations", &change.realisations, &err);
     cJSON_Delete(body);
     if (status == 0)
         answer_change(exchange, change);
@@ -194,7 +246,7 @@ void handle_study_list(struct exchange *exchange, const char *id) {
     int64_t limit = 100;
     if (!query_number(exchange, "limit", 1, 1000, &limit))
         return;
-    int status = service_reader(exchange->service, &reader, &err);
+    int status = exchange_reader(exchange, &reader, &err);
     if (status == 0)
         status =
             api_list(reader, exchange_query(exchange, "after"), (size_t)limit, &document, &err);
@@ -211,7 +263,7 @@ static void answer_question(struct exchange *exchange, const char *id,
     struct store *reader;
     struct error err = {0};
     cJSON *document = NULL;
-    int status = service_reader(exchange->service, &reader, &err);
+    int status = exchange_reader(exchange, &reader, &err);
     if (status == 0)
         status = ask(reader, id, &document, &err);
     service_give_back(exchange->service, reader);

@@ -51,7 +51,7 @@ void handle_table(struct exchange *exchange, const char *id) {
                                         [TABLE_CSV] = "text/csv; charset=utf-8",
                                         [TABLE_JSON] = "application/json"};
     struct error err = {0};
-    const struct origin origin = {exchange->service, id};
+    const struct origin origin = {exchange, id};
     const char *const where[] = {exchange_query(exchange, "where"), NULL};
     const struct table_request request = {exchange_query(exchange, "columns"), where};
     char *text = NULL;

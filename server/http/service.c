@@ -1,14 +1,26 @@
 #include "server/http/service.h"
-
-#include "core/memory_file.h"
-#include "server/http/checker.h"
+#include "server/http/waiting_room.h"
+#include "worker/checker.h"
 #include "worker/clock.h"
-#include <inttypes.h>
-#include <stdio.h>
-#include <stdlib.h>
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static void wake_claims(void *room) {
+    waiting_room_wake(room);
+}
 
 static void wake_publisher(void *publisher) {
     publisher_wake(publisher);
+}
+
+static int note_file(struct service *service, struct error *err) {
+    struct stat info;
+    if (stat(service->database, &info) != 0)
+        return error_set(err, ERROR_SYSTEM, "database %s: %s", service->database, strerror(errno));
+    service->device = info.st_dev;
+    service->inode = info.st_ino;
+    return 0;
 }
 
 int service_open(struct service *service, const char *database, int64_t lease_ms,
@@ -16,8 +28,11 @@ int service_open(struct service *service, const char *database, int64_t lease_ms
     struct store_options options = {.lease_ms = lease_ms};
     service->database = database;
     service->started_ms = clock_ms();
+    service->lease_ms = lease_ms;
     pthread_mutex_init(&service->mutex, NULL);
     int status = store_open(&service->store, database, &options, err);
+    if (status == 0)
+        status = note_file(service, err);
     if (status == 0)
         status = writer_create(&service->writer, service->store, err);
     if (status == 0)
@@ -26,11 +41,18 @@ int service_open(struct service *service, const char *database, int64_t lease_ms
         writer_on_due(service->writer, wake_publisher, service->publisher);
     if (status == 0)
         status = checker_create(&service->checker, err);
+    if (status == 0)
+        status = waiting_room_create(&service->room, database, err);
+    if (status == 0)
+        writer_on_change(service->writer, wake_claims, service->room);
+    if (status == 0)
+        service_remove_left(service);
     return status;
 }
 
 void service_close(struct service *service) {
     writer_destroy(&service->writer); /* wakes the publisher */
+    waiting_room_destroy(&service->room);
     publisher_destroy(&service->publisher);
     for (size_t r = 0; r < service->reader_count; r++)
         store_close(&service->readers[r]);
@@ -40,8 +62,26 @@ void service_close(struct service *service) {
     pthread_mutex_destroy(&service->mutex);
 }
 
+int service_check_file(const struct service *service, struct error *err) {
+    struct stat info;
+    if (stat(service->database, &info) != 0)
+        return error_set(err, ERROR_SYSTEM,
+                         "database %s is gone (%s): put that very file back, or start the server "
+                         "anew",
+                         service->database, strerror(errno));
+    if (info.st_dev != service->device || info.st_ino != service->inode)
+        return error_set(err, ERROR_SYSTEM,
+                         "database %s is another file than the one that is served: put that back, "
+                         "or start the server anew",
+                         service->database);
+    return 0;
+}
+
 int service_reader(struct service *service, struct store **out, struct error *err) {
     *out = NULL;
+    int status = service_check_file(service, err);
+    if (status != 0)
+        return status;
     pthread_mutex_lock(&service->mutex);
     if (service->reader_count != 0)
         *out = service->readers[--service->reader_count];
@@ -50,9 +90,21 @@ int service_reader(struct service *service, struct store **out, struct error *er
     return *out != NULL ? 0 : store_open(out, service->database, &options, err);
 }
 
+int service_reader_until(struct service *service, int (*stop)(void *context), void *context,
+                         struct store **out, struct error *err) {
+    int status = service_reader(service, out, err);
+    if (status == 0)
+        store_set_stop(*out, stop, context);
+    return status;
+}
+
 void service_give_back(struct service *service, struct store *reader) {
+    struct due_case damaged;
     if (reader == NULL)
         return;
+    store_set_stop(reader, NULL, NULL);
+    if (store_found_damage(reader, &damaged))
+        publisher_mend(service->publisher, &damaged);
     pthread_mutex_lock(&service->mutex);
     if (service->reader_count < READERS_KEPT) {
         service->readers[service->reader_count++] = reader;
@@ -60,68 +112,4 @@ void service_give_back(struct service *service, struct store *reader) {
     }
     pthread_mutex_unlock(&service->mutex);
     store_close(&reader);
-}
-
-static void print_metric(FILE *file, const char *name, const char *type, const char *help,
-                         double value) {
-    fprintf(file, "# HELP rugo_%s %s\n# TYPE rugo_%s %s\nrugo_%s %.17g\n", name, help, name, type,
-            name, value);
-}
-
-static void print_queue(FILE *file, const struct store_metrics *metrics) {
-    const struct {
-        const char *state;
-        uint64_t count;
-    } states[] = {{"waiting", metrics->jobs_waiting},
-                  {"running", metrics->jobs_running},
-                  {"done", metrics->jobs_done},
-                  {"failed", metrics->jobs_failed},
-                  {"cancelled", metrics->jobs_cancelled}};
-    fprintf(file, "# HELP rugo_jobs Jobs by state.\n# TYPE rugo_jobs gauge\n");
-    for (size_t s = 0; s < sizeof states / sizeof *states; s++)
-        fprintf(file, "rugo_jobs{state=\"%s\"} %" PRIu64 "\n", states[s].state, states[s].count);
-}
-
-int service_metrics(struct service *service, char **out, struct error *err) {
-    struct store *reader;
-    struct store_metrics metrics;
-    struct writer_figures writer;
-    struct memory_file memory;
-    int status = service_reader(service, &reader, err);
-    if (status == 0)
-        status = store_metrics(reader, &metrics, err);
-    service_give_back(service, reader);
-    if (status != 0)
-        return status;
-    if (!memory_file_open(&memory))
-        return error_memory(err, 4096, "metrics");
-    FILE *file = memory.file;
-    writer_figures(service->writer, &writer);
-    fprintf(file, "# HELP rugo_http_answers_total Answers by class of status.\n"
-                  "# TYPE rugo_http_answers_total counter\n");
-    for (int c = 1; c < STATUS_CLASSES; c++)
-        fprintf(file, "rugo_http_answers_total{status=\"%dxx\"} %" PRIuFAST64 "\n", c,
-                atomic_load(&service->answers[c]));
-    print_metric(file, "http_seconds_total", "counter", "Seconds spent on answers.",
-                 1e-9 * (double)atomic_load(&service->nanoseconds));
-    print_metric(file, "http_connections", "gauge", "Open connections.",
-                 (double)atomic_load(&service->connections));
-    print_metric(file, "event_streams", "gauge", "Open streams of events.",
-                 (double)atomic_load(&service->streams));
-    print_metric(file, "studies", "gauge", "Studies in the store.", (double)metrics.studies);
-    print_queue(file, &metrics);
-    print_metric(file, "changes_total", "counter", "Changes of the store.", (double)writer.changes);
-    print_metric(file, "commits_total", "counter",
-                 "Commits; changes over commits is the batch size.", (double)writer.commits);
-    print_metric(file, "wal_bytes", "gauge", "Size of the write-ahead log.",
-                 (double)metrics.wal_bytes);
-    print_metric(file, "database_bytes", "gauge", "Size of the database file.",
-                 (double)metrics.database_bytes);
-    print_metric(file, "uptime_seconds", "gauge", "Seconds since the start.",
-                 1e-3 * (double)(clock_ms() - service->started_ms));
-    char *text = memory_file_close(&memory, NULL);
-    if (text == NULL)
-        return error_memory(err, 4096, "metrics");
-    *out = text;
-    return 0;
 }

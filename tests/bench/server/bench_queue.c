@@ -1,24 +1,21 @@
 /* The queue: claim and complete with a result of 4 KB, in a queue of 100 000 jobs, at 8 keep-alive
- * connections over HTTP, beside a bare writer thread with group commit and a probe of the disk's
- * fdatasync, all in one run.
+ * connections over HTTP, job by job and many at once as workers do, beside a bare writer thread
+ * with group commit and a probe of the disk's fdatasync, all in one run.
  *
  * The results are real ones (the server checks what it takes): one tiny profile's block is computed
  * once and handed in for every job. The clients send texts made beforehand and look for three
  * fields in the answers, so that on few processors it is the server that is measured. */
 #include "server/http/writer.h"
+#include "tests/support/http_load.h"
 #include "tests/support/queue_load.h"
-#include "worker/wire.h"
-#include <arpa/inet.h>
 #include <fcntl.h>
-#include <netinet/tcp.h>
 #include <pthread.h>
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { JOBS = 100000, CLIENTS = 8, PROBES = 400, SECONDS = 6, ANSWER_MOST = 16384 };
+enum { JOBS = 100000, CLIENTS = 8, PROBES = 400, SECONDS = 6 };
 
 static void probe_disk(void) {
     char page[4096] = {0};
@@ -92,65 +89,51 @@ static void *bare_thread(void *context) {
 
 /* --- over HTTP --- */
 
-static int connect_to(uint16_t port) {
-    struct sockaddr_in address = {
-        .sin_family = AF_INET, .sin_port = htons(port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    int on = 1, socket_file = socket(AF_INET, SOCK_STREAM, 0);
-    setsockopt(socket_file, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    if (socket_file >= 0 && connect(socket_file, (struct sockaddr *)&address, sizeof address)) {
-        close(socket_file);
-        return -1;
-    }
-    return socket_file;
-}
-
-/* One POST on a kept connection; the status, or -1. answer: headers and body. */
-static int post(int socket_file, const char *path, const char *body, char answer[ANSWER_MOST]) {
-    static _Thread_local char request[4 * ANSWER_MOST];
-    int size = snprintf(request, sizeof request,
-                        "POST %s HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
-                        "Content-Length: %zu\r\n\r\n%s",
-                        path, strlen(body), body);
-    if (size < 0 || (size_t)size >= sizeof request ||
-        send(socket_file, request, (size_t)size, MSG_NOSIGNAL) != size)
-        return -1;
-    for (size_t have = 0; have + 1 < ANSWER_MOST;) {
-        ssize_t got = recv(socket_file, answer + have, ANSWER_MOST - 1 - have, 0);
-        if (got <= 0)
-            return -1;
-        have += (size_t)got;
-        answer[have] = 0;
-        const char *end = strstr(answer, "\r\n\r\n"), *length = strstr(answer, "Content-Length: ");
-        size_t wanted = length ? strtoul(length + 16, NULL, 10) : 0;
-        if (end && (size_t)(end + 4 - answer) + wanted <= have)
-            return atoi(answer + 9);
-    }
-    return -1;
-}
-
-static const char *behind(const char *text, const char *key) {
-    const char *at = strstr(text, key);
-    return at ? at + strlen(key) : "";
-}
-
 static bool one_job(const struct bench_client *client, int socket_file) {
-    static _Thread_local char answer[ANSWER_MOST], body[2 * ANSWER_MOST];
-    if (post(socket_file, "/v1/jobs/claim", "{\"worker\":\"bench\",\"kinds\":[\"statistics\"]}",
-             answer) != 200)
+    static _Thread_local char answer[LOAD_ANSWER], body[32 << 10];
+    if (load_post(socket_file, "/v1/jobs/claim",
+                  "{\"worker\":\"bench\",\"kinds\":[\"statistics\"]}", answer) != 200)
         return false;
     char path[64];
-    snprintf(path, sizeof path, "/v1/jobs/%lld/complete", atoll(behind(answer, "\"id\":")));
+    snprintf(path, sizeof path, "/v1/jobs/%lld/complete", atoll(load_behind(answer, "\"id\":")));
     snprintf(body, sizeof body, "{\"token\":\"%.32s\",\"first\":%lld,%s",
-             behind(answer, "\"token\":\""), atoll(behind(answer, "\"first\":")), client->body);
-    int status = post(socket_file, path, body, answer);
+             load_behind(answer, "\"token\":\""), atoll(load_behind(answer, "\"first\":")),
+             client->body);
+    int status = load_post(socket_file, path, body, answer);
     if (status != 200)
         fprintf(stderr, "bench_queue: %s\n", status < 0 ? "no answer" : answer);
     return status == 200;
 }
 
+/* Claims as many as fill a few seconds, and hands all their results in together, as `rugo work`
+ * does; returns how many. */
+static size_t many_jobs(const struct bench_client *client, int socket_file) {
+    static _Thread_local char answer[LOAD_ANSWER], body[LOAD_REQUEST];
+    if (load_post(socket_file, "/v1/jobs/claim",
+                  "{\"worker\":\"bench\",\"kinds\":[\"statistics\"],\"count\":100,\"seconds\":5}",
+                  answer) != 200)
+        return 0;
+    size_t used = (size_t)snprintf(body, sizeof body, "{\"reports\":["), count = 0;
+    for (const char *at = strstr(answer, "{\"id\":"); at != NULL && used + (32 << 10) < sizeof body;
+         at = strstr(at + 1, "{\"id\":"), count++)
+        used += (size_t)snprintf(body + used, sizeof body - used,
+                                 "%s{\"verb\":\"complete\",\"job\":%lld,\"token\":\"%.32s\","
+                                 "\"first\":%lld,%s",
+                                 count > 0 ? "," : "", atoll(load_behind(at, "\"id\":")),
+                                 load_behind(at, "\"token\":\""),
+                                 atoll(load_behind(at, "\"first\":")), client->body);
+    snprintf(body + used, sizeof body - used, "]}");
+    int status = load_post(socket_file, "/v1/jobs/report", body, answer);
+    if (status != 200 || strstr(answer, "\"detail\"") != NULL) {
+        fprintf(stderr, "bench_queue: %s\n", status < 0 ? "no answer" : answer);
+        return 0;
+    }
+    return count;
+}
+
 static void *remote_thread(void *context) {
     struct bench_client *client = context;
-    int socket_file = connect_to(client->port);
+    int socket_file = load_connect(client->port);
     double start = seconds();
     while (start < client->until && one_job(client, socket_file)) {
         double end = seconds();
@@ -162,39 +145,20 @@ static void *remote_thread(void *context) {
     return NULL;
 }
 
-/* The message of a result, without its opening brace, token and first. */
-static char *body_text(const struct block_result *result) {
-    cJSON *message = wire_result("token", result);
-    cJSON_DeleteItemFromObject(message, "token");
-    cJSON_DeleteItemFromObject(message, "first");
-    char *text = message ? json_print(message) : NULL;
-    cJSON_Delete(message);
-    if (text)
-        memmove(text, text + 1, strlen(text));
-    return text;
-}
-
-/* Starts the server and waits for its port; 0 when it does not come. */
-static uint16_t serve(const char *database, pid_t *pid) {
-    const char *program = getenv("RUGO");
-    fflush(stdout); /* or the child would print it once more */
-    *pid = fork();
-    if (*pid == 0) {
-        if (freopen("serve.out", "w", stdout) && freopen("/dev/null", "w", stderr))
-            execl(program ? program : "build/rugo", "rugo", "serve", "--db", database, "--listen",
-                  "127.0.0.1:0", (char *)NULL);
-        _exit(127);
+/* The latency is that of a job among those at once. */
+static void *batch_thread(void *context) {
+    struct bench_client *client = context;
+    int socket_file = load_connect(client->port);
+    double start = seconds();
+    for (size_t count; start < client->until && (count = many_jobs(client, socket_file)) > 0;) {
+        double end = seconds();
+        for (size_t n = 0; n < count; n++)
+            client->latencies[client->count++] = (end - start) / (double)count;
+        start = end;
     }
-    unsigned port = 0;
-    for (int tries = 0; tries < 500 && !port; tries++) {
-        FILE *file = fopen("serve.out", "r");
-        if (!file || fscanf(file, "listening on http://127.0.0.1:%u", &port) != 1)
-            port = 0;
-        if (file)
-            fclose(file);
-        nanosleep(&(struct timespec){0, 10000000}, NULL);
-    }
-    return (uint16_t)port;
+    if (socket_file >= 0)
+        close(socket_file);
+    return NULL;
 }
 
 /* --- both --- */
@@ -221,6 +185,10 @@ static size_t run_clients(const char *name, void *(*body)(void *), const struct 
     return total;
 }
 
+static double cpu_us(const struct timeval *time) {
+    return 1e6 * (double)time->tv_sec + (double)time->tv_usec;
+}
+
 static int bench_bare(const struct block_result *result, double *latencies, struct error *err) {
     struct store *store = NULL;
     struct bench_client model = {.block = *result};
@@ -230,24 +198,28 @@ static int bench_bare(const struct block_result *result, double *latencies, stru
     if (!status)
         status = writer_create(&model.writer, store, err);
     if (!status) {
-        run_clients("bare writer thread, 8 clients", bare_thread, &model, latencies);
+        struct rusage before = {0}, after = {0};
+        getrusage(RUSAGE_SELF, &before);
+        size_t jobs = run_clients("bare writer thread, 8 clients", bare_thread, &model, latencies);
+        getrusage(RUSAGE_SELF, &after);
+        double kernel = cpu_us(&after.ru_stime) - cpu_us(&before.ru_stime);
+        printf("%-46s %8.0f us of CPU a job, %.0f of them in the kernel\n", "  its process",
+               (cpu_us(&after.ru_utime) - cpu_us(&before.ru_utime) + kernel) / (double)jobs,
+               kernel / (double)jobs);
         writer_destroy(&model.writer);
     }
     store_close(&store);
     return status;
 }
 
-static double cpu_us(const struct timeval *time) {
-    return 1e6 * (double)time->tv_sec + (double)time->tv_usec;
-}
-
-static int bench_http(const struct block_result *result, double *latencies, struct error *err) {
+static int bench_http(const char *database, const char *name, void *(*thread)(void *),
+                      const struct block_result *result, double *latencies, struct error *err) {
     pid_t server = 0;
-    char *body = body_text(result);
-    int status = body ? queue_create("http.db", JOBS, err) : error_memory(err, 0, "a message");
+    char *body = load_body(result);
+    int status = body ? queue_create(database, JOBS, err) : error_memory(err, 0, "a message");
     if (!status) {
-        struct bench_client model = {.port = serve("http.db", &server), .body = body};
-        size_t jobs = run_clients("over HTTP, 8 connections", remote_thread, &model, latencies);
+        struct bench_client model = {.port = load_serve(database, &server), .body = body};
+        size_t jobs = run_clients(name, thread, &model, latencies);
         struct rusage usage = {0};
         kill(server, SIGTERM);
         wait4(server, NULL, 0, &usage);
@@ -271,7 +243,11 @@ int main(void) {
         status = bench_bare(&result, latencies, &err);
     }
     if (!status)
-        status = bench_http(&result, latencies, &err);
+        status = bench_http("http.db", "over HTTP, 8 connections, job by job", remote_thread,
+                            &result, latencies, &err);
+    if (!status)
+        status = bench_http("batch.db", "over HTTP, 8 connections, as rugo work", batch_thread,
+                            &result, latencies, &err);
     if (!status)
         probe_disk();
     else
