@@ -1,3 +1,4 @@
+#include "core/plain_text.h"
 #include "schema/json/json.h"
 #include "schema/result/provenance.h"
 #include "schema/result/result_json.h"
@@ -84,7 +85,8 @@ static void text_unknown(const struct case_table *table, FILE *file) {
 
 void case_table_text(const struct case_table *table, FILE *file) {
     struct text_table text = {.columns = 2 + table->column_count};
-    fprintf(file, "%s (%s), study %s\n\n", table->study.name, table->study.state, table->study.id);
+    text_print_plain(file, table->study.name);
+    fprintf(file, " (%s), study %s\n\n", table->study.state, table->study.id);
     text_rows(table, &text);
     table_print(&text, file);
     table_clear(&text);
@@ -93,8 +95,11 @@ void case_table_text(const struct case_table *table, FILE *file) {
         text_legend(table, &table->columns[n], file);
     text_unknown(table, file);
     for (size_t r = 0; r < table->row_count; r++)
-        if (table->rows[r]->error != NULL)
-            fprintf(file, "no results: %s\n", table->rows[r]->error);
+        if (table->rows[r]->error != NULL) {
+            fputs("no results: ", file);
+            text_print_plain(file, table->rows[r]->error);
+            fputc('\n', file);
+        }
 }
 
 /* --- CSV --- */

@@ -1,3 +1,4 @@
+#include "core/map/length_unit.h"
 #include "schema/json/json.h"
 #include "server/show/characterisation.h"
 #include "server/show/text_table.h"
@@ -17,7 +18,66 @@ static bool begins_table(const struct characterisation *characterisation, size_t
            strcmp(columns[n].group, columns[n - 1].group) != 0;
 }
 
-enum { ROWS_SHOWN = 20 };
+/* The unit in which a value in metres to a power is best read, "\xc2\xb5m^2"; returns how much of
+ * the value's unit one of it is. */
+static double readable_unit(double value, int power, char text[24]) {
+    double metres = 1;
+    double length = value != 0 && isfinite(value) ? pow(fabs(value), 1.0 / power) : 1;
+    const char *unit = length_unit_readable(length, &metres);
+    if (power == 1)
+        snprintf(text, 24, "%s", unit);
+    else if (power == -1)
+        snprintf(text, 24, "1/%s", unit);
+    else if (power < 0)
+        snprintf(text, 24, "1/%s^%d", unit, -power);
+    else
+        snprintf(text, 24, "%s^%d", unit, power);
+    return pow(metres, power);
+}
+
+/* The geometric mean of the largest and the least value of a column but 0; 0: it has none. */
+static double column_size(const struct characteristic_column *column) {
+    double most = 0, least = INFINITY;
+    for (size_t row = 0; row < column->count; row++) {
+        double size = fabs(column->values[row]);
+        most = size > most ? size : most;
+        least = size > 0 && size < least ? size : least;
+    }
+    return most > 0 ? sqrt(most) * sqrt(least) : 0;
+}
+
+/* Returns whether the name is that of another column with an ending: "rms_error" of "rms". */
+static bool belongs_to(const char *name, const char *other) {
+    size_t length = strlen(other);
+    return strncmp(name, other, length) == 0 && name[length] == '_';
+}
+
+/* The unit of column c of a table: that in which its own size is best read, or, of the errors, the
+ * band or the fit of another column, the unit of that. */
+static double column_unit(const struct characteristic_column *columns, size_t count, size_t c,
+                          char text[24]) {
+    double size = column_size(&columns[c]);
+    for (size_t other = 0; other < count; other++)
+        if (columns[other].power == columns[c].power &&
+            belongs_to(columns[c].name, columns[other].name) && column_size(&columns[other]) > 0)
+            size = column_size(&columns[other]);
+    return readable_unit(size, columns[c].power, text);
+}
+
+/* The unit of entry n: that of the largest of its group that have such units. */
+static double entry_unit(const struct characterisation *characterisation, size_t n, char text[24]) {
+    const struct characteristic *entry = &characterisation->list[n];
+    double most = 0;
+    for (size_t e = 0; e < characterisation->count; e++) {
+        const struct characteristic *other = &characterisation->list[e];
+        if (other->power == entry->power && strcmp(other->group, entry->group) == 0 &&
+            fabs(other->value) > most)
+            most = fabs(other->value);
+    }
+    return readable_unit(most, entry->power, text);
+}
+
+enum { ROWS_SHOWN = 20, COLUMNS_SHOWN = CHARACTERISTIC_COLUMNS_MOST };
 
 /* Of longer columns the rows 0, 1, 2, 3, 4, 6, 8, 12, 16, ... are shown, and the last one. */
 static bool is_row_shown(size_t row, size_t count) {
@@ -29,35 +89,69 @@ static bool is_row_shown(size_t row, size_t count) {
 }
 
 /* Prints the columns of one group. */
-static void table_of_columns(FILE *file, const struct characteristic_column *columns,
-                             size_t count) {
+static void table_of_columns(FILE *file, bool in_metres,
+                             const struct characteristic_column *columns, size_t count) {
     struct text_table table = {.columns = count};
-    for (size_t c = 0; c < count; c++)
-        table_cell(&table, "%s", columns[c].name);
+    double unit[COLUMNS_SHOWN];
+    for (size_t c = 0; c < count; c++) {
+        char text[24];
+        unit[c] = 1;
+        if (in_metres && columns[c].power != 0) {
+            unit[c] = column_unit(columns, count, c, text);
+            table_cell(&table, "%s[%s]", columns[c].name, text);
+        } else
+            table_cell(&table, "%s", columns[c].name);
+    }
     for (size_t row = 0; row < columns->count; row++)
         for (size_t c = 0; c < count && is_row_shown(row, columns->count); c++)
-            table_number(&table, columns[c].values[row]);
+            table_number(&table, columns[c].values[row] / unit[c]);
     fprintf(file, "%s\n", columns->group);
     table_print(&table, file);
     table_clear(&table);
 }
 
+enum { NAME_WIDTH = 18 };
+
+/* Returns how wide the names of the group are printed that begins with entry n. */
+static int name_width(const struct characterisation *characterisation, size_t n) {
+    size_t width = NAME_WIDTH, first = n;
+    for (; n < characterisation->count && (n == first || !begins_group(characterisation, n)); n++) {
+        size_t length = strlen(characterisation->list[n].name);
+        width = length > width ? length : width;
+    }
+    return (int)width;
+}
+
+static void entry_print(FILE *file, const struct characterisation *characterisation, size_t n,
+                        int width) {
+    const struct characteristic *entry = &characterisation->list[n];
+    fprintf(file, "  %-*s ", width, entry->name);
+    if (entry->text != NULL)
+        fprintf(file, "%s\n", entry->text);
+    else if (isfinite(entry->value) && characterisation->in_metres && entry->power != 0) {
+        char unit[24];
+        double one = entry_unit(characterisation, n, unit);
+        fprintf(file, "%.10g %s\n", entry->value / one, unit);
+    } else if (isfinite(entry->value))
+        fprintf(file, "%.10g\n", entry->value);
+    else
+        fprintf(file, "-\n");
+}
+
 void characterisation_print(FILE *file, const struct characterisation *characterisation) {
+    int width = NAME_WIDTH;
     for (size_t n = 0; n < characterisation->count; n++) {
-        const struct characteristic *entry = &characterisation->list[n];
-        if (begins_group(characterisation, n))
-            fprintf(file, "%s\n", entry->group);
-        if (entry->text != NULL)
-            fprintf(file, "  %-18s %s\n", entry->name, entry->text);
-        else if (isfinite(entry->value))
-            fprintf(file, "  %-18s %.10g\n", entry->name, entry->value);
-        else
-            fprintf(file, "  %-18s -\n", entry->name);
+        if (begins_group(characterisation, n)) {
+            width = name_width(characterisation, n);
+            fprintf(file, "%s\n", characterisation->list[n].group);
+        }
+        entry_print(file, characterisation, n, width);
     }
     size_t first = 0;
     for (size_t c = 1; c <= characterisation->column_count; c++)
         if (begins_table(characterisation, c)) {
-            table_of_columns(file, characterisation->columns + first, c - first);
+            table_of_columns(file, characterisation->in_metres, characterisation->columns + first,
+                             c - first);
             first = c;
         }
 }

@@ -1,111 +1,48 @@
 #include "server/show/map_characterisation.h"
-#include "core/map/detrend.h"
 #include "core/statistics/areal.h"
 #include "core/statistics/height_quantiles.h"
 #include "core/statistics/roughness.h"
-#include "core/statistics/scales.h"
-#include "core/statistics/seam.h"
-#include "core/statistics/windowed_psd.h"
+#include "server/show/characterise_heights.h"
+#include "server/show/characterise_spectrum.h"
 #include <math.h>
+#include <string.h>
 
-enum { BOUNDARY_AUTO, BOUNDARY_AS_OPEN, BOUNDARY_AS_PERIODIC };
-enum { DETREND_AUTO, DETREND_FIRST };
-
-/* What is done to the map, and what was seen before. */
-struct decision {
-    enum boundary boundary;
-    const char *reason; /* of the boundary; static */
-    enum detrend detrend;
-    struct seam seam;
-    double holes; /* share of the points */
-    struct trend trend;
-};
-
-static int check_request(const struct height_map *map, const struct map_request *request,
-                         double holes, struct error *err) {
-    if (holes == 1)
-        return error_set(err, ERROR_INPUT, "the map has no heights, only holes");
-    if (holes > 0 && request->boundary == BOUNDARY_AS_PERIODIC) {
-        int status = height_map_check_whole(map, err);
-        return status == 0 ? 0 : error_context(err, "a periodic map");
-    }
-    return 0;
+static void add_preparation(struct characterisation *out, const struct preparation_record *record) {
+    for (size_t step = 0; step < record->count; step++)
+        characterisation_add_text(out, "preparation", record->steps[step].name,
+                                  record->steps[step].text);
 }
 
-static void choose_boundary(struct decision *decision, int request) {
-    bool rough = seam_is_rough(&decision->seam);
-    bool open =
-        request == BOUNDARY_AS_OPEN || (request == BOUNDARY_AUTO && (rough || decision->holes > 0));
-    decision->boundary = open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC;
-    decision->reason = request != BOUNDARY_AUTO ? "option" : decision->holes > 0 ? "holes" : "seam";
-}
-
-/* The seam is looked at as the map is measured, but for a trend that only an open map loses. */
-static int decide(struct decision *decision, struct height_map *map,
-                  const struct map_request *request, struct error *err) {
-    bool given = request->detrend != DETREND_AUTO;
-    *decision = (struct decision){
-        .holes = (double)height_map_holes(map) / (double)grid_points(&map->grid),
-        .detrend = given ? (enum detrend)(request->detrend - DETREND_FIRST) : DETREND_NONE};
-    int status = check_request(map, request, decision->holes, err);
-    if (status == 0 && given)
-        status = detrend(&map->grid, map->z, decision->detrend, &decision->trend, err);
-    if (status == 0)
-        status = seam_measure(&map->grid, map->z, &decision->seam, err);
-    if (status != 0)
-        return status;
-    choose_boundary(decision, request->boundary);
-    if (given || decision->boundary == BOUNDARY_PERIODIC)
-        return 0;
-    decision->detrend = DETREND_PLANE;
-    return detrend(&map->grid, map->z, decision->detrend, &decision->trend, err);
-}
-
-static void add_decision(struct characterisation *out, const struct decision *decision,
-                         bool profile) {
+static void add_decision(struct characterisation *out, const struct preparation_record *decision,
+                         const struct height_map *map) {
     static const char GROUP[] = "map";
     static const char *const DETRENDS[] = {"none", "mean", "plane", "quadratic"};
     const struct trend *trend = &decision->trend;
+    bool profile = grid_is_profile(&map->grid);
+    if (*map->xy_unit != '\0')
+        characterisation_add_text(out, GROUP, "unit", map->xy_unit);
     characterisation_add_text(out, GROUP, "boundary",
                               decision->boundary == BOUNDARY_OPEN ? "open" : "periodic");
-    characterisation_add_text(out, GROUP, "boundary_by", decision->reason);
+    characterisation_add_text(out, GROUP, "boundary_by", decision->boundary_by);
     characterisation_add(out, GROUP, "seam_x", decision->seam.x);
     characterisation_add(out, GROUP, "seam_y", profile ? (double)NAN : decision->seam.y);
     characterisation_add(out, GROUP, "holes", decision->holes);
     characterisation_add_text(out, GROUP, "psd_window",
                               decision->boundary == BOUNDARY_OPEN ? "hann" : "none");
+    if (decision->window_power < 1)
+        characterisation_add(out, GROUP, "window_power", decision->window_power);
     characterisation_add_text(out, GROUP, "detrend", DETRENDS[decision->detrend]);
     if (decision->detrend != DETREND_NONE)
-        characterisation_add(out, GROUP, "trend_height", trend->height);
+        characterisation_add_length(out, GROUP, "trend_height", trend->height, 1);
     if (decision->detrend >= DETREND_PLANE) {
         characterisation_add(out, GROUP, "trend_slope_x", trend->slope_x);
         characterisation_add(out, GROUP, "trend_slope_y", trend->slope_y);
     }
     if (decision->detrend == DETREND_QUADRATIC) {
-        characterisation_add(out, GROUP, "trend_bend_xx", trend->bend_xx);
-        characterisation_add(out, GROUP, "trend_bend_xy", trend->bend_xy);
-        characterisation_add(out, GROUP, "trend_bend_yy", trend->bend_yy);
+        characterisation_add_length(out, GROUP, "trend_bend_xx", trend->bend_xx, -1);
+        characterisation_add_length(out, GROUP, "trend_bend_xy", trend->bend_xy, -1);
+        characterisation_add_length(out, GROUP, "trend_bend_yy", trend->bend_yy, -1);
     }
-}
-
-static int add_scales(struct characterisation *out, const struct measured_map *map,
-                      struct error *err) {
-    static const char GROUP[] = "scales";
-    struct scale scales[SCALES_MOST];
-    size_t count = scales_measure(map, scales);
-    double *length = characterisation_column(out, GROUP, "length", count);
-    double *height = characterisation_column(out, GROUP, "rms_height", count);
-    double *slope = characterisation_column(out, GROUP, "rms_slope", count);
-    double *curvature = characterisation_column(out, GROUP, "rms_curvature", count);
-    if (length == NULL || height == NULL || slope == NULL || curvature == NULL)
-        return error_memory(err, count * sizeof *length, "a table of scales");
-    for (size_t n = 0; n < count; n++) {
-        length[n] = scales[n].length;
-        height[n] = scales[n].height;
-        slope[n] = scales[n].slope;
-        curvature[n] = scales[n].curvature;
-    }
-    return 0;
 }
 
 static int add_quantiles(struct characterisation *out, const struct measured_map *map, size_t n,
@@ -115,30 +52,17 @@ static int add_quantiles(struct characterisation *out, const struct measured_map
     if (count == 0)
         return 0;
     double *probability = characterisation_column(out, GROUP, "probability", count);
-    double *quantile = characterisation_column(out, GROUP, "quantile", count);
+    double *quantile = characterisation_column_length(out, GROUP, "quantile", count, 1);
     if (probability == NULL || quantile == NULL)
         return error_memory(err, count * sizeof *quantile, "quantiles of the heights");
     return height_quantiles_measure(map, n, probability, quantile, err);
-}
-
-static int add_psd(struct characterisation *out, const struct measured_map *map,
-                   struct error *err) {
-    static const char GROUP[] = "psd";
-    size_t bins = radial_bins(map->grid);
-    double *wave_number = characterisation_column(out, GROUP, "wave_number", bins);
-    double *density = characterisation_column(out, GROUP, "density", bins);
-    if (wave_number == NULL || density == NULL)
-        return error_memory(err, bins * sizeof *density, "a spectral density");
-    return map->boundary == BOUNDARY_OPEN
-               ? windowed_psd_measure(map, wave_number, density, err)
-               : psd_measure(map->grid, map->z, wave_number, density, err);
 }
 
 static int add_acf(struct characterisation *out, const struct correlation *correlation,
                    struct error *err) {
     static const char GROUP[] = "acf";
     size_t rings = correlation_rings(correlation);
-    double *lag = characterisation_column(out, GROUP, "lag", rings);
+    double *lag = characterisation_column_length(out, GROUP, "lag", rings, 1);
     double *mean = characterisation_column(out, GROUP, "correlation", rings);
     if (lag == NULL || mean == NULL)
         return error_memory(err, rings * sizeof *mean, "an autocorrelation");
@@ -147,57 +71,66 @@ static int add_acf(struct characterisation *out, const struct correlation *corre
 }
 
 static int add_areal(struct characterisation *out, const struct measured_map *map,
-                     const struct correlation *correlation, struct error *err) {
+                     const struct map_chance *chance, struct error *err) {
     static const char GROUP[] = "areal";
-    struct areal areal;
-    int status = areal_measure(map, correlation, &areal, err);
-    if (status != 0)
-        return status;
+    struct areal areal = {0};
+    struct summit_list hills = {0};
+    int status = areal_measure(map, chance->correlation, &hills, &areal, err);
     const struct {
         const char *name;
         double value;
-    } rows[] = {{"Sa", areal.sa},   {"Sq", areal.sq},   {"Ssk", areal.ssk}, {"Sku", areal.sku},
-                {"Sp", areal.sp},   {"Sv", areal.sv},   {"Sz", areal.sz},   {"Sdq", areal.sdq},
-                {"Sdr", areal.sdr}, {"Sal", areal.sal}, {"Str", areal.str}, {"Spd", areal.spd},
-                {"Spc", areal.spc}};
-    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
-        characterisation_add(out, GROUP, rows[r].name, rows[r].value);
-    return 0;
-}
-
-static int add_correlated(struct characterisation *out, const struct measured_map *map,
-                          struct error *err) {
-    struct correlation *correlation = NULL;
-    int status = correlation_create(&correlation, map, err);
-    if (status == 0 && !grid_is_profile(map->grid))
-        status = add_areal(out, map, correlation, err);
+        int power;
+    } rows[] = {{"Sa", areal.sa, 1},   {"Sq", areal.sq, 1},   {"Ssk", areal.ssk, 0},
+                {"Sku", areal.sku, 0}, {"Sp", areal.sp, 1},   {"Sv", areal.sv, 1},
+                {"Sz", areal.sz, 1},   {"Sdq", areal.sdq, 0}, {"Sdr", areal.sdr, 0},
+                {"Sal", areal.sal, 1}, {"Str", areal.str, 0}, {"Spd", areal.spd, -2},
+                {"Spc", areal.spc, -1}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows && status == 0; r++)
+        characterisation_add_length(out, GROUP, rows[r].name, rows[r].value, rows[r].power);
     if (status == 0)
-        status = add_scales(out, map, err);
-    if (status == 0)
-        status = add_psd(out, map, err);
-    if (status == 0)
-        status = add_acf(out, correlation, err);
-    correlation_destroy(&correlation);
+        status = characterise_hills(out, map, chance, &hills, err);
+    summit_list_clear(&hills);
     return status;
 }
 
-int map_characterise(struct characterisation *out, struct height_map *map,
-                     const struct map_request *request, enum boundary *boundary,
-                     struct error *err) {
-    struct decision decision;
+static int add_correlated(struct characterisation *out, const struct measured_map *map,
+                          const struct map_chance *chance, const struct preparation_record *record,
+                          const struct spectrum_fit_request *trusted, struct error *err) {
+    int status = 0;
+    if (!grid_is_profile(map->grid))
+        status = add_areal(out, map, chance, err);
+    if (status == 0)
+        status = characterise_chance(out, map, chance, err);
+    if (status == 0)
+        status = characterise_scales(out, map, chance, err);
+    if (status == 0)
+        status = characterise_spectrum(out, map, record->window_power < 1, trusted, err);
+    if (status == 0)
+        status = add_acf(out, chance->correlation, err);
+    return status;
+}
+
+int map_characterise(struct characterisation *out, const struct height_map *map,
+                     const struct preparation_record *record,
+                     const struct spectrum_fit_request *trusted, struct error *err) {
     const struct grid *grid = &map->grid;
-    int status = decide(&decision, map, request, err);
+    const struct measured_map measured = {grid, map->z, record->boundary};
+    struct map_chance *chance = NULL;
+    int status = map_chance_create(&chance, &measured, err);
     if (status != 0)
         return status;
-    const struct measured_map measured = {grid, map->z, decision.boundary};
-    *boundary = decision.boundary;
-    add_decision(out, &decision, grid_is_profile(grid));
-    if (decision.boundary == BOUNDARY_OPEN)
-        status = characterise_open(out, &measured, err);
+    if (record->window_power < 1)
+        map_chance_forgo(chance, "none: the map is under a window");
+    out->in_metres = strcmp(map->xy_unit, "m") == 0 && strcmp(map->z_unit, "m") == 0;
+    add_preparation(out, record);
+    add_decision(out, record, map);
+    if (record->boundary == BOUNDARY_OPEN)
+        status = characterise_open(out, &measured, chance, err);
     else
-        status = characterise_heights(out, grid, map->z, grid->nx / 2, grid->ny / 2, err);
+        status = characterise_heights(out, grid, map->z, grid->nx / 2, grid->ny / 2, chance, err);
     if (status == 0)
-        status = add_correlated(out, &measured, err);
+        status = add_correlated(out, &measured, chance, record, trusted, err);
+    map_chance_destroy(&chance);
     size_t heights = grid_points(grid) - height_map_holes(map);
     return status == 0 ? add_quantiles(out, &measured, heights, err) : status;
 }

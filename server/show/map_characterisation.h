@@ -2,25 +2,16 @@
 #ifndef RUGO_SERVER_SHOW_MAP_CHARACTERISATION_H
 #define RUGO_SERVER_SHOW_MAP_CHARACTERISATION_H
 
-#include "core/map/height_map.h"
+#include "core/map/preparation.h"
+#include "core/statistics/spectrum_fit.h"
 #include "server/show/characterisation.h"
 
-/* In the order of these words: */
-#define MAP_BOUNDARIES "auto|open|periodic"
-#define MAP_DETRENDS "auto|none|mean|plane|quadratic"
-
-/* Numbers of the words above. auto is, of the boundary, periodic where the map is whole and its
- * seam no rougher than the roughest place inside (FORMULAS.md, F18.3), else open; of the trend,
- * none in a periodic map and a plane in an open one. */
-struct map_request {
-    int boundary, detrend;
-};
-
-/* Takes the trend out of the map and fills *out, {0} at first, which the caller clears either way;
- * *boundary tells what the map was taken as.
- * ERROR_INPUT where the map has no heights, is to be
- * periodic with holes, or has too few heights for its trend. */
-int map_characterise(struct characterisation *out, struct height_map *map,
-                     const struct map_request *request, enum boundary *boundary, struct error *err);
+/* Fills *out, {0} at first, which the caller clears either way, with what the map is like and what
+ * was done to it before (preparation_run); out borrows the texts of the record. Its spectrum is
+ * fitted over the wavelengths of `trusted` (spectrum_fit.h), which are {0} where the map is to tell
+ * them. ERROR_INPUT where these leave no wave. */
+int map_characterise(struct characterisation *out, const struct height_map *map,
+                     const struct preparation_record *record,
+                     const struct spectrum_fit_request *trusted, struct error *err);
 
 #endif

@@ -2,6 +2,7 @@
 #include "jobs/kind.h"
 #include "jobs/target.h"
 #include "schema/json/field.h"
+#include "schema/study/study_reader.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -19,9 +20,14 @@ double plan_case_error(const struct study_case *one) {
                : one->cost.relative_error / sqrt((double)one->realisations);
 }
 
+/* Realisations a job, as estimated. */
+static uint64_t block_of(const struct study_case *one) {
+    return study_block(one->realisations, one->cost.seconds, one->block);
+}
+
 uint64_t plan_case_jobs(const struct study_case *one) {
-    uint64_t jobs =
-        one->component_count > 0 ? 0 : (one->realisations + one->block - 1) / one->block;
+    uint64_t block = block_of(one);
+    uint64_t jobs = one->component_count > 0 ? 0 : (one->realisations + block - 1) / block;
     for (size_t a = 0; a < one->component_count; a++)
         jobs += plan_case_jobs(&one->components[a]);
     return jobs;
@@ -81,7 +87,7 @@ static cJSON *case_document(const struct study *study, size_t c) {
         field_put(document, "nx", cJSON_CreateNumber((double)one->cost.nx)) &&
         field_put(document, "ny", cJSON_CreateNumber((double)one->cost.ny)) &&
         field_put(document, "memory_bytes", json_number(plan_case_bytes(one))) &&
-        field_put(document, "block", cJSON_CreateNumber((double)one->block)) &&
+        field_put(document, "block", cJSON_CreateNumber((double)block_of(one))) &&
         field_put(document, "seconds", json_number(plan_case_seconds(&study->cases[c]))) &&
         field_put(document, "relative_error", json_number(plan_case_error(&study->cases[c]))) &&
         put_components(document, &study->cases[c]);

@@ -102,21 +102,46 @@ static double tick_value(double value, const struct plot_axis *axis) {
     return fabs(value) < 1e-12 * (axis->high - axis->low) ? 0.0 : value;
 }
 
+/* Prints a number of an axis, or the power of ten that it is. */
+static void print_number(FILE *file, double value, bool power) {
+    if (power)
+        fprintf(file, "10<tspan class=\"index\" dy=\"-5\">%ld</tspan>", lrint(log10(value)));
+    else
+        fprintf(file, "%.4g", value);
+}
+
+enum tick_label { TICK_BARE, TICK_NUMBER, TICK_POWER };
+
 static void draw_tick(FILE *file, const struct frame *frame, bool horizontal, double value,
-                      bool numbered) {
+                      enum tick_label label) {
     double x = horizontal ? frame_x(frame, value) : frame->left;
     double y = horizontal ? frame->bottom : frame_y(frame, value);
     fprintf(file, "<path d=\"M%.1f %.1f%c%d\" class=\"grid\"/>", x, y, horizontal ? 'V' : 'H',
             horizontal ? frame->top : frame->right);
-    if (numbered && !(horizontal ? frame->without_x : frame->without_y))
-        fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">%.4g</text>",
+    if (label != TICK_BARE && !(horizontal ? frame->without_x : frame->without_y)) {
+        fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">",
                 horizontal ? x : x - 8 * frame->scale, y + (horizontal ? 18 : 4) * frame->scale,
-                horizontal ? "middle" : "end", value);
+                horizontal ? "middle" : "end");
+        print_number(file, value, label == TICK_POWER);
+        fputs("</text>", file);
+    }
     fputc('\n', file);
 }
 
 static double length_of(const struct frame *frame, bool horizontal) {
     return (horizontal ? frame->right - frame->left : frame->bottom - frame->top) / frame->scale;
+}
+
+/* Lines at decades alone, with as many numbers as there is room for. */
+static void draw_decades(FILE *file, const struct frame *frame, bool horizontal) {
+    static const double ROOM_X = 42, ROOM_Y = 24; /* of a number */
+    const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
+    double decades = log10(axis->high / axis->low);
+    int each = (int)ceil((horizontal ? ROOM_X : ROOM_Y) * decades / length_of(frame, horizontal));
+    int first = (int)ceil(log10(axis->low) - 1e-9);
+    for (int decade = first; decade <= log10(axis->high) + 1e-9; decade++)
+        draw_tick(file, frame, horizontal, pow(10, decade),
+                  (decade - first) % each == 0 ? TICK_POWER : TICK_BARE);
 }
 
 /* Lines at 1, 2 and 5 of each decade; numbers at all of them where they do not crowd. */
@@ -126,11 +151,16 @@ static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool h
     static const double STEPS[] = {1, 2, 5};
     bool crowded = length_of(frame, horizontal) <
                    (horizontal ? ROOM_X : ROOM_Y) * log10(axis->high / axis->low);
+    if (frame->powers && crowded) {
+        draw_decades(file, frame, horizontal);
+        return;
+    }
     for (int decade = (int)floor(log10(axis->low)); pow(10, decade) <= axis->high; decade++)
         for (int s = 0; s < 3; s++) {
             double value = STEPS[s] * pow(10, decade);
             if (value >= axis->low && value <= axis->high)
-                draw_tick(file, frame, horizontal, value, s == 0 || !crowded);
+                draw_tick(file, frame, horizontal, value,
+                          s == 0 || !crowded ? TICK_NUMBER : TICK_BARE);
         }
 }
 
@@ -138,7 +168,7 @@ static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
     enum { PARTS = 5, PART_ROOM = 55 };
     const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
     for (size_t n = 0; n < axis->tick_count; n++)
-        draw_tick(file, frame, horizontal, axis->ticks[n], true);
+        draw_tick(file, frame, horizontal, axis->ticks[n], TICK_NUMBER);
     if (axis->tick_count > 0)
         return;
     if (axis->logarithmic) {
@@ -150,7 +180,7 @@ static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
     static const double ROUNDING = 1e-9; /* of a tick at an end */
     long last = lrint(floor(axis->high / step + ROUNDING));
     for (long n = lrint(ceil(axis->low / step - ROUNDING)); n <= last; n++)
-        draw_tick(file, frame, horizontal, tick_value((double)n * step, axis), true);
+        draw_tick(file, frame, horizontal, tick_value((double)n * step, axis), TICK_NUMBER);
 }
 
 void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label) {

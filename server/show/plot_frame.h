@@ -20,6 +20,7 @@ struct frame {
     int left, top, right, bottom; /* FRAME_LEFT and so on; right is less in a narrower picture */
     double scale;                 /* of letters and their distances; 1 on screens */
     bool without_x, without_y;    /* no numbers and label at this axis */
+    bool powers;                  /* logarithmic axes of many decades have numbers as 10^-5 */
 };
 /* Start, include the n points that must be seen, finish: false when there is no point at all. */
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic);

@@ -51,17 +51,21 @@ static const unsigned char RAMPS[][ANCHORS][3] = {{{0xe6, 0xf0, 0xf8},
                                                    {0x5e, 0xc9, 0x62},
                                                    {0xfd, 0xe7, 0x25}}};
 
-static void colour_of(const struct heat_scale *scale, size_t level, char out[HEAT_COLOUR_SIZE]) {
-    double place = scale->count > 1 ? (double)level / (double)(scale->count - 1) : 1;
+void heat_colour(enum heat_ramp ramp, double place, char out[HEAT_COLOUR_SIZE]) {
     size_t anchor = (size_t)(place * (ANCHORS - 1));
     anchor = anchor < ANCHORS - 1 ? anchor : ANCHORS - 2;
     double part = place * (ANCHORS - 1) - (double)anchor;
     unsigned mixed[3];
     for (size_t c = 0; c < 3; c++) {
-        double from = RAMPS[scale->ramp][anchor][c], to = RAMPS[scale->ramp][anchor + 1][c];
+        double from = RAMPS[ramp][anchor][c], to = RAMPS[ramp][anchor + 1][c];
         mixed[c] = (unsigned)lrint(from + part * (to - from)) & 0xff;
     }
     snprintf(out, HEAT_COLOUR_SIZE, "#%02x%02x%02x", mixed[0], mixed[1], mixed[2]);
+}
+
+static void colour_of(const struct heat_scale *scale, size_t level, char out[HEAT_COLOUR_SIZE]) {
+    heat_colour(scale->ramp, scale->count > 1 ? (double)level / (double)(scale->count - 1) : 1,
+                out);
 }
 
 /* --- cells --- */

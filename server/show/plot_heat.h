@@ -25,6 +25,8 @@ struct heat_scale heat_scale_between(double low, double high, int levels, enum h
  * less has no colour. */
 struct heat_scale heat_scale_of_density(double highest);
 
+/* Writes the colour at a place of a ramp, from 0 to 1. */
+void heat_colour(enum heat_ramp ramp, double place, char out[HEAT_COLOUR_SIZE]);
 /* Draws each cell in the colour of its level; the scale holds all values. */
 void heat_draw(const struct plot_pen *pen, const struct heat_cells *cells,
                const struct heat_scale *scale);

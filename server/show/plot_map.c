@@ -77,26 +77,24 @@ static void range_of(const struct map_picture *picture, double range[2]) {
 
 /* --- a profile --- */
 
-/* Two points of each group of neighbours: its lowest and highest, in their order; of one that has
- * holes alone a hole. */
-static size_t trace_of(const struct map_picture *picture, double *x, double *y) {
-    size_t nx = picture->grid->nx, step = (nx + GROUPS_MOST - 1) / GROUPS_MOST, count = 0;
-    double dx = grid_dx(picture->grid);
+size_t map_trace(const struct measured_map *map, size_t groups, double *x, double *y) {
+    size_t nx = map->grid->nx, step = (nx + groups - 1) / groups, count = 0;
+    double dx = grid_dx(map->grid);
     for (size_t first = 0; first < nx; first += step) {
         size_t low = first, high = first;
         for (size_t i = first; i < nx && i < first + step; i++) {
-            low = picture->z[i] < picture->z[low] || isnan(picture->z[low]) ? i : low;
-            high = picture->z[i] > picture->z[high] || isnan(picture->z[high]) ? i : high;
+            low = map->z[i] < map->z[low] || isnan(map->z[low]) ? i : low;
+            high = map->z[i] > map->z[high] || isnan(map->z[high]) ? i : high;
         }
         const size_t ends[2] = {low < high ? low : high, low < high ? high : low};
         for (size_t e = ends[0] == ends[1]; e < 2; e++) {
             x[count] = (double)ends[e] * dx;
-            y[count++] = picture->z[ends[e]];
+            y[count++] = map->z[ends[e]];
         }
     }
-    if (picture->boundary == BOUNDARY_PERIODIC) {
-        x[count] = picture->grid->lx; /* where the profile begins anew */
-        y[count++] = picture->z[0];
+    if (map->boundary == BOUNDARY_PERIODIC) {
+        x[count] = map->grid->lx; /* where the profile begins anew */
+        y[count++] = map->z[0];
     }
     return count;
 }
@@ -109,7 +107,8 @@ static int draw_profile(struct map_plot *plot, struct error *err) {
     if (points == NULL)
         return error_memory(err, (4 * GROUPS_MOST + 2) * sizeof *points, "a trace");
     double *heights = points + 2 * GROUPS_MOST + 1;
-    size_t count = trace_of(picture, points, heights);
+    const struct measured_map map = {picture->grid, picture->z, picture->boundary};
+    size_t count = map_trace(&map, GROUPS_MOST, points, heights);
     range_of(picture, range);
     double margin = 0.06 * (range[1] - range[0]);
     frame_set(&pen->frame, (const double[]){0, picture->grid->lx},
@@ -122,17 +121,15 @@ static int draw_profile(struct map_plot *plot, struct error *err) {
 
 /* --- a surface --- */
 
-/* Means over squares of step by step points, fewer at the far sides. */
-static void join_points(const struct map_picture *picture, size_t step,
-                        const struct heat_cells *cells, double *out) {
-    const struct grid *grid = picture->grid;
-    for (size_t row = 0; row < cells->ny; row++)
-        for (size_t column = 0; column < cells->nx; column++) {
+void map_join_points(const struct measured_map *map, size_t step, double *out) {
+    const struct grid *grid = map->grid;
+    for (size_t row = 0; row < grid->ny; row += step)
+        for (size_t column = 0; column < grid->nx; column += step) {
             struct average mean = {0};
-            for (size_t j = row * step; j < grid->ny && j < (row + 1) * step; j++)
-                for (size_t i = column * step; i < grid->nx && i < (column + 1) * step; i++)
-                    average_add(&mean, picture->z[j * grid->nx + i]);
-            out[row * cells->nx + column] = average_value(&mean);
+            for (size_t j = row; j < grid->ny && j < row + step; j++)
+                for (size_t i = column; i < grid->nx && i < column + step; i++)
+                    average_add(&mean, map->z[j * grid->nx + i]);
+            *out++ = average_value(&mean);
         }
 }
 
@@ -148,7 +145,8 @@ static int draw_surface(struct map_plot *plot, struct error *err) {
     double *values = array_create(cells.nx * cells.ny, sizeof *values);
     if (values == NULL)
         return error_memory(err, cells.nx * cells.ny * sizeof *values, "a picture");
-    join_points(picture, step, &cells, values);
+    const struct measured_map map = {grid, picture->z, picture->boundary};
+    map_join_points(&map, step, values);
     cells.values = values;
     cells.x[0] = -dx / 2; /* a point lies in the middle of its square */
     cells.x[1] = cells.x[0] + (double)(cells.nx * step) * dx;

@@ -20,4 +20,12 @@ struct map_picture { /* borrows */
  * them. Write errors are left to the file's own flag. */
 int plot_map(const struct map_picture *picture, FILE *file, struct error *err);
 
+/* Fills x and y, room for 2 groups + 1 each, with the trace of a profile: two points of each group
+ * of neighbours, its lowest and highest, in their order, of one that has holes alone a hole; and
+ * where the profile begins anew if it is periodic. Returns how many. */
+size_t map_trace(const struct measured_map *map, size_t groups, double *x, double *y);
+/* Fills out with means of what is there over squares of step by step points, fewer at the far
+ * sides: ceil(nx / step) columns, ceil(ny / step) rows. */
+void map_join_points(const struct measured_map *map, size_t step, double *out);
+
 #endif

@@ -1,5 +1,6 @@
 #include "server/show/plot_pen.h"
 #include "core/memory_file.h"
+#include "schema/json/json.h"
 #include "schema/result/result_json.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,11 +56,30 @@ void pen_head_sized(const struct plot_pen *pen, const struct pen_size *size) {
             size->font, size->font - 1, size->width, size->height);
 }
 
+/* The measured surface that those of the study are like, where there is one. */
+static bool put_like(FILE *file, const struct study_result *study) {
+    static const char *const TOLD[] = {"file", "sha256", "prepared"};
+    const char *before = ",\"like\":{";
+    for (size_t t = 0; t < sizeof TOLD / sizeof *TOLD && study->case_count > 0; t++) {
+        char pointer[40];
+        snprintf(pointer, sizeof pointer, "/surface/like/%s", TOLD[t]);
+        const struct result_parameter *told = result_parameter(&study->cases[0], pointer);
+        if (told == NULL || told->text == NULL)
+            continue;
+        fprintf(file, "%s\"%s\":", before, TOLD[t]);
+        before = ",";
+        if (!json_print_text(file, told->text))
+            return false;
+    }
+    return *before == ',' && before[1] == '\0' ? fputc('}', file) != EOF : true;
+}
+
 void pen_study(const struct plot_pen *pen, const struct study_result *study) {
     struct memory_file memory;
     if (study->provenance == NULL || !memory_file_open(&memory))
         return;
-    bool done = study_print_about(memory.file, study) && fputc('}', memory.file) != EOF;
+    bool done = study_print_about(memory.file, study) && put_like(memory.file, study) &&
+                fputc('}', memory.file) != EOF;
     char *text = memory_file_close(&memory, NULL);
     if (done && text != NULL) {
         fputs("<metadata>", pen->file);

@@ -1,4 +1,5 @@
 #include "server/show/plot_words.h"
+#include "core/plain_text.h"
 #include "jobs/kind.h"
 #include "schema/study/parameter.h"
 #include "server/show/shown_cases.h"
@@ -26,8 +27,14 @@ static void put(FILE *file, char letter) {
 }
 
 void svg_text(FILE *file, const char *text) {
-    for (; *text != '\0'; text++)
-        put(file, *text);
+    while (*text != '\0') {
+        size_t length = text_shown(text);
+        if (length == 0)
+            fputc('?', file);
+        for (size_t a = 0; a < length; a++)
+            put(file, text[a]);
+        text += length > 0 ? length : 1;
+    }
 }
 
 static size_t letters_at(const char *text) {
@@ -93,8 +100,10 @@ static size_t put_next(FILE *file, const char *text, bool inside_word) {
         fputs(text[1] == '\'' ? "″" : "′", file);
         return text[1] == '\'' ? 2 : 1;
     }
-    put(file, *text);
-    return 1;
+    size_t width = text_character(text); /* of several bytes, which stay together */
+    for (size_t a = 0; a < (width > 1 ? width : 1); a++)
+        put(file, text[a]);
+    return width > 1 ? width : 1;
 }
 
 void svg_label(FILE *file, const char *label) {

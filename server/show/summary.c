@@ -1,8 +1,11 @@
 #include "server/show/summary.h"
+#include "core/plain_text.h"
 #include "server/show/summary_cells.h"
+#include "server/show/summary_like.h"
 #include "server/show/summary_target.h"
 #include "server/show/view.h"
 #include <math.h>
+#include <string.h>
 
 /* --- scalars --- */
 
@@ -44,7 +47,8 @@ static size_t shown_scalars(const struct shown_cases *shown, const char *const *
     const struct case_result *first = shown->list[0];
     size_t count = 0;
     for (; headlines != NULL && *headlines != NULL && count < COLUMNS_MOST; headlines++)
-        if (has_scalar(shown, *headlines, ALONE))
+        if (strncmp(*headlines, "percentile_", 11) != 0 && /* those have a table of their own */
+            has_scalar(shown, *headlines, ALONE))
             names[count++] = *headlines;
     if (count > 0)
         return count;
@@ -160,11 +164,12 @@ static void print_scalars(const struct scalar_table *plan, FILE *file) {
 
 /* --- a study --- */
 
-enum { TARGETS_SHOWN = 20 };
+enum { TARGETS_SHOWN = 20, LIKE_SHOWN = 5 };
 
 static void print_title(const struct study_result *study, const struct study_report *report,
                         FILE *file) {
-    fprintf(file, "%s (%s), study %s", study->name, study->state, study->id);
+    text_print_plain(file, study->name);
+    fprintf(file, " (%s), study %s", study->state, study->id);
     if (is_even(study))
         fprintf(file, ", %llu realisations a case",
                 (unsigned long long)study->cases[0].realisations);
@@ -203,6 +208,8 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
         for (size_t c = 0; c < shown.count && c < TARGETS_SHOWN; c++)
             summary_of_target(shown.list[c], file);
     }
+    for (size_t c = 0; c < shown.count && c < LIKE_SHOWN; c++)
+        summary_of_like(shown.list[c], file);
     print_missing(&shown, file);
     shown_clear(&shown);
 }

@@ -1,4 +1,5 @@
 /* One case less another: tables of both, and of what lies between them. */
+#include "core/plain_text.h"
 #include "schema/result/view.h"
 #include "server/show/summary.h"
 #include "server/show/summary_cells.h"
@@ -109,9 +110,10 @@ void summary_of_difference(const struct study_result *study, FILE *file) {
     if (study->case_count == 0)
         return;
     const struct case_result *one = &study->cases[0];
-    fprintf(file, "%s (%s), study %s: case %llu less case %llu, %llu realisations\n", study->name,
-            study->state, study->id, (unsigned long long)one->case_number,
-            (unsigned long long)one->less, (unsigned long long)one->realisations);
+    text_print_plain(file, study->name);
+    fprintf(file, " (%s), study %s: case %llu less case %llu, %llu realisations\n", study->state,
+            study->id, (unsigned long long)one->case_number, (unsigned long long)one->less,
+            (unsigned long long)one->realisations);
     for (size_t p = 0; p < one->parameter_count; p++)
         if (one->parameters[p].text != NULL && strstr(one->parameters[p].text, " less ") != NULL)
             fprintf(file, "%s: %s\n", one->parameters[p].pointer, one->parameters[p].text);

@@ -1,4 +1,5 @@
 /* Speed against error. */
+#include "core/plain_text.h"
 #include "server/show/report_series.h"
 #include "server/show/summary.h"
 #include "server/show/summary_cells.h"
@@ -154,8 +155,9 @@ void summary_of_report(const struct study_report *report, FILE *file) {
     struct shown_cases shown;
     if (report->case_count == 0)
         return;
-    fprintf(file, "%s (%s), study %s: cost, and relative errors of the main curve\n", report->name,
-            report->state, report->id);
+    text_print_plain(file, report->name);
+    fprintf(file, " (%s), study %s: cost, and relative errors of the main curve\n", report->state,
+            report->id);
     print_without_cpu(&report->time, file);
     print_random(report->random, report->case_count, file);
     if (!shown_of_report(report, &shown)) {

@@ -1,12 +1,14 @@
 #include "server/show/summary_status.h"
+#include "core/plain_text.h"
 #include "schema/json/field.h"
 #include "server/show/summary_cells.h"
 #include <math.h>
 #include <string.h>
 
+/* What came from elsewhere is made fit for a terminal in its place. */
 static const char *text_of(const cJSON *object, const char *key) {
-    const char *text = cJSON_GetStringValue(field_at(object, key));
-    return text != NULL ? text : "-";
+    char *text = cJSON_GetStringValue(field_at(object, key));
+    return text != NULL ? text_make_plain(text) : "-";
 }
 
 /* Returns NaN for what is absent or no number. */
@@ -23,9 +25,12 @@ static void print_failure(const cJSON *failure, FILE *file) {
         fprintf(file, "  not published: case %.0f: %s\n", one, reason);
         return;
     }
-    fprintf(file, "  failed: case %.0f, realisations %.0f to %.0f, %.0f attempts, worker %s: %s\n",
-            one, first, first + number_of(failure, "count") - 1, number_of(failure, "attempts"),
-            text_of(failure, "worker"), reason);
+    fprintf(
+        file,
+        "  failed: case %.0f, realisations %.0f to %.0f, %.0f attempts, %.0f losses, worker %s: "
+        "%s\n",
+        one, first, first + number_of(failure, "count") - 1, number_of(failure, "attempts"),
+        fmax(0, number_of(failure, "losses")), text_of(failure, "worker"), reason);
 }
 
 /* Writes the time left, and what it is with. */

@@ -1,5 +1,6 @@
 #include "server/show/text_table.h"
 #include "core/error.h"
+#include "core/plain_text.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -31,7 +32,7 @@ void table_cell(struct text_table *table, const char *format, ...) {
     if (table->failed || vasprintf(&text, format, arguments) < 0)
         table->failed = true;
     else
-        append(table, text);
+        append(table, text_make_plain(text));
     va_end(arguments);
 }
 

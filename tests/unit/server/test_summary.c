@@ -199,7 +199,8 @@ static void failures_are_told(void **state) {
         "\"done\":3,\"total\":5,\"running\":0,\"failed\":1},\"realisations\":{\"done\":30,"
         "\"total\":50},\"workers\":0,\"seconds\":12,\"cpu_seconds\":5,\"jobs_without_cpu\":1,"
         "\"share\":0.625,\"seconds_left\":null,\"failures\":[{\"job\":4,"
-        "\"case\":1,\"first\":10,\"count\":10,\"attempts\":3,\"worker\":\"w\",\"reason\":\"lost\"},"
+        "\"case\":1,\"first\":10,\"count\":10,\"attempts\":3,\"losses\":2,\"worker\":\"w\","
+        "\"reason\":\"lost\"},"
         "{\"case\":2,\"reason\":\"of another program\"}]}";
     cJSON *document = cJSON_Parse(DOCUMENT), *empty = cJSON_Parse("{}");
     char *text = NULL;
@@ -215,7 +216,7 @@ static void failures_are_told(void **state) {
                   "of 5 (0 running, 1 failed)\n  workers 0, spent 5 s of CPU time in 12 s of "
                   "workers' time, left -\nJobs "
                   "whose CPU time is not known, so that the clock stands for it: 1.\n",
-                  "  failed: case 1, realisations 10 to 19, 3 attempts, "
+                  "  failed: case 1, realisations 10 to 19, 3 attempts, 2 losses, "
                   "worker w: lost\n",
                   "  not published: case 2: of another program\n", "\n-  -  -  -\n", NULL});
     free(text);

@@ -1,0 +1,217 @@
+/* Protects: the page about a measured surface has every part, in units that read well; its table
+ * says what the characterisation says; names are text, never markup; and maps that have nothing to
+ * draw, or holes, or one row, are drawn all the same. */
+#include "schema/json/json.h"
+#include "server/show/map_characterisation.h"
+#include "server/show/map_figure.h"
+#include "tests/support/check.h"
+#include "tests/support/count_of.h"
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct page {
+    struct height_map map;
+    struct preparation_record record;
+    struct characterisation found;
+    char *text;
+};
+
+/* A sum of waves, in metres where unit is "m". */
+static void make(struct page *page, size_t nx, size_t ny, double height, const char *unit) {
+    struct error err = {0};
+    *page = (struct page){0};
+    assert_int_equal(height_map_shape(&page->map, ny, nx, *unit != '\0' ? 0.5e-6 : 1, &err), 0);
+    page->map.z = array_create(nx * ny, sizeof *page->map.z);
+    assert_non_null(page->map.z);
+    snprintf(page->map.xy_unit, sizeof page->map.xy_unit, "%s", unit);
+    snprintf(page->map.z_unit, sizeof page->map.z_unit, "%s", unit);
+    for (size_t j = 0; j < ny; j++)
+        for (size_t i = 0; i < nx; i++)
+            page->map.z[j * nx + i] =
+                height * (sin(0.7 * (double)i + 0.2 * (double)j) + cos(0.13 * (double)(i * j)));
+    preparation_note(&page->record, "file", "%s", "a <b> & c.x3p");
+    preparation_note(&page->record, "sha256", "%s", "0123abcd");
+}
+
+static void draw(struct page *page) {
+    struct error err = {0};
+    size_t size = 0;
+    assert_int_equal(preparation_run(&page->record, &page->map, &(struct preparation){0}, &err), 0);
+    assert_int_equal(map_characterise(&page->found, &page->map, &page->record,
+                                      &(struct spectrum_fit_request){0}, &err),
+                     0);
+    const struct map_figure figure = {&page->found, &page->map, &page->record};
+    FILE *file = open_memstream(&page->text, &size);
+    assert_non_null(file);
+    assert_int_equal(map_figure_draw(&figure, file, &err), 0);
+    assert_int_equal(fclose(file), 0);
+    assert_non_null(strstr(page->text, "</svg>\n"));
+    assert_int_equal(count_of(page->text, "nan\""), 0); /* no number of an attribute */
+    assert_int_equal(count_of(page->text, "inf"), 0);
+    assert_int_equal(count_of(page->text, "<text"), count_of(page->text, "</text>"));
+    assert_int_equal(count_of(page->text, "<b>"), 0);
+    assert_true(count_of(page->text, "a &lt;b&gt; &amp; c.x3p<") == 1);
+    static const char *const PARTS[] = {"Heights<", "Power spectral density<",
+                                        "RMS slope by distance<", "RMS curvature by distance<",
+                                        "SHA-256 0123abcd<"};
+    for (size_t n = 0; n < sizeof PARTS / sizeof *PARTS; n++)
+        assert_int_equal(count_of(page->text, PARTS[n]), 1);
+}
+
+static void clear(struct page *page) {
+    characterisation_clear(&page->found);
+    height_map_clear(&page->map);
+    free(page->text);
+}
+
+static void lengths_are_in_readable_units(void **state) {
+    (void)state;
+    struct page page;
+    char row[64];
+    make(&page, 48, 32, 30e-9, "m");
+    draw(&page);
+    snprintf(row, sizeof row, ">%.4g nm<",
+             1e9 * characterisation_value(&page.found, "heights", "rms"));
+    assert_true(count_of(page.text, row) >= 1);
+    snprintf(row, sizeof row, ">%.4g 1/\xc2\xb5m<",
+             1e-6 * characterisation_value(&page.found, "finite_difference", "rms_curvature"));
+    assert_int_equal(count_of(page.text, row), 1);
+    assert_int_equal(count_of(page.text, ">5 \xc2\xb5m<"), 1); /* the bar beside 24 of them */
+    assert_int_equal(count_of(page.text, "48 \xc3\x97 32 points, 0.5 \xc2\xb5m apart; open"), 1);
+    assert_true(count_of(page.text, "class=\"map\"") > 6);
+    assert_true(count_of(page.text, "detrend: plane") == 1);
+    clear(&page);
+}
+
+static void without_units_there_are_none(void **state) {
+    (void)state;
+    struct page page;
+    make(&page, 32, 32, 2, "");
+    draw(&page);
+    assert_int_equal(count_of(page.text, ">z<"), 2); /* of the colours, and of the distribution */
+    assert_int_equal(count_of(page.text, "lengths in units of the file"), 1);
+    clear(&page);
+}
+
+/* Returns the text of the metadata, without the entities that svg_text writes; the caller frees. */
+static char *metadata_of(const char *page) {
+    static const struct {
+        const char *entity;
+        char letter;
+    } ENTITIES[] = {{"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}, {"&quot;", '"'}};
+    const char *at = strstr(page, "<metadata>");
+    assert_non_null(at);
+    at += strlen("<metadata>");
+    size_t length = strcspn(at, "<"), used = 0;
+    char *kept = array_create(length + 1, 1);
+    assert_non_null(kept);
+    for (size_t n = 0; n < length; n++) {
+        kept[used] = at[n];
+        for (size_t e = 0; e < 4 && kept[used] == '&'; e++)
+            if (strncmp(at + n, ENTITIES[e].entity, strlen(ENTITIES[e].entity)) == 0) {
+                kept[used] = ENTITIES[e].letter;
+                n += strlen(ENTITIES[e].entity) - 1;
+                break;
+            }
+        used++;
+    }
+    return kept;
+}
+
+/* Whoever has the page has the numbers. */
+static void the_file_holds_the_characterisation(void **state) {
+    (void)state;
+    struct page page;
+    char *json = NULL;
+    size_t size = 0;
+    make(&page, 32, 24, 2, "");
+    draw(&page);
+    FILE *file = open_memstream(&json, &size);
+    assert_non_null(file);
+    assert_true(characterisation_print_json(file, &page.found));
+    assert_int_equal(fclose(file), 0);
+    char *kept = metadata_of(page.text);
+    assert_string_equal(kept, json);
+    cJSON *document = cJSON_Parse(kept);
+    assert_non_null(cJSON_GetObjectItem(document, "heights"));
+    cJSON_Delete(document);
+    free(kept);
+    free(json);
+    clear(&page);
+}
+
+static void holes_profiles_and_flat_maps_are_drawn(void **state) {
+    (void)state;
+    struct page page;
+    make(&page, 40, 40, 1, "");
+    for (size_t n = 0; n < 200; n++)
+        page.map.z[410 + n % 20 + 40 * (n / 20)] = NAN;
+    draw(&page);
+    assert_int_equal(count_of(page.text, "hatched: not measured"), 1);
+    assert_int_equal(count_of(page.text, "12.5 % not measured"), 1);
+    clear(&page);
+    make(&page, 300, 1, 20e-6, "m");
+    draw(&page);
+    assert_int_equal(count_of(page.text, "profile of 300 points"), 1);
+    assert_int_equal(count_of(page.text, "class=\"map\""), 0);
+    clear(&page);
+    make(&page, 16, 16, 0, "");
+    for (size_t n = 0; n < 256; n++)
+        page.map.z[n] = 3;
+    draw(&page);
+    assert_int_equal(count_of(page.text, "all heights are the same"), 4);
+    assert_int_equal(count_of(page.text, "beyond each end"), 0);
+    clear(&page);
+    make(&page, 2, 2, 1, ""); /* heights, of which there is no spectrum and no curvature */
+    page.map.z[3] += 1;
+    draw(&page);
+    assert_int_equal(count_of(page.text, "all heights are the same"), 0);
+    assert_int_equal(count_of(page.text, "the map has too few points"), 2);
+    clear(&page);
+    make(&page, 512, 4, 1, ""); /* far from square */
+    draw(&page);
+    clear(&page);
+}
+
+/* Draws again a map without a fit, with these numbers of one, and expects this in its row. */
+static void expect_shortest(struct page *page, const double values[3], const char *expected) {
+    static const char *const NAMES[3] = {"short_wavelength", "short_wavelength_low",
+                                         "short_wavelength_high"};
+    struct error err = {0};
+    size_t size = 0, count = page->found.count;
+    assert_true(isnan(characterisation_value(&page->found, "spectrum_fit", NAMES[0])));
+    for (size_t v = 0; v < 3; v++)
+        characterisation_add(&page->found, "spectrum_fit", NAMES[v], values[v]);
+    free(page->text);
+    FILE *file = open_memstream(&page->text, &size);
+    assert_non_null(file);
+    const struct map_figure figure = {&page->found, &page->map, &page->record};
+    assert_int_equal(map_figure_draw(&figure, file, &err), 0);
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(count_of(page->text, expected), 1);
+    page->found.count = count;
+}
+
+static void intervals_leave_room_for_their_labels(void **state) {
+    (void)state;
+    struct page page;
+    make(&page, 48, 32, 1, "");
+    draw(&page);
+    expect_shortest(&page, (double[]){8.0123456, 8.0123451, 8.0123461}, ">8.012 [8.012, 8.012]<");
+    expect_shortest(&page, (double[]){7.9827e-6, 7.83e-6, 8.1e-6}, ">7.98e-06 [7.8e-06, 8.1e-06]<");
+    expect_shortest(&page, (double[]){7.98, 7.2, 8.9}, ">8.0 [7.2, 8.9]<");
+    clear(&page);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lengths_are_in_readable_units),
+        cmocka_unit_test(without_units_there_are_none),
+        cmocka_unit_test(the_file_holds_the_characterisation),
+        cmocka_unit_test(holes_profiles_and_flat_maps_are_drawn),
+        cmocka_unit_test(intervals_leave_room_for_their_labels),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
