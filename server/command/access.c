@@ -1,7 +1,6 @@
 #include "server/command/access.h"
-#include "jobs/kind.h"
+#include "core/part_file.h"
 #include "schema/result/result_json.h"
-#include "schema/study/override.h"
 #include "server/command/access_internal.h"
 #include "server/command/api.h"
 #include "server/command/command.h"
@@ -10,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { GIVEN_MOST = 255 }; /* bytes of what may stand for a study in a path */
 
@@ -18,16 +18,36 @@ int access_options_check(const char *command, const struct access_options *optio
         return usage_error(command, "--db and --server exclude each other");
     if (options->token_file != NULL && options->server == NULL)
         return usage_error(command, "--token-file goes with --server");
+    if ((options->trust.ca_file != NULL || options->trust.fingerprint != NULL ||
+         options->trust.insecure) &&
+        options->server == NULL)
+        return usage_error(command, "--ca-file, --fingerprint and --insecure go with --server");
     return 0;
+}
+
+static const char *environment(const char *name) {
+    const char *value = getenv(name);
+    return value != NULL && *value != '\0' ? value : NULL;
+}
+
+struct client_trust access_trust(const struct access_options *options) {
+    struct client_trust trust = options->trust;
+    if (trust.ca_file != NULL || trust.fingerprint != NULL)
+        return trust;
+    trust.ca_file = environment("RUGO_CA_FILE");
+    trust.fingerprint = environment("RUGO_FINGERPRINT");
+    return trust;
 }
 
 static int open_client(struct access *access, const struct access_options *options,
                        enum access_mode mode, struct error *err) {
     char *token = NULL;
+    const struct client_trust trust = access_trust(options);
     int status =
         token_read(options->token_file, mode == ACCESS_READ ? ROLE_READ : ROLE_SUBMIT, &token, err);
     if (status == 0)
-        status = client_create(&access->client, options->server, token, err);
+        status = client_create(&access->client, options->server, token, &trust, err);
+    access->server = options->server;
     free(token);
     return status;
 }
@@ -53,8 +73,14 @@ int access_open(struct access **out, const struct access_options *options, enum 
 }
 
 void access_close(struct access **access) {
+    struct due_case damaged;
     if (*access == NULL)
         return;
+    if ((*access)->store != NULL && store_found_damage((*access)->store, &damaged))
+        fprintf(stderr,
+                "rugo: what is published of case %llu of study %s is damaged, and was merged anew "
+                "from its results; rugo repair mends it\n",
+                (unsigned long long)damaged.case_number, damaged.study);
     store_close(&(*access)->store);
     client_destroy(&(*access)->client);
     free(*access);
@@ -67,7 +93,7 @@ static bool is_study_id(const char *id) {
     return length != 0 && length < STUDY_ID_SIZE && strspn(id, "0123456789abcdef") == length;
 }
 
-static int study_path(char *path, size_t size, const char *id, const char *rest,
+int access_study_path(char *path, size_t size, const char *id, const char *rest,
                       struct error *err) {
     if (!is_study_id(id))
         return error_set(err, ERROR_ABSENT, "there is no study \"%.40s\"", id);
@@ -84,7 +110,7 @@ static int ask(struct access *access, const char *method, const char *path, cons
 static int ask_study(struct access *access, const char *method, const char *id, const char *rest,
                      cJSON **out, struct error *err) {
     char path[320];
-    int status = study_path(path, sizeof path, id, rest, err);
+    int status = access_study_path(path, sizeof path, id, rest, err);
     return status != 0 ? status : ask(access, method, path, NULL, out, err);
 }
 
@@ -131,40 +157,6 @@ int access_find(struct access *access, const char *given, char id[STUDY_ID_SIZE]
         return find_remote(access, given, id, err);
     snprintf(id, STUDY_ID_SIZE, "%s", given);
     return 0;
-}
-
-/* A server has no --set: the changes are made before the study is sent. */
-static int submit_remote(struct access *access, const char *text, size_t size,
-                         const char *const *overrides, cJSON **out, struct fault_list *faults,
-                         struct error *err) {
-    cJSON *document = NULL;
-    int status = json_parse(text, size, NULL, &document, err);
-    for (size_t i = 0; status == 0 && overrides != NULL && overrides[i] != NULL; i++)
-        status = override_apply(document, overrides[i], err);
-    char *body = status != 0 ? NULL : json_print(document);
-    cJSON_Delete(document);
-    if (status == 0 && body == NULL)
-        status = error_memory(err, size, "a study");
-    struct request request = {
-        .method = "POST", .path = "/v1/studies", .body = body, .faults = faults};
-    if (status == 0)
-        status = client_json(access->client, &request, out, err);
-    free(body);
-    return status;
-}
-
-int access_submit(struct access *access, const char *text, size_t size,
-                  const char *const *overrides, cJSON **out, struct fault_list *faults,
-                  struct error *err) {
-    bool existing;
-    struct study *study = NULL;
-    if (access->client != NULL)
-        return submit_remote(access, text, size, overrides, out, faults, err);
-    int status = kind_read_study(&study, text, size, overrides, faults, err);
-    if (status == 0)
-        status = api_submit(access->store, study, NULL, out, &existing, err);
-    study_destroy(&study);
-    return status;
 }
 
 int access_status(struct access *access, const char *id, cJSON **out, struct error *err) {
@@ -281,48 +273,38 @@ int access_report(struct access *access, const char *id, struct study_report *ou
     return status;
 }
 
-int access_cancel(struct access *access, const char *id, cJSON **out, struct error *err) {
-    return access->client != NULL ? ask_study(access, "DELETE", id, "", out, err)
-                                  : api_cancel(access->store, id, out, err);
+int access_health(struct access *access, cJSON **out, struct error *err) {
+    return ask(access, "GET", "/healthz", NULL, out, err);
 }
 
-int access_retry(struct access *access, const char *id, cJSON **out, struct error *err) {
-    return access->client != NULL ? ask_study(access, "POST", id, "/retry", out, err)
-                                  : api_retry(access->store, id, out, err);
+static bool is_stopped(void *context) {
+    (void)context;
+    return stop_requested != 0;
 }
 
-int access_delete(struct access *access, const char *id, cJSON **out, struct error *err) {
-    if (access->client != NULL)
-        return ask_study(access, "DELETE", id, "?results=true", out, err);
-    int status = api_delete(access->store, id, out, err);
-    if (status == 0 && (status = store_purge(access->store, NULL, NULL, err)) != 0) {
-        cJSON_Delete(*out);
-        *out = NULL;
+static int download(struct access *access, const char *path, struct error *err) {
+    struct part_file part;
+    int status = part_file_create(&part, path, err);
+    if (status != 0)
+        return status;
+    int copy = dup(part.file);
+    FILE *file = copy >= 0 ? fdopen(copy, "wb") : NULL;
+    if (file == NULL) {
+        if (copy >= 0)
+            close(copy);
+        status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
+    } else {
+        status = client_download(access->client, "/v1/snapshot", file, err);
+        if (fclose(file) != 0 && status == 0)
+            status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
     }
+    if (status == 0)
+        status = part_file_publish(&part, err);
+    part_file_destroy(&part);
     return status;
-}
-
-int access_extend(struct access *access, const char *id, uint64_t realisations, cJSON **out,
-                  struct error *err) {
-    char path[320], body[64];
-    if (access->client == NULL)
-        return api_extend(access->store, id, realisations, out, err);
-    snprintf(body, sizeof body, "{\"realisations\":%llu}", (unsigned long long)realisations);
-    int status = study_path(path, sizeof path, id, "/extend", err);
-    return status != 0 ? status : ask(access, "POST", path, body, out, err);
 }
 
 int access_snapshot(struct access *access, const char *path, struct error *err) {
-    if (access->client == NULL)
-        return store_snapshot(access->store, path, err);
-    FILE *file = fopen(path, "wxb");
-    if (file == NULL)
-        return error_set(err, errno == EEXIST ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s", path,
-                         errno == EEXIST ? "exists; a snapshot needs a new file" : strerror(errno));
-    int status = client_download(access->client, "/v1/snapshot", file, err);
-    if (fclose(file) != 0 && status == 0)
-        status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
-    if (status != 0)
-        remove(path);
-    return status;
+    return access->client != NULL ? download(access, path, err)
+                                  : store_snapshot(access->store, path, is_stopped, NULL, err);
 }

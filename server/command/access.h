@@ -6,11 +6,13 @@
 #include "schema/study/fault.h"
 #include "server/command/command.h"
 #include "worker/aggregate.h"
+#include "worker/client_trust.h"
 #include "worker/comparison.h"
 #include <stdio.h>
 
 struct access_options {
     const char *database, *server, *token_file; /* as given; database NULL: DATABASE */
+    struct client_trust trust;
 };
 /* The rows of its options, where it is the member `place` of the command's struct. */
 #define ACCESS_ROWS(options)                                                                       \
@@ -19,6 +21,27 @@ struct access_options {
      "FILE", NULL, "the local store (" DATABASE ")"},                                              \
         {"server", 0,    OPTION_TEXT,       0, 0, offsetof(options, place.server),                 \
          "URL",    NULL, "a server instead"},                                                      \
+        {"ca-file",                                                                                \
+         0,                                                                                        \
+         OPTION_TEXT,                                                                              \
+         0,                                                                                        \
+         0,                                                                                        \
+         offsetof(options, place.trust.ca_file),                                                   \
+         "FILE",                                                                                   \
+         NULL,                                                                                     \
+         "PEM of who vouches for it, or RUGO_CA_FILE; else those the system trusts"},              \
+        {"fingerprint",                                                                            \
+         0,                                                                                        \
+         OPTION_TEXT,                                                                              \
+         0,                                                                                        \
+         0,                                                                                        \
+         offsetof(options, place.trust.fingerprint),                                               \
+         "sha256:HEX",                                                                             \
+         NULL,                                                                                     \
+         "of its key, as it prints it, in place of an authority; or RUGO_FINGERPRINT"},            \
+        {"insecure", 0,    OPTION_FLAG,                                                            \
+         0,          0,    offsetof(options, place.trust.insecure),                                \
+         NULL,       NULL, "send the token in clear text, too, beyond this machine"},              \
     {                                                                                              \
         "token-file", 0, OPTION_TEXT, 0, 0, offsetof(options, place.token_file), "FILE", NULL,     \
             "its token, or that of its own file of tokens which fits; or RUGO_TOKEN"               \
@@ -27,6 +50,8 @@ struct access_options {
 enum access_mode { ACCESS_READ, ACCESS_WRITE, ACCESS_CREATE };
 struct access;
 
+/* Whom to believe of servers: as given, else as the environment says. */
+struct client_trust access_trust(const struct access_options *options);
 /* 0, or EXIT_USAGE after a usage error was told (both places, or a token without a server). */
 int access_options_check(const char *command, const struct access_options *options);
 int access_open(struct access **out, const struct access_options *options, enum access_mode mode,
@@ -37,10 +62,19 @@ void access_close(struct access **access);
 int access_find(struct access *access, const char *given, char id[STUDY_ID_SIZE],
                 struct error *err);
 
+/* What is submitted; all borrowed. */
+struct submission {
+    const char *text; /* JSON */
+    size_t size;
+    const char *const *overrides; /* as of --set, NULL-terminated; or NULL */
+    /* The same key and study make one study, however often they are submitted. NULL: one of this
+     * call alone. */
+    const char *key;
+    unsigned timeout_s; /* for a server's answer; 0: 30 */
+};
 /* These give documents as in openapi.yaml; the caller deletes them. */
-int access_submit(struct access *access, const char *text, size_t size,
-                  const char *const *overrides, cJSON **out, struct fault_list *faults,
-                  struct error *err);
+int access_submit(struct access *access, const struct submission *submission, cJSON **out,
+                  struct fault_list *faults, struct error *err);
 int access_status(struct access *access, const char *id, cJSON **out, struct error *err);
 int access_document(struct access *access, const char *id, cJSON **out, struct error *err);
 int access_list(struct access *access, cJSON **out, struct error *err); /* of all studies */
@@ -61,7 +95,10 @@ int access_table(struct access *access, const char *id, const struct table_reque
                  int format, FILE *file, struct error *err);
 int access_report(struct access *access, const char *id, struct study_report *out,
                   struct error *err);
-/* Copies the store to a file; path must not exist. */
+/* Of a server alone: what it says of itself; an error where it is not well. */
+int access_health(struct access *access, cJSON **out, struct error *err);
+/* Copies the store to a file, which is there when it is whole; path must not exist. A local copy
+ * ends when stop_requested is set. */
 int access_snapshot(struct access *access, const char *path, struct error *err);
 
 #endif

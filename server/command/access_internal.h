@@ -7,6 +7,9 @@
 struct access {
     struct store *store; /* one of the two; owned */
     struct client *client;
+    const char *server; /* its URL, borrowed */
 };
+/* Writes the path of a study, with what is behind its id; ERROR_ABSENT where it is no id. */
+int access_study_path(char *path, size_t size, const char *id, const char *rest, struct error *err);
 
 #endif

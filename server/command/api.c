@@ -129,6 +129,7 @@ static bool put_failures(cJSON *document, const struct failure *failures, size_t
                    field_put_count(entry, "first", failure->first) &&
                    field_put_count(entry, "count", failure->count) &&
                    field_put_count(entry, "attempts", failure->attempts) &&
+                   field_put_count(entry, "losses", failure->losses) &&
                    field_put(entry, "worker", cJSON_CreateString(failure->worker)) &&
                    field_put(entry, "reason", cJSON_CreateString(failure->reason));
     }

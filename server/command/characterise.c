@@ -1,38 +1,60 @@
 /* rugo characterise FILE: what a height map in a file is like. */
+#include "core/memory_file.h"
 #include "server/command/command.h"
+#include "server/command/like_study.h"
 #include "server/command/map_file.h"
 #include "server/command/output_file.h"
 #include "server/show/map_characterisation.h"
+#include "server/show/map_figure.h"
 #include <stdlib.h>
 #include <string.h>
 
 struct characterise_options {
-    double dx; /* 0: not given */
-    struct map_request request;
-    int json;
-    const char *picture; /* NULL: none */
+    struct map_options map;
+    const char *trust_from, *trust_to; /* NULL: by the map */
+    int format;
+    const char *picture, *report; /* NULL: none */
 };
 #define AT(member) offsetof(struct characterise_options, member)
 static const struct option_row OPTIONS[] = {
-    {"dx", 0, OPTION_NUMBER, 0, 0, AT(dx), "D", NULL, MAP_SPACING_HELP},
-    {"boundary", 0, OPTION_CHOICE, 0, 0, AT(request.boundary), MAP_BOUNDARIES, "auto",
-     "whether the map repeats; auto: where its seam is no rougher than its inside"},
-    {"detrend", 0, OPTION_CHOICE, 0, 0, AT(request.detrend), MAP_DETRENDS, "auto",
-     "trend taken out first; auto: a plane, of an open map"},
-    {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
+    MAP_OPTION_ROWS(struct characterise_options, map),
+    MAP_BOUNDARY_ROW(struct characterise_options, map),
+    {"trust-from", 0, OPTION_TEXT, 0, 0, AT(trust_from), "LENGTH", NULL,
+     "the longest waves whose spectrum is fitted, such as 50um (by the map)"},
+    {"trust-to", 0, OPTION_TEXT, 0, 0, AT(trust_to), "LENGTH", NULL,
+     "the shortest ones (by the map: where noise, or what the instrument takes, begins)"},
+    {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|svg|study", "text",
+     "what to print; svg: the page of --report; study: one of surfaces like the map"},
     {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
      "draw the map as it was measured, without its trend, with its summits marked"},
+    {"report", 0, OPTION_TEXT, 0, 0, AT(report), "FILE.svg|FILE.png", NULL,
+     "draw a page for print: map, heights, spectrum, scales, main parameters, where they come "
+     "from"},
     {0}};
 
-static int print(const struct characterise_options *options, const struct characterisation *found,
-                 struct error *err) {
+enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_STUDY };
+
+static int print_study(const struct map_figure *figure, struct error *err) {
+    cJSON *study = NULL;
+    int status = like_study_make(&study, figure->map, figure->record, err);
+    if (status == 0)
+        status = output_document(study, err);
+    cJSON_Delete(study);
+    return status;
+}
+
+static int print(int format, const struct map_figure *figure, struct error *err) {
     int status = 0;
-    if (options->json == 0)
-        characterisation_print(stdout, found);
-    else if (characterisation_print_json(stdout, found))
+    if (format == FORMAT_TEXT)
+        characterisation_print(stdout, figure->found);
+    else if (format == FORMAT_SVG)
+        status = map_figure_draw(figure, stdout, err);
+    else if (format == FORMAT_STUDY)
+        status = print_study(figure, err);
+    else if (characterisation_print_json(stdout, figure->found))
         putchar('\n');
     else
-        status = error_memory(err, sizeof *found, "the characterisation");
+        status = error_memory(err, sizeof *figure->found, "the characterisation");
     if (status == 0 && (fflush(stdout) != 0 || ferror(stdout) != 0))
         status = error_set(err, ERROR_SYSTEM, "cannot write to standard output");
     return status;
@@ -51,22 +73,82 @@ static int draw(const char *path, const char *name, const struct height_map *map
     return output_file_picture(path, &picture, err);
 }
 
+/* A page under a name of another kind, such as .pdf, would not be what it seems. */
+static int check_report(const char *path, struct error *err) {
+    size_t length = path != NULL ? strlen(path) : 0;
+    if (path == NULL || output_file_is_png(path) ||
+        (length > 4 && strcmp(path + length - 4, ".svg") == 0))
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "--report %.200s: allowed are files that end in .svg or .png; --format svg "
+                     "prints the page",
+                     path);
+}
+
+static int report(const char *path, const struct map_figure *figure, struct error *err) {
+    struct memory_file memory;
+    size_t size = 0;
+    if (!memory_file_open(&memory))
+        return error_memory(err, 0, "a page");
+    int status = map_figure_draw(figure, memory.file, err);
+    char *text = memory_file_close(&memory, &size);
+    if (status == 0 && text == NULL)
+        status = error_memory(err, 0, "a page");
+    if (status == 0)
+        status = output_file_drawn(path, text, size, err);
+    free(text);
+    return status;
+}
+
+/* Reads a wavelength in the unit of the map, or with one; *out stays where text is NULL. */
+static int wavelength_read(double *out, const char *option, const char *text,
+                           const struct height_map *map, struct error *err) {
+    struct asked_length length = {0};
+    if (text == NULL)
+        return 0;
+    if (!asked_length_parse(&length, text, strlen(text)) || !(length.value > 0))
+        return error_set(err, ERROR_INPUT,
+                         "--%s is \"%.40s\"; allowed: a length above 0, such as 50um", option,
+                         text);
+    if (length.has_unit && strcmp(map->xy_unit, "m") != 0)
+        return error_set(err, ERROR_INPUT,
+                         "--%s is \"%.40s\", but the map has no unit of length (--unit says it)",
+                         option, text);
+    *out = length.value;
+    return 0;
+}
+
+static int characterise(struct characterisation *found, const struct height_map *map,
+                        const struct preparation_record *record,
+                        const struct characterise_options *options, struct error *err) {
+    struct spectrum_fit_request trusted = {0};
+    int status = wavelength_read(&trusted.longest, "trust-from", options->trust_from, map, err);
+    if (status == 0)
+        status = wavelength_read(&trusted.shortest, "trust-to", options->trust_to, map, err);
+    return status == 0 ? map_characterise(found, map, record, &trusted, err) : status;
+}
+
 static int run(const void *values, const char *const *arguments) {
     const struct characterise_options *options = values;
     struct height_map map = {0};
     struct characterisation found = {0};
     struct error err = {0};
-    enum boundary boundary = BOUNDARY_PERIODIC;
-    int status = map_file_read(&map, arguments[0], options->dx, &err);
+    struct preparation_record record = {0};
+    int status = check_report(options->report, &err);
+    if (status == 0)
+        status = map_options_read(&map, &record, arguments[0], &options->map, &err);
     if (status == 0) {
-        status = map_characterise(&found, &map, &options->request, &boundary, &err);
+        status = characterise(&found, &map, &record, options, &err);
         if (status != 0)
             error_context(&err, "%s", arguments[0]);
     }
     if (status == 0 && options->picture != NULL)
-        status = draw(options->picture, arguments[0], &map, boundary, &err);
+        status = draw(options->picture, arguments[0], &map, record.boundary, &err);
+    const struct map_figure figure = {&found, &map, &record};
+    if (status == 0 && options->report != NULL)
+        status = report(options->report, &figure, &err);
     if (status == 0)
-        status = print(options, &found, &err);
+        status = print(options->format, &figure, &err);
     characterisation_clear(&found);
     height_map_clear(&map);
     return status == 0 ? EXIT_DONE : command_fail("characterise", &err);

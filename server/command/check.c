@@ -7,6 +7,7 @@
 #include "server/show/plan.h"
 #include "server/show/summary_cells.h"
 #include "server/show/summary_target.h"
+#include "worker/allotment.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -95,7 +96,7 @@ static void print_values(const struct study *study, const cJSON *object, const c
 static void print_text(const struct study *study) {
     char cpu[48], wall[48];
     duration_text(plan_seconds(study), cpu, sizeof cpu);
-    duration_text(plan_seconds(study) / processors(), wall, sizeof wall);
+    duration_text(plan_seconds(study) / allotment_threads(), wall, sizeof wall);
     printf("%s (%s), seed %llu: %zu cases", study->name, study->kind->name,
            (unsigned long long)study->seed, study->case_count);
     if (study->realisations > 0)
@@ -108,7 +109,7 @@ static void print_text(const struct study *study) {
     for (size_t c = 0; c < study->case_count && c < PLANS_SHOWN; c++)
         summary_of_plan(&study->cases[c], stdout);
     printf("in all about %s of CPU, %s on %u processors; up to %.0f MiB a worker\n", cpu, wall,
-           processors(), plan_bytes(study) / 0x1p20);
+           allotment_threads(), plan_bytes(study) / 0x1p20);
 }
 
 /* --- JSON --- */
@@ -133,11 +134,35 @@ static int print_schema(struct error *err) {
 
 /* --- the command --- */
 
-static int check(const char *file, const char *const *sets, bool json, struct fault_list *faults,
+struct options {
+    const char **sets;
+    int json;
+    bool schema, study;
+};
+
+/* Prints the study as it would be kept and sent: with its changes, and what was fitted in the place
+ * of a file. */
+static int print_study(const struct study *study, struct error *err) {
+    cJSON *document = NULL;
+    int status = json_parse(study->source, strlen(study->source), NULL, &document, err);
+    char *text = status == 0 ? json_print_pretty(document) : NULL;
+    cJSON_Delete(document);
+    if (status == 0 && text == NULL)
+        status = error_memory(err, strlen(study->source), "a study");
+    if (status != 0)
+        return status;
+    fputs(text, stdout);
+    free(text);
+    return output_flush(err);
+}
+
+static int check(const char *file, const struct options *options, struct fault_list *faults,
                  struct error *err) {
     struct study *study = NULL;
-    int status = study_file_read(&study, file, sets, faults, err);
-    if (status == 0 && json) {
+    int status = study_file_read(&study, file, options->sets, faults, err);
+    if (status == 0 && options->study) {
+        status = print_study(study, err);
+    } else if (status == 0 && options->json != 0) {
         status = print_document(plan_document(study), err);
     } else if (status == 0) {
         print_text(study);
@@ -147,15 +172,13 @@ static int check(const char *file, const char *const *sets, bool json, struct fa
     return status;
 }
 
-struct options {
-    const char **sets;
-    int json;
-    bool schema;
-};
 #define AT(member) offsetof(struct options, member)
 static const struct option_row OPTIONS[] = {
     {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
+    {"study", 0, OPTION_FLAG, 0, 0, AT(study), NULL, NULL,
+     "print the study instead, as it would be kept and sent: with its changes, and what was fitted "
+     "in the place of a measured surface's file"},
     {"schema", 0, OPTION_FLAG, 0, 0, AT(schema), NULL, NULL,
      "print the JSON Schema of studies instead; needs no study"},
     {0}};
@@ -167,11 +190,8 @@ static int run(const void *values, const char *const *arguments) {
     struct fault_list faults = {0};
     if (file == NULL && !options->schema)
         return usage_error("check", "an argument is missing");
-    int status = options->schema ? print_schema(&err)
-                                 : check(file, options->sets, options->json, &faults, &err);
-    int result = status == 0        ? EXIT_DONE
-                 : faults.count > 0 ? command_fail_faults(file, &faults)
-                                    : command_fail("check", &err);
+    int status = options->schema ? print_schema(&err) : check(file, options, &faults, &err);
+    int result = command_end("check", status, file, &faults, &err);
     fault_list_clear(&faults);
     return result;
 }

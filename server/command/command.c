@@ -1,16 +1,32 @@
 #include "server/command/command.h"
+#include "core/plain_text.h"
 #include "jobs/kind.h"
+#include "server/command/input_file.h"
+#include "server/command/like_study.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 atomic_int stop_requested;
+static atomic_llong stop_ms; /* when it was set, by clock_of_signals */
 
-/* The second one ends at once: nothing is lost but the lease of a running block. */
+static long long clock_of_signals(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (long long)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+/* The second one ends at once: nothing is lost but the leases of running jobs. Two that come
+ * together are one: timeout(1) sends its signal to the program, and to the group it is in. */
 static void on_signal(int number) {
-    if (stop_requested != 0 && number == SIGINT)
+    enum { TOGETHER_MS = 100 };
+    (void)number;
+    if (stop_requested == 0)
+        stop_ms = clock_of_signals();
+    else if (clock_of_signals() - stop_ms > TOGETHER_MS)
         _exit(EXIT_INTERRUPTED);
     stop_requested = 1;
 }
@@ -33,28 +49,37 @@ int command_fail(const char *command, const struct error *err) {
 }
 
 void command_warn_missing(const char *command, const struct case_result *result) {
-    if (result->error != NULL)
-        fprintf(stderr, "rugo %s: no results: %s\n", command, result->error);
-}
-
-static const char *name_of(const char *path) {
-    return strcmp(path, "-") == 0 ? "standard input" : path;
+    if (result->error == NULL)
+        return;
+    fprintf(stderr, "rugo %s: no results: ", command);
+    text_print_plain(stderr, result->error);
+    fputc('\n', stderr);
 }
 
 int command_fail_faults(const char *file, const struct fault_list *faults) {
     size_t kept = faults->count < FAULTS_KEPT ? faults->count : FAULTS_KEPT;
     if (faults->faults == NULL && faults->count > 0)
-        fprintf(stderr, "%s: %zu faults, and no memory to tell them\n", name_of(file),
+        fprintf(stderr, "%s: %zu faults, and no memory to tell them\n", input_file_name(file),
                 faults->count);
     for (size_t i = 0; faults->faults != NULL && i < kept; i++) {
         const struct fault *fault = &faults->faults[i];
         const char *pointer = fault->pointer != NULL ? fault->pointer : "";
-        fprintf(stderr, "%s: %s%s%s\n", name_of(file), pointer, *pointer != '\0' ? ": " : "",
-                fault->detail != NULL ? fault->detail : "");
+        fprintf(stderr, "%s: ", input_file_name(file));
+        text_print_plain(stderr, pointer);
+        fputs(*pointer != '\0' ? ": " : "", stderr);
+        text_print_plain(stderr, fault->detail != NULL ? fault->detail : "");
+        fputc('\n', stderr);
     }
     if (faults->count > kept)
-        fprintf(stderr, "%s: and %zu more\n", name_of(file), faults->count - kept);
+        fprintf(stderr, "%s: and %zu more\n", input_file_name(file), faults->count - kept);
     return EXIT_USAGE;
+}
+
+int command_end(const char *command, int status, const char *file, const struct fault_list *faults,
+                const struct error *err) {
+    if (status == 0)
+        return EXIT_DONE;
+    return faults->count > 0 ? command_fail_faults(file, faults) : command_fail(command, err);
 }
 
 int output_flush(struct error *err) {
@@ -74,46 +99,6 @@ int output_document(const cJSON *document, struct error *err) {
     return status;
 }
 
-/* Reads to the end of a stream; the buffer doubles. */
-static int read_stream(FILE *file, const char *path, size_t limit, char **text, size_t *size,
-                       struct error *err) {
-    size_t room = 65536, used = 0;
-    char *buffer = malloc(room + 1);
-    while (buffer != NULL && used <= limit) {
-        used += fread(buffer + used, 1, room - used, file);
-        if (used < room)
-            break;
-        room *= 2;
-        char *larger = realloc(buffer, room + 1);
-        if (larger == NULL)
-            free(buffer);
-        buffer = larger;
-    }
-    if (buffer == NULL)
-        return error_memory(err, room, path);
-    if (ferror(file) != 0 || used > limit) {
-        free(buffer);
-        return used > limit ? error_set(err, ERROR_INPUT, "%s: larger than %zu bytes", path, limit)
-                            : error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
-    }
-    buffer[used] = 0;
-    *text = buffer;
-    *size = used;
-    return 0;
-}
-
-int file_read(const char *path, size_t limit, char **text, size_t *size, struct error *err) {
-    if (strcmp(path, "-") == 0)
-        return read_stream(stdin, name_of(path), limit, text, size, err);
-    FILE *file = fopen(path, "rb");
-    if (file == NULL)
-        return error_set(err, errno == ENOENT ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s", path,
-                         strerror(errno));
-    int status = read_stream(file, path, limit, text, size, err);
-    fclose(file);
-    return status;
-}
-
 int study_file_read(struct study **out, const char *path, const char *const *overrides,
                     struct fault_list *faults, struct error *err) {
     char *text = NULL;
@@ -121,10 +106,13 @@ int study_file_read(struct study **out, const char *path, const char *const *ove
     size_t size;
     if (path == NULL)
         return kind_read_study(out, EMPTY, sizeof EMPTY - 1, overrides, faults, err);
-    int status = file_read(path, JSON_LIMITS.bytes, &text, &size, err);
+    int status = input_file_read(path, JSON_LIMITS.bytes, &text, &size, err);
     if (status != 0)
         return status;
-    status = kind_read_study(out, text, size, overrides, faults, err);
+    bool fitted;
+    status = like_study_fit(&text, &size, path, overrides, &fitted, err);
+    if (status == 0)
+        status = kind_read_study(out, text, size, fitted ? NULL : overrides, faults, err);
     free(text);
-    return status != 0 ? error_context(err, "%s", name_of(path)) : 0;
+    return status != 0 ? error_context(err, "%s", input_file_name(path)) : 0;
 }

@@ -14,9 +14,10 @@
 
 #define PROGRAM_VERSION RUGO_VERSION
 #define DATABASE "rugo.db" /* where no other is named */
+#define LOG_LEVEL_HELP "the least that is logged on standard error"
 #define SET_HELP "change the study, e.g. --set realisations=100"
 
-enum { ARGUMENTS_MOST = 2, WORKERS_MOST = 4096, SECONDS_MOST = 31536000 };
+enum { ARGUMENTS_MOST = 3, WORKERS_MOST = 4096, SECONDS_MOST = 31536000 };
 
 struct command {
     const char *name, *arguments, *summary;
@@ -30,10 +31,14 @@ extern const struct command *const COMMANDS[]; /* all, ended by NULL */
 extern const struct command COMMAND_RUN, COMMAND_CHECK, COMMAND_SUBMIT, COMMAND_STATUS,
     COMMAND_WAIT, COMMAND_CURVES, COMMAND_REPORT, COMMAND_SNAPSHOT, COMMAND_CANCEL, COMMAND_RETRY,
     COMMAND_EXTEND, COMMAND_DELETE, COMMAND_SERVE, COMMAND_WORK, COMMAND_GENERATE,
-    COMMAND_CHARACTERISE, COMMAND_PRESS, COMMAND_THEORY, COMMAND_PLOT, COMMAND_SHOW, COMMAND_TABLE,
-    COMMAND_HELP;
+    COMMAND_CHARACTERISE, COMMAND_CONVERT, COMMAND_PRESS, COMMAND_THEORY, COMMAND_PLOT,
+    COMMAND_SHOW, COMMAND_TABLE, COMMAND_HELP, COMMAND_CERTIFICATE, COMMAND_TOKEN, COMMAND_VERIFY,
+    COMMAND_REPAIR, COMMAND_HEALTH, COMMAND_PRUNE;
 
-/* Set by SIGINT and SIGTERM once signals_catch was called; the second SIGINT ends at once. */
+extern const struct command COMMAND_SLURM, COMMAND_SLURM_PILOTS;
+
+/* Set by SIGINT and SIGTERM once signals_catch was called; a second one ends the program at once.
+ */
 extern atomic_int stop_requested;
 void signals_catch(void);
 
@@ -41,6 +46,10 @@ void signals_catch(void);
 int command_fail(const char *command, const struct error *err);
 /* Prints what is wrong in a file likewise: "FILE: pointer: detail", one a line. */
 int command_fail_faults(const char *file, const struct fault_list *faults);
+/* Returns the exit status of a command that reads a file; where it failed, prints what is wrong in
+ * the file, or else the error. */
+int command_end(const char *command, int status, const char *file, const struct fault_list *faults,
+                const struct error *err);
 /* Prints "rugo COMMAND: no results: error" to standard error where a result has an error. */
 void command_warn_missing(const char *command, const struct case_result *result);
 /* What was printed to standard output must arrive: ERROR_SYSTEM with the reason when it did not.
@@ -48,8 +57,6 @@ void command_warn_missing(const char *command, const struct case_result *result)
 int output_flush(struct error *err);
 /* Prints a JSON document as one line; NULL: out of memory. */
 int output_document(const cJSON *document, struct error *err);
-/* Reads the file's bytes and puts a NUL behind them; "-" is standard input. The caller frees. */
-int file_read(const char *path, size_t limit, char **text, size_t *size, struct error *err);
 /* The study in a file, read and checked with these changes (--set); errors name the file. path
  * NULL: a study of statistics that has nothing but the changes. */
 int study_file_read(struct study **out, const char *path, const char *const *overrides,

@@ -120,7 +120,7 @@ static int characterise(const struct generate_order *order, const struct surface
     FILE *file = beside ? stderr : stdout;
     const struct surface_band band = surface_case_own_band(surface);
     struct characterisation values = {0};
-    int status = characterise_heights(&values, &surface->grid, z, band.x, band.y, err);
+    int status = characterise_heights(&values, &surface->grid, z, band.x, band.y, NULL, err);
     if (status != 0)
         return status;
     characterisation_print(file, &values);
@@ -197,9 +197,7 @@ static int run(const void *values, const char *const *arguments) {
     int status = study_file_read(&study, order.study, options->overrides, &faults, &err);
     if (status == 0)
         status = generate(&order, study, &err);
-    int result = status == 0        ? EXIT_DONE
-                 : faults.count > 0 ? command_fail_faults(order.study, &faults)
-                                    : command_fail("generate", &err);
+    int result = command_end("generate", status, order.study, &faults, &err);
     study_destroy(&study);
     fault_list_clear(&faults);
     return result;

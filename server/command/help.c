@@ -22,6 +22,14 @@ const struct command *command_find(const char *name) {
     return NULL;
 }
 
+const struct command *command_find_words(const char *first, const char *second, int *taken) {
+    char both[64];
+    snprintf(both, sizeof both, "%.30s %.30s", first, second != NULL ? second : "");
+    const struct command *command = command_find(both);
+    *taken = command != NULL ? 2 : 1;
+    return command != NULL ? command : command_find(first);
+}
+
 const char *command_near(const char *typed) {
     const char *near = NULL;
     size_t best = 3;
@@ -103,10 +111,11 @@ static int help_topic(const char *name) {
 static int run(const void *values, const char *const *arguments) {
     const struct options *options = values;
     const char *name = arguments[0], *path = arguments[1];
-    const struct command *command = name != NULL ? command_find(name) : NULL;
+    int words = 1;
+    const struct command *command = name != NULL ? command_find_words(name, path, &words) : NULL;
     if (name != NULL && strcmp(name, "study") == 0)
         return help_study(path, options->markdown != 0);
-    if (path != NULL)
+    if (path != NULL && words == 1)
         return usage_error("help", "unexpected argument %.60s", path);
     if (command == NULL && name != NULL)
         return help_topic(name);

@@ -15,6 +15,8 @@ void help_option_name(const struct option_row *row, char *text, size_t size);
 void help_option_text(const struct option_row *row, char *text, size_t size);
 /* Returns NULL where there is none of this name. */
 const struct command *command_find(const char *name);
+/* The command that a word names, or with the next one (or NULL) two; *taken is how many. */
+const struct command *command_find_words(const char *first, const char *second, int *taken);
 /* Returns the name of the command nearest to what was typed; NULL where none is near. */
 const char *command_near(const char *typed);
 

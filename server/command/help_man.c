@@ -55,10 +55,21 @@ void help_man(FILE *file) {
           ".TP\n130\ninterrupted; the same command goes on\n"
           ".SH ENVIRONMENT\n.TP\n.B RUGO_TOKEN\n"
           "the token for a server, where no file of tokens is given\n"
+          ".TP\n.B RUGO_CA_FILE\n"
+          "who vouches for servers, where neither \\-\\-ca\\-file nor \\-\\-fingerprint is given\n"
+          ".TP\n.B RUGO_FINGERPRINT\n"
+          "that of the key of the server, likewise\n"
           ".SH EXAMPLES\n"
           ".nf\nrugo check study.json\nrugo run \\-\\-set realisations=100 study.json\n"
           "rugo serve \\-\\-db results.db \\-\\-workers 4\n.fi\n",
           file);
+}
+
+static size_t command_count(void) {
+    size_t count = 0;
+    while (COMMANDS[count] != NULL)
+        count++;
+    return count;
 }
 
 void help_bash(FILE *file) {
@@ -67,10 +78,14 @@ void help_bash(FILE *file) {
           "    case $COMP_CWORD in 1) options='",
           file);
     for (size_t c = 0; COMMANDS[c] != NULL; c++)
-        fprintf(file, "%s%s", c > 0 ? " " : "", COMMANDS[c]->name);
-    fputs("' ;; esac\n    [[ $COMP_CWORD == 1 ]] || case ${COMP_WORDS[1]} in\n", file);
-    for (size_t c = 0; COMMANDS[c] != NULL; c++) {
-        fprintf(file, "    %s) options='", COMMANDS[c]->name);
+        if (strchr(COMMANDS[c]->name, ' ') == NULL)
+            fprintf(file, "%s%s", c > 0 ? " " : "", COMMANDS[c]->name);
+    fputs(
+        "' ;; esac\n    [[ $COMP_CWORD == 1 ]] || case \"${COMP_WORDS[1]} ${COMP_WORDS[2]} \" in\n",
+        file);
+    /* from the last, since a command of two words comes behind that of its first */
+    for (size_t c = command_count(); c-- > 0;) {
+        fprintf(file, "    '%s '*) options='", COMMANDS[c]->name);
         for (const struct option_row *row = COMMANDS[c]->options; row->name != NULL; row++)
             fprintf(file, "--%s ", row->name);
         fputs("--help' ;;\n", file);

@@ -2,6 +2,7 @@
 #include "schema/program.h"
 #include "server/command/command.h"
 #include "server/command/help.h"
+#include "server/command/portable.h"
 #include "worker/client.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -32,6 +33,7 @@ static int run_command(const struct command *command, int argc, char **argv) {
         error_memory(&err, command->options_size, "options");
         return command_fail(command->name, &err);
     }
+    argv[0] = (char *)command->name; /* for messages: both words of two */
     int result = options_parse(argc, argv, command->options, options, command->least, command->most,
                                arguments);
     if (result == 0 && client_global_init(&err) != 0)
@@ -68,8 +70,10 @@ static int dispatch(int argc, char **argv) {
         printf("rugo %s\n", program);
         return EXIT_DONE;
     }
-    const struct command *command = command_find(argv[1]);
-    return command != NULL ? run_command(command, argc - 1, argv + 1) : unknown_command(argv[1]);
+    int words = 1;
+    const struct command *command = command_find_words(argv[1], argv[2], &words);
+    return command != NULL ? run_command(command, argc - words, argv + words)
+                           : unknown_command(argv[1]);
 }
 
 /* A standard stream that is closed must not become the number of a file opened later: it is opened
@@ -87,6 +91,7 @@ enum { MAPPED_BYTES = 256 * 1024 };
 
 int main(int argc, char **argv) {
     mallopt(M_MMAP_THRESHOLD, MAPPED_BYTES);
+    portable_prepare();
     hold_standard_streams();
     signal(SIGPIPE, SIG_IGN); /* a closed pipe and a file at its limit are errors like any other */
     signal(SIGXFSZ, SIG_IGN);

@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <getopt.h>
 #include <math.h>
-#include <sched.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -21,13 +20,6 @@ int usage_error(const char *command, const char *format, ...) {
     fprintf(stderr, "; see rugo %s --help\n", command);
     va_end(arguments);
     return EXIT_USAGE;
-}
-
-unsigned processors(void) {
-    cpu_set_t set;
-    CPU_ZERO(&set);
-    int count = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
-    return count > 0 ? (unsigned)count : 1;
 }
 
 /* --- values --- */

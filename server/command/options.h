@@ -45,7 +45,4 @@ bool rising_numbers(const char *text, size_t most, double *out, size_t *count);
  * or swapped): *best, 3 at first, becomes its distance. What is typed whole in `name` is near. */
 bool name_is_nearer(const char *typed, const char *name, size_t *best);
 
-/* Returns the processors that this process may use, at least 1. */
-unsigned processors(void);
-
 #endif

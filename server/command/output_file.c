@@ -1,7 +1,9 @@
 #include "server/command/output_file.h"
+#include "server/command/rasterise.h"
 #include "server/show/map_png.h"
 #include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 int output_file_open(FILE **file, const char *path, struct error *err) {
     *file = fopen(path, "wb");
@@ -30,4 +32,19 @@ int output_file_picture(const char *path, const struct map_picture *picture, str
     status = output_file_is_png(path) ? map_png(file, picture->grid, picture->z, err)
                                       : plot_map(picture, file, err);
     return output_file_close(file, path, status, err);
+}
+
+int output_file_drawn(const char *path, const char *svg, size_t size, struct error *err) {
+    FILE *file;
+    int status = output_file_open(&file, path, err);
+    if (status != 0)
+        return status;
+    if (output_file_is_png(path))
+        status = rasterise(svg, size, file, err);
+    else
+        (void)fwrite(svg, 1, size, file); /* the file remembers a failure */
+    status = output_file_close(file, path, status, err);
+    if (status != 0)
+        (void)unlink(path);
+    return status;
 }

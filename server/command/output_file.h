@@ -15,5 +15,8 @@ bool output_file_is_png(const char *path);
 /* Writes a picture into a file of its own: a pixel a point where its name ends in .png, else SVG.
  */
 int output_file_picture(const char *path, const struct map_picture *picture, struct error *err);
+/* Writes a drawn SVG into a file of its own: as pixels, by rsvg-convert, where its name ends in
+ * .png. No file is left after a failure. */
+int output_file_drawn(const char *path, const char *svg, size_t size, struct error *err);
 
 #endif

@@ -3,12 +3,10 @@
 #include "server/command/access.h"
 #include "server/command/map_file.h"
 #include "server/command/output_file.h"
-#include "server/command/rasterise.h"
 #include "server/show/picture.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 struct options {
     struct access_options place;
@@ -95,21 +93,6 @@ static int draw(struct access *access, const char *id, const struct options *opt
     return picture_draw(&source, &request, file, err);
 }
 
-static int write_file(const char *text, size_t size, const char *path, struct error *err) {
-    FILE *file;
-    int status = output_file_open(&file, path, err);
-    if (status != 0)
-        return status;
-    if (output_file_is_png(path))
-        status = rasterise(text, size, file, err);
-    else
-        (void)fwrite(text, 1, size, file); /* the file remembers a failure */
-    status = output_file_close(file, path, status, err);
-    if (status != 0)
-        (void)unlink(path);
-    return status;
-}
-
 /* Draws in memory first, so that a picture that cannot be drawn leaves no file. */
 static int draw_file(struct access *access, const char *id, const struct options *options,
                      struct error *err) {
@@ -122,7 +105,7 @@ static int draw_file(struct access *access, const char *id, const struct options
     if (status == 0 && text == NULL)
         status = error_memory(err, 0, "a picture");
     if (status == 0)
-        status = write_file(text, size, options->out, err);
+        status = output_file_drawn(options->out, text, size, err);
     free(text);
     return status;
 }
@@ -140,7 +123,7 @@ static int show(struct access *access, const char *id, const struct options *opt
 static int draw_map(const char *path, const struct options *options, struct error *err) {
     const char *slash = strrchr(path, '/');
     struct height_map map = {0};
-    int status = map_file_read(&map, path, 0, err);
+    int status = map_file_read(&map, path, err);
     if (status != 0)
         return status;
     char subject[64];

@@ -1,280 +1,233 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat. */
-#include "core/contact/area.h"
-#include "core/contact/contact.h"
-#include "core/contact/patches.h"
-#include "core/map/detrend.h"
-#include "core/statistics/roughness.h"
-#include "core/statistics/seam.h"
-#include "schema/json/json.h"
 #include "schema/study/parameter.h"
 #include "server/command/command.h"
 #include "server/command/map_file.h"
-#include "server/show/text_table.h"
-#include <errno.h>
+#include "server/command/press_error.h"
+#include "server/command/press_files.h"
+#include "server/command/press_loads.h"
+#include "server/command/press_print.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LOADS_MOST = 1000 };
-
 /* --model may name these. */
 static const struct choice MODELS[] = {
-    {"halfspace", MODEL_HALFSPACE}, {"layered", MODEL_LAYERED}, {NULL, 0}};
+    {"halfspace", PRESS_HALFSPACE}, {"layered", PRESS_LAYERED}, {"full", PRESS_FULL}, {NULL, 0}};
 
-#define DETRENDS "none|mean|plane|quadratic" /* in the order of enum detrend */
+enum asked { ASKED_AUTO, ASKED_OPEN, ASKED_MIRRORED, ASKED_PERIODIC };
+#define BOUNDARIES "auto|open|mirrored|periodic" /* in this order */
+
+/* Below so many nodes in contact areas and pressures are told roughly. */
+enum { CONTACT_NODES_FEW = 50 };
 
 struct press_options {
-    const char *loads, *output, *model;
-    double dx, poisson, lengths; /* dx, height of the block in lengths of the map: 0: not given */
-    int detrend, json;
+    const char *model;
+    double lengths; /* height of the block in lengths of the map, 0: not given */
+    int boundary, json, without_error;
+    struct press_words words;
+    struct press_paths paths;
+    struct map_options map;
 };
 #define AT(member) offsetof(struct press_options, member)
 static const struct option_row OPTIONS[] = {
-    {"dx", 0, OPTION_NUMBER, 0, 0, AT(dx), "D", NULL, MAP_SPACING_HELP},
-    {"loads", 0, OPTION_TEXT, 0, 0, AT(loads), "LIST", "0.01,0.02,0.05,0.1,0.2,0.3",
-     "rising loads p/(E* h')"},
-    {"model", 0, OPTION_TEXT, 0, 0, AT(model), "halfspace|layered", "halfspace",
+    MAP_OPTION_ROWS(struct press_options, map),
+    {"boundary", 0, OPTION_CHOICE, 0, 0, AT(boundary), BOUNDARIES, "auto",
+     "open: in free space; mirrored: with its mirror images; auto: periodic where its seam is no "
+     "rougher than its inside, else open"},
+    {"loads", 0, OPTION_TEXT, 0, 0, AT(words.loads), "LIST", NULL,
+     "rising loads p/(E* h') (0.01,0.02,0.05,0.1,0.2,0.3)"},
+    {"pressure", 0, OPTION_TEXT, 0, 0, AT(words.pressure), "LIST", NULL,
+     "in place of it: rising nominal pressures, such as 1MPa,2MPa"},
+    {"force", 0, OPTION_TEXT, 0, 0, AT(words.force), "LIST", NULL,
+     "in place of it: rising forces on the map, such as 10mN (of a profile 10N/m)"},
+    {"modulus", 0, OPTION_TEXT, 0, 0, AT(words.modulus), "E", NULL,
+     "Young's modulus of the block, such as 210GPa: results in physical units"},
+    {"effective-modulus", 0, OPTION_TEXT, 0, 0, AT(words.effective_modulus), "E*", NULL,
+     "in place of it: E* = E/(1 - nu^2), or that of two elastic bodies"},
+    {"model", 0, OPTION_TEXT, 0, 0, AT(model), "halfspace|layered|full", "halfspace",
      "what the block is made of"},
-    {"poisson", 0, OPTION_NUMBER, 0, 0.4999, AT(poisson), "NU", "0.3", "Poisson's ratio, layered"},
+    {"poisson", 0, OPTION_NUMBER, 0, 0.4999, AT(words.poisson), "NU", "0.3",
+     "Poisson's ratio, of meshes and for --modulus"},
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
-     "height of the block in lengths of the map (infinite; layered 1.5)"},
-    {"detrend", 0, OPTION_CHOICE, 0, 0, AT(detrend), DETRENDS, "none",
-     "trend taken out of the map first"},
+     "height of the block in lengths of the map (infinite; layered, full 1.5)"},
+    {"error", 0, OPTION_CHOICE, 0, 0, AT(without_error), "points|none", "points",
+     "tell what every second point alone changes, for a third more time at most"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
-    {"output", 'o', OPTION_TEXT, 0, 0, AT(output), "FILE", NULL,
-     "write the pressures p/(E* h') of the last load there, as a map"},
+    {"output", 'o', OPTION_TEXT, 0, 0, AT(paths.pressures), "FILE", NULL,
+     "write the pressures of the last load (p/(E* h'), with a modulus Pa) as npy, csv, xyz, png or "
+     "svg"},
+    {"gap", 0, OPTION_TEXT, 0, 0, AT(paths.gap), "FILE", NULL, "the gaps, likewise"},
+    {"contact", 0, OPTION_TEXT, 0, 0, AT(paths.contact), "FILE", NULL,
+     "where there is contact (1, else 0), likewise"},
+    {"vtu", 0, OPTION_TEXT, 0, 0, AT(paths.mesh), "FILE.vtu", NULL,
+     "the surface with all three on it, for ParaView"},
     {0}};
 
 /* The options ask for this. */
 struct press_order {
-    const char *path, *output;
-    struct block block;
-    double lengths; /* 0: infinite */
-    enum detrend detrend;
-    bool json;
-    size_t loads;
-    double load[LOADS_MOST]; /* p/(E* h'), rising */
+    const char *path;
+    const struct press_options *options;
+    struct press_block block;
+    struct press_loads loads;
+    struct preparation_record record;
 };
 
-/* The table has these columns; lengths are over the RMS height, pressures over E* h'. */
-enum column {
-    LOAD,
-    EDGES,
-    NODES,
-    LOWER,
-    UPPER,
-    PERIMETER,
-    MEAN_GAP,
-    STIFFNESS,
-    PATCHES,
-    ITERATIONS,
-    VIOLATION,
-    COLUMNS
-};
-static const char *const COLUMN_NAMES[COLUMNS] = {
-    "p/(E* h')", "edges",     "nodes",   "lower",      "upper",    "perimeter",
-    "gap/rms",   "stiffness", "patches", "iterations", "violation"};
-static const char *const COLUMN_KEYS[COLUMNS] = {
-    "load",     "edges",     "nodes",       "nodes_lower", "nodes_upper", "perimeter",
-    "mean_gap", "stiffness", "patch_count", "iterations",  "violation"};
+/* --- the map --- */
 
-struct press {
-    struct compliance *compliance;
-    struct contact *contact;
-    struct area_workspace *areas;
-    struct patch_finder *patches;
-    double slope, height;      /* RMS, of the map */
-    double (*values)[COLUMNS]; /* owned, a row a load */
-    double *pressure;          /* owned, the map's points: of the last load, over E* h' */
-};
-
-static void press_clear(struct press *press) {
-    patch_finder_destroy(&press->patches);
-    area_workspace_destroy(&press->areas);
-    contact_destroy(&press->contact);
-    compliance_destroy(&press->compliance);
-    free(press->values);
-    free(press->pressure);
+static enum press_boundary boundary_of(const struct press_order *order) {
+    if (order->options->boundary == ASKED_MIRRORED)
+        return PRESS_MIRRORED;
+    return order->record.boundary == BOUNDARY_OPEN ? PRESS_OPEN : PRESS_PERIODIC;
 }
 
-static int press_create(struct press *press, const struct press_order *order,
-                        const struct height_map *map, struct error *err) {
-    const struct grid *grid = &map->grid;
-    struct block block = order->block;
-    struct moments moments;
-    block.height = order->lengths > 0 ? order->lengths * grid->lx : INFINITY;
-    *press = (struct press){0};
-    press->values = array_create(order->loads, sizeof *press->values);
-    press->pressure = array_create(grid_points(grid), sizeof *press->pressure);
-    if (press->values == NULL || press->pressure == NULL)
-        return error_memory(err, grid_points(grid) * sizeof(double), "pressures");
-    int status = roughness_spectral(grid, map->z, &moments, err);
-    if (status == 0 && !(moments.rms_slope > 0))
-        return error_set(err, ERROR_INPUT, "%s: the map is flat, so that no load has a meaning",
-                         order->path);
-    press->slope = moments.rms_slope;
-    press->height = moments.rms_height;
-    if (status == 0)
-        status = compliance_create(&press->compliance, grid, &block, err);
-    if (status == 0)
-        status = contact_create(&press->contact, press->compliance, &CONTACT_DEFAULTS, err);
-    if (status == 0)
-        status = area_workspace_create(&press->areas, press->compliance, err);
-    if (status == 0)
-        status = patch_finder_create(&press->patches, grid, err);
-    return status;
-}
-
-static int press_load(struct press *press, double load, double *row, struct error *err) {
-    struct contact_state state;
-    struct contact_area area;
-    struct patches patches;
-    int status = contact_press(press->contact, load * press->slope, &state, err);
-    if (status != 0)
-        return status;
-    contact_area(press->areas, &state, &area);
-    patches_find(press->patches, state.p, &patches, NULL);
-    const double values[COLUMNS] = {
-        [LOAD] = load,
-        [EDGES] = area.edges,
-        [NODES] = area.nodes,
-        [LOWER] = area.lower,
-        [UPPER] = area.upper,
-        [PERIMETER] = area.perimeter,
-        [MEAN_GAP] = area.mean_gap / press->height,
-        [STIFFNESS] = isfinite(state.stiffness) ? state.stiffness * press->height / press->slope
-                                                : (double)NAN,
-        [PATCHES] = (double)patches.count,
-        [ITERATIONS] = (double)state.iterations,
-        [VIOLATION] = state.violation,
-    };
-    memcpy(row, values, sizeof values);
-    for (size_t i = 0; i < grid_points(&press->compliance->grid); i++)
-        press->pressure[i] = state.p[i] / press->slope;
-    return 0;
-}
-
-static void print_table(const struct press *press, const struct press_order *order) {
-    struct text_table table = {.columns = COLUMNS};
-    for (size_t c = 0; c < COLUMNS; c++)
-        table_cell(&table, "%s", COLUMN_NAMES[c]);
-    for (size_t l = 0; l < order->loads; l++)
-        for (size_t c = 0; c < COLUMNS; c++)
-            table_number(&table, press->values[l][c]);
-    printf("RMS slope %.4g, RMS height %.4g; full contact at p/(E* h') = %.4g\n\n", press->slope,
-           press->height, contact_full_pressure(press->contact) / press->slope);
-    table_print(&table, stdout);
-    table_clear(&table);
-}
-
-static int print_json(const struct press *press, const struct press_order *order,
-                      struct error *err) {
-    double column[LOADS_MOST];
-    cJSON *document = cJSON_CreateObject();
-    bool complete =
-        cJSON_AddItemToObject(document, "rms_slope", json_number(press->slope)) &&
-        cJSON_AddItemToObject(document, "rms_height", json_number(press->height)) &&
-        cJSON_AddItemToObject(document, "full_contact",
-                              json_number(contact_full_pressure(press->contact) / press->slope));
-    for (size_t c = 0; c < COLUMNS && complete; c++) {
-        for (size_t l = 0; l < order->loads; l++)
-            column[l] = press->values[l][c];
-        complete =
-            cJSON_AddItemToObject(document, COLUMN_KEYS[c], json_numbers(column, order->loads));
-    }
-    int status =
-        complete ? output_document(document, err) : error_memory(err, sizeof(cJSON), "the contact");
-    cJSON_Delete(document);
-    return status;
-}
-
-static int write_pressures(const struct press *press, const struct press_order *order,
-                           struct error *err) {
-    enum height_map_format format = height_map_format_of(order->output);
-    FILE *file = fopen(order->output, "wb");
-    if (file == NULL)
-        return error_set(err, ERROR_SYSTEM, "cannot open %s: %s", order->output, strerror(errno));
-    int status = height_map_write(file, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format,
-                                  &press->compliance->grid, press->pressure, err);
-    if (fclose(file) != 0 && status == 0)
-        status =
-            error_set(err, ERROR_SYSTEM, "cannot write %s: %s", order->output, strerror(errno));
-    return status;
-}
-
-/* Takes the trend out of the map, and tells of a seam: contact takes every map as periodic. */
-static int prepare_map(struct height_map *map, const struct press_order *order, struct error *err) {
-    struct trend trend;
-    struct seam seam;
-    int status = height_map_check_whole(map, err);
-    if (status == 0)
-        status = detrend(&map->grid, map->z, order->detrend, &trend, err);
-    if (status == 0)
-        status = seam_measure(&map->grid, map->z, &seam, err);
-    if (status != 0)
-        return error_context(err, "%s", order->path);
-    if (seam_is_rough(&seam))
+/* A map is taken as periodic where the option says so; here it is told what that does. */
+static void warn_of_seam(const struct press_order *order) {
+    const struct seam *seam = &order->record.seam;
+    if (order->options->boundary == ASKED_PERIODIC && seam_is_rough(seam))
         fprintf(
             stderr,
             "rugo press: warning: %s: contact takes the map as periodic, and its seam is rougher "
             "than the roughest place inside: %.3g times across x, %.3g times across y\n",
-            order->path, seam.x, seam.y);
+            order->path, seam->x, seam->y);
+}
+
+static int read_map(struct height_map *map, struct press_order *order, struct error *err) {
+    static const int ASKED[] = {[ASKED_AUTO] = ASK_BOUNDARY_AUTO,
+                                [ASKED_OPEN] = ASK_BOUNDARY_OPEN,
+                                [ASKED_MIRRORED] = ASK_BOUNDARY_OPEN,
+                                [ASKED_PERIODIC] = ASK_BOUNDARY_PERIODIC};
+    struct map_options options = order->options->map;
+    options.words.boundary = ASKED[order->options->boundary];
+    int status = map_options_read(map, &order->record, order->path, &options, err);
+    struct error holes = {0};
+    if (status == 0 && height_map_check_whole(map, &holes) != 0)
+        return error_set(err, ERROR_INPUT, "%s: %s; --fill fills them", order->path, holes.text);
+    if (status == 0)
+        status = press_loads_of_map(&order->loads, map, err);
+    if (status != 0)
+        return status;
+    order->block.boundary = boundary_of(order);
+    warn_of_seam(order);
     return 0;
 }
 
-static int press_map(const struct press_order *order, const struct height_map *map,
-                     struct error *err) {
-    struct press press;
-    int status = press_create(&press, order, map, err);
-    if (status == 0)
-        status = contact_begin(press.contact, map->z, err);
-    for (size_t l = 0; status == 0 && l < order->loads; l++)
-        status = press_load(&press, order->load[l], press.values[l], err);
-    if (status == 0 && order->output != NULL)
-        status = write_pressures(&press, order, err);
-    if (status == 0 && order->json)
-        status = print_json(&press, order, err);
-    else if (status == 0) {
-        print_table(&press, order);
-        status = output_flush(err);
+/* --- the loads --- */
+
+static void warn_of_few_nodes(const struct press_order *order, const double *values) {
+    if (values[PRESS_CONTACT_NODES] < CONTACT_NODES_FEW)
+        fprintf(stderr,
+                "rugo press: warning: %s: at p/(E* h') = %.3g only %.3g %s in contact, so that "
+                "areas and pressures are rough there\n",
+                order->path, values[PRESS_LOAD], values[PRESS_CONTACT_NODES],
+                values[PRESS_CONTACT_NODES] > 1 ? "points are" : "point is");
+}
+
+/* What is found, a row a load. */
+struct pressed_loads {
+    double *pressures; /* mean, in E* */
+    double (*values)[PRESS_VALUES], (*errors)[PRESS_VALUES];
+};
+
+static double map_area(const struct press *press) {
+    const struct grid *grid = &press->map;
+    return grid_is_profile(grid) ? grid->lx : grid->lx * grid->ly;
+}
+
+/* One load after the other, and the files of the last one. */
+static int press_loads(const struct press_order *order, struct press *press,
+                       const struct height_map *map, struct pressed_loads *loads,
+                       struct error *err) {
+    double modulus = order->loads.modulus;
+    int status = 0;
+    for (size_t l = 0; status == 0 && l < order->loads.count; l++) {
+        loads->pressures[l] = press_loads_mean(&order->loads, l, press->slope, map_area(press));
+        status = press_load(press, loads->pressures[l], loads->values[l], err);
     }
-    press_clear(&press);
+    if (status != 0)
+        return status;
+    warn_of_few_nodes(order, loads->values[0]);
+    return press_files_write(&order->options->paths, press, map->z,
+                             modulus > 0 ? modulus * press->slope : 1, modulus > 0 ? "Pa" : "E* h'",
+                             err);
+}
+
+static int report(const struct press_order *order, const struct press *press,
+                  const struct height_map *map, const struct pressed_loads *loads,
+                  struct error *err) {
+    static const char *const BOUNDARY_NAMES[] = {"open", "mirrored", "periodic"};
+    const struct press_report report = {
+        .press = press,
+        .record = &order->record,
+        .boundary = BOUNDARY_NAMES[order->block.boundary],
+        .boundary_by =
+            order->options->boundary != ASKED_AUTO ? "option" : order->record.boundary_by,
+        .model = order->options->model,
+        .modulus = order->loads.modulus,
+        .metres = strcmp(map->xy_unit, "m") == 0,
+        .map_area = map_area(press),
+        .loads = order->loads.count,
+        .values = loads->values,
+        .errors = order->options->without_error == 0 ? loads->errors : NULL};
+    return order->options->json == 1 ? press_print_json(&report, err)
+                                     : press_print_table(&report, err);
+}
+
+static int press_map(struct press_order *order, struct height_map *map, struct error *err) {
+    struct press press = {0};
+    size_t count = order->loads.count;
+    struct pressed_loads loads = {.pressures = array_create(count, sizeof *loads.pressures),
+                                  .values = array_create(count, sizeof *loads.values),
+                                  .errors = array_create(count, sizeof *loads.errors)};
+    int status = loads.pressures == NULL || loads.values == NULL || loads.errors == NULL
+                     ? error_memory(err, count * 2 * sizeof *loads.values, "the loads")
+                     : press_begin(&press, map, &order->block, err);
+    if (status != 0)
+        error_context(err, "%s", order->path);
+    if (status == 0)
+        status = press_loads(order, &press, map, &loads, err);
+    press_release(&press);
+    if (status == 0 && order->options->without_error == 0)
+        status = press_error(&press, map, &order->block, count, loads.pressures, loads.values,
+                             loads.errors, err);
+    if (status == 0)
+        status = report(order, &press, map, &loads, err);
+    free(loads.pressures);
+    free(loads.values);
+    free(loads.errors);
     return status;
 }
 
 static int run(const void *values, const char *const *arguments) {
     const struct press_options *options = values;
-    struct press_order order = {
-        .path = arguments[0],
-        .output = options->output,
-        .lengths = options->lengths,
-        .detrend = (enum detrend)options->detrend,
-        .json = options->json == 1,
-        .block = {.poisson = options->poisson, .layer_growth = 1.1, .weighting = GAP_STANDARD}};
-    struct height_map map = {0};
     struct error err = {0};
     const struct choice *model = choice_find(MODELS, options->model);
     if (model == NULL)
-        return usage_error("press", "--model %.40s is not halfspace or layered", options->model);
-    if (!rising_numbers(options->loads, LOADS_MOST, order.load, &order.loads))
-        return usage_error("press", "--loads %.40s: not up to %d rising numbers above 0",
-                           options->loads, LOADS_MOST);
-    order.block.model = (enum block_model)model->value;
-    if (order.block.model == MODEL_LAYERED && !(options->lengths > 0))
-        order.lengths = 1.5;
-    int status = map_file_read(&map, order.path, options->dx, &err);
+        return usage_error("press", "--model %.40s is not halfspace, layered or full",
+                           options->model);
+    struct press_order *order = array_create(1, sizeof *order);
+    struct height_map map = {0};
+    int status = order == NULL ? error_memory(&err, sizeof *order, "the loads") : 0;
+    if (status == 0) {
+        order->path = arguments[0];
+        order->options = options;
+        order->block = (struct press_block){.model = (enum press_model)model->value,
+                                            .poisson = options->words.poisson,
+                                            .lengths = options->lengths};
+        status = press_loads_parse(&order->loads, &options->words, &err);
+    }
     if (status == 0)
-        status = prepare_map(&map, &order, &err);
+        status = read_map(&map, order, &err);
     if (status == 0)
-        status = press_map(&order, &map, &err);
+        status = press_map(order, &map, &err);
     height_map_clear(&map);
+    free(order);
     return status == 0 ? EXIT_DONE : command_fail("press", &err);
 }
 
 const struct command COMMAND_PRESS = {
     .name = "press",
     .arguments = "FILE",
-    .summary = "contact of a height map in a file, periodic, with a rigid flat",
+    .summary = "contact of a height map in a file with a rigid flat",
     .least = 1,
     .most = 1,
     .options = OPTIONS,

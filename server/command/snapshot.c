@@ -12,6 +12,8 @@ static int run(const void *values, const char *const *arguments) {
     struct access *access = NULL;
     if (access_options_check("snapshot", &options->place) != 0)
         return EXIT_USAGE;
+    if (options->place.server == NULL)
+        signals_catch();
     int status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)
         status = access_snapshot(access, arguments[0], &err);

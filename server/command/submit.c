@@ -1,16 +1,26 @@
 /* `rugo submit`: queues a study and prints its id. */
 #include "schema/json/field.h"
 #include "server/command/access.h"
+#include "server/command/input_file.h"
+#include "server/command/like_study.h"
+#include "worker/client.h"
 #include <stdio.h>
 #include <stdlib.h>
 
 struct options {
     struct access_options place;
     const char **sets;
+    const char *key;
+    unsigned timeout_s;
 };
 static const struct option_row OPTIONS[] = {
     ACCESS_ROWS(struct options),
     {"set", 0, OPTION_LIST, 0, 0, offsetof(struct options, sets), "PATH=VALUE", NULL, SET_HELP},
+    {"key", 0, OPTION_TEXT, 0, 0, offsetof(struct options, key), "KEY", NULL,
+     "queue the study once, however often it is submitted with this key (one is made unless "
+     "given)"},
+    {"timeout", 0, OPTION_COUNT, 1, SECONDS_MOST, offsetof(struct options, timeout_s), "SECONDS",
+     "30", "with --server, how long to ask until there is an answer"},
     {0}};
 
 static int print_id(const cJSON *document, struct error *err) {
@@ -26,17 +36,38 @@ static int print_id(const cJSON *document, struct error *err) {
     return output_flush(err);
 }
 
+/* As a server takes it. */
+static int check_key(const char *key, struct error *err) {
+    size_t length = 0;
+    while (key != NULL && key[length] > ' ' && key[length] < 0x7f)
+        length++;
+    if (key == NULL || (length != 0 && length <= KEY_MOST && key[length] == '\0'))
+        return 0;
+    return error_set(err, ERROR_INPUT, "--key has 1 to %d visible ASCII characters", KEY_MOST);
+}
+
 static int submit(const struct options *options, const char *file, struct fault_list *faults,
                   struct error *err) {
     struct access *access = NULL;
     char *text = NULL;
     size_t size;
     cJSON *document = NULL;
-    int status = file_read(file, JSON_LIMITS.bytes, &text, &size, err);
+    bool fitted = false;
+    int status = check_key(options->key, err);
+    if (status == 0)
+        status = input_file_read(file, JSON_LIMITS.bytes, &text, &size, err);
+    if (status == 0)
+        status = like_study_fit(&text, &size, file, options->sets, &fitted, err);
     if (status == 0)
         status = access_open(&access, &options->place, ACCESS_CREATE, err);
     if (status == 0)
-        status = access_submit(access, text, size, options->sets, &document, faults, err);
+        status = access_submit(access,
+                               &(struct submission){.text = text,
+                                                    .size = size,
+                                                    .overrides = fitted ? NULL : options->sets,
+                                                    .key = options->key,
+                                                    .timeout_s = options->timeout_s},
+                               &document, faults, err);
     if (status == ERROR_INPUT)
         error_context(err, "%s", file);
     if (status == 0)
@@ -54,9 +85,7 @@ static int run(const void *values, const char *const *arguments) {
     if (access_options_check("submit", &options->place) != 0)
         return EXIT_USAGE;
     int status = submit(options, arguments[0], &faults, &err);
-    int result = status == 0        ? EXIT_DONE
-                 : faults.count > 0 ? command_fail_faults(arguments[0], &faults)
-                                    : command_fail("submit", &err);
+    int result = command_end("submit", status, arguments[0], &faults, &err);
     fault_list_clear(&faults);
     return result;
 }

@@ -107,9 +107,7 @@ static int run(const void *values, const char *const *arguments) {
         status = show(&result, options, &err);
     study_result_clear(&result);
     study_destroy(&study);
-    int answer = status == 0        ? EXIT_DONE
-                 : faults.count > 0 ? command_fail_faults(file != NULL ? file : "--set", &faults)
-                                    : command_fail("theory", &err);
+    int answer = command_end("theory", status, file != NULL ? file : "--set", &faults, &err);
     fault_list_clear(&faults);
     return answer;
 }

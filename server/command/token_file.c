@@ -1,5 +1,7 @@
 #include "server/command/token_file.h"
-#include "server/command/command.h"
+#include "schema/store/store.h"
+#include "server/command/secret_file.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,39 +20,101 @@ static unsigned roles_of(const char *word, size_t length) {
     return ROLE_NONE;
 }
 
-static int visit_line(char *text, size_t number, token_visit *visit, void *context,
-                      struct error *err) {
-    size_t length = strcspn(text, ":");
-    struct token_line line = {.name = "", .token = text, .number = number};
-    if (*text == '\0' || *text == '#')
-        return 0;
-    line.roles = text[length] != '\0' ? roles_of(text, length)
-                                      : ROLE_READ | ROLE_SUBMIT | ROLE_WORK | ROLE_ADMIN;
-    if (text[length] != '\0' && line.roles != ROLE_NONE) {
-        char *rest = text + length + 1, *colon = strchr(rest, ':');
-        line.token = colon != NULL ? colon + 1 : rest;
-        line.name = colon != NULL ? rest : "";
-        if (colon != NULL)
-            *colon = '\0';
+static const char DIGEST_HEAD[] = "sha256:";
+
+/* Reads sha256: and 64 hexadecimal digits. */
+static bool digest_read(const char *text, unsigned char digest[DIGEST_SIZE]) {
+    const char *digits = text + sizeof DIGEST_HEAD - 1;
+    if (strncmp(text, DIGEST_HEAD, sizeof DIGEST_HEAD - 1) != 0 ||
+        strlen(digits) != 2 * (size_t)DIGEST_SIZE ||
+        strspn(digits, "0123456789abcdefABCDEF") != 2 * (size_t)DIGEST_SIZE)
+        return false;
+    for (size_t i = 0; i < DIGEST_SIZE; i++) {
+        const char pair[3] = {digits[2 * i], digits[2 * i + 1], '\0'};
+        digest[i] = (unsigned char)strtoul(pair, NULL, 16);
     }
-    return visit(context, &line, err);
+    return true;
 }
 
-int token_file_read(const char *file, token_visit *visit, void *context, struct error *err) {
-    char *text = NULL, *rest = NULL;
-    size_t size = 0, number = 0;
-    int status = file_read(file, 1 << 20, &text, &size, err);
-    for (char *line = text; status == 0 && line != NULL; line = rest) {
+/* Splits a line in place. A name and a digest both begin behind a colon: sha256 with 64 digits
+ * behind it is a digest. */
+static void line_read(char *text, struct token_line *line) {
+    size_t length = strcspn(text, ":");
+    line->name = line->role = "";
+    line->token = text;
+    line->roles = text[length] != '\0' ? roles_of(text, length)
+                                       : ROLE_READ | ROLE_SUBMIT | ROLE_WORK | ROLE_ADMIN;
+    if (text[length] != '\0' && line->roles != ROLE_NONE) {
+        char *rest = text + length + 1, *colon = strchr(rest, ':');
+        text[length] = '\0';
+        line->role = text;
+        line->token = rest;
+        if (colon != NULL && !digest_read(rest, line->digest)) {
+            *colon = '\0';
+            line->name = rest;
+            line->token = colon + 1;
+        }
+    }
+    if (digest_read(line->token, line->digest))
+        line->token = NULL;
+    else
+        digest_text(line->token, line->digest);
+}
+
+int token_lines_visit(char *text, token_visit *visit, void *context, struct error *err) {
+    size_t number = 0;
+    int status = 0;
+    for (char *line = text, *rest = NULL; status == 0 && line != NULL; line = rest) {
+        struct token_line read = {.number = ++number};
         rest = strchr(line, '\n');
         if (rest != NULL)
             *rest++ = '\0';
         line[strcspn(line, "\r")] = '\0';
-        status = visit_line(line, ++number, visit, context, err);
+        if (*line == '\0' || *line == '#')
+            continue;
+        line_read(line, &read);
+        status = visit(context, &read, err);
     }
-    if (text != NULL)
-        explicit_bzero(text, size);
+    return status;
+}
+
+int token_file_read(const char *file, bool open, token_visit *visit, void *context,
+                    struct error *err) {
+    char *text = NULL;
+    size_t size = 0;
+    int status = secret_file_read(file, open, &text, &size, err);
+    if (status != 0)
+        return status;
+    status = token_lines_visit(text, visit, context, err);
+    explicit_bzero(text, size);
     free(text);
     return status;
+}
+
+static bool is_name(const char *text) {
+    size_t length = strlen(text);
+    return length > 0 && length < OWNER_SIZE &&
+           strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._@-") ==
+               length;
+}
+
+int token_line_check(const struct token_line *line, const char *file, struct error *err) {
+    if (line->roles == ROLE_NONE)
+        return error_set(err, ERROR_INPUT,
+                         "%s, line %zu: no role:token; roles are read, submit, work and admin",
+                         file, line->number);
+    if (*line->name != '\0' && !is_name(line->name))
+        return error_set(err, ERROR_INPUT,
+                         "%s, line %zu: in role:name:token, a name has 1 to %d letters, digits, "
+                         ". _ @ or -",
+                         file, line->number, OWNER_SIZE - 1);
+    if (line->token != NULL && strncmp(line->token, DIGEST_HEAD, sizeof DIGEST_HEAD - 1) == 0)
+        return error_set(err, ERROR_INPUT, "%s, line %zu: sha256: needs 64 hexadecimal digits",
+                         file, line->number);
+    if (line->token != NULL && strlen(line->token) < 16)
+        return error_set(err, ERROR_INPUT, "%s, line %zu: a token of less than 16 characters", file,
+                         line->number);
+    return 0;
 }
 
 /* The choice of a client. */
@@ -58,10 +122,14 @@ struct choice_of_token {
     unsigned role;
     unsigned roles; /* of the token so far */
     char *token;    /* owned; NULL before the first line */
+    bool digests;   /* lines had no token to ask with */
 };
 
 static int choose(void *context, const struct token_line *line, struct error *err) {
     struct choice_of_token *choice = context;
+    choice->digests = choice->digests || line->token == NULL;
+    if (line->token == NULL)
+        return 0;
     if (choice->token != NULL &&
         ((choice->roles & choice->role) != 0 || (line->roles & choice->role) == 0))
         return 0;
@@ -77,11 +145,14 @@ int token_read(const char *file, enum role role, char **token, struct error *err
     *token = NULL;
     if (file == NULL && (given == NULL || *given == '\0'))
         return 0;
-    const struct token_line alone = {.name = "", .token = given};
-    int status =
-        file != NULL ? token_file_read(file, choose, &choice, err) : choose(&choice, &alone, err);
+    const struct token_line alone = {.role = "", .name = "", .token = given};
+    int status = file != NULL ? token_file_read(file, false, choose, &choice, err)
+                              : choose(&choice, &alone, err);
     if (status == 0 && choice.token == NULL)
-        status = error_set(err, ERROR_INPUT, "%s holds no token", file);
+        status = error_set(err, ERROR_INPUT, "%s holds %s", file,
+                           choice.digests ? "digests alone, which a server checks: a client needs "
+                                            "the token that rugo token new printed"
+                                          : "no token");
     if (status != 0)
         free(choice.token);
     else
