@@ -16,10 +16,16 @@ RugoError with all that it said.
 
 import csv
 import gzip
+import hashlib
+import http.client
 import io
+import ipaddress
 import json
 import os
+import secrets
 import shutil
+import ssl
+import stat
 import sys
 import time
 import urllib.error
@@ -38,6 +44,7 @@ class RugoError(Exception):
 
     def __init__(self, status, detail, errors=()):
         self.status, self.detail, self.errors = status, detail, list(errors)
+        self.lost = status in (502, 504)  # it may have been done: no answer of the service came
         lines = [f"{error.get('pointer', '')}: {error.get('detail', '')}" for error in self.errors]
         super().__init__("\n  ".join([detail] + lines))
 
@@ -71,9 +78,14 @@ def _rows(text):
 
 
 def _token_of_file(path):
-    """The first token of a file that may submit, else the first: role:token, role:name:token or a token a line."""
+    """The first token of a file that may submit, else the first: role:token, role:name:token or a token a line.
+    Digests, which servers check, are no tokens."""
     first = None
     with open(path, encoding="utf-8") as file:
+        about = os.fstat(file.fileno())
+        if os.name == "posix" and stat.S_ISREG(about.st_mode) and \
+                about.st_mode & (0o77 if about.st_uid == os.geteuid() else 0o7):
+            raise ValueError(f"{path} holds secrets and is open to others; chmod 600 {path} makes it its owner's alone")
         for line in file:
             line = line.strip()
             if line == "" or line.startswith("#"):
@@ -81,6 +93,8 @@ def _token_of_file(path):
             role, colon, rest = line.partition(":")
             known = colon and role in ("read", "submit", "work", "admin")
             token = rest.split(":", 1)[-1] if known else line  # behind the name, where there is one
+            if known and any(text.startswith("sha256:") and len(text) == 71 for text in (rest, token)):
+                continue
             if not known or role in ("submit", "admin"):
                 return token
             first = first or token
@@ -89,13 +103,80 @@ def _token_of_file(path):
     return first
 
 
-class Server:
-    """A service at a URL. token: as the service knows it; else of token_file, else of RUGO_TOKEN, else none."""
+def _content(der, at):
+    """Where the content of an element of DER begins and ends (X.690, 8.1)."""
+    length, begin = der[at + 1], at + 2
+    if length >= 0x80:
+        width = length & 0x7F
+        length, begin = int.from_bytes(der[begin:begin + width], "big"), begin + width
+    return begin, begin + length
 
-    def __init__(self, url="http://127.0.0.1:8080", token=None, token_file=None, timeout=60):
+
+def _fingerprint(certificate):
+    """The digest of the public key of a certificate, in DER, as `rugo serve` prints it (RFC 5280, 4.1)."""
+    at, _ = _content(certificate, _content(certificate, 0)[0])
+    if certificate[at] == 0xA0:  # the version
+        at = _content(certificate, at)[1]
+    for _ in range(5):  # serial number, signature, issuer, validity, subject
+        at = _content(certificate, at)[1]
+    return "sha256:" + hashlib.sha256(certificate[at:_content(certificate, at)[1]]).hexdigest()
+
+
+class _Tls(urllib.request.HTTPSHandler):
+    """Connections to those whom a file of authorities vouches for, or whose key has a fingerprint."""
+
+    def __init__(self, ca_file, fingerprint):
+        self.trust = ssl.create_default_context(cafile=ca_file)
+        self.trust.minimum_version = ssl.TLSVersion.TLSv1_2
+        self.fingerprint = fingerprint.lower() if fingerprint else None
+        if fingerprint:  # the key is known: name and authority add nothing to it
+            self.trust.check_hostname, self.trust.verify_mode = False, ssl.CERT_NONE
+        super().__init__(context=self.trust)
+
+    def https_open(self, request):
+        wanted = self.fingerprint
+
+        class Connection(http.client.HTTPSConnection):
+            def connect(self):
+                super().connect()
+                if wanted and _fingerprint(self.sock.getpeercert(binary_form=True)) != wanted:
+                    self.close()
+                    raise ssl.SSLError(1, "the server's key has another fingerprint: nothing was sent")
+
+        return self.do_open(Connection, request, context=self.trust)
+
+
+class _NoRedirect(urllib.request.HTTPRedirectHandler):
+    """A token is not for wherever an answer points."""
+
+    def redirect_request(self, *_):
+        return None
+
+
+def _is_here(host):
+    try:
+        return host == "localhost" or ipaddress.ip_address(host or "").is_loopback
+    except ValueError:
+        return False
+
+
+class Server:
+    """A service at a URL. token: as the service knows it; else of token_file, else of RUGO_TOKEN, else none.
+    https: ca_file, else RUGO_CA_FILE, has who vouches for it, or fingerprint, else RUGO_FINGERPRINT, is that of
+    its key as it prints it; else the system's authorities vouch. insecure: a token may cross a network in clear
+    text. timeout: seconds of silence, and for changes until there is an answer."""
+
+    def __init__(self, url="http://127.0.0.1:8080", token=None, token_file=None, timeout=60, ca_file=None,
+                 fingerprint=None, insecure=False):
         self.url = url.rstrip("/")
         self.token = token or (_token_of_file(token_file) if token_file else os.environ.get("RUGO_TOKEN"))
-        self.timeout = timeout  # seconds
+        self.timeout = timeout
+        parts = urllib.parse.urlsplit(self.url)
+        if self.token and parts.scheme != "https" and not insecure and not _is_here(parts.hostname):
+            raise ValueError(f"{url} would get the token in clear text over the network: use https://")
+        if not ca_file and not fingerprint:
+            ca_file, fingerprint = os.environ.get("RUGO_CA_FILE"), os.environ.get("RUGO_FINGERPRINT")
+        self._open = urllib.request.build_opener(_Tls(ca_file, fingerprint), _NoRedirect).open
 
     def ask(self, method, path, query=None, body=None, accept="application/json", headers=None):
         """One request; the open answer, whose read() gives bytes as they were before compression."""
@@ -111,19 +192,41 @@ class Server:
         for name, value in (headers or {}).items():
             request.add_header(name, value)
         try:
-            answer = urllib.request.urlopen(request, timeout=self.timeout)
+            answer = self._open(request, timeout=self.timeout)
         except urllib.error.HTTPError as error:
             raise _problem(error) from None
-        except OSError as error:
-            raise RugoError(None, f"{self.url}: {getattr(error, 'reason', error)}") from error
+        except (OSError, http.client.HTTPException) as error:
+            raise _no_answer(self.url, error) from error
         return gzip.GzipFile(fileobj=answer) if answer.headers.get("Content-Encoding") == "gzip" else answer
 
     def text(self, method, path, **more):
         with self.ask(method, path, **more) as answer:
-            return answer.read().decode("utf-8")
+            try:
+                return answer.read().decode("utf-8")
+            except (OSError, EOFError, http.client.HTTPException) as error:
+                raise _no_answer(self.url, error) from error
 
     def json(self, method, path, **more):
         return json.loads(self.text(method, path, **more))
+
+    def change(self, method, path, key=None, **more):
+        """A request that changes something, as text: with one key it is sent until it is answered."""
+        headers = {"Idempotency-Key": key or secrets.token_hex(16)}
+        until, pause, lost = time.monotonic() + self.timeout, 0.2, False
+        while True:
+            try:
+                return self.text(method, path, headers=headers, **more)
+            except RugoError as error:
+                lost = lost or error.lost
+                again = lost and (error.status is None or error.status >= 500)
+                if not again:
+                    error.lost = lost  # what it did the first time may be why it is refused now
+                    raise
+                if time.monotonic() + pause > until:
+                    detail = f"{error.detail}; it may have been done all the same"
+                    raise RugoError(None, f"{detail}: the key was {headers['Idempotency-Key']}") from error
+            time.sleep(pause)
+            pause = min(2 * pause, 2)
 
     def submit(self, study, key=None):
         """Queues a study: a dict, JSON text, or the path of a file of it. The same key gives the same study."""
@@ -131,8 +234,7 @@ class Server:
             with open(study, encoding="utf-8") as file:
                 study = file.read()
         text = study if isinstance(study, str) else json.dumps(study)
-        headers = {"Idempotency-Key": key} if key else None
-        answer = self.json("POST", "/v1/studies", body=text.encode("utf-8"), headers=headers)
+        answer = json.loads(self.change("POST", "/v1/studies", key, body=text.encode("utf-8")))
         return Study(self, answer["id"])
 
     def study(self, name):
@@ -149,11 +251,43 @@ class Server:
             if after is None or not page["studies"]:
                 return rows
 
+    def characterise(self, file, name=None, format="json", **options):
+        """What a map in a file (a path, or bytes with a name) is like: a dict of groups; format="svg": the page about it,
+        as text; "study": a study of surfaces like it, for submit. options: layer, dx, unit, z_unit, crop, detrend, fill,
+        filter, resample, window, boundary, trust_from, trust_to, as of rugo characterise."""
+        if not isinstance(file, (bytes, bytearray)):
+            name = name or os.path.basename(os.fspath(file))
+            with open(file, "rb") as opened:
+                file = opened.read()
+        if not name:
+            raise ValueError("bytes need the name of their file, such as name='patch.x3p'")
+        query = {key: str(value).lower() if isinstance(value, bool) else value for key, value in options.items()}
+        text = self.text("POST", "/v1/characterise", query=dict(query, name=name, format=format), body=bytes(file),
+                         headers={"Content-Type": "application/octet-stream"})
+        return text if format == "svg" else json.loads(text)
+
     def snapshot(self, path):
-        """Copies the database of the service to a file, for SQLite and pandas.read_sql."""
-        with self.ask("GET", "/v1/snapshot", accept="*/*") as answer, open(path, "wb") as file:
-            shutil.copyfileobj(answer, file)
+        """Copies the database of the service to a file, for SQLite and pandas.read_sql. The file is there, in place of
+        one of that name, when it is whole."""
+        part = f"{path}.part-{os.urandom(3).hex()}"
+        try:
+            with open(part, "xb") as file, self.ask("GET", "/v1/snapshot", accept="*/*") as answer:
+                shutil.copyfileobj(answer, file)
+            os.replace(part, path)
+        except BaseException:
+            if os.path.exists(part):
+                os.unlink(part)
+            raise
         return path
+
+
+def _no_answer(url, error):
+    """A RugoError of a request without an answer; what was refused before it was sent is not lost."""
+    reason = getattr(error, "reason", error)
+    told = RugoError(None, f"{url}: {reason}")
+    told.lost = not isinstance(reason, (ConnectionRefusedError, ssl.SSLError)) and not (
+        isinstance(reason, OSError) and reason.__class__.__name__ == "gaierror")
+    return told
 
 
 def _problem(error):
@@ -262,20 +396,28 @@ class Study:
     def extend(self, realisations):
         """Queues what is missing to so many realisations of each case."""
         body = json.dumps({"realisations": realisations}).encode("utf-8")
-        self.server.json("POST", self._path("/extend"), body=body)
+        self.server.change("POST", self._path("/extend"), body=body)
         return self
 
     def cancel(self):
-        self.server.json("DELETE", self._path())
+        try:
+            self.server.change("DELETE", self._path())
+        except RugoError as error:
+            if not (error.lost and error.status == 409 and self.status()["state"] == "cancelled"):
+                raise
         return self
 
     def retry(self):
-        self.server.json("POST", self._path("/retry"))
+        self.server.change("POST", self._path("/retry"))
         return self
 
     def delete(self):
         """Deletes the study, which has ended, with its results."""
-        self.server.text("DELETE", self._path(), query={"results": "true"})
+        try:
+            self.server.change("DELETE", self._path(), query={"results": "true"})
+        except RugoError as error:
+            if not (error.lost and error.status == 404):
+                raise
 
 
 def _tell(status):

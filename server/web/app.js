@@ -4,6 +4,7 @@ import { hasToken, onTokenNeeded, setToken } from "/web/session.js";
 import { showStudies } from "/web/studies.js";
 import { showStudy } from "/web/study.js";
 import { showNew } from "/web/new.js";
+import { showSurface } from "/web/surface.js";
 import { showWorkers } from "/web/workers.js";
 
 const main = document.getElementById("main");
@@ -15,6 +16,7 @@ const VIEWS = [
   [/^#?\/?$/, showStudies],
   [/^#\/new$/, showNew],
   [/^#\/new\/([^/]+)$/, showNew],
+  [/^#\/surface$/, showSurface],
   [/^#\/workers$/, showWorkers],
   [/^#\/study\/([^/]+)(?:\/([a-z]+))?$/, showStudy],
 ];

@@ -1,6 +1,6 @@
 // A new study: a form of what the schema knows beside its JSON, checked as it is written, with the ready studies to begin from.
 import { choice, duration, lastName, make, number, words } from "/web/elements.js";
-import { getJson, sendJson } from "/web/session.js";
+import { getJson, makeKey, sendJson } from "/web/session.js";
 
 const WAIT = 400; // milliseconds of silence before a check
 
@@ -48,6 +48,14 @@ function typed(text) {
   }
 }
 
+let offered = null; // a study that another view made, to begin from
+
+/** Opens the form with a study, of whatever was looked at before. */
+export function beginFrom(study) {
+  offered = study;
+  location.hash = "#/new";
+}
+
 export async function showNew(root, signal, from) {
   document.title = "New study – Rugo";
   const message = make("p", { role: "status" }, "Loading …"), fields = make("div", { class: "fields" }), faults = make("ul", { class: "faults", role: "alert" });
@@ -57,6 +65,8 @@ export async function showNew(root, signal, from) {
   let schema, templates, study = { name: "my study", kind: "statistics", surface: { hurst: 0.8, wavelength_ratio: 8 } }, timer = 0, turn = 0;
   try {
     [schema, templates] = await Promise.all([getJson("/v1/study.schema.json", { signal }), getJson("/v1/templates", { signal })]);
+    if (offered && !from) study = offered;
+    offered = null;
     if (from) study = await getJson(`/v1/studies/${encodeURIComponent(from)}/study`, { signal });
   } catch (error) {
     message.textContent = error.message;
@@ -132,10 +142,14 @@ export async function showNew(root, signal, from) {
       cost.textContent = `This is no JSON yet: ${error.message}`;
     }
   });
+  let sent = {}; // what was submitted without an answer, and its key: the same again is the same study
   submit.addEventListener("click", async () => {
     submit.disabled = true;
+    const text = JSON.stringify(study);
+    if (sent.text !== text) sent = { text, key: makeKey() };
     try {
-      const made = await sendJson("POST", "/v1/studies", study);
+      const made = await sendJson("POST", "/v1/studies", study, sent.key);
+      sent = {};
       location.hash = `#/study/${encodeURIComponent(made.id)}`;
     } catch (error) {
       cost.textContent = error.message;

@@ -50,8 +50,13 @@ export async function getJson(path, options) {
   return (await request(path, options)).json();
 }
 
-export async function sendJson(method, path, body) {
-  const headers = body === undefined ? {} : { "Content-Type": "application/json" };
+/** A key that nobody else has: a request that is sent again with it is done once. */
+export function makeKey() {
+  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
+export async function sendJson(method, path, body, key = makeKey()) {
+  const headers = { "Idempotency-Key": key, ...(body === undefined ? {} : { "Content-Type": "application/json" }) };
   const answer = await request(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body) });
   return answer.status === 204 ? null : answer.json();
 }

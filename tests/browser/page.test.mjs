@@ -154,6 +154,47 @@ test("realisations are shown: heights, gaps and pressures", async (t) => {
   await says(page, "of the points are in contact");
 });
 
+/** Heights as text, a hole among them: what a person drops on the page. */
+function patch() {
+  const rows = [];
+  for (let j = 0; j < 60; j++) rows.push(Array.from({ length: 80 }, (_, i) => (i === 40 && j === 30 ? "nan" : (Math.sin(0.4 * i) + Math.cos(0.3 * j + 0.01 * j * j) + 0.05 * i).toFixed(4))).join(","));
+  return rows.join("\n");
+}
+
+const dropped = (page, name, content) => page.evaluate((called, text) => {
+  const data = new DataTransfer();
+  data.items.add(new File([text], called));
+  document.querySelector(".drop").dispatchEvent(new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer: data }));
+}, name, content);
+
+test("a measured surface is dropped, shown as a page and a table, shown again otherwise, and saved", async (t) => {
+  const page = await tab(t, [422]);
+  await page.goto(open);
+  await click(page, "Measured surface");
+  await says(page, "Drop a file here");
+  await dropped(page, "patch <b>.csv", patch());
+  await page.waitForFunction(() => document.querySelector(".sheet img")?.naturalWidth > 100, { timeout: 20000 });
+  await click(page, "All values");
+  const value = (group, name) => page.$$eval(".groups table", (all, title, wanted) => [...all.find((one) => one.caption.textContent === title).rows].find((one) => one.cells[0].textContent === wanted)?.cells[1].textContent, group, name);
+  assert.equal(await value("map", "detrend"), "plane");
+  assert.equal(await value("map", "boundary"), "open");
+  assert.ok(Number.parseFloat(await value("areal", "Sq")) > 0.5);
+  await choose(page, "Trend", "none");
+  await page.waitForFunction(() => [...document.querySelectorAll(".groups tr")].some((one) => one.textContent === "detrendnone"), { timeout: 20000 });
+  await page.evaluate(() => { globalThis.saved = []; HTMLAnchorElement.prototype.click = function () { globalThis.saved.push(this.download); }; });
+  await page.evaluate(() => [...document.querySelectorAll("button")].filter((one) => one.textContent.startsWith("Save")).forEach((one) => one.click()));
+  assert.deepEqual(await page.evaluate(() => globalThis.saved), ["patch <b>.svg", "patch <b>.json"]);
+  await picture(page, "surface");
+  await click(page, "Make a study of surfaces like this");
+  await says(page, "1 case of 100 realisations");
+  assert.ok((await page.$eval("textarea", (one) => one.value)).includes("sha256"));
+  await page.goBack();
+  await page.waitForSelector(".sheet img", { timeout: 20000 }); // the file is looked at again
+  await dropped(page, "nothing.npy", "no map");
+  await says(page, "nothing.npy: ");
+  assert.equal(await page.$(".sheet"), null, "what was shown before is not taken for it");
+});
+
 test("a new study is begun from a ready one, checked as it is written, and submitted", async (t) => {
   const page = await tab(t, [422]);
   await page.goto(`${open}/#/new`);
@@ -235,7 +276,7 @@ test("the keyboard keeps its place, and every control has a name", async (t) => 
   assert.equal(await focused(), "log y");
   assert.notEqual(await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle), "none");
   for (const [hash, control] of [["", "input[type=search]"], [`study/${CONTACT.id}`, ".choice select"], [`study/${CONTACT.id}/table`, "form input"],
-    [`study/${CONTACT.id}/realisation`, "input[type=number]"], ["new", "textarea"]]) {
+    [`study/${CONTACT.id}/realisation`, "input[type=number]"], ["new", "textarea"], ["surface", "input[type=file]"]]) {
     await page.goto(`${open}/#/${hash}`);
     await page.waitForSelector(`main ${control}`);
     assert.deepEqual(await page.$$eval("main :is(input, select, textarea, button, a)", (all) => all.filter((one) => !(one.labels?.length > 0) && !one.getAttribute("aria-label") && one.textContent.trim() === "").map((one) => one.outerHTML)), [], hash);
@@ -246,12 +287,16 @@ test("it fits a phone, in the dark too", async (t) => {
   const page = await tab(t);
   await page.setViewport({ width: 390, height: 844, isMobile: true });
   await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: "dark" }]);
-  for (const [hash, name] of [["", "phone-list"], [`study/${CONTACT.id}`, "phone-curves"], ["new", "phone-new"]]) {
+  for (const [hash, name] of [["", "phone-list"], [`study/${CONTACT.id}`, "phone-curves"], ["new", "phone-new"], ["surface", "phone-surface"]]) {
     await page.goto(`${open}/#/${hash}`);
     await new Promise((done) => setTimeout(done, 1000));
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 390, `${name} is no wider than the screen`);
     await picture(page, name);
   }
+  await dropped(page, "a surface.csv", patch());
+  await page.waitForFunction(() => document.querySelector(".sheet img")?.naturalWidth > 100, { timeout: 20000 });
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 390, "a shown surface is no wider than the screen");
+  await picture(page, "phone-surface-shown");
   for (const part of ["table", "report", "realisation", "document"]) {
     await page.goto(`${open}/#/study/${CONTACT.id}/${part}`);
     await page.waitForNetworkIdle({ idleTime: 300 });
