@@ -102,7 +102,7 @@ function check_files(text,    token, base) {
         token = substr(text, RSTART, RLENGTH)
         text = substr(text, RSTART + RLENGTH)
         if (text ~ /^[A-Za-z0-9_(]/) continue # part of something longer
-        if (token ~ /[*]/ || token ~ /^\// || token ~ /^(Random123|suitesparse)\//) continue
+        if (token ~ /[*]/ || token ~ /^\// || token ~ /^(Random123|suitesparse|unistring)\//) continue
         base = token
         sub(/.*\//, "", base)
         if (base ~ /(NAME|FILE|STUDY|NNN)\./) continue # whatever the reader puts there
@@ -196,7 +196,7 @@ function check_paths(line) {
         complain("a path of one machine: " substr(line, RSTART, RLENGTH))
 }
 
-# `name()` in a document is a function of core.
+# `name()` in a document is a function of the program.
 function check_functions(line,    name) {
     while (match(line, /`[a-z0-9_]+\(\)`/)) {
         name = substr(line, RSTART + 1, RLENGTH - 4)
@@ -244,7 +244,7 @@ pass == "known" {
             text = substr(text, RSTART + RLENGTH)
         }
     }
-    if (FILENAME ~ /^core\/.*\.[ch]$/) {
+    if (FILENAME ~ /^(core|schema|jobs|worker|server)\/.*\.[ch]$/) {
         text = $0
         while (match(text, /[a-z0-9_]+\(/)) {
             defined[substr(text, RSTART, RLENGTH - 1)] = 1

@@ -7,7 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -43,6 +45,7 @@ void process_start(struct process *process, const char *name, const char *const 
     assert_true(process->pid >= 0);
     if (process->pid > 0)
         return;
+    prctl(PR_SET_PDEATHSIG, SIGKILL); /* no test leaves a process behind, however it ends */
     redirect(process->out, STDOUT_FILENO);
     redirect(process->err, STDERR_FILENO);
     execv(argv[0], (char *const *)(uintptr_t)argv);
@@ -69,6 +72,15 @@ int run_rugo(const char *name, const char *const *arguments) {
     return process_wait(&process, 120);
 }
 
+int run_shell(const char *line) {
+    char command[600];
+    int length = snprintf(command, sizeof command, "RUGO='%s'; { %s ; } >shell.out 2>shell.err",
+                          rugo(), line);
+    assert_true(length > 0 && (size_t)length < sizeof command);
+    int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 void process_kill(struct process *process, int signal_number) {
     if (process->pid)
         kill(process->pid, signal_number);
@@ -86,11 +98,23 @@ char *slurp(const char *path) {
     return text;
 }
 
+char *slurp_from(const char *path, const char *text) {
+    char *whole = slurp(path), *from = strstr(whole, text);
+    assert_non_null(from);
+    memmove(whole, from, strlen(from) + 1);
+    return whole;
+}
+
 void spit(const char *path, const char *text) {
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     assert_true(fputs(text, file) >= 0);
     assert_int_equal(fclose(file), 0);
+}
+
+void spit_secret(const char *path, const char *text) {
+    spit(path, text);
+    assert_int_equal(chmod(path, 0600), 0);
 }
 
 bool contains(const char *path, const char *text) {
@@ -126,19 +150,30 @@ unsigned serve_start(struct process *process, const char *const *more) {
     return port;
 }
 
-int http_connect(unsigned port) {
+/* -1 where nobody listens. */
+static int connect_within(unsigned port, long milliseconds) {
     struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     int connection = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    struct timeval limit = {.tv_sec = 30};
-    assert_true(connection >= 0);
+    struct timeval limit = {.tv_sec = milliseconds / 1000, .tv_usec = milliseconds % 1000 * 1000};
+    if (connection < 0)
+        return -1;
     setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    assert_int_equal(connect(connection, (struct sockaddr *)&address, sizeof address), 0);
+    setsockopt(connection, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+    if (connect(connection, (struct sockaddr *)&address, sizeof address) == 0)
+        return connection;
+    close(connection);
+    return -1;
+}
+
+int http_connect(unsigned port) {
+    int connection = connect_within(port, 30000);
+    assert_true(connection >= 0);
     return connection;
 }
 
-char *http_raw(unsigned port, const char *bytes, size_t size) {
-    int connection = http_connect(port);
+/* Sends, reads to the end and closes; *length (or NULL) is that of the reply. */
+static char *converse(int connection, const char *bytes, size_t size, size_t *length) {
     /* A server that refuses early stops reading: what it answered still counts. */
     for (size_t sent = 0; sent < size;) {
         ssize_t part = send(connection, bytes + sent, size - sent, MSG_NOSIGNAL);
@@ -156,25 +191,58 @@ char *http_raw(unsigned port, const char *bytes, size_t size) {
     }
     text[used] = 0;
     close(connection);
+    if (length != NULL)
+        *length = used;
     return text;
+}
+
+char *http_raw(unsigned port, const char *bytes, size_t size) {
+    return http_bytes(port, bytes, size, NULL);
+}
+
+char *http_bytes(unsigned port, const char *bytes, size_t size, size_t *length) {
+    return converse(http_connect(port), bytes, size, length);
+}
+
+/* Takes the lengths of the chunks out of a body, in place. */
+static void join_chunks(char *body) {
+    char *to = body, *from = body;
+    const char *end = body + strlen(body);
+    for (size_t size; (size = strtoul(from, &from, 16)) > 0;) {
+        if (size + 2 > (size_t)(end - from))
+            break;
+        memmove(to, from + 2, size);
+        to += size;
+        from += 2 + size;
+    }
+    *to = '\0';
+}
+
+int http_try(unsigned port, long milliseconds, const struct http_request *request, char **answer) {
+    char *text = NULL;
+    size_t size = request->body ? strlen(request->body) : 0;
+    assert_true(asprintf(&text,
+                         "%s %s HTTP/1.1\r\nHost: 127.0.0.1:%u\r\nConnection: close\r\n%s"
+                         "Content-Length: %zu\r\n\r\n%s",
+                         request->method, request->path, port,
+                         request->headers ? request->headers : "", size,
+                         request->body ? request->body : "") > 0);
+    int connection = connect_within(port, milliseconds), status = 0;
+    char *reply = connection < 0 ? strdup("") : converse(connection, text, strlen(text), NULL);
+    free(text);
+    sscanf(reply, "HTTP/1.1 %d", &status);
+    if (answer) {
+        char *start = strstr(reply, "\r\n\r\n");
+        *answer = strdup(start ? start + 4 : "");
+        const char *chunked = strstr(reply, "\r\nTransfer-Encoding: chunked\r\n");
+        if (chunked != NULL && chunked < start)
+            join_chunks(*answer);
+    }
+    free(reply);
+    return status;
 }
 
 int http_exchange(unsigned port, const char *method, const char *path, const char *headers,
                   const char *body, char **answer) {
-    char *request = NULL;
-    size_t size = body ? strlen(body) : 0;
-    assert_true(asprintf(&request,
-                         "%s %s HTTP/1.1\r\nHost: 127.0.0.1:%u\r\nConnection: close\r\n%s"
-                         "Content-Length: %zu\r\n\r\n%s",
-                         method, path, port, headers ? headers : "", size, body ? body : "") > 0);
-    char *reply = http_raw(port, request, strlen(request));
-    free(request);
-    int status = 0;
-    sscanf(reply, "HTTP/1.1 %d", &status);
-    if (answer) {
-        const char *start = strstr(reply, "\r\n\r\n");
-        *answer = strdup(start ? start + 4 : "");
-    }
-    free(reply);
-    return status;
+    return http_try(port, 30000, &(struct http_request){method, path, headers, body}, answer);
 }

@@ -21,10 +21,17 @@ void process_start(struct process *process, const char *name, const char *const 
 int process_wait(struct process *process, int seconds);
 /* Start and wait. */
 int run_rugo(const char *name, const char *const *arguments);
+/* Runs a line of the shell, in which $RUGO is the executable, and returns its exit status likewise;
+ * output goes to shell.out and shell.err. */
+int run_shell(const char *line);
 void process_kill(struct process *process, int signal_number);
 /* Contents of a file of the test's folder; the caller frees. */
 char *slurp(const char *path);
+/* The same from a text on, which must be there. */
+char *slurp_from(const char *path, const char *text);
 void spit(const char *path, const char *text);
+/* Likewise, of mode 600, as files of tokens must be. */
+void spit_secret(const char *path, const char *text);
 bool contains(const char *path, const char *text);
 /* Waits until a file contains a text, 20 s at most. */
 void wait_for_text(const char *path, const char *text);
@@ -36,9 +43,17 @@ unsigned serve_start(struct process *process, const char *const *more);
 /* One exchange over a new connection: sends the bytes, reads to the end (Connection: close is up to
  * the caller). The caller frees. */
 char *http_raw(unsigned port, const char *bytes, size_t size);
+/* The same for a reply that may hold NULs. */
+char *http_bytes(unsigned port, const char *bytes, size_t size, size_t *length);
 /* A request with Connection: close; status and body (caller frees; NULL where not wanted). */
 int http_exchange(unsigned port, const char *method, const char *path, const char *headers,
                   const char *body, char **answer);
+struct http_request {
+    const char *method, *path, *headers, *body; /* headers, each with its line break; or NULL */
+};
+/* The same where a server may be slow, stopped or gone: the status is 0 where no answer begins
+ * within so many milliseconds. */
+int http_try(unsigned port, long milliseconds, const struct http_request *request, char **answer);
 /* An open connection to the port. */
 int http_connect(unsigned port);
 

@@ -155,6 +155,8 @@ static void commands_that_show(void **state) {
         {"state", {"status", "--db", "done.db", id, NULL}, "", NULL},
         {"generate", {"generate", "study.json", "-o", "map.csv", NULL}, "", NULL},
         {"characterise", {"characterise", "map.csv", NULL}, "", NULL},
+        {"page", {"characterise", "map.csv", "--format", "svg", NULL}, "", NULL},
+        {"convert", {"convert", "map.csv", "converted.npy", NULL}, "", NULL},
         {"press", {"press", "map.csv", "--loads", "0.05", NULL}, "", NULL},
         {"theory", {"theory", "study.json", NULL}, "", NULL},
         {"help", {"help", "run", NULL}, "", NULL},

@@ -86,13 +86,40 @@ def many_cases_are_asked_for_one_by_one(server):
     assert {row["case"] for row in rows} == set(range(65))
 
 
+def maps_are_characterised(server):
+    rows = [",".join(str((3 * i + 5 * j * j) % 17) for i in range(24)) for j in range(20)]
+    path = pathlib.Path(FOLDER, "client-map.csv")
+    path.write_text("\n".join(rows), encoding="utf-8")
+    found = server.characterise(path, dx="0.5um", z_unit="nm", detrend="none")
+    assert found["preparation"]["file"] == "client-map.csv"
+    assert found["grid"]["nx"] == 24 and abs(found["grid"]["dx"] - 0.5e-6) < 1e-15
+    assert "<svg" in server.characterise(path.read_bytes(), name="map.csv", format="svg")
+    alike = server.characterise(path, dx="0.5um", z_unit="nm", fill=True, format="study")
+    assert server.json("POST", "/v1/check", body=json.dumps(alike).encode("utf-8"))["cases"]
+    refused(lambda: server.characterise(b"\x00", name="map.csv"), 422, "map.csv")
+    refused(lambda: server.characterise(path, colour="red"), 422, "not valid")
+    path.unlink()
+
+
 def tokens_are_read_as_commands_do():
     path = pathlib.Path(FOLDER, "client-tokens")
     for text, token in (("# ours\nread:aaaa\nsubmit:bbbb\nwork:cccc\n", "bbbb"), ("\nread:aaaa\nwork:cc\n", "aaaa"),
                         ("work:cccc\nsubmit:anna:b:b\n", "b:b"), ("read:carl:aaaa\nadmin:root:dddd\n", "dddd"),
                         ("read:carl:aaaa\n", "aaaa"), ("alone\n", "alone"), ("no:role\n", "no:role")):
         path.write_text(text)
+        path.chmod(0o600)
         assert rugo.Server(URL, token_file=path).token == token
+    path.write_text("submit:anna:sha256:" + 64 * "0" + "\nread:sha256:" + 64 * "0" + "\nread:bert:aaaa\n")
+    assert rugo.Server(URL, token_file=path).token == "aaaa"
+    path.chmod(0o644)
+    for call, word in ((lambda: rugo.Server(URL, token_file=path), "chmod 600"),
+                       (lambda: rugo.Server("http://127.0.0.1.invalid", token="aaaa"), "clear text")):
+        try:
+            call()
+            raise AssertionError(word)
+        except ValueError as error:
+            assert word in str(error), error
+    assert rugo.Server("http://192.0.2.1", token="aaaa", insecure=True).token == "aaaa"
     path.unlink()
 
 
@@ -119,6 +146,7 @@ what_the_page_claims()
 one = a_study_from_submission_to_tables(here)
 studies_are_found_and_changed(here, one)
 faults_are_told(here)
+maps_are_characterised(here)
 many_cases_are_asked_for_one_by_one(here)
 tokens_are_read_as_commands_do()
 print("client: all as it should be")

@@ -14,7 +14,8 @@ static unsigned port;
 
 static int start(void **state) {
     (void)state;
-    spit("tokens", "read:read-token-000000\nsubmit:submit-token-000000\nwork:work-token-000000\n");
+    spit_secret("tokens",
+                "read:read-token-000000\nsubmit:submit-token-000000\nwork:work-token-000000\n");
     port = serve_start(&server, (const char *[]){"--token-file", "tokens", NULL});
     return 0;
 }

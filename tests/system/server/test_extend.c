@@ -4,8 +4,8 @@
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
+#include "tests/support/sql.h"
 #include <signal.h>
-#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,20 +29,6 @@ static const struct {
      "\"independent\"," SURFACE ",\"contact\":{\"pressures\":{\"values\":[0.02,0.1]}}}"},
 };
 enum { STUDY_COUNT = sizeof STUDIES / sizeof *STUDIES };
-
-static long number_of(const char *database, const char *sql) {
-    sqlite3 *db = NULL;
-    sqlite3_stmt *row = NULL;
-    assert_int_equal(sqlite3_open_v2(database, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_busy_timeout(db, 20000), SQLITE_OK);
-    if (sqlite3_prepare_v2(db, sql, -1, &row, NULL) != SQLITE_OK)
-        fail_msg("%s: %s", sql, sqlite3_errmsg(db));
-    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
-    long number = (long)sqlite3_column_int64(row, 0);
-    sqlite3_finalize(row);
-    sqlite3_close(db);
-    return number;
-}
 
 /* What a command prints, less the line's end. */
 static void submit(const char *database, const char *set, char id[17]) {
@@ -88,19 +74,19 @@ static void an_extended_study_is_one_of_that_number(void **state) {
         snprintf(database, sizeof database, "extended-%s.db", STUDIES[s].name);
         submit(database, STUDIES[s].first, id);
         work(database);
-        long jobs = number_of(database, "SELECT count(*) FROM job_log");
+        long jobs = sql_integer(database, "SELECT count(*) FROM job_log");
         assert_int_equal(run_rugo("extend", (const char *[]){"extend", "--db", database, id,
                                                              "--realisations", more, NULL}),
                          0);
         assert_true(contains("extend.out", "queued"));
         assert_int_equal(
-            number_of(database, "SELECT min(first) FROM job_log WHERE state = 'waiting'"),
+            sql_integer(database, "SELECT min(first) FROM job_log WHERE state = 'waiting'"),
             atoi(strchr(STUDIES[s].first, '=') + 1));
         work(database);
         /* none of those that were there ran again */
         assert_true(jobs > 0);
-        assert_int_equal(number_of(database, "SELECT max(attempts) FROM job_log"), 1);
-        assert_int_equal(number_of(database, "SELECT sum(count) FROM job_log"), 2 * atoi(more));
+        assert_int_equal(sql_integer(database, "SELECT max(attempts) FROM job_log"), 1);
+        assert_int_equal(sql_integer(database, "SELECT sum(count) FROM job_log"), 2 * atoi(more));
         char *curves = curves_of(database, id);
         assert_string_equal(curves, expected);
         free(curves);
@@ -124,7 +110,7 @@ static void a_study_submitted_with_more_takes_what_is_there(void **state) {
         char sql[200];
         snprintf(sql, sizeof sql,
                  "SELECT min(first) FROM job_log WHERE state = 'waiting' AND study = '%s'", id);
-        assert_int_equal(number_of(database, sql), had);
+        assert_int_equal(sql_integer(database, sql), had);
         work(database);
         char *curves = curves_of(database, id);
         assert_string_equal(curves, expected);
@@ -146,7 +132,7 @@ static void what_cannot_be_extended_is_told(void **state) {
     assert_int_equal(extend("told.db", id, "4"), 1);
     assert_true(contains("extend.err", "has 5 realisations of each case, which 4 would not"));
     assert_int_equal(extend("told.db", id, "5"), 0); /* nothing to do: a lost answer is no fault */
-    assert_int_equal(number_of("told.db", "SELECT sum(count) FROM job_log"), 10);
+    assert_int_equal(sql_integer("told.db", "SELECT sum(count) FROM job_log"), 10);
     assert_int_equal(extend("told.db", "0123456789abcdef", "9"), 1);
     assert_true(contains("extend.err", "there is no study"));
     assert_int_equal(run_rugo("extend", (const char *[]){"extend", "--db", "told.db", id, NULL}),

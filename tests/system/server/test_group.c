@@ -15,9 +15,10 @@ static unsigned port;
 
 static int start(void **state) {
     (void)state;
-    spit("tokens", "submit:anna:anna-token-00000\nsubmit:bert:bert-token-00000\n"
-                   "submit:nameless-token-0\nwork:work-token-000000\nadmin:root:admin-token-0000\n"
-                   "read:carl:carl-token-00000\n");
+    spit_secret("tokens",
+                "submit:anna:anna-token-00000\nsubmit:bert:bert-token-00000\n"
+                "submit:nameless-token-0\nwork:work-token-000000\nadmin:root:admin-token-0000\n"
+                "read:carl:carl-token-00000\n");
     port =
         serve_start(&server, (const char *[]){"--token-file", "tokens", "--share", "carl=2", NULL});
     return 0;
@@ -119,7 +120,7 @@ static void commands_tell_the_line(void **state) {
     (void)state;
     char url[64];
     snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
-    spit("mine", "submit:anna:anna-token-00000\n");
+    spit_secret("mine", "submit:anna:anna-token-00000\n");
     spit("blocks.json", SEVERAL_BLOCKS);
     assert_int_equal(run_rugo("submit", (const char *[]){"submit", "--server", url, "--token-file",
                                                          "mine", "--set", "priority=5", "--set",
@@ -149,7 +150,7 @@ static void wrong_names_and_shares_are_told(void **state) {
         {"submit:anna:0123456789abcdef\n", "anna", "--share anna is not NAME=WEIGHT"},
         {"submit:anna:0123456789abcdef\n", "anna=-1", "a weight is above 0"}};
     for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
-        spit("bad", WRONG[w].line);
+        spit_secret("bad", WRONG[w].line);
         assert_int_equal(run_rugo("bad", (const char *[]){"serve", "--db", "bad.db", "--listen",
                                                           "127.0.0.1:0", "--token-file", "bad",
                                                           "--share", WRONG[w].share, NULL}),

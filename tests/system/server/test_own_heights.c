@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 
 #define STUDY(heights)                                                                             \
     "{\"name\":\"own\",\"kind\":\"statistics\",\"realisations\":40,\"surface\":{\"dimension\":1,"  \
@@ -16,28 +15,12 @@
 #define SAMPLES                                                                                    \
     "{\"distribution\":\"samples\",\"samples\":[3,1,4,1.5,9,2.6,5,3.5,8,9,7,9,3,2,3,8,4.6,2]}"
 
-/* Runs a line of the shell with $RUGO set, and returns its status; output goes to files. */
-static int shell(const char *line) {
-    char command[600];
-    snprintf(command, sizeof command, "RUGO='%s'; { %s ; } >shell.out 2>shell.err", rugo(), line);
-    int status = system(command);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-/* Returns what a file tells of all cases; the caller frees. */
-static char *cases_of(const char *path) {
-    char *text = slurp(path), *cases = strstr(text, "\"cases\":");
-    assert_non_null(cases);
-    memmove(text, cases, strlen(cases) + 1);
-    return text;
-}
-
 static void near_and_over_http(void **state) {
     (void)state;
     struct process server;
     char url[64];
     spit("own.json", STUDY(SAMPLES));
-    assert_int_equal(shell("$RUGO run --db near.db --workers 2 own.json"), 0);
+    assert_int_equal(run_shell("$RUGO run --db near.db --workers 2 own.json"), 0);
     snprintf(url, sizeof url, "http://127.0.0.1:%u",
              serve_start(&server, (const char *[]){"--db", "far.db", NULL}));
     assert_int_equal(
@@ -47,22 +30,23 @@ static void near_and_over_http(void **state) {
     process_kill(&server, SIGTERM);
     assert_int_equal(process_wait(&server, 20), 0);
     for (int far = 0; far < 2; far++)
-        assert_int_equal(shell(far ? "$RUGO curves --db far.db own > far.json"
-                                   : "$RUGO curves --db near.db own > near.json"),
+        assert_int_equal(run_shell(far ? "$RUGO curves --db far.db own > far.json"
+                                       : "$RUGO curves --db near.db own > near.json"),
                          0);
-    char *near_cases = cases_of("near.json"), *far_cases = cases_of("far.json");
+    char *near_cases = slurp_from("near.json", "\"cases\":"),
+         *far_cases = slurp_from("far.json", "\"cases\":");
     assert_string_equal(near_cases, far_cases);
     assert_non_null(strstr(near_cases, "\"quantity\":\"summit_height_pdf\""));
     assert_non_null(strstr(near_cases, "\"samples\""));
     free(near_cases);
     free(far_cases);
-    assert_int_equal(shell("$RUGO curves --db near.db own --format table"), 0);
+    assert_int_equal(run_shell("$RUGO curves --db near.db own --format table"), 0);
 }
 
 static void lists_are_shown_short(void **state) {
     (void)state;
     spit("own.json", STUDY(SAMPLES));
-    assert_int_equal(shell("$RUGO check own.json"), 0);
+    assert_int_equal(run_shell("$RUGO check own.json"), 0);
     assert_true(contains("shell.out", "[3,1,4,1.5,9,2.6,5,3.5, ...] (18 numbers)"));
     assert_true(contains("shell.out", "\"samples\""));
 }
@@ -90,7 +74,7 @@ static void faults_have_a_pointer(void **state) {
         char study[600], *answer = NULL;
         snprintf(study, sizeof study, STUDY("%s"), FAULTS[f].heights);
         spit("wrong.json", study);
-        assert_int_equal(shell("$RUGO check wrong.json"), 2);
+        assert_int_equal(run_shell("$RUGO check wrong.json"), 2);
         if (!contains("shell.err", FAULTS[f].words))
             fail_msg("no \"%s\"", FAULTS[f].words);
         assert_int_equal(http_exchange(port, "POST", "/v1/studies",
@@ -124,11 +108,11 @@ static void many_cases_of_many_samples_are_refused(void **state) {
     put_list(file, "samples", 10000, 1);
     fprintf(file, "}}}");
     assert_int_equal(fclose(file), 0);
-    assert_int_equal(shell("$RUGO check many.json"), 2);
+    assert_int_equal(run_shell("$RUGO check many.json"), 2);
     assert_true(contains("shell.err", "3000 cases of 100"));
     assert_true(contains("shell.err", "values each are too many: 20000000 values at most"));
-    assert_int_equal(shell("$RUGO check many.json --set 'surface/hurst=[0.5,0.8]' --set "
-                           "surface/wavelength_ratio=8"),
+    assert_int_equal(run_shell("$RUGO check many.json --set 'surface/hurst=[0.5,0.8]' --set "
+                               "surface/wavelength_ratio=8"),
                      0);
 }
 
@@ -151,8 +135,8 @@ static void heights_of_a_map_are_heights_of_a_study(void **state) {
          "{\"name\":\"known\",\"kind\":\"statistics\",\"surface\":{\"hurst\":0.8,"
          "\"wavelength_ratio\":4,\"length_ratio\":4,\"heights\":{\"distribution\":\"weibull_max\","
          "\"shape\":1.5,\"keep\":\"heights\",\"draw\":\"quantiles\"}}}");
-    assert_int_equal(shell("$RUGO generate -o map.npy known.json && $RUGO characterise map.npy "
-                           "--format json > map.json"),
+    assert_int_equal(run_shell("$RUGO generate -o map.npy known.json && $RUGO characterise map.npy "
+                               "--format json > map.json"),
                      0);
     char *text = slurp("map.json");
     cJSON *map = cJSON_Parse(text);
@@ -166,10 +150,11 @@ static void heights_of_a_map_are_heights_of_a_study(void **state) {
     free(text);
     cJSON_Delete(heights);
     cJSON_Delete(map);
-    assert_int_equal(shell("$RUGO generate -o again.npy known.json --set surface/heights=\"$(cat "
-                           "heights.json)\" --set surface/heights/keep=heights && $RUGO "
-                           "characterise again.npy --format json > again.json"),
-                     0);
+    assert_int_equal(
+        run_shell("$RUGO generate -o again.npy known.json --set surface/heights=\"$(cat "
+                  "heights.json)\" --set surface/heights/keep=heights && $RUGO "
+                  "characterise again.npy --format json > again.json"),
+        0);
     double known = number_in("map.json", "areal", "Ssk");
     double again = number_in("again.json", "areal", "Ssk");
     assert_true(known < -0.9);

@@ -5,9 +5,9 @@
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
+#include "tests/support/sql.h"
 #include <cjson/cJSON.h>
 #include <signal.h>
-#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,14 +51,6 @@ static void wait_for(const char *database, const char *sql, const char *study, c
         sleep_ms(10);
     }
     expect(database, sql, study, text);
-}
-
-static void change(const char *database, const char *sql) {
-    sqlite3 *db = NULL;
-    assert_int_equal(sqlite3_open(database, &db), SQLITE_OK);
-    if (sqlite3_exec(db, sql, NULL, NULL, NULL) != SQLITE_OK)
-        fail_msg("%s: %s", sql, sqlite3_errmsg(db));
-    sqlite3_close(db);
 }
 
 static void submit(const char *url, const char *file, char id[32]) {
@@ -157,6 +149,34 @@ static void a_server_publishes_what_there_is(void **state) {
     assert_int_equal(process_wait(&server, PATIENCE_S), 0);
 }
 
+/* A published case whose document was damaged is answered as before, and published anew. */
+static void what_was_damaged_is_published_anew(void **state) {
+    (void)state;
+    struct process server;
+    char path[80], *before = NULL, *after = NULL;
+    spit("one.json", ONE_CASE);
+    assert_int_equal(
+        run_rugo("whole", (const char *[]){"run", "--db", "harmed.db", "one.json", NULL}), 0);
+    char *study = ask("harmed.db", "SELECT public FROM study", NULL);
+    char *document = ask("harmed.db", "SELECT document FROM published", NULL);
+    snprintf(path, sizeof path, "/v1/studies/%s/curves", study);
+    unsigned port = serve_start(&server, (const char *[]){"--db", "harmed.db", NULL});
+    assert_int_equal(http_exchange(port, "GET", path, NULL, NULL, &before), 200);
+    sql_change("harmed.db", "UPDATE published SET document = replace(document, '0.', '1.')");
+    assert_int_equal(http_exchange(port, "GET", path, NULL, NULL, &after), 200);
+    assert_string_equal(strchr(before, '{'), strchr(after, '{'));
+    wait_for("harmed.db", "SELECT document FROM published", NULL, document);
+    expect("harmed.db", "SELECT state FROM study_progress WHERE study = ?", study, "done");
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, PATIENCE_S), 0);
+    assert_true(contains(server.err, "is damaged, and is made anew"));
+    assert_int_equal(run_rugo("verify", (const char *[]){"verify", "--db", "harmed.db", NULL}), 0);
+    free(before);
+    free(after);
+    free(document);
+    free(study);
+}
+
 /* As an older program would leave it, whose scalars were others: the case is due, cannot be merged,
  * and stands before another that can. */
 static void what_cannot_be_merged_is_marked(void **state) {
@@ -166,11 +186,13 @@ static void what_cannot_be_merged_is_marked(void **state) {
     spit("one.json", ONE_CASE);
     assert_int_equal(run_rugo("older", (const char *[]){"run", "--db", "old.db", "one.json", NULL}),
                      0);
-    change("old.db", "UPDATE scalar_names SET names = json_array('colour')");
+    sql_change(
+        "old.db",
+        "UPDATE scalar_names SET names = json_array('colour'); UPDATE result SET seal = NULL");
     assert_int_equal(run_rugo("other", (const char *[]){"run", "--db", "old.db", "--set", "seed=4",
                                                         "one.json", NULL}),
                      0);
-    change(
+    sql_change(
         "old.db",
         "DELETE FROM point_error; DELETE FROM scalar_error; DELETE FROM point; DELETE "
         "FROM curve; DELETE FROM scalar; DELETE FROM published; UPDATE study_case SET settled = 0");
@@ -209,11 +231,13 @@ static char *spoil_one_case(const char *database) {
     assert_int_equal(run_rugo("two", (const char *[]){"run", "--db", database, "--set",
                                                       "surface.hurst=[0.5,0.8]", "one.json", NULL}),
                      0);
-    change(database,
-           "INSERT INTO scalar_names (names) VALUES (json_array('colour')); UPDATE result SET "
-           "names_id = (SELECT max(id) FROM scalar_names) WHERE job_id IN (SELECT id FROM job "
-           "WHERE case_number = 0); DELETE FROM published WHERE case_number = 0; UPDATE study_case "
-           "SET settled = 0 WHERE number = 0");
+    sql_change(
+        database,
+        "INSERT INTO scalar_names (names) VALUES (json_array('colour')); UPDATE result SET "
+        "names_id = (SELECT max(id) FROM scalar_names), seal = NULL WHERE job_id IN (SELECT id "
+        "FROM job "
+        "WHERE case_number = 0); DELETE FROM published WHERE case_number = 0; UPDATE study_case "
+        "SET settled = 0 WHERE number = 0");
     return ask(database, "SELECT public FROM study", NULL);
 }
 
@@ -298,6 +322,7 @@ static void the_other_cases_are_answered(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_server_publishes_what_there_is),
+        cmocka_unit_test(what_was_damaged_is_published_anew),
         cmocka_unit_test(what_cannot_be_merged_is_marked),
         cmocka_unit_test(the_other_cases_are_answered),
     };

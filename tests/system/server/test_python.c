@@ -44,6 +44,52 @@ static void the_client_and_its_page(void **state) {
     assert_int_equal(process_wait(&server, 15), 0);
 }
 
+/* Over TLS by fingerprint and by authority; a wrong one, or none, is refused. */
+static void the_client_speaks_tls(void **state) {
+    (void)state;
+    struct process server = {0};
+    char line[1600], fingerprint[80] = "";
+    unsigned port = 0;
+    if (system("python3 -c 'import sys; sys.exit(sys.version_info < (3, 8))' 2>/dev/null") != 0) {
+        print_message("SKIP: there is no python3 of version 3.8 or later\n");
+        skip();
+    }
+    assert_int_equal(run_rugo("new", (const char *[]){"certificate", "new", "tls", NULL}), 0);
+    process_start(&server, "tls",
+                  (const char *[]){"serve", "--db", "tls.db", "--listen", "127.0.0.1:0",
+                                   "--tls-cert", "tls/certificate.pem", "--tls-key", "tls/key.pem",
+                                   NULL});
+    wait_for_text(server.err, "listening on https");
+    char *told = slurp(server.out);
+    assert_int_equal(
+        sscanf(told, "listening on https://127.0.0.1:%u\nfingerprint %79s", &port, fingerprint), 2);
+    free(told);
+    snprintf(line, sizeof line,
+             "env -u RUGO_TOKEN PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=%s/server/python timeout 100 "
+             "python3 -c 'import rugo\n"
+             "url = \"https://localhost:%u\"\n"
+             "for trust in ({\"fingerprint\": \"%s\"}, {\"ca_file\": \"tls/certificate.pem\"}):\n"
+             "    assert rugo.Server(url, **trust).studies() == []\n"
+             "for trust in ({}, {\"fingerprint\": \"sha256:\" + 64 * \"0\"}):\n"
+             "    try:\n"
+             "        rugo.Server(url, **trust).studies()\n"
+             "        raise AssertionError(trust)\n"
+             "    except rugo.RugoError as error:\n"
+             "        assert error.status is None and not error.lost, error\n"
+             "        assert \"(\" not in str(error) or not trust, error\n"
+             "print(\"TLS: all as it should be\")' >tls.told 2>&1",
+             source(), port, fingerprint);
+    int status = system(line);
+    told = slurp("tls.told");
+    if (status != 0)
+        print_error("%s", told);
+    assert_int_equal(status, 0);
+    assert_non_null(strstr(told, "TLS: all as it should be"));
+    free(told);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 15), 0);
+}
+
 /* The service gives away the file that is in the tree. */
 static void the_service_gives_it_away(void **state) {
     (void)state;
@@ -63,6 +109,7 @@ static void the_service_gives_it_away(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_client_and_its_page),
+        cmocka_unit_test(the_client_speaks_tls),
         cmocka_unit_test(the_service_gives_it_away),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

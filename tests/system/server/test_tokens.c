@@ -1,5 +1,7 @@
 /* Protects: what each role of a token may do, that beyond this machine there is no service without
- * tokens, and that server and clients read the same files of them. */
+ * tokens, that server and clients read the same files of them, which nobody else may read, and that
+ * a token is revoked at once. */
+#include "server/http/tokens.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
@@ -7,15 +9,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define JSON "Content-Type: application/json\r\n"
 
 static void roles_bound_what_a_token_may_do(void **state) {
     (void)state;
     struct process other = {0};
-    spit("tokens",
-         "# for the "
-         "test\nread:read-token-000000\nsubmit:submit-token-0000\nwork:work-token-000000\n");
+    spit_secret("tokens",
+                "# for the "
+                "test\nread:read-token-000000\nsubmit:submit-token-0000\nwork:work-token-000000\n");
     unsigned port =
         serve_start(&other, (const char *[]){"--db", "tokens.db", "--token-file", "tokens", NULL});
     static const struct {
@@ -57,7 +62,7 @@ static void beyond_loopback_tokens_are_needed(void **state) {
                                                        "0.0.0.0:0", NULL}),
                      2);
     assert_true(contains("open.err", "tokens are needed"));
-    spit("bad-tokens", "boss:0123456789abcdef\n");
+    spit_secret("bad-tokens", "boss:0123456789abcdef\n");
     assert_int_equal(run_rugo("bad", (const char *[]){"serve", "--db", "open.db", "--token-file",
                                                       "bad-tokens", NULL}),
                      2);
@@ -74,7 +79,7 @@ static void one_file_for_both_ends(void **state) {
     for (size_t f = 0; f < 2; f++) {
         struct process other = {0};
         char url[64], database[16];
-        spit("both", FILES[f]);
+        spit_secret("both", FILES[f]);
         snprintf(database, sizeof database, "both%zu.db", f);
         unsigned port =
             serve_start(&other, (const char *[]){"--db", database, "--token-file", "both", NULL});
@@ -91,11 +96,171 @@ static void one_file_for_both_ends(void **state) {
         process_kill(&other, SIGTERM);
         assert_int_equal(process_wait(&other, 15), 0);
     }
-    spit("empty", "# nothing\n");
+    spit_secret("empty", "# nothing\n");
     assert_int_equal(run_rugo("none", (const char *[]){"status", "--server", "http://127.0.0.1:1",
                                                        "--token-file", "empty", NULL}),
                      2);
     assert_true(contains("none.err", "empty holds no token"));
+}
+
+/* A token in clear text is for this machine alone, unless --insecure says otherwise. */
+static void beyond_loopback_tokens_need_tls(void **state) {
+    (void)state;
+    spit_secret("tokens", "read:read-token-000000\n");
+    assert_int_equal(
+        run_rugo("clear", (const char *[]){"serve", "--db", "open.db", "--listen", "0.0.0.0:0",
+                                           "--token-file", "tokens", NULL}),
+        2);
+    assert_true(contains("clear.err", "--tls-cert"));
+    /* by name or address, these are other machines (RFC 5737, 3; RFC 2606, 2) */
+    static const char *const AWAY[] = {"http://192.0.2.1:1", "http://127.0.0.1.invalid:1"};
+    for (size_t a = 0; a < 2; a++) {
+        assert_int_equal(run_rugo("clear", (const char *[]){"status", "--server", AWAY[a],
+                                                            "--token-file", "tokens", NULL}),
+                         2);
+        assert_true(contains("clear.err", "clear text"));
+    }
+    assert_int_equal(
+        run_rugo("clear", (const char *[]){"status", "--server", AWAY[1], "--token-file", "tokens",
+                                           "--insecure", NULL}),
+        1);
+    assert_false(contains("clear.err", "clear text"));
+}
+
+static void files_open_to_others_are_refused(void **state) {
+    (void)state;
+    static const mode_t OPEN[] = {0666, 0644, 0640, 0604};
+    spit("open-tokens", "read:read-token-000000\n");
+    for (size_t m = 0; m < sizeof OPEN / sizeof *OPEN; m++) {
+        assert_int_equal(chmod("open-tokens", OPEN[m]), 0);
+        assert_int_equal(
+            run_rugo("mode", (const char *[]){"serve", "--db", "open.db", "--listen", "127.0.0.1:0",
+                                              "--token-file", "open-tokens", NULL}),
+            2);
+        assert_true(contains("mode.err", "chmod 600"));
+        assert_int_equal(
+            run_rugo("mode", (const char *[]){"status", "--server", "http://127.0.0.1:1",
+                                              "--token-file", "open-tokens", NULL}),
+            2);
+        assert_true(contains("mode.err", "chmod 600"));
+    }
+}
+
+/* Makes a token by the command; the caller frees it. */
+static char *new_token(const char *role, const char *name) {
+    assert_int_equal(
+        run_rugo("new", (const char *[]){"token", "new", role, name, "--token-file", "file", NULL}),
+        0);
+    char *token = slurp("new.out");
+    token[strcspn(token, "\n")] = '\0';
+    assert_int_equal(strlen(token), 48);
+    assert_false(contains("file", token)); /* it has the digest alone */
+    return token;
+}
+
+static int list_with(unsigned port, const char *token) {
+    char headers[160];
+    snprintf(headers, sizeof headers, "Authorization: Bearer %s\r\n", token);
+    return http_exchange(port, "GET", "/v1/studies", headers, NULL, NULL);
+}
+
+/* One request over an open connection; its status. */
+static int ask_open(int connection, const char *token) {
+    char text[4096];
+    int status = 0;
+    int length = snprintf(text, sizeof text,
+                          "GET /v1/studies HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer "
+                          "%s\r\n\r\n",
+                          token);
+    assert_int_equal(send(connection, text, (size_t)length, MSG_NOSIGNAL), length);
+    ssize_t got = recv(connection, text, sizeof text - 1, 0);
+    assert_true(got > 0);
+    text[got] = '\0';
+    assert_int_equal(sscanf(text, "HTTP/1.1 %d", &status), 1);
+    return status;
+}
+
+/* Made, used and revoked beside a running server, over a connection that stays open. */
+static void tokens_are_revoked_at_once(void **state) {
+    (void)state;
+    struct process other = {0};
+    char *anna = new_token("read", "anna"), *bert = new_token("read", "bert");
+    unsigned port =
+        serve_start(&other, (const char *[]){"--db", "revoked.db", "--token-file", "file", NULL});
+    int connection = http_connect(port);
+    assert_int_equal(list_with(port, anna), 200);
+    assert_int_equal(ask_open(connection, bert), 200);
+    char *carl = new_token("submit", "carl");
+    assert_int_equal(list_with(port, carl), 200);
+    assert_int_equal(run_rugo("revoke", (const char *[]){"token", "revoke", "bert", "--token-file",
+                                                         "file", NULL}),
+                     0);
+    assert_int_equal(ask_open(connection, bert), 401);
+    assert_int_equal(list_with(port, bert), 401);
+    assert_int_equal(list_with(port, anna), 200);
+    assert_int_equal(
+        run_rugo("list", (const char *[]){"token", "list", "--token-file", "file", NULL}), 0);
+    assert_true(contains("list.out", "carl"));
+    assert_false(contains("list.out", "bert"));
+    assert_int_equal(run_rugo("revoke", (const char *[]){"token", "revoke", "bert", "--token-file",
+                                                         "file", NULL}),
+                     1);
+    close(connection);
+
+    /* A line at fault counts for nothing, and no other suffers from it. */
+    char *text = slurp("file"), *broken = NULL;
+    assert_true(asprintf(&broken, "boss:anna:0123456789abcdef\n%s", strchr(text, '\n') + 1) > 0);
+    spit("file", broken);
+    assert_int_equal(list_with(port, anna), 401);
+    assert_int_equal(list_with(port, carl), 200);
+    wait_for_text(other.err, "counts for nothing");
+
+    /* The server sees that the file is gone though nobody asks. */
+    assert_int_equal(unlink("file"), 0);
+    wait_for_text(other.err, "no token is valid any more");
+    sleep_ms(TOKENS_GRACE_MS + 100);
+    assert_int_equal(list_with(port, carl), 401);
+    spit_secret("file", text);
+    assert_int_equal(list_with(port, anna), 200);
+    assert_int_equal(unlink("file"), 0);
+    assert_int_equal(list_with(port, anna), 200); /* an editor may be at work */
+    process_kill(&other, SIGTERM);
+    assert_int_equal(process_wait(&other, 15), 0);
+    assert_false(contains(other.err, anna));
+    free(text);
+    free(broken);
+    free(anna);
+    free(bert);
+    free(carl);
+}
+
+/* A server's file of digests is of no use to a client, which is told so. */
+static void a_client_needs_the_token(void **state) {
+    (void)state;
+    unlink("file");
+    free(new_token("read", "anna"));
+    assert_int_equal(run_rugo("digest", (const char *[]){"status", "--server", "http://127.0.0.1:1",
+                                                         "--token-file", "file", NULL}),
+                     2);
+    assert_true(contains("digest.err", "digests alone"));
+    assert_int_equal(run_rugo("out", (const char *[]){"token", "new", "work", "w", "--token-file",
+                                                      "file", "--out", "client", NULL}),
+                     0);
+    struct stat about;
+    assert_int_equal(stat("client", &about), 0);
+    assert_int_equal(about.st_mode & 0777, 0600);
+    assert_true(contains("client", "work:w:"));
+    static const char *const WRONG[][2] = {{"boss", "w"}, {"read", "a b"}, {"read", ""}};
+    char *before = slurp("file");
+    for (size_t w = 0; w < 3; w++)
+        assert_int_equal(
+            run_rugo("wrong", (const char *[]){"token", "new", WRONG[w][0], WRONG[w][1],
+                                               "--token-file", "file", NULL}),
+            2);
+    char *after = slurp("file");
+    assert_string_equal(before, after);
+    free(before);
+    free(after);
 }
 
 int main(void) {
@@ -103,6 +268,10 @@ int main(void) {
         cmocka_unit_test(roles_bound_what_a_token_may_do),
         cmocka_unit_test(beyond_loopback_tokens_are_needed),
         cmocka_unit_test(one_file_for_both_ends),
+        cmocka_unit_test(beyond_loopback_tokens_need_tls),
+        cmocka_unit_test(files_open_to_others_are_refused),
+        cmocka_unit_test(tokens_are_revoked_at_once),
+        cmocka_unit_test(a_client_needs_the_token),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,267 @@
+/* Protects: a file that is sent to a service is characterised as the command does it, and drawn;
+ * what is wrong with it, or with the query, is told as a problem; no file, however it is made,
+ * harms the service; and a client that goes ends the work. */
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include <cjson/cJSON.h>
+#include <dirent.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+static const char BYTES[] = "Content-Type: application/octet-stream\r\n";
+static struct process server;
+static unsigned port;
+static char *csv; /* a map, as text */
+
+/* Waves along the axes, of which studies can be made, with a hole; the caller frees. */
+static char *make_csv(size_t ny, size_t nx) {
+    char *text = calloc(ny * nx + 1, 12);
+    size_t used = 0;
+    assert_non_null(text);
+    for (size_t j = 0; j < ny; j++)
+        for (size_t i = 0; i < nx; i++) {
+            double z = sin(0.4 * (double)i) + cos(0.3 * (double)j + 0.01 * (double)(j * j));
+            const char *after = i + 1 < nx ? "," : "\n";
+            if (i == 5 && j == 7)
+                used += (size_t)sprintf(text + used, "nan%s", after);
+            else
+                used += (size_t)sprintf(text + used, "%.4f%s", z, after);
+        }
+    return text;
+}
+
+static int start(void **state) {
+    (void)state;
+    spit_secret("tokens", "read:reader-token-0123456789\n");
+    csv = make_csv(48, 64);
+    port = serve_start(&server, (const char *[]){"--map-size", "1", NULL});
+    return 0;
+}
+
+static int stop(void **state) {
+    (void)state;
+    free(csv);
+    process_kill(&server, SIGTERM);
+    return process_wait(&server, 15);
+}
+
+static int post(const char *query, const char *headers, const char *body, char **answer) {
+    char path[512];
+    snprintf(path, sizeof path, "/v1/characterise?%s", query);
+    return http_exchange(port, "POST", path, headers, body, answer);
+}
+
+static void refused(const char *query, const char *headers, const char *body, int status,
+                    const char *word) {
+    char *answer = NULL;
+    int found = post(query, headers, body, &answer);
+    if (found != status || strstr(answer, word) == NULL)
+        print_error("%s: %d, %s\n", query, found, answer);
+    assert_int_equal(found, status);
+    assert_non_null(strstr(answer, word));
+    cJSON *problem = cJSON_Parse(answer);
+    assert_true(cJSON_GetObjectItem(problem, "status")->valuedouble == status);
+    cJSON_Delete(problem);
+    free(answer);
+}
+
+static void the_service_says_what_the_command_says(void **state) {
+    (void)state;
+    char *answer = NULL;
+    spit("map.csv", csv);
+    const char *const command[] = {"characterise", "map.csv", "--dx",      "0.5um",
+                                   "--z-unit",     "nm",      "--detrend", "quadratic",
+                                   "--format",     "json",    NULL};
+    assert_int_equal(run_rugo("near", command), 0);
+    char *near = slurp("near.out");
+    assert_int_equal(post("name=map.csv&dx=0.5um&z_unit=nm&detrend=quadratic", BYTES, csv, &answer),
+                     200);
+    assert_string_equal(answer, near);
+    free(near);
+    free(answer);
+    const char *const drawing[] = {"characterise", "map.csv",  "--format", "svg",
+                                   "--report",     "page.svg", NULL};
+    assert_int_equal(run_rugo("near", drawing), 0);
+    near = slurp("near.out");
+    char *report = slurp("page.svg");
+    assert_string_equal(report, near);
+    char headers[120];
+    snprintf(headers, sizeof headers, "%sAccept: image/svg+xml\r\n", BYTES);
+    assert_int_equal(post("name=map.csv", headers, csv, &answer), 200);
+    assert_string_equal(answer, near);
+    free(near);
+    free(report);
+    free(answer);
+}
+
+/* What the answer is can be sent on as a study. */
+static void a_study_of_surfaces_like_it_is_made(void **state) {
+    (void)state;
+    char *answer = NULL, *plan = NULL;
+    assert_int_equal(post("name=a/map.csv&format=study&fill=true", BYTES, csv, &answer), 200);
+    assert_non_null(strstr(answer, "\"name\":\"like map.csv\""));
+    assert_non_null(strstr(answer, "\"sha256\":"));
+    assert_int_equal(http_exchange(port, "POST", "/v1/check", "Content-Type: application/json\r\n",
+                                   answer, &plan),
+                     200);
+    free(plan);
+    free(answer);
+}
+
+static void faults_are_problems(void **state) {
+    (void)state;
+    refused("name=map.csv&colour=red", BYTES, csv, 422, "?colour");
+    refused("layer=1", BYTES, csv, 422, "?name");
+    refused("name=map.csv&boundary=round", BYTES, csv, 422, "round");
+    refused("name=map.csv&fill=yes", BYTES, csv, 422, "yes is not true or false");
+    refused("name=map.csv&format=text", BYTES, csv, 422, "json, svg or study");
+    refused("name=map.csv&dx=--help", BYTES, csv, 422, "--help");
+    refused("name=map.csv&dx=0.5um", BYTES, csv, 422, "z-unit");
+    refused("name=map.npy", BYTES, csv, 422, "map.npy");
+    refused("name=-o", BYTES, "1,2\n3\n", 422, "-o: ");
+    refused("name=map.csv", BYTES, "", 400, "bytes of the file");
+    refused("name=map.csv", "Content-Type: application/json\r\n", csv, 415, "octet-stream");
+    char *large = calloc((1 << 20) + 2, 1);
+    assert_non_null(large);
+    memset(large, '1', (1 << 20) + 1);
+    refused("name=map.csv", BYTES, large, 413, "1 MiB");
+    free(large);
+    char long_name[400];
+    snprintf(long_name, sizeof long_name, "name=%0380d", 1);
+    refused(long_name, BYTES, csv, 422, "longer than 300 bytes");
+}
+
+/* The name is a text, whatever stands in it: in JSON, on the page, and never an option. */
+static void names_are_texts(void **state) {
+    (void)state;
+    char *answer = NULL, headers[120];
+    snprintf(headers, sizeof headers, "%sAccept: image/svg+xml\r\n", BYTES);
+    assert_int_equal(post("name=%22%3Cscript%3E%01%ff--report=x.csv", headers, csv, &answer), 200);
+    assert_null(strstr(answer, "<script"));
+    assert_null(strchr(answer, 1));
+    free(answer);
+    assert_int_equal(access("x.csv", F_OK), -1);
+    assert_int_equal(post("name=%22%3Cscript%3E%01%ff--report=x.csv", BYTES, csv, &answer), 200);
+    cJSON *document = cJSON_Parse(answer);
+    assert_non_null(document);
+    cJSON_Delete(document);
+    free(answer);
+}
+
+/* Files cut and changed at random, of every name: refused or not, the service answers on. */
+static void damaged_files_harm_nobody(void **state) {
+    (void)state;
+    static const char *const NAMES[] = {"a.npy", "a.npz", "a.x3p", "a.sdf", "a.gwy", "a.csv",
+                                        "a.xyz", "a.txt", "a.asc", "a",     "a.zip"};
+    unsigned seed = 20251122;
+    for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++) {
+        char query[32], *answer = NULL, body[400];
+        for (size_t b = 0; b + 1 < sizeof body; b++) {
+            seed = seed * 1664525 + 1013904223;
+            body[b] = (char)(seed >> 24 != 0 ? seed >> 24 : 1);
+        }
+        body[sizeof body - 1] = '\0';
+        snprintf(query, sizeof query, "name=%s", NAMES[n]);
+        assert_int_equal(post(query, BYTES, body, &answer), 422);
+        assert_non_null(strstr(answer, NAMES[n]));
+        free(answer);
+    }
+    assert_int_equal(http_exchange(port, "GET", "/healthz", "", NULL, NULL), 200);
+}
+
+static void tokens_are_those_of_readers(void **state) {
+    (void)state;
+    struct process closed;
+    char headers[160];
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 15), 0);
+    port =
+        serve_start(&closed, (const char *[]){"--token-file", "tokens", "--map-size", "0", NULL});
+    refused("name=map.csv", BYTES, csv, 401, "token");
+    snprintf(headers, sizeof headers, "%sAuthorization: Bearer reader-token-0123456789\r\n", BYTES);
+    refused("name=map.csv", headers, csv, 403, "--map-size"); /* it may, but none are taken here */
+    process_kill(&closed, SIGTERM);
+    assert_int_equal(process_wait(&closed, 15), 0);
+    port = serve_start(&server, (const char *[]){"--map-size", "1", NULL});
+}
+
+/* Returns how many processes the service has started that have not ended. */
+static size_t children_of(pid_t parent) {
+    size_t count = 0;
+    DIR *folder = opendir("/proc");
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder)) != NULL;) {
+        char path[300];
+        int above = 0;
+        snprintf(path, sizeof path, "/proc/%.200s/stat", entry->d_name);
+        FILE *file = fopen(path, "r");
+        if (file == NULL)
+            continue;
+        if (fscanf(file, "%*d (%*[^)]) %*c %d", &above) == 1)
+            count += above == parent;
+        (void)fclose(file);
+    }
+    (void)closedir(folder);
+    return count;
+}
+
+/* Two are looked at, the third is told to come again; and none is when their clients have gone. */
+static void clients_that_go_end_the_work(void **state) {
+    (void)state;
+    enum { SIDE = 360 };
+    char *map = make_csv(SIDE, SIDE), request[300];
+    int sockets[2];
+    size_t size = strlen(map), seen = 0;
+    assert_true(size < 1 << 20);
+    int length = snprintf(request, sizeof request,
+                          "POST /v1/characterise?name=a.csv HTTP/1.1\r\nHost: localhost\r\n"
+                          "%sExpect: 100-continue\r\nContent-Length: %zu\r\n\r\n",
+                          BYTES, size);
+    for (size_t n = 0; n < 2; n++) { /* they have entered when they are told to go on */
+        char told[64] = "";
+        sockets[n] = http_connect(port);
+        assert_int_equal(send(sockets[n], request, (size_t)length, MSG_NOSIGNAL), length);
+        assert_true(recv(sockets[n], told, sizeof told - 1, 0) > 0);
+        assert_non_null(strstr(told, " 100 "));
+    }
+    refused("name=map.csv", BYTES, csv, 503, "other files");
+    for (size_t n = 0; n < 2; n++)
+        for (size_t sent = 0; sent < size;) {
+            ssize_t count = send(sockets[n], map + sent, size - sent, MSG_NOSIGNAL);
+            assert_true(count > 0);
+            sent += (size_t)count;
+        }
+    for (int tries = 0; tries < 400 && seen == 0; tries++, sleep_ms(5))
+        seen = children_of(server.pid);
+    assert_true(seen > 0);
+    for (size_t n = 0; n < 2; n++)
+        (void)close(sockets[n]);
+    for (int tries = 0; children_of(server.pid) > 0; tries++, sleep_ms(10))
+        assert_true(tries < 1000);
+    char *answer = NULL;
+    int status = 503;
+    for (int tries = 0; tries < 200 && status == 503; tries++, sleep_ms(20)) {
+        status = post("name=map.csv", BYTES, csv, &answer);
+        free(answer);
+    }
+    assert_int_equal(status, 200);
+    free(map);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_service_says_what_the_command_says),
+        cmocka_unit_test(a_study_of_surfaces_like_it_is_made),
+        cmocka_unit_test(faults_are_problems),
+        cmocka_unit_test(names_are_texts),
+        cmocka_unit_test(damaged_files_harm_nobody),
+        cmocka_unit_test(tokens_are_those_of_readers),
+        cmocka_unit_test(clients_that_go_end_the_work),
+    };
+    return cmocka_run_group_tests(tests, start, stop);
+}

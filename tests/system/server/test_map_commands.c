@@ -1,0 +1,227 @@
+/* Protects: the commands of maps: surfaces and measured maps in files are written, characterised,
+ * pressed and converted, in their units. */
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include "tests/support/small_studies.h"
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int setup(void **state) {
+    (void)state;
+    spit("one.json", ONE_CASE);
+    return 0;
+}
+
+static void a_surface_goes_out_and_in(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell("$RUGO generate -o z.npy --realisation 3 one.json && $RUGO characterise "
+                  "z.npy --dx 0.125 --format json > z.json"),
+        0);
+    assert_true(contains("z.json", "\"finite_difference\":{\"rms_slope\":"));
+    assert_int_equal(
+        run_shell(
+            "$RUGO generate -o a.csv --format csv one.json && $RUGO generate -o b.xyz --format "
+            "xyz one.json && $RUGO characterise a.csv --dx 0.125 --format json > a.json && $RUGO "
+            "characterise b.xyz --format json > b.json && test -s a.json && test -s b.json"),
+        0);
+}
+
+/* A plane wave in a file is Westergaard's: (2/pi) asin(sqrt(sqrt(2) load)). */
+static void a_map_in_a_file_is_pressed(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell("awk 'BEGIN { for (i = 0; i < 256; i++) print cos(i * 3.14159265358979 / "
+                  "128) }' > wave.csv && $RUGO press wave.csv --loads 0.1,0.4,5 --format "
+                  "json > wave.json && $RUGO press wave.csv --model layered -o p.npy && "
+                  "$RUGO characterise p.npy"),
+        0);
+    char *text = slurp("wave.json");
+    cJSON *document = cJSON_Parse(text);
+    const cJSON *edges = cJSON_GetObjectItem(document, "edges");
+    const double exact[] = {0.245442906579788, 0.541937864805995, 1};
+    for (int l = 0; l < 3; l++) /* measured: 1e-4 */
+        assert_true(fabs(cJSON_GetArrayItem(edges, l)->valuedouble - exact[l]) < 1e-3);
+    cJSON_Delete(document);
+    free(text);
+}
+
+/* A tilted map with a hole is open, loses a plane and has no seam to be pressed over. */
+static void a_measured_map_does_not_repeat(void **state) {
+    (void)state;
+    char line[400];
+    for (int hole = 0; hole < 2; hole++) {
+        snprintf(
+            line, sizeof line,
+            "awk -v HOLE=%d 'BEGIN { for (j = 0; j < 40; j++) for (i = 0; i < 50; i++) printf "
+            "\"%%s%%c\", HOLE && i == 20 && j == 10 ? \"nan\" : 3 * i + cos(i * 0.7) * cos(j * "
+            "0.6), i < 49 ? 44 : 10 }' > map%d.csv",
+            hole, hole);
+        assert_int_equal(run_shell(line), 0);
+    }
+    assert_int_equal(run_shell("$RUGO characterise map0.csv --format json > map0.json"), 0);
+    assert_true(contains("map0.json", "\"boundary\":\"open\",\"boundary_by\":\"seam\""));
+    assert_true(contains("map0.json", "\"detrend\":\"plane\",\"trend_height\":73."));
+    assert_true(contains("map0.json", "\"acf\":{\"lag\":[0,1,2,"));
+    assert_int_equal(
+        run_shell("$RUGO characterise map1.csv && grep -q 'holes *0.0005' shell.out && grep -q "
+                  "'boundary_by *holes' shell.out"),
+        0);
+    assert_int_equal(
+        run_shell("$RUGO characterise map0.csv --boundary periodic --detrend mean && grep -q "
+                  "'^spectral' shell.out"),
+        0);
+    assert_int_equal(run_shell("$RUGO characterise map1.csv --picture map1.svg && grep -q '^map' "
+                               "shell.out && grep -q 'map1.csv: open' map1.svg && grep -q summit "
+                               "map1.svg"),
+                     0);
+    assert_int_equal(run_shell("$RUGO characterise map0.csv --picture none/map.svg"), 1);
+    assert_true(contains("shell.err", "cannot open none/map.svg"));
+    assert_int_equal(run_shell("$RUGO characterise map1.csv --boundary periodic"), 2);
+    assert_true(contains("shell.err",
+                         "1 of 2000 heights are holes (NaN), the first in row 11, column "
+                         "21"));
+    assert_int_equal(run_shell("$RUGO press map1.csv"), 2);
+    assert_true(contains("shell.err", "map1.csv: 1 of 2000 heights are holes"));
+    assert_int_equal(run_shell("$RUGO press map0.csv --boundary periodic --loads 0.01"), 0);
+    assert_true(contains("shell.err", "warning: map0.csv: contact takes the map as periodic"));
+}
+
+/* Lengths of a map with units are told as people read them, in JSON in metres; without units they
+ * are bare. A window makes the map periodic, for contact too, and tells its power. */
+static void lengths_have_units(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell(
+            "awk 'BEGIN { for (j = 0; j < 40; j++) for (i = 0; i < 50; i++) printf \"%.17g%c\", "
+            "0.1 * i + cos(i * 0.7) * cos(j * 0.6), i < 49 ? 44 : 10 }' > bare.csv"),
+        0);
+    assert_int_equal(
+        run_shell("$RUGO characterise bare.csv && ! grep -q m^2 shell.out && grep -q '^  "
+                  "dx  *1$' shell.out"),
+        0);
+    assert_int_equal(
+        run_shell("$RUGO characterise bare.csv --dx 0.5um --z-unit 10nm && grep -q '^  dx "
+                  " *500 nm$' shell.out && grep -q '^  m0 .* nm^2$' shell.out && grep -q "
+                  "'^  rms_slope  *[0-9.]*$' shell.out && grep -q 'density\\[' shell.out"),
+        0);
+    assert_int_equal(
+        run_shell("$RUGO characterise bare.csv --dx 0.5um --z-unit 10nm --format json > "
+                  "units.json"),
+        0);
+    assert_true(contains("units.json", "\"unit\":\"m\""));
+    assert_true(contains("units.json", "\"dx\":5e-07"));
+    assert_true(contains("units.json", "\"preparation\":{\"file\":\"bare.csv\""));
+    assert_int_equal(
+        run_shell("$RUGO characterise bare.csv --window hann --format json > tapered.json"), 0);
+    assert_true(contains("tapered.json", "\"boundary\":\"periodic\",\"boundary_by\":\"window\""));
+    assert_true(contains("tapered.json", "\"window_power\":0.1406"));
+    assert_int_equal(run_shell("$RUGO press bare.csv --window tukey --loads 0.01 --format json > "
+                               "tapered.json"),
+                     0);
+    assert_true(contains("tapered.json", "\"boundary\":\"periodic\""));
+}
+
+/* What is prepared and written is what is read again, with its units in text; what was done is
+ * told, and a conversion without options changes nothing. */
+static void a_map_is_converted(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell(
+            "awk 'BEGIN { for (j = 0; j < 40; j++) for (i = 0; i < 50; i++) printf \"%.17g%c\", "
+            "(i > 20 && i < 25 && j > 10 && j < 30) ? \"nan\" : 3 * i + cos(i * 0.7) * cos(j * "
+            "0.6), i < 49 ? 44 : 10 }' | sed 's/^0,/nan,/' > uneven.csv"),
+        0);
+    assert_int_equal(
+        run_shell("$RUGO convert uneven.csv even.npy && $RUGO convert even.npy even.csv && "
+                  "grep -v '^#' even.csv > bare.csv && $RUGO convert bare.csv again.npy && "
+                  "cmp even.npy again.npy"),
+        0);
+    assert_int_equal(
+        run_shell("$RUGO convert uneven.csv prepared.csv --dx 0.5um --z-unit nm --crop "
+                  "2um,0,40,40 --detrend plane --fill --filter S=2.5um,robust --resample "
+                  "60,60"),
+        0);
+    static const char *const STEPS[] = {"spacing: 500 nm by 500 nm",
+                                        "crop: columns 4 to 43",
+                                        "detrend: plane",
+                                        "fill: 76 holes, 4.75 % of the points",
+                                        "s_filter: robust Gaussian, cut-off 2.5",
+                                        "resample: 40 by 40 points to 60 by 60",
+                                        "written: 60 by 60 points"};
+    for (size_t step = 0; step < sizeof STEPS / sizeof *STEPS; step++)
+        assert_true(contains("shell.out", STEPS[step]));
+    assert_int_equal(
+        run_shell("grep -q '^# done: crop, columns 4' prepared.csv && grep -q '^# z unit: "
+                  "m' prepared.csv"),
+        0);
+    assert_int_equal(run_shell("$RUGO convert uneven.csv prepared.xyz --dx 2 && sed '/^#/d' "
+                               "prepared.xyz | head -n 2 | tail -n 1 | grep -q '^2 0 '"),
+                     0);
+    /* text files keep units, spacings and holes */
+    assert_int_equal(
+        run_shell("for i in csv xyz; do $RUGO convert uneven.csv kept.$i --dx 1um,0.5um "
+                  "--z-unit um && $RUGO convert kept.$i kept_$i.npy && grep -q '50 by 40 "
+                  "points, 1e-06 by 5e-07 m apart, heights in m' shell.out || exit; done; "
+                  "cmp kept_csv.npy kept_xyz.npy"),
+        0);
+    assert_int_equal(run_shell("$RUGO convert uneven.csv prepared.tif"), 2);
+    assert_true(contains("shell.err", "allowed are files that end in .npy, .csv or .xyz"));
+    assert_int_equal(run_shell("$RUGO convert uneven.csv absent/prepared.npy"), 1);
+    assert_int_equal(run_shell("$RUGO characterise uneven.csv --dx 0.5um"), 2);
+    assert_true(contains("shell.err", "--z-unit"));
+}
+
+/* A sphere's map with units: Hertz's radius of 32 um needs 10.0825 N on a radius of 1 mm. */
+static void a_measured_map_is_pressed_in_units(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell(
+            "awk 'BEGIN { for (j = 0; j < 90; j++) for (i = 0; i < 90; i++) printf \"%.9g%c\", "
+            "-((i - 45.3) ^ 2 + (j - 44.8) ^ 2) / 2, i < 89 ? 44 : 10 }' > sphere.csv && $RUGO "
+            "press sphere.csv --dx 1um --z-unit nm --modulus 210GPa --force 1N,10.08246154N "
+            "--format json -o s.npy --gap g.csv --contact c.png --vtu s.vtu >sphere.json && "
+            "$RUGO press sphere.csv --dx 1um --z-unit nm --modulus 210GPa --pressure 1MPa"),
+        0);
+    assert_true(contains("shell.out", "boundary: open") && contains("shell.out", "peak pressure"));
+    assert_int_equal(
+        run_shell("test $(wc -l <g.csv) = 90 && head -c 4 c.png | grep -q PNG && grep -q "
+                  "'NumberOfPoints=\"8100\"' s.vtu && $RUGO characterise s.npy"),
+        0);
+    char *text = slurp("sphere.json");
+    cJSON *document = cJSON_Parse(text);
+    const cJSON *physical = cJSON_GetObjectItem(document, "physical");
+    const struct {
+        const char *key;
+        double value;
+    } HERTZ[] = {{"contact_area", 3.2169909e-9},
+                 {"peak_pressure", 4.7011922e9},
+                 {"approach", 1.024e-6},
+                 {"force", 10.08246154}};
+    for (size_t h = 0; h < sizeof HERTZ / sizeof *HERTZ; h++) {
+        const cJSON *values = cJSON_GetObjectItem(physical, HERTZ[h].key);
+        check_relative(cJSON_GetArrayItem(values, 1)->valuedouble, HERTZ[h].value, 0.005);
+    }
+    assert_string_equal(cJSON_GetObjectItem(document, "boundary")->valuestring, "open");
+    cJSON_Delete(document);
+    free(text);
+    assert_int_equal(run_shell("$RUGO press sphere.csv --model layered"), 2);
+    assert_true(contains("shell.err", "sphere.csv: the map does not repeat, and --model layered"));
+    assert_int_equal(run_shell("$RUGO press sphere.csv --pressure 1MPa"), 2);
+    assert_true(contains("shell.err", "--pressure needs the stiffness of the block"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_surface_goes_out_and_in),
+        cmocka_unit_test(a_map_in_a_file_is_pressed),
+        cmocka_unit_test(a_measured_map_does_not_repeat),
+        cmocka_unit_test(lengths_have_units),
+        cmocka_unit_test(a_map_is_converted),
+        cmocka_unit_test(a_measured_map_is_pressed_in_units),
+    };
+    return cmocka_run_group_tests(tests, setup, NULL);
+}

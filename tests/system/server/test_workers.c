@@ -1,0 +1,262 @@
+/* Workers and their server: one connection a process, claims that wait, jobs that reach nobody,
+ * and what is kept of a job that is stopped. */
+#include "tests/support/process.h"
+#include <poll.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define SURFACE                                                                                    \
+    "\"surface\":{\"dimension\":2,\"hurst\":0.5,\"wavelength_ratio\":8,\"length_ratio\":4,"        \
+    "\"points_per_wavelength\":8}"
+/* Many seconds of work. */
+static const char LONG[] = "{\"name\":\"long\",\"kind\":\"statistics\",\"seed\":7,"
+                           "\"realisations\":1000000," SURFACE "}";
+static const char ONE_JOB[] = "{\"name\":\"one\",\"kind\":\"statistics\",\"seed\":7,"
+                              "\"realisations\":1," SURFACE "}";
+/* About two seconds of one processor. */
+static const char SOME[] = "{\"name\":\"some\",\"kind\":\"statistics\",\"seed\":7,"
+                           "\"realisations\":4000," SURFACE "}";
+
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void submit(unsigned port, const char *study) {
+    assert_int_equal(http_exchange(port, "POST", "/v1/studies",
+                                   "Content-Type: application/json\r\n", study, NULL),
+                     201);
+}
+
+/* The value behind a key in the answer to a GET. */
+static double figure(unsigned port, const char *path, const char *key) {
+    char *answer = NULL;
+    assert_int_equal(http_exchange(port, "GET", path, "", NULL, &answer), 200);
+    const char *at = strstr(answer, key);
+    assert_non_null(at);
+    double value = strtod(at + strlen(key), NULL);
+    free(answer);
+    return value;
+}
+
+/* Connections that are established to this port, of all processes here. */
+static unsigned connections_to(unsigned port) {
+    unsigned count = 0;
+    char line[512], wanted[16];
+    FILE *file = fopen("/proc/net/tcp", "r");
+    assert_non_null(file);
+    snprintf(wanted, sizeof wanted, "0100007F:%04X", port);
+    while (fgets(line, sizeof line, file) != NULL) {
+        char remote[64] = "", state[8] = "";
+        if (sscanf(line, "%*s %*s %63s %7s", remote, state) == 2)
+            count += strcmp(remote, wanted) == 0 && strcmp(state, "01") == 0;
+    }
+    fclose(file);
+    return count;
+}
+
+/* Four threads at a server that takes four connections, with leases shorter than the work: nothing
+ * is lost, as all goes through one connection; and told to end, they keep what they have done. */
+static void one_connection_keeps_all_leases(void **state) {
+    (void)state;
+    struct process server, worker;
+    char url[64];
+    unsigned port = serve_start(
+        &server, (const char *[]){"--db", "one.db", "--connections", "4", "--lease", "2", NULL});
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    submit(port, LONG);
+    process_start(&worker, "worker",
+                  (const char *[]){"work", "--server", url, "--workers", "4", NULL});
+    for (int tries = 0; tries < 200 && figure(port, "/v1/studies?limit=1", "\"running\":") < 4;
+         tries++)
+        sleep_ms(100);
+    assert_true(figure(port, "/v1/studies?limit=1", "\"running\":") >= 4);
+    for (int second = 0; second < 3; second++) { /* more than a lease */
+        sleep_ms(1000);
+        assert_true(connections_to(port) <= 1);
+    }
+    process_kill(&worker, SIGTERM);
+    assert_int_equal(process_wait(&worker, 10), 0);
+    char *log = slurp("worker.err");
+    assert_null(strstr(log, "level=warning"));
+    assert_null(strstr(log, "attempt=2"));
+    assert_non_null(strstr(log, "the others are handed back"));
+    free(log);
+    assert_true(figure(port, "/v1/studies?limit=1", "\"running\":") == 0);
+    assert_true(
+        figure(port, "/v1/studies?limit=1", "\"realisations\":{\"total\":1000000,\"done\":") > 0);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 5), 0);
+}
+
+static const char CLAIM[] = "{\"worker\":\"w\",\"sequence\":true}";
+
+/* Sends a claim that waits; the connection. */
+static int claim_begin(unsigned port, const char *worker, int wait_s) {
+    char body[128], text[512];
+    snprintf(body, sizeof body, "{\"worker\":\"%s\",\"sequence\":true}", worker);
+    int size = snprintf(text, sizeof text,
+                        "POST /v1/jobs/claim HTTP/1.1\r\nHost: localhost\r\nPrefer: wait=%d\r\n"
+                        "Content-Type: application/json\r\nContent-Length: %zu\r\n\r\n%s",
+                        wait_s, strlen(body), body);
+    int peer = http_connect(port);
+    assert_true(peer >= 0);
+    assert_true(send(peer, text, (size_t)size, MSG_NOSIGNAL) == size);
+    return peer;
+}
+
+/* How many of the connections have an answer with jobs within the milliseconds. */
+static unsigned answered(const int *peers, size_t count, int ms) {
+    char text[2048];
+    unsigned found = 0;
+    sleep_ms(ms);
+    for (size_t n = 0; n < count; n++) {
+        ssize_t size = recv(peers[n], text, sizeof text - 1, MSG_DONTWAIT);
+        text[size > 0 ? size : 0] = '\0';
+        found += strstr(text, "HTTP/1.1 200") != NULL && strstr(text, "Preference-Applied: wait=");
+    }
+    return found;
+}
+
+/* Many wait; one job wakes one of them, and costs a few claims; the others go at the end at once.
+ */
+static void claims_wait_for_jobs(void **state) {
+    (void)state;
+    enum { PEERS = 100 };
+    int peers[PEERS];
+    struct process server;
+    unsigned port = serve_start(&server, (const char *[]){"--db", "poll.db", NULL});
+    double start = now();
+    assert_int_equal(http_exchange(port, "POST", "/v1/jobs/claim",
+                                   "Prefer: wait=1\r\nContent-Type: application/json\r\n", CLAIM,
+                                   NULL),
+                     204);
+    assert_true(now() - start >= 0.99);
+    for (size_t n = 0; n < PEERS; n++)
+        peers[n] = claim_begin(port, "w", 20);
+    assert_int_equal(answered(peers, PEERS, 500), 0);
+    double before = figure(port, "/metrics", "\nrugo_changes_total ");
+    submit(port, ONE_JOB);
+    assert_int_equal(answered(peers, PEERS, 500), 1);
+    assert_true(2 * (figure(port, "/metrics", "\nrugo_changes_total ") - before) < PEERS);
+    start = now();
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 5), 0);
+    assert_true(now() - start < 2);
+    for (size_t n = 0; n < PEERS; n++)
+        close(peers[n]);
+}
+
+/* Jobs go to those who are there to take them. */
+static void who_has_gone_gets_no_job(void **state) {
+    (void)state;
+    struct process server;
+    char *answer = NULL;
+    unsigned port = serve_start(&server, (const char *[]){"--db", "gone.db", NULL});
+    for (int n = 0; n < 20; n++)
+        close(claim_begin(port, "gone", n % 2 == 0 ? 20 : 0));
+    int later = claim_begin(port, "gone", 20);
+    sleep_ms(300);
+    close(later);
+    submit(port, ONE_JOB);
+    for (int n = 0; n < 20; n++)
+        close(claim_begin(port, "gone", n % 2 == 0 ? 20 : 0));
+    sleep_ms(300);
+    assert_int_equal(http_exchange(port, "POST", "/v1/jobs/claim",
+                                   "Content-Type: application/json\r\n", CLAIM, &answer),
+                     200);
+    assert_non_null(strstr(answer, "\"attempt\":1"));
+    free(answer);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 5), 0);
+}
+
+static void names_are_plain(void **state) {
+    (void)state;
+    struct process server;
+    char *answer = NULL;
+    unsigned port = serve_start(&server, (const char *[]){"--db", "names.db", NULL});
+    assert_int_equal(http_exchange(port, "POST", "/v1/jobs/claim",
+                                   "Content-Type: application/json\r\n",
+                                   "{\"worker\":\"a\\u001b[31m\"}", &answer),
+                     422);
+    assert_non_null(strstr(answer, "control characters"));
+    free(answer);
+    assert_int_equal(run_rugo("name", (const char *[]){"work", "--server", "http://127.0.0.1:1",
+                                                       "--name", "a\x1b[31m", NULL}),
+                     2);
+    assert_true(contains("name.err", "control character"));
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 5), 0);
+}
+
+/* What stands behind the lines of a document that say who computed it. */
+static const char *rows(const char *text) {
+    while (text != NULL && *text == '#')
+        text = strchr(text, '\n') != NULL ? strchr(text, '\n') + 1 : NULL;
+    return text;
+}
+
+/* A run that is interrupted again and again has the curves of one that was not. */
+static void interrupted_runs_keep_realisations(void **state) {
+    (void)state;
+    struct process process;
+    spit("some.json", SOME);
+    const char *const arguments[] = {"run", "--db", "cut.db", "some.json", NULL};
+    double done = 0;
+    for (int cut = 0; cut < 2; cut++) {
+        process_start(&process, "cut", arguments);
+        sleep_ms(700);
+        process_kill(&process, SIGINT);
+        if (process_wait(&process, 10) == 0)
+            break; /* a fast machine: it was done */
+        assert_int_equal(run_rugo("status", (const char *[]){"status", "--db", "cut.db", "--format",
+                                                             "json", "some", NULL}),
+                         0);
+        char *status = slurp("status.out");
+        const char *at = strstr(status, "\"realisations\":{\"total\":4000,\"done\":");
+        assert_non_null(at);
+        double more = strtod(strstr(at, "\"done\":") + strlen("\"done\":"), NULL);
+        assert_true(more > done);
+        done = more;
+        free(status);
+    }
+    assert_int_equal(run_rugo("cut", arguments), 0);
+    assert_int_equal(
+        run_rugo("whole", (const char *[]){"run", "--db", "whole.db", "some.json", NULL}), 0);
+    assert_int_equal(run_rugo("cut", (const char *[]){"curves", "--db", "cut.db", "some",
+                                                      "--format", "csv", NULL}),
+                     0);
+    assert_int_equal(run_rugo("whole", (const char *[]){"curves", "--db", "whole.db", "some",
+                                                        "--format", "csv", NULL}),
+                     0);
+    char *cut = slurp("cut.out"), *whole = slurp("whole.out");
+    assert_non_null(rows(whole));
+    assert_true(strlen(rows(whole)) > 1000);
+    assert_string_equal(rows(cut), rows(whole));
+    free(cut);
+    free(whole);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_connection_keeps_all_leases),
+        cmocka_unit_test(claims_wait_for_jobs),
+        cmocka_unit_test(who_has_gone_gets_no_job),
+        cmocka_unit_test(names_are_plain),
+        cmocka_unit_test(interrupted_runs_keep_realisations),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
