@@ -146,9 +146,9 @@ static void solve(law_matrix factor, double *right) {
 }
 
 /* Returns how much more likely rings become as a parameter rises. */
-static double gradient_of(const struct law_problem *problem, enum law_parameter a) {
+static double gradient_of(const struct law_problem *problem, size_t a) {
     const double *freedom = problem->spectrum->freedom + problem->leakage->first;
-    const double *slope = problem->slope + (size_t)a * problem->leakage->count;
+    const double *slope = problem->slope + a * problem->leakage->count;
     double total = 0;
     for (size_t r = 0; r < problem->leakage->count; r++)
         total += slope[r] * freedom[r] / 2 * (problem->found[r] / problem->expected[r] - 1);
