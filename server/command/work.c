@@ -40,16 +40,17 @@ struct told {
 static int tell(void *context) {
     struct told *told = context;
     int64_t interval_ms = supervisor_interval_ms(), now_ms = clock_ms();
+    bool stopping = stop_requested != 0; /* may change at any time */
     if (!told->ready)
         supervisor_tell("READY=1");
-    if (stop_requested != 0 && !told->stopping)
+    if (stopping && !told->stopping)
         supervisor_tell("STOPPING=1");
     if (interval_ms > 0 && (!told->ready || now_ms - told->alive_ms >= interval_ms)) {
         supervisor_tell("WATCHDOG=1");
         told->alive_ms = now_ms;
     }
     told->ready = true;
-    told->stopping = stop_requested != 0;
+    told->stopping = stopping;
     return 0;
 }
 
