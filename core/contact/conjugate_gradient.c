@@ -1,4 +1,7 @@
-/* Conjugate gradients in the set of nodes in contact (Polonsky & Keer 1999), preconditioned by the
+/* Profiles are solved by active sets (active_set.h), and by what follows where these come to no
+ * end.
+ *
+ * Conjugate gradients in the set of nodes in contact (Polonsky & Keer 1999), preconditioned by the
  * inverse compliance restricted to the set: the residual is transformed, multiplied and transformed
  * back; what lies outside the set is dropped, and the mean is subtracted so that the load stays.
  * Two things differ from the textbook. The search direction is kept when the set changes, with
@@ -11,6 +14,7 @@
  * them, in projected steps by at least a fixed part of the square of the change, so that they end
  * at the solution from any start. */
 #include "core/contact/conjugate_gradient.h"
+#include "core/contact/active_set.h"
 #include "core/vectors.h"
 #include <float.h>
 #include <math.h>
@@ -21,48 +25,12 @@ enum {
     REFRESH = 50, /* iterations after which u is computed anew from p */
     TANGENT_MOST = 300,
     SLOW = 30, /* iterations that have not halved the violation, after which steps are shortened */
-    ASK = 8, /* iterations after which stop is asked: it may take as long as one of a small grid */
 };
 /* Length of a projected step over the inverse of the largest compliance, which is 1 here; must be
  * below 2. */
 static const double STRIDE = 1.8;
 static const double TANGENT_TOLERANCE =
     1e-2; /* relative, of the slope; measured errors are below 3e-4 */
-/* Rounding of the highest points can make violations as large as this, over the heights. */
-static const double ROUNDING = 64 * DBL_EPSILON;
-
-/* A padded transform takes about as long as three of the grid. */
-static const double WIDE_TRANSFORMS = 3;
-
-static void stiffen(struct conjugate_gradient *solver, const double *in, double *out) {
-    transform_filter(solver->transform, solver->stiff, 1, in, out);
-    solver->transforms += 2;
-}
-
-static void soften(struct conjugate_gradient *solver, const double *in, double *out) {
-    if (solver->wide == NULL) {
-        transform_filter(solver->transform, solver->soft, 1, in, out);
-        solver->transforms += 2;
-        return;
-    }
-    transform_filter_part(solver->wide, solver->soft, 1, solver->grid.nx, solver->grid.ny, in, out);
-    solver->transforms += 2 * WIDE_TRANSFORMS;
-}
-
-static double lanes_sum(const double *lanes) {
-    double total = 0;
-    for (size_t a = 0; a < LANES; a++)
-        total += lanes[a];
-    return total;
-}
-
-static double lanes_most(const double *lanes) {
-    double most = 0;
-    for (size_t a = 0; a < LANES; a++)
-        most = fmax(most, lanes[a]);
-    return most;
-}
-
 /* The approach at which nodes under pressure touch on average: minus the mean of u - z over them.
  */
 WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double *u,
@@ -74,7 +42,7 @@ WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double
             sum[a] += in * (u[i + a] - z[i + a]);
             count[a] += in;
         }
-    return -lanes_sum(sum) / lanes_sum(count);
+    return -conjugate_lanes_sum(sum) / conjugate_lanes_sum(count);
 }
 
 /* r is the gap in the set {p > 0, or gap < 0 where released}, where it is never exactly 0, and 0
@@ -98,10 +66,10 @@ WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, 
             members[a] += member;
             r[i + a] = member * (gap == 0 ? DBL_MIN : gap);
         }
-    end->inside = lanes_most(inside);
-    end->penetration = lanes_most(outside);
-    end->deepest = lanes_most(deep);
-    return lanes_sum(members);
+    end->inside = conjugate_lanes_most(inside);
+    end->penetration = conjugate_lanes_most(outside);
+    end->deepest = conjugate_lanes_most(deep);
+    return conjugate_lanes_sum(members);
 }
 
 /* The same for the tangent: r = u + approach in the set p > 0. Returns the largest |r|. */
@@ -115,58 +83,7 @@ WIDE_VECTORS static double tangent_residual(size_t n, const double *p, const dou
             most[a] = fabs(slope) > most[a] ? fabs(slope) : most[a];
             r[i + a] = slope;
         }
-    return lanes_most(most);
-}
-
-/* These sums are over the set r != 0. */
-struct products {
-    double members, w, r, old, t, w_r, w_old;
-};
-
-WIDE_VECTORS static struct products multiply(size_t n, const double *r, const double *w,
-                                             const double *old, const double *t) {
-    double m[LANES] = {0}, sw[LANES] = {0}, sr[LANES] = {0}, so[LANES] = {0}, st[LANES] = {0};
-    double wr[LANES] = {0}, wo[LANES] = {0};
-    for (size_t i = 0; i < n; i += LANES)
-        for (size_t a = 0; a < LANES; a++) {
-            double in = r[i + a] != 0 ? 1 : 0, v = in * w[i + a];
-            m[a] += in;
-            sw[a] += v;
-            sr[a] += r[i + a];
-            so[a] += in * old[i + a];
-            st[a] += in * t[i + a];
-            wr[a] += v * r[i + a];
-            wo[a] += v * old[i + a];
-        }
-    return (struct products){.members = lanes_sum(m),
-                             .w = lanes_sum(sw),
-                             .r = lanes_sum(sr),
-                             .old = lanes_sum(so),
-                             .t = lanes_sum(st),
-                             .w_r = lanes_sum(wr),
-                             .w_old = lanes_sum(wo)};
-}
-
-/* Sets t to w - w_mean + beta (t - t_mean) in the set, to 0 outside. */
-WIDE_VECTORS static void redirect(size_t n, const double *r, const double *w, double w_mean,
-                                  double beta, double t_mean, double *t) {
-    for (size_t i = 0; i < n; i++) {
-        double direction = w[i] - w_mean + beta * (t[i] - t_mean);
-        t[i] = r[i] != 0 ? direction : 0;
-    }
-}
-
-/* Returns r.t/t.w with w = S t: the step to the least energy along t. */
-WIDE_VECTORS static double step_length(size_t n, const double *r, const double *t,
-                                       const double *w) {
-    double above[LANES] = {0}, below[LANES] = {0};
-    for (size_t i = 0; i < n; i += LANES)
-        for (size_t a = 0; a < LANES; a++) {
-            above[a] += r[i + a] * t[i + a];
-            below[a] += t[i + a] * w[i + a];
-        }
-    double curvature = lanes_sum(below);
-    return curvature > 0 ? lanes_sum(above) / curvature : 0;
+    return conjugate_lanes_most(most);
 }
 
 /* p -= step t, cut at 0, and u -= step w. Returns the sum of p; *cut: whether any was. */
@@ -182,8 +99,8 @@ WIDE_VECTORS static double advance(size_t n, double step, const double *t, const
             u[i + a] -= step * w[i + a];
             sum[a] += next;
         }
-    *cut = lanes_sum(below) > 0;
-    return lanes_sum(sum);
+    *cut = conjugate_lanes_sum(below) > 0;
+    return conjugate_lanes_sum(sum);
 }
 
 WIDE_VECTORS static void advance_tangent(size_t n, double step, const double *t, const double *w,
@@ -192,32 +109,6 @@ WIDE_VECTORS static void advance_tangent(size_t n, double step, const double *t,
         q[i] -= step * t[i];
         u[i] -= step * w[i];
     }
-}
-
-static void scale(size_t n, double factor, double *x) {
-    for (size_t i = 0; i < n; i++)
-        x[i] *= factor;
-}
-
-/* A step of the iteration passes this on to the next one. */
-struct step_memory {
-    double energy; /* w.r of the last direction; 0 restarts */
-    bool blocked;  /* a careful step ended where a pressure came to 0 */
-};
-
-/* Computes the next direction t, and w = S t. */
-static void direct(struct conjugate_gradient *solver, struct step_memory *memory) {
-    stiffen(solver, solver->r, solver->w);
-    struct products s = multiply(solver->padded, solver->r, solver->w, solver->old, solver->t);
-    double mean = s.w / s.members;
-    double energy = s.w_r - mean * s.r, change = energy - (s.w_old - mean * s.old);
-    double beta = memory->energy > 0 ? fmax(0, change / memory->energy) : 0;
-    redirect(solver->padded, solver->r, solver->w, mean, beta, s.t / s.members, solver->t);
-    memory->energy = energy;
-    double *last = solver->old;
-    solver->old = solver->r;
-    solver->r = last;
-    soften(solver, solver->t, solver->w);
 }
 
 /* Replaces p by the pressures nearest to p - STRIDE gap among those >= 0 of this mean (Michelot
@@ -244,7 +135,7 @@ static void project(struct conjugate_gradient *solver, double mean) {
     sum = 0;
     for (size_t i = 0; i < solver->n; i++)
         sum += solver->p[i] = fmax(0, solver->t[i] - top - level);
-    scale(solver->n, mean * (double)solver->n / sum, solver->p);
+    conjugate_step_scale(solver->n, mean, sum, solver->p);
 }
 
 /* Returns the longest step along t that leaves no pressure negative. */
@@ -271,8 +162,8 @@ static bool stalled(struct stall_watch *progress, double violation, size_t itera
 /* Makes one iteration from r; *stale says whether u must be computed anew from p. */
 static void iterate(struct conjugate_gradient *solver, double mean, bool careful,
                     struct step_memory *memory, bool *stale) {
-    direct(solver, memory);
-    double step = step_length(solver->padded, solver->old, solver->t, solver->w);
+    conjugate_step_direct(solver, memory);
+    double step = conjugate_step_length(solver);
     if (careful) {
         double longest = feasible_step(solver, step);
         memory->blocked = longest < step;
@@ -280,7 +171,7 @@ static void iterate(struct conjugate_gradient *solver, double mean, bool careful
     }
     double sum = advance(solver->padded, step, solver->t, solver->w, solver->p, solver->u, stale);
     if (*stale)
-        scale(solver->n, mean * (double)solver->n / sum, solver->p);
+        conjugate_step_scale(solver->n, mean, sum, solver->p);
 }
 
 /* Makes a projected step, after which nothing of the last direction holds. */
@@ -297,7 +188,7 @@ static void step_projected(struct conjugate_gradient *solver, double mean,
 static void shorten(struct conjugate_gradient *solver, double mean, struct step_memory *memory,
                     bool *stale) {
     double slope = 0, curvature = 0;
-    soften(solver, solver->p, solver->u);
+    conjugate_step_soften(solver, solver->p, solver->u);
     for (size_t i = 0; i < solver->n; i++) {
         double change = solver->p[i] - solver->kept_p[i];
         slope += (solver->kept_u[i] - solver->z[i]) * change;
@@ -324,29 +215,39 @@ static void iterate_shortened(struct conjugate_gradient *solver, double mean,
         shorten(solver, mean, memory, stale);
 }
 
-void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, double tolerance,
-                            size_t stall_iterations, size_t max_iterations,
-                            struct conjugate_gradient_end *end) {
+/* Returns whether that was the end. */
+static bool solve_by_sets(struct conjugate_gradient *solver, double mean, double tolerance,
+                          size_t max_iterations, struct conjugate_gradient_end *end) {
+    conjugate_step_soften(solver, solver->p, solver->u);
+    end->approach = mean_approach(solver->padded, solver->p, solver->u, solver->z);
+    residual(solver->padded, solver->p, solver->u, solver->z, 1, solver->r, end);
+    active_set_run(solver, mean, tolerance, max_iterations, end);
+    return end->converged || end->stopped;
+}
+
+/* Goes on from end->iterations. */
+static void solve_by_steps(struct conjugate_gradient *solver, double mean, double tolerance,
+                           size_t stall_iterations, size_t max_iterations,
+                           struct conjugate_gradient_end *end) {
     struct step_memory memory = {0};
     struct stall_watch progress = {.best = INFINITY};
     bool careful = false, stale = true;
-    *end = (struct conjugate_gradient_end){0};
+    const double highest = conjugate_step_highest(solver);
     for (size_t i = 0; i < solver->padded; i++)
         solver->t[i] = solver->old[i] = 0;
-    double highest = 0;
-    for (size_t i = 0; i < solver->n; i++)
-        highest = fmax(highest, fabs(solver->z[i]));
     for (;; end->iterations++) {
         if (stale || end->iterations % REFRESH == 0)
-            soften(solver, solver->p, solver->u);
+            conjugate_step_soften(solver, solver->p, solver->u);
         end->approach = mean_approach(solver->padded, solver->p, solver->u, solver->z);
         residual(solver->padded, solver->p, solver->u, solver->z, careful ? 0 : 1, solver->r, end);
         double violation = fmax(end->inside, end->penetration);
         bool number = isfinite(end->approach); /* the largest of numbers and NaNs is a number */
-        end->converged = number && violation <= fmax(tolerance * end->deepest, ROUNDING * highest);
-        if (end->converged || !number || end->iterations == max_iterations)
+        end->converged =
+            number && violation <= fmax(tolerance * end->deepest, CONJUGATE_ROUNDING * highest);
+        if (end->converged || !number || end->iterations >= max_iterations)
             return;
-        end->stopped = solver->stop != NULL && end->iterations % ASK == ASK - 1 &&
+        end->stopped = solver->stop != NULL &&
+                       end->iterations % CONJUGATE_ASK == CONJUGATE_ASK - 1 &&
                        solver->stop(solver->stop_context) != 0;
         if (end->stopped)
             return;
@@ -364,8 +265,17 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
     }
 }
 
+void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, double tolerance,
+                            size_t stall_iterations, size_t max_iterations,
+                            struct conjugate_gradient_end *end) {
+    *end = (struct conjugate_gradient_end){0};
+    if (solver->grid.ny > 1 || !solve_by_sets(solver, mean, tolerance, max_iterations, end))
+        solve_by_steps(solver, mean, tolerance, stall_iterations, max_iterations, end);
+}
+
 double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
-    struct step_memory memory = {0};
+    struct step_memory memory = {.continuation =
+                                     solver->grid.ny == 1 ? CONTINUED_BY_LINES : CONTINUED_BY_ZERO};
     double sum = 0, slope = 0;
     for (size_t i = 0; i < solver->padded; i++) {
         solver->q[i] = solver->p[i] > 0 ? solver->q[i] : 0;
@@ -375,8 +285,8 @@ double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
     if (!(sum > 0))
         for (size_t i = 0; i < solver->padded; i++)
             sum += solver->q[i] = solver->p[i];
-    scale(solver->n, (double)solver->n / sum, solver->q);
-    soften(solver, solver->q, solver->u);
+    conjugate_step_scale(solver->n, 1, sum, solver->q);
+    conjugate_step_soften(solver, solver->q, solver->u);
     for (size_t iteration = 0;; iteration++) {
         double approach = 0, energy = 0;
         size_t members = 0;
@@ -390,9 +300,8 @@ double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
         double most = tangent_residual(solver->padded, solver->p, solver->u, approach, solver->r);
         if (most <= TANGENT_TOLERANCE * fabs(approach) || iteration == TANGENT_MOST)
             return slope;
-        direct(solver, &memory);
-        advance_tangent(solver->padded,
-                        step_length(solver->padded, solver->old, solver->t, solver->w), solver->t,
-                        solver->w, solver->q, solver->u);
+        conjugate_step_direct(solver, &memory);
+        advance_tangent(solver->padded, conjugate_step_length(solver), solver->t, solver->w,
+                        solver->q, solver->u);
     }
 }

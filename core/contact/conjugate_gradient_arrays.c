@@ -1,5 +1,5 @@
 /* What conjugate gradients work on: their arrays, and the symbols of the compliance. */
-#include "core/contact/conjugate_gradient.h"
+#include "core/contact/conjugate_step.h"
 #include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>

@@ -100,18 +100,22 @@ static void check_study(const char *path, const struct study_status *about, int 
     assert_int_equal(about->cases_failed, 0);
     assert_int_equal(about->random, RANDOM_INDEPENDENT);
     run_fresh(&fresh, source);
-    /* Areas by edges were told by another law, and pressures beside edges by none. */
+    /* Areas by edges were told by another law, and pressures beside edges by none. Contact was
+     * solved by other steps to the same tolerance, so that four digits are the same; stiffness, an
+     * energy's slope, has a wider one. */
     check_same_rows(path, about->id, &fresh, from,
-                    "quantity, series, x, y, standard_error, x2, model, kinematics, level, "
-                    "pressure, valueless) FROM curve_points",
-                    " AND NOT (quantity = 'contact_area' AND series = 'edges') AND quantity != "
-                    "'contact_pressure_pdf' ORDER BY 1");
+                    "quantity, series, x, iif(model IS NULL, y, printf('%.4g', y)), "
+                    "iif(model IS NULL, standard_error, printf('%.4g', standard_error)), x2, "
+                    "model, kinematics, level, pressure, valueless) FROM curve_points",
+                    " AND NOT (quantity = 'contact_area' AND series = 'edges') AND quantity NOT "
+                    "IN ('contact_pressure_pdf', 'stiffness', 'iterations', 'work') ORDER BY 1");
     /* Fits are of areas by edges, and were once over the loads of each realisation's own; and
      * values at the last load were means of scalars, other than now in their last digits. */
     check_same_rows(path, about->id, &fresh, from,
-                    "name, value, standard_error, theory) FROM case_scalars",
+                    "name, printf('%.4g', value), printf('%.4g', standard_error), theory) FROM "
+                    "case_scalars",
                     " AND name NOT LIKE '%kappa%' AND name NOT LIKE 'power_law%' AND name NOT "
-                    "LIKE '%_last' ORDER BY 1");
+                    "LIKE '%_last' AND name NOT IN ('iterations', 'violation') ORDER BY 1");
     check_same_rows(path, about->id, &fresh, 0, "state, realisations_done) FROM case_progress",
                     " ORDER BY 1");
     fixture_close(&fresh);
