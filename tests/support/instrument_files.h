@@ -99,6 +99,30 @@ static inline void bytes_refused(struct bytes bytes, const char *name, const cha
         fail_msg("%s: status %d, '%s', not '%s'", name, status, err.text, words);
 }
 
+/* A small file cut at every byte, and with each byte changed: an error, of most of these, or a map
+ * that check takes and may clear. */
+static inline void expect_damage_told(const char *name, const char *file, size_t size,
+                                      void (*check)(struct height_map *map)) {
+    size_t refused = 0;
+    for (size_t at = 0; at < 2 * size; at++) {
+        struct height_map map = {0};
+        struct error err = {0};
+        struct bytes copy = bytes_of(file, at < size ? at : size);
+        if (at >= size)
+            copy.data[at - size] = (char)(copy.data[at - size] ^ 0x41);
+        int status = instrument_read(&map, name, copy.data, copy.size, 0,
+                                     &(struct instrument_request){0}, NULL, &err);
+        assert_true(status == 0 || (status == ERROR_INPUT && *err.text != 0));
+        assert_true(status != 0 || at >= size);
+        refused += status != 0 ? 1 : 0;
+        if (status == 0)
+            check(&map);
+        height_map_clear(&map);
+        free(copy.data);
+    }
+    assert_true(refused > size + size / 2);
+}
+
 /* The heights of the fixtures in metres (tests/fixtures/instrument/README.md). */
 static inline double fixture_height(size_t i, size_t j) {
     double x = (double)i, y = (double)j;
