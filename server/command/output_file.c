@@ -2,8 +2,22 @@
 #include "server/command/rasterise.h"
 #include "server/show/map_png.h"
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+int output_file_check(const char *path, struct error *err) {
+    const char *slash = strrchr(path, '/');
+    size_t length = slash == NULL ? 0 : slash == path ? 1 : (size_t)(slash - path);
+    char *folder = length == 0 ? strdup(".") : strndup(path, length);
+    if (folder == NULL)
+        return error_memory(err, length, "a path");
+    bool writable = access(access(path, F_OK) == 0 ? path : folder, W_OK) == 0;
+    int status =
+        writable ? 0 : error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
+    free(folder);
+    return status;
+}
 
 int output_file_open(FILE **file, const char *path, struct error *err) {
     *file = fopen(path, "wb");

@@ -5,6 +5,9 @@
 #include "server/show/plot_map.h"
 #include <stdio.h>
 
+/* ERROR_SYSTEM where the file could not be written as things are: asked before a long computation,
+ * it makes nothing. */
+int output_file_check(const char *path, struct error *err);
 /* ERROR_SYSTEM with the path and the reason. */
 int output_file_open(FILE **file, const char *path, struct error *err);
 /* Closes the file, and returns the status of what was written, or that of the file, which may be

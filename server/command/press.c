@@ -214,6 +214,8 @@ static int run(const void *values, const char *const *arguments) {
                                             .poisson = options->words.poisson,
                                             .lengths = options->lengths};
         status = press_loads_parse(&order->loads, &options->words, &err);
+        if (status == 0)
+            status = press_files_check(&options->paths, &err);
     }
     if (status == 0)
         status = read_map(&map, order, &err);

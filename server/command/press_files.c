@@ -33,11 +33,34 @@ static bool ends_with(const char *path, const char *ending) {
     return length > tail && strcmp(path + length - tail, ending) == 0;
 }
 
+static bool is_picture(const char *path) {
+    return ends_with(path, ".png") || ends_with(path, ".svg");
+}
+
+static int check_map(const char *path, struct error *err) {
+    const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
+    if (strchr(name, '.') != NULL && !is_picture(path) &&
+        height_map_format_of(path) == HEIGHT_MAP_FORMATS)
+        return error_set(err, ERROR_INPUT,
+                         "file %.200s: its name ends in none of .npy, .csv, .xyz, .png, .svg",
+                         path);
+    return output_file_check(path, err);
+}
+
+int press_files_check(const struct press_paths *paths, struct error *err) {
+    const char *const maps[] = {paths->pressures, paths->gap, paths->contact};
+    int status = paths->mesh != NULL ? output_file_check(paths->mesh, err) : 0;
+    for (size_t f = 0; f < sizeof maps / sizeof *maps && status == 0; f++)
+        if (maps[f] != NULL)
+            status = check_map(maps[f], err);
+    return status;
+}
+
 static int write_map(const char *path, const char *name, const struct grid *grid,
                      const double *values, struct error *err) {
     enum height_map_format format = height_map_format_of(path);
     FILE *file;
-    if (ends_with(path, ".png") || ends_with(path, ".svg")) {
+    if (is_picture(path)) {
         const struct map_picture picture = {.name = name,
                                             .subject = "",
                                             .x_label = "x",

@@ -210,6 +210,12 @@ static void a_measured_map_is_pressed_in_units(void **state) {
     free(text);
     assert_int_equal(run_shell("$RUGO press sphere.csv --model layered"), 2);
     assert_true(contains("shell.err", "sphere.csv: the map does not repeat, and --model layered"));
+    /* Files that could not be written are told before anything is computed. */
+    assert_int_equal(run_shell("$RUGO press sphere.csv --loads 0.1 -o p.pdf > told"), 2);
+    assert_true(contains("shell.err", "file p.pdf: its name ends in none of .npy, .csv, .xyz"));
+    assert_int_equal(run_shell("$RUGO press sphere.csv --loads 0.1 --vtu no/such.vtu >> told"), 1);
+    assert_true(contains("shell.err", "cannot write no/such.vtu: No such file or directory"));
+    assert_int_equal(run_shell("[ ! -s told ] && [ ! -e p.pdf ]"), 0);
     assert_int_equal(run_shell("$RUGO press sphere.csv --pressure 1MPa"), 2);
     assert_true(contains("shell.err", "--pressure needs the stiffness of the block"));
 }
