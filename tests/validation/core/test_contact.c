@@ -71,8 +71,7 @@ static void solutions_meet_the_conditions(void **state) {
 
 /* Iterations of three profiles of so many longest waves, at two loads each. */
 static size_t iterations_of(size_t long_waves) {
-    const struct rough_surface rough = {
-        .hurst = 0.8, .ratio = 8, .long_waves = (double)long_waves};
+    const struct rough_surface rough = {.hurst = 0.8, .ratio = 8, .long_waves = (double)long_waves};
     const struct grid grid = {64 * long_waves, 1, 1, 1};
     struct scene scene;
     size_t iterations = 0;
