@@ -33,9 +33,10 @@ static void open_scene_begin(struct open_scene *scene, struct grid grid) {
 
 static struct contact_state open_scene_press(struct open_scene *scene, double pressure) {
     struct error err = {0};
-    struct contact_state state = {0};
-    if (contact_begin(scene->contact, scene->z, &err) != 0 ||
-        contact_press(scene->contact, pressure, &state, &err) != 0)
+    struct contact_state state;
+    if (contact_begin(scene->contact, scene->z, &err) != 0)
+        fail_msg("%s", err.text);
+    if (contact_press(scene->contact, pressure, &state, &err) != 0)
         fail_msg("%s", err.text);
     return state;
 }
