@@ -36,7 +36,7 @@ void conjugate_step_soften(struct conjugate_gradient *solver, const double *in, 
 
 /* Nodes in contact of a profile that follow each other, with `apart` - 1 others between them,
  * across the ends of the cell too. */
-struct stretch {
+struct bridge {
     size_t from, to, apart;
 };
 
@@ -48,28 +48,28 @@ static size_t first_of(size_t n, const double *r) {
     return i;
 }
 
-/* Goes to the next stretch of a walk once around, which begins with from = to = first_of; false
+/* Goes to the next bridge of a walk once around, which begins with from = to = first_of; false
  * when it is back there. */
-static bool next_stretch(size_t n, const double *r, size_t first, struct stretch *stretch) {
-    size_t i = stretch->to;
-    if (stretch->apart > 0 && i == first)
+static bool next_bridge(size_t n, const double *r, size_t first, struct bridge *bridge) {
+    size_t i = bridge->to;
+    if (bridge->apart > 0 && i == first)
         return false;
-    stretch->from = i;
-    stretch->apart = 0;
+    bridge->from = i;
+    bridge->apart = 0;
     do {
         i = i + 1 < n ? i + 1 : 0;
-        stretch->apart++;
+        bridge->apart++;
     } while (r[i] == 0);
-    stretch->to = i;
+    bridge->to = i;
     return true;
 }
 
 /* out: r in the set r != 0, between its nodes the straight line from one to the next. */
 static void continue_by_lines(size_t n, const double *r, double *out) {
     size_t first = first_of(n, r);
-    struct stretch one = {first, first, 0};
+    struct bridge one = {first, first, 0};
     memcpy(out, r, n * sizeof *out);
-    while (first < n && next_stretch(n, r, first, &one)) {
+    while (first < n && next_bridge(n, r, first, &one)) {
         double slope = (r[one.to] - r[one.from]) / (double)one.apart;
         for (size_t a = 1, i = one.from; a < one.apart; a++) {
             i = i + 1 < n ? i + 1 : 0;
@@ -81,8 +81,8 @@ static void continue_by_lines(size_t n, const double *r, double *out) {
 /* The transpose of that, in place: what w has between two nodes goes to these. */
 static void bring_back(size_t n, const double *r, double *w) {
     size_t first = first_of(n, r);
-    struct stretch one = {first, first, 0};
-    while (first < n && next_stretch(n, r, first, &one)) {
+    struct bridge one = {first, first, 0};
+    while (first < n && next_bridge(n, r, first, &one)) {
         double sum = 0, moment = 0;
         for (size_t a = 1, i = one.from; a < one.apart; a++) {
             i = i + 1 < n ? i + 1 : 0;

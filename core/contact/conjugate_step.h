@@ -54,10 +54,11 @@ struct conjugate_gradient_end {
 enum { CONJUGATE_ASK = 8 };
 
 /* How a residual is continued outside of the set before it is multiplied by the inverse compliance,
- * and how what comes out is brought back, by the transpose. As 0 takes long waves on a sparse set
- * for short ones: on a profile the largest eigenvalue over the least is about the number of patches
- * in contact. Straight lines from patch to patch bring it to about 2, however long the cell, but do
- * for sets that are solved to the end alone: the first steps in them move far. */
+ * and how what comes out is brought back, by the transpose. Zeros make long waves on a sparse set
+ * look like short ones: on a profile the largest eigenvalue over the least grows with the number of
+ * patches in contact (142 to 433 of them: 44 to 132). Straight lines from patch to patch bring it
+ * to about 2, however long the cell. They serve sets that are solved before nodes leave or join:
+ * pressures that are cut at 0 after one such step throw long waves far off. */
 enum continuation { CONTINUED_BY_ZERO, CONTINUED_BY_LINES };
 
 /* A step of the iteration passes this on to the next one. */
