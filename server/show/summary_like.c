@@ -40,12 +40,22 @@ static void put_row(struct text_table *table, const struct case_result *one,
     percentile_cell(table, scalar);
 }
 
-static void print_head(const struct case_result *one, FILE *file) {
+static void print_name(const struct case_result *one, FILE *file) {
     const struct result_parameter *name = result_parameter(one, "/surface/like/file");
-    const struct result_parameter *unit = result_parameter(one, "/surface/like/unit");
-    const struct result_parameter *length = result_parameter(one, "/surface/like/wavelength");
     fprintf(file, "\ncase %llu: the measured surface ", (unsigned long long)one->case_number);
     text_print_plain(file, name != NULL && name->text != NULL ? name->text : "?");
+}
+
+/* Contact tells percentiles by curves. */
+static bool is_expected(const struct case_result *one) {
+    return result_parameter(one, "/surface/like/file") != NULL &&
+           result_parameter(one, "/contact/model") == NULL;
+}
+
+static void print_head(const struct case_result *one, FILE *file) {
+    const struct result_parameter *unit = result_parameter(one, "/surface/like/unit");
+    const struct result_parameter *length = result_parameter(one, "/surface/like/wavelength");
+    print_name(one, file);
     fputs(" among pieces of random ones like it, lengths in lambda_s", file);
     if (length != NULL && unit != NULL && unit->text != NULL && *unit->text != '\0') {
         fprintf(file, " = %.4g ", length->number);
@@ -69,6 +79,11 @@ void summary_of_like(const struct case_result *one, FILE *file) {
     if (rows > 0) {
         print_head(one, file);
         table_print(&table, file);
+    } else if (is_expected(one)) {
+        print_name(one, file);
+        fputs(" is not placed among random ones: pieces of its size need a cell of at least twice "
+              "its sides, and a whole number of the grid's points between two of its own\n",
+              file);
     }
     table_clear(&table);
 }

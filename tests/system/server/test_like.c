@@ -71,6 +71,16 @@ static void near_and_over_http(void **state) {
     }
 }
 
+/* Pieces that do not fit into the cell are told, not left out in silence. */
+static void too_small_a_cell(void **state) {
+    (void)state;
+    assert_int_equal(run_shell("$RUGO run --db small.db data/alike.json --set "
+                               "surface/length_ratio=2 --set name=small --set realisations=2"),
+                     0);
+    assert_true(contains("shell.out", "patch.npy is not placed among random ones"));
+    assert_false(contains("shell.out", "percentile"));
+}
+
 /* The map and a piece of each surface are pressed in one way; other loads leave it out. */
 static void contact(void **state) {
     (void)state;
@@ -147,6 +157,7 @@ static void faults_are_named(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(near_and_over_http),
+        cmocka_unit_test(too_small_a_cell),
         cmocka_unit_test(contact),
         cmocka_unit_test(a_file_alone_is_refused_over_http),
         cmocka_unit_test(check_shows_what_was_fitted),
