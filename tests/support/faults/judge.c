@@ -221,6 +221,19 @@ static void end_processes(struct world *world) {
     }
 }
 
+/* Waits for the ends of those that were killed, which no later look at them takes for crashes. */
+static void reap_killed(struct world *world) {
+    bool left = true;
+    for (int64_t end = world_now() + 10000; left && world_now() < end; sleep_ms(5)) {
+        world_tend(world);
+        left = false;
+        for (int a = 0; a < world->actor_count; a++) {
+            const struct actor *actor = &world->actors[a];
+            left = left || (actor->role > ROLE_IS_WORKER && actor->process.pid != 0);
+        }
+    }
+}
+
 void world_judge(struct world *world) {
     struct judge *judge = calloc(1, sizeof *judge);
     assert_non_null(judge);
@@ -236,6 +249,7 @@ void world_judge(struct world *world) {
             process_kill(&actor->process, SIGKILL);
         }
     }
+    reap_killed(world);
     settle(judge);
     check_ledger(judge);
     for (int s = 0; s < judge->count; s++)
