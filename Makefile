@@ -252,7 +252,7 @@ fuzz: fuzz-deps
 	@$(MAKE) --no-print-directory BUILD=$(BUILD)-fuzz CC=clang SAN=address,undefined,fuzzer-no-link run-fuzz
 fuzz-deps: deps
 	@tests/install-deps "" "clang libclang-rt-dev" clang
-define FUZZ
+define FUZZ_TARGET
 $(BUILD)/fuzz/$(notdir $(1)): $(1).c.o $(call archive,$(BELOW_server))
 	@mkdir -p $$(@D)
 	$(say) LD $$@
@@ -265,7 +265,7 @@ run-fuzz-$(notdir $(1)): $(BUILD)/fuzz/$(notdir $(1))
 	@sed -n 's/^stat::number_of_executed_units: */fuzz $$(<F): executions /p' $$<.log
 .PHONY: run-fuzz-$(notdir $(1))
 endef
-$(foreach target,$(call all_tests,fuzz),$(eval $(call FUZZ,$(target))))
+$(foreach target,$(call all_tests,fuzz),$(eval $(call FUZZ_TARGET,$(target))))
 run-fuzz: $(foreach target,$(call all_tests,fuzz),run-fuzz-$(notdir $(target)))
 .PHONY: fuzz fuzz-deps run-fuzz
 
