@@ -6,6 +6,7 @@
 struct contact_error {
     double value; /* NaN: not known at this load */
     double bound, standard_error;
-    double order; /* of the mesh, where the levels show it; else NaN */
+    double order;        /* of the mesh, where the levels show it; else NaN */
+    double bound_chance; /* how far chance may bring the bound, one standard error; 0: not told */
 };
 #endif

@@ -13,7 +13,7 @@ static const double BLOCK_MARGIN = 0.25;
  * tests/validation/jobs/test_contact_errors.c. */
 static const double SMOOTH_TOLERANCES = 100, COUNTED_TOLERANCES = 1000;
 
-static const struct contact_error UNKNOWN = {NAN, NAN, NAN, NAN};
+static const struct contact_error UNKNOWN = {NAN, NAN, NAN, NAN, NAN};
 
 static size_t finest_of(const struct contact_case *one_case) {
     return one_case->level_count - 1;
@@ -104,9 +104,30 @@ static void limit_errors(const struct contact_tally *tally, enum contact_measure
         out[k] = (struct contact_error){.value = isnan(error.bound) ? (double)NAN : error.error,
                                         .bound = error.bound,
                                         .standard_error = error.weight * changes.standard_error,
+                                        .bound_chance = error.weight * changes.standard_error,
                                         .order = error.order};
     }
     spread_bounds(tally, measure, model, out);
+}
+
+static double mesh_floor(const struct contact_case *one_case, enum contact_measure measure,
+                         size_t model) {
+    const struct contact_model *of = one_case->models[model];
+    return of->mesh_floor != NULL
+               ? of->mesh_floor(one_case->surface.dimension, measure, one_case->transition_depth)
+               : 0;
+}
+
+/* Adds to bounds what no finer level takes off the meshes of a model, or of two that a difference
+ * is of. */
+static void add_floors(const struct contact_tally *tally, enum contact_measure measure,
+                       size_t model, bool difference, struct contact_error *out) {
+    const struct contact_case *one_case = tally->one_case;
+    double share = mesh_floor(one_case, measure, model);
+    if (difference)
+        share += mesh_floor(one_case, measure, contact_case_complete(one_case));
+    for (size_t k = 0; k < one_case->load_count; k++)
+        out[k].bound += share * fabs(finest_mean(tally, measure, model, k).value);
 }
 
 static bool mesh_errors(const struct contact_tally *tally, enum contact_measure measure,
@@ -114,6 +135,7 @@ static bool mesh_errors(const struct contact_tally *tally, enum contact_measure 
     if (tally->one_case->level_count < 2)
         return false;
     limit_errors(tally, measure, model, contact_tally_level, out);
+    add_floors(tally, measure, model, false, out);
     return true;
 }
 
@@ -138,6 +160,7 @@ static bool model_errors(const struct contact_tally *tally, enum contact_measure
     limit_errors(tally, measure, model, contact_tally_model_level, out);
     for (size_t k = 0; k < tally->one_case->load_count; k++)
         take_limit(contact_tally_model(tally, measure, model, k), &out[k]);
+    add_floors(tally, measure, model, true, out);
     return true;
 }
 
@@ -156,6 +179,7 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
         }
         take_limit(all, &out[k]);
     }
+    add_floors(tally, measure, model, true, out);
     return true;
 }
 
@@ -299,12 +323,13 @@ bool contact_errors_pressures(const struct contact_tally *tally, size_t model, s
     if (finest == 0)
         return false;
     double width = bins_width(&one_case->pressure), before[BINS_NEAR] = {0};
+    double floor_share = mesh_floor(one_case, MEASURE_NODES, model);
     contact_tally_pressure_shares(tally, model, finest - 1, at, coarse);
     for (size_t b = 0; b < n; b++) {
         struct mesh_changes changes = {.coarse = NAN,
                                        .fine_ratio = refinement(one_case, finest - 1)};
         changes.fine = (shares[b].value - coarse[b].value) / width;
-        bound[b] = mesh_error(&changes, 1).bound;
+        bound[b] = mesh_error(&changes, 1).bound + floor_share * shares[b].value / width;
         standard_error[b] = chance_of_nodes(tally, model, at, shares[b].value) / width;
     }
     for (size_t b = 0; b < n; b++) {

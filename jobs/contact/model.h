@@ -62,6 +62,9 @@ struct contact_model {
      */
     int (*check)(struct contact_case *one_case, size_t model, struct values *values,
                  struct error *err);
+    /* Returns what finer levels do not take off the error of the mesh: a bound, as a share of the
+     * measure. NULL: nothing. */
+    double (*mesh_floor)(int dimension, enum contact_measure measure, double transition_depth);
     /* These return the bytes of a solver on one grid, and the CPU seconds of all loads there on a 3
      * GHz core. */
     double (*bytes)(const struct contact_case *one_case, size_t model, const struct grid *grid);

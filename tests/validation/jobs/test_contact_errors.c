@@ -255,6 +255,49 @@ static void errors_of_solvers_cover(void **state) {
     }
 }
 
+#define COLUMNS(dimension, heights, poisson, depth)                                                \
+    "{\"surface\": {\"dimension\": " dimension ", \"hurst\": 0.8, \"wavelength_ratio\": 4,"        \
+    " \"length_ratio\": 2, \"rms_slope\": 0.1, \"points_per_wavelength\": 16, \"heights\":"        \
+    " {\"distribution\": \"" heights "\", \"shape\": 1}}, \"contact\": {\"model\": \"full\","      \
+    " \"poisson\": " poisson ", \"gap_weighting\": \"dual\", \"levels\": [8, 16],"                 \
+    " \"generation_error\": \"none\", \"cell_error\": \"none\", \"transition_depth\": " depth ","  \
+    " \"pressures\": {\"values\": [0.03, 0.1, 0.3]}}}"
+
+/* What columns of elements change that widen with depth, which levels do not show, is within what
+ * is told of it beside their changes, and more than a fiftieth of that, by either depth. */
+static void errors_of_wider_columns_cover(void **state) {
+    (void)state;
+    static const struct {
+        const char *equal, *wider;
+        double depth;
+    } CASES[] = {
+        {COLUMNS("1", "weibull_min", "0.3", "1e9"), COLUMNS("1", "weibull_min", "0.3", "8"), 8},
+        {COLUMNS("1", "gaussian", "0.4999", "1e9"), COLUMNS("1", "gaussian", "0.4999", "8"), 8},
+        {COLUMNS("1", "gaussian", "0.4999", "1e9"), COLUMNS("1", "gaussian", "0.4999", "16"), 16}};
+    static const struct {
+        const char *quantity, *series;
+        double share; /* at a depth of 8 */
+    } SERIES[] = {{"contact_area", "edges", 0.003}, {"mean_gap", "", 0.008}};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        cJSON *equal = solve(CASES[c].equal, 4), *wider = solve(CASES[c].wider, 4);
+        for (size_t q = 0; q < 2; q++) {
+            const cJSON *curve = curve_of(wider, SERIES[q].quantity, SERIES[q].series, "full");
+            const cJSON *exact = curve_of(equal, SERIES[q].quantity, SERIES[q].series, "full");
+            double most = 0;
+            for (int k = 0; k < points(curve); k++) {
+                double y = at(exact, "/y", k), change = fabs(at(curve, "/y", k) / y - 1);
+                double told = SERIES[q].share * pow(8 / CASES[c].depth, 2);
+                most = fmax(most, change / told);
+                assert_true(at(curve, "/discretisation_bound", k) >= told * 0.99 * y);
+            }
+            print_message("case %zu, %s: %.2g of what is told\n", c, SERIES[q].quantity, most);
+            assert_true(most < 1 && most > 0.02);
+        }
+        cJSON_Delete(equal);
+        cJSON_Delete(wider);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_of_meshes_cover),
@@ -262,6 +305,7 @@ int main(void) {
         cmocka_unit_test(lowest_pressures_are_near_their_limit),
         cmocka_unit_test(errors_of_blocks_cover),
         cmocka_unit_test(errors_of_solvers_cover),
+        cmocka_unit_test(errors_of_wider_columns_cover),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
