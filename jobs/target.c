@@ -113,13 +113,12 @@ struct search {
     const struct target_plan *plan;
     size_t count;
     const struct target_part *parts;
-    double quantile; /* normal */
     const double *numbers;
 };
 
 /* Variance of one realisation of a part over what is allowed at a point; 0 where it is left out. */
 static double relative_variance(const struct search *search, size_t part, size_t point) {
-    double ratio = search->quantile / search->plan->allowed[point];
+    double ratio = search->plan->quantiles[point] / search->plan->allowed[point];
     double relative = search->parts[part].variance[point] * ratio * ratio;
     return isfinite(relative) ? relative : 0;
 }
@@ -159,11 +158,10 @@ static double least_scale(const struct search *search) {
 
 /* Each step multiplies the multiplier of a point by its sum, which falls where more is done there
  * than it needs; all numbers are scaled to what the hardest point needs. */
-double target_least_work(const struct target_plan *plan, size_t count,
+static double least_work(const struct target_plan *plan, size_t count,
                          const struct target_part *parts, double *needed) {
     double scale = 0, lacking = 0;
-    const struct search search = {
-        plan, count, parts, gsl_cdf_ugaussian_Pinv((1 + plan->target->confidence) / 2), needed};
+    const struct search search = {plan, count, parts, needed};
     for (size_t k = 0; k < plan->points; k++)
         plan->multipliers[k] = 1;
     for (int step = 0; step < STEPS; step++) {
@@ -184,16 +182,25 @@ double target_least_work(const struct target_plan *plan, size_t count,
     return lacking;
 }
 
-/* Whether the parts are as many as the plan needs at every point. */
-static bool is_enough(const struct target_plan *plan, size_t count,
-                      const struct target_part *parts) {
+double target_least_work(const struct target_plan *plan, size_t count,
+                         const struct target_part *parts, double *needed) {
+    for (size_t k = 0; k < plan->points; k++)
+        plan->quantiles[k] = gsl_cdf_ugaussian_Pinv((1 + plan->target->confidence) / 2);
+    return least_work(plan, count, parts, needed);
+}
+
+/* Whether the parts are as many as the plan needs at every point, by Student's quantiles, which it
+ * leaves in the plan. */
+static bool enough_by_student(const struct target_plan *plan, size_t count,
+                              const struct target_part *parts) {
+    bool enough = true;
     for (size_t k = 0; k < plan->points; k++) {
         double standard_error;
-        double quantile = target_quantile(plan->target, count, parts, k, &standard_error);
-        if (quantile * standard_error > plan->allowed[k])
-            return false;
+        double *quantile = &plan->quantiles[k];
+        *quantile = target_quantile(plan->target, count, parts, k, &standard_error);
+        enough = enough && !(*quantile * standard_error > plan->allowed[k]);
     }
-    return true;
+    return enough;
 }
 
 static uint64_t grown(uint64_t done, double needed) {
@@ -223,14 +230,15 @@ void target_hold(const struct target *target, size_t count, const struct target_
 void target_allot(const struct target_plan *plan, size_t count, const struct target_part *parts,
                   uint64_t *wanted) {
     double needed[TARGET_PARTS_MOST];
-    bool enough = is_enough(plan, count, parts), grows = false;
-    target_least_work(plan, count, parts, needed);
-    for (size_t a = 0; a < count; a++) {
-        wanted[a] = enough ? parts[a].done : grown(parts[a].done, needed[a]);
-        grows = grows || wanted[a] > parts[a].done;
+    bool enough = enough_by_student(plan, count, parts);
+    for (size_t a = 0; a < count; a++)
+        needed[a] = (double)parts[a].done;
+    if (!enough && !(target_least_work(plan, count, parts, needed) > 0)) {
+        (void)enough_by_student(plan, count, parts); /* Student's quantiles ask for more */
+        (void)least_work(plan, count, parts, needed);
     }
-    for (size_t a = 0; a < count && !enough && !grows; a++) /* Student's quantile asks for more */
-        wanted[a] = grown(parts[a].done, GROWTH_LEAST * (double)parts[a].done);
+    for (size_t a = 0; a < count; a++)
+        wanted[a] = grown(parts[a].done, needed[a]);
     target_hold(plan->target, count, parts, wanted);
 }
 
@@ -263,8 +271,8 @@ double target_expect(const struct study_case *one, uint64_t *out) {
         .confidence = json_number_at(one->parameters, "/target/confidence", CONFIDENCE),
         .max_seconds = json_number_at(one->parameters, "/target/max_seconds", INFINITY)};
     const double allowed = CHANCE_USUAL * target.error;
-    double multiplier;
-    const struct target_plan plan = {&target, 1, &allowed, &multiplier};
+    double multiplier, quantile;
+    const struct target_plan plan = {&target, 1, &allowed, &multiplier, &quantile};
     struct target_part parts[TARGET_PARTS_MOST];
     double variance[TARGET_PARTS_MOST], seconds = 0;
     size_t begun[TARGET_PARTS_MOST], count = expected_parts(one, parts, variance, begun);

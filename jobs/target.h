@@ -51,6 +51,7 @@ struct target_plan {
     size_t points;
     const double *allowed; /* at each point: how far chance may go; NaN: the point is left out */
     double *multipliers;   /* room for as many numbers as there are points */
+    double *quantiles;     /* likewise */
 };
 /* By how many standard errors the sum errs at this confidence, at one point: Student's quantile,
  * its degrees of freedom by Welch and Satterthwaite (Welch 1947). standard_error: of the sum. NaN

@@ -14,6 +14,8 @@ static const double LENGTH_LEAST = 0.3, LENGTH_SEEN = 2.8;
  * up to in proportion to it. */
 static const double LONGER_SAVES = 4;
 enum { LONGER_FIRST = 8 };
+/* More realisations may take so many times its chance off a bound. */
+static const double SHARPENED_SEEN = 2;
 
 /* What bounds that come to so much leave to chance of an error; 0 where they leave nothing. */
 static double left_by(double error, double bounds) {
@@ -32,23 +34,37 @@ struct planning {
     size_t count;
     struct target_part parts[ROLES + 1]; /* and room for the longer cell */
     double *allowed;                     /* by load: how far chance may go */
-    double *multipliers;
+    double *multipliers, *quantiles;
     bool reaches;   /* the bounds as they are leave enough to chance */
     double lacking; /* work, with these bounds */
 };
 
-/* How far chance may go at each load if a bound (NULL: none) were `times` what it is: what the
+/* A bound (of: NULL: none) as it may become: so many times what it is, or what chance may take off
+ * it by more realisations where that is less; chance: NULL: no matter what that is. */
+struct hope {
+    const double *of, *chance;
+    double times;
+};
+static const struct hope AS_IT_IS;
+
+static double hoped(const struct hope *hope, size_t load) {
+    double then = hope->times * hope->of[load];
+    return hope->chance == NULL ? then
+                                : fmax(then, hope->of[load] - SHARPENED_SEEN * hope->chance[load]);
+}
+
+/* How far chance may go at each load if a bound were as hoped: what the
  * bounds leave of the error, at least CHANCE_LEAST of it. What the surfaces owe to the way they are
  * found no plan lessens: where it is the whole error or more, chance goes as far as without it.
  * Returns whether the other bounds leave CHANCE_LEAST at every load. */
-static bool allow(const struct planning *planning, const double *bound, double times) {
+static bool allow(const struct planning *planning, struct hope hope) {
     const struct contact_answer *answer = planning->answer;
     bool enough = true;
     for (size_t k = 0; k < answer->loads; k++) {
         double asked = asked_at(answer, planning->sum, k);
         double found = planning->sum->generation[k];
         double all = contact_sum_bounds(answer, planning->sum, k, false);
-        double less = bound != NULL ? bound[k] * bound[k] * (1 - times * times) : 0;
+        double less = hope.of != NULL ? pow(hope.of[k], 2) - pow(hoped(&hope, k), 2) : 0;
         double planned = sqrt(fmax(0, all * all - less)), without = left_by(asked, planned);
         double left = found >= asked ? without : left_by(asked, hypot(planned, found));
         enough = enough && !(without < CHANCE_LEAST * asked);
@@ -59,7 +75,7 @@ static bool allow(const struct planning *planning, const double *bound, double t
 
 static struct target_plan plan_of(const struct planning *planning) {
     return (struct target_plan){&planning->answer->target, planning->answer->loads,
-                                planning->allowed, planning->multipliers};
+                                planning->allowed, planning->multipliers, planning->quantiles};
 }
 
 /* What is lacking to bring chance to what is allowed now. */
@@ -81,14 +97,17 @@ static bool sharpen(const struct planning *planning, enum role role, const struc
         component_case(answer->of[role])->level_count < LEVELS_SHARPENED ||
         (!of_model && (answer->named_mesh || role != contact_sum_mesh(answer))))
         return false;
-    const double *bound = of_model ? planning->sum->model : planning->sum->mesh;
+    const struct contact_sum *sum = planning->sum;
+    struct hope hope = {.of = of_model ? sum->model : sum->mesh,
+                        .chance = of_model ? sum->model_chance : sum->mesh_chance};
     bool saves;
     if (planning->reaches) {
-        (void)allow(planning, bound, 0.5);
+        hope.times = 0.5;
+        (void)allow(planning, hope);
         double then = lacking_of(planning, planning->count, planning->parts);
         saves = planning->lacking - then > part->work * (double)part->done;
     } else {
-        saves = allow(planning, bound, 0);
+        saves = allow(planning, hope);
     }
     if (saves)
         *wanted = 2 * part->done;
@@ -135,7 +154,7 @@ static bool lengthen(struct planning *planning, uint64_t *wanted) {
     struct target_part longer[ROLES];
     if (answer->longer == NULL || !is_seen(answer, planning->sum))
         return false;
-    (void)allow(planning, planning->sum->length, 0.25);
+    (void)allow(planning, (struct hope){.of = planning->sum->length, .times = 0.25});
     double then = lacking_of(planning, lengthened(planning, longer), longer);
     if (planning->reaches && planning->lacking <= LONGER_SAVES * then)
         return false;
@@ -175,11 +194,12 @@ int contact_plan(const struct contact_answer *answer, const struct contact_sum *
                  uint64_t wanted[ROLES + 1], struct error *err) {
     struct planning planning = {.answer = answer, .sum = sum};
     planning.count = contact_sum_parts(answer, sum, planning.parts);
-    planning.allowed = array_create(answer->loads, 2 * sizeof *planning.allowed);
+    planning.allowed = array_create(answer->loads, 3 * sizeof *planning.allowed);
     if (planning.allowed == NULL)
-        return error_memory(err, answer->loads * 2 * sizeof *planning.allowed, "a plan");
+        return error_memory(err, answer->loads * 3 * sizeof *planning.allowed, "a plan");
     planning.multipliers = planning.allowed + answer->loads;
-    planning.reaches = allow(&planning, NULL, 1);
+    planning.quantiles = planning.multipliers + answer->loads;
+    planning.reaches = allow(&planning, AS_IT_IS);
     planning.lacking = lacking_of(&planning, planning.count, planning.parts);
     const struct target_plan plan = plan_of(&planning);
     target_allot(&plan, planning.count, planning.parts, wanted);

@@ -78,6 +78,7 @@ static void add_levels(const struct contact_answer *answer, enum contact_measure
         if (limit != NULL && !answer->named_mesh) {
             added -= limit[k].value;
             sum->mesh[k] = scale * limit[k].bound;
+            sum->mesh_chance[k] = scale * limit[k].bound_chance;
             standard_error += limit[k].standard_error;
         } else if (limit != NULL) {
             sum->mesh[k] = scale * (fabs(limit[k].value) + limit[k].bound);
@@ -104,6 +105,7 @@ static void take_off(const struct contact_answer *answer, enum role role, double
                      struct contact_sum *sum) {
     sum->value[load] -= scale * cheap->value;
     sum->model[load] += fabs(scale) * cheap->bound;
+    sum->model_chance[load] += fabs(scale) * cheap->bound_chance;
     bound_added(answer, role, cell_share, scale * cheap->value, load, sum);
     sum->variance[role][load] = component_variance(answer->of[role], scale * cheap->standard_error);
 }
@@ -187,10 +189,11 @@ static int add_all(const struct contact_answer *answer, enum contact_measure mea
 static int sum_create(const struct contact_answer *answer, struct contact_sum *out,
                       struct error *err) {
     size_t n = answer->loads;
-    double **const arrays[] = {&out->base,          &out->value,     &out->standard_error,
-                               &out->width,         &out->mesh,      &out->cell,
-                               &out->model,         &out->solver,    &out->length,
-                               &out->length_chance, &out->generation};
+    double **const arrays[] = {&out->base,          &out->value,      &out->standard_error,
+                               &out->width,         &out->mesh,       &out->cell,
+                               &out->model,         &out->solver,     &out->length,
+                               &out->length_chance, &out->generation, &out->mesh_chance,
+                               &out->model_chance};
     const size_t own = sizeof arrays / sizeof *arrays;
     double *room = result_numbers(answer->result, (own + ROLES) * n);
     if (room == NULL)

@@ -23,9 +23,10 @@ struct contact_sum {
     double *base;                           /* of the base alone */
     double *mesh, *cell, *model, *solver;   /* bounds; 0 where the source has no component */
     double *generation;                     /* likewise; 0 where it is not probed */
-    double *length, *length_chance; /* of the bound of the cell: what the change between the two
-                                       lengths tells, and how far chance may bring it */
-    double *variance[ROLES];        /* of one realisation */
+    double *length, *length_chance;     /* of the bound of the cell: what the change between the two
+                                           lengths tells, and how far chance may bring it */
+    double *mesh_chance, *model_chance; /* how far chance may bring these bounds */
+    double *variance[ROLES];            /* of one realisation */
 };
 
 struct contact_answer {

@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_target.h"
 #include "jobs/contact/contact_case.h"
 #include "jobs/contact/contact_sum.h"
+#include "jobs/contact/model.h"
 #include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
@@ -16,18 +17,24 @@ enum {
     MODEL_MESH_FIRST = 6,
     COMPONENTS_MOST = 8
 };
-enum { LADDER_MOST = 5, LADDER_LEAST = 3, FINEST_MOST = 4 };
+enum { LADDER_MOST = 5, LADDER_LEAST = 3 };
 static const double COARSEST = 4; /* points a shortest wave, of meshes that are chosen */
 
 /* The share of the error asked for that the heights of a profile may take, and an area of light
  * loads. */
-static const double HEIGHTS_MOST = 0.65, LIGHT_AREA = 0.05;
+static const double HEIGHTS_MOST = 0.65, HEIGHTS_SMALL = 0.35, LIGHT_AREA = 0.05;
+/* Errors below this are small: the difference of models takes much of them, which changes by up to
+ * 0.1 % of the area from 16 to 32 points a shortest wave at light loads. It is seen on meshes twice
+ * as fine then, and heights may take the lesser share. */
+static const double SMALL_ERROR = 0.004;
+/* The share of the error asked for that may stay on meshes of any fineness. */
+static const double FLOOR_MOST = 0.2;
 
 /* What the study leaves to be chosen. */
 struct choices {
     struct target target;
     const char *model; /* borrowed from the parameters */
-    bool mesh, length, height, weighting, tolerance;
+    bool mesh, length, height, weighting, tolerance, transition;
     bool profile;
     bool own_grid; /* the surface depends on the grid that it is made on, which stays */
     double ladder[LADDER_MOST];
@@ -35,6 +42,7 @@ struct choices {
     /* Lengths are those of the shorter side where the cell is a rectangle, as those of variants. */
     double length_ratio, mesh_length_ratio, fine_length_ratio, model_length_ratio;
     double sides[2];         /* of a rectangle that the study names, along x and y; else 0 */
+    double transition_depth; /* of columns */
     double wavelength_ratio; /* in place of nayak_alpha, which gives another on each cell; or NaN */
 };
 
@@ -103,9 +111,18 @@ static double tolerance_of(const struct choices *choices) {
     return fmax(1e-8, fmin(1e-4, 1e-3 * choices->target.error));
 }
 
+/* The cheap model that another is compared with on the same mesh. That of the same elements errs by
+ * its mesh as the model asked for does, and comes to the half-space in the limit of the levels,
+ * which a named mesh does not have. */
+static const char *linear_model(const struct choices *choices) {
+    bool limit = choices->mesh && strcmp(choices->model, "layered") != 0;
+    return limit ? "layered" : "halfspace";
+}
+
 static cJSON *variant_parameters(const struct study_case *one, const struct choices *choices,
                                  const struct variant *variant) {
-    const char *const models[] = {"halfspace", choices->model};
+    const char *const models[] = {variant->both ? linear_model(choices) : "halfspace",
+                                  choices->model};
     cJSON *all = cJSON_Duplicate(one->parameters, true);
     const double *ladder = choices->ladder + variant->first;
     if (all == NULL)
@@ -120,6 +137,9 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
         take_out(all, "contact", "gap_weighting");
     else if (status == 0 && choices->weighting) /* whose limit is nearer in profiles */
         status = put(all, "contact", "gap_weighting", cJSON_CreateString("dual"));
+    if (status == 0 && choices->transition)
+        status =
+            put(all, "contact", "transition_depth", cJSON_CreateNumber(choices->transition_depth));
     if (status == 0)
         status =
             put(all, "contact", "levels", cJSON_CreateDoubleArray(ladder, (int)variant->count));
@@ -196,7 +216,9 @@ static double length_of_heights(const struct choices *choices, const cJSON *para
     double ratio = json_number_at(parameters, "/surface/wavelength_ratio", (double)NAN);
     if (!choices->profile || !choices->own_grid || isnan(ratio))
         return 0;
-    double waves = HEIGHTS_CELL / (HEIGHTS_MOST * choices->target.error * sqrt(LIGHT_AREA));
+    double error = choices->target.error;
+    double share = error < SMALL_ERROR ? HEIGHTS_SMALL : HEIGHTS_MOST;
+    double waves = HEIGHTS_CELL / (share * error * sqrt(LIGHT_AREA));
     return exp2(round(log2(waves / ratio)));
 }
 
@@ -208,6 +230,7 @@ static void read_length(struct choices *out, const cJSON *document, const cJSON 
     static const char path[] = "/surface/length_ratio_y";
     size_t steps = steps_of(out->target.error);
     double usual = ldexp(out->profile ? 32 : 8, (int)(out->profile ? steps : steps / 2));
+    double short_cell = ldexp(4, 2 * (int)steps); /* errs by a share as 1/L: F15.7 */
     double named = json_number_at(parameters, "/surface/length_ratio", 8);
     double along_y = json_number_at(parameters, path, named);
     out->length = json_at(document, "/surface/length_ratio") == NULL;
@@ -223,8 +246,24 @@ static void read_length(struct choices *out, const cJSON *document, const cJSON 
                         : out->sides[0] > 0 ? fmin(named, along_y)
                                             : named;
     out->mesh_length_ratio = out->length_ratio > usual ? out->length_ratio / 4 : out->length_ratio;
-    out->fine_length_ratio = fmin(out->length_ratio, out->profile ? 16 : 4);
-    out->model_length_ratio = fmin(out->length_ratio, out->profile ? ldexp(4, (int)steps) : 1);
+    out->fine_length_ratio = fmin(out->length_ratio, out->profile ? fmax(16, short_cell) : 4);
+    out->model_length_ratio = fmin(out->length_ratio, out->profile ? fmax(4, short_cell / 2) : 1);
+}
+
+/* The deeper columns of elements widen, the less finer meshes leave, and the more they take. */
+static void read_transition(struct choices *out, const cJSON *document, const cJSON *parameters) {
+    static const char path[] = "/contact/transition_depth";
+    static const double TIMES = 1.25;
+    const struct choice *choice = choice_find(CONTACT_MODEL_CHOICES, out->model);
+    const struct contact_model *model = choice != NULL ? CONTACT_MODELS[choice->value] : NULL;
+    enum contact_measure measure =
+        out->target.quantity == TARGET_MEAN_GAP ? MEASURE_GAP : MEASURE_EDGES;
+    out->transition_depth = json_number_at(parameters, path, 8);
+    out->transition = model != NULL && model->mesh_floor != NULL && json_at(document, path) == NULL;
+    while (out->transition &&
+           model->mesh_floor(out->profile ? 1 : 2, measure, out->transition_depth) >
+               FLOOR_MOST * out->target.error)
+        out->transition_depth *= TIMES;
 }
 
 /* Solves nayak_alpha on the cell of the base. */
@@ -262,6 +301,7 @@ static int read_choices(struct choices *out, const cJSON *document, const cJSON 
     out->model = read_model(parameters, faults);
     out->profile = json_number_at(parameters, "/surface/dimension", 2) == 1;
     out->weighting = out->profile && json_at(document, "/contact/gap_weighting") == NULL;
+    read_transition(out, document, parameters);
     read_ladder(out, document, parameters);
     read_length(out, document, parameters, faults);
     return read_alpha(out, parameters, faults, err);
@@ -294,10 +334,11 @@ static int add_models(struct study_case *one, const struct choices *choices) {
     const size_t levels = choices->levels, pair = levels > 1 ? 2 : 1;
     const bool split = choices->mesh && choices->profile;
     const size_t count = split ? LADDER_LEAST : pair;
-    const size_t most = !choices->mesh ? levels : split ? FINEST_MOST : pair;
+    const size_t finest = choices->target.error < SMALL_ERROR ? LADDER_MOST : LADDER_MOST - 1;
+    const size_t most = !choices->mesh ? levels : split ? finest : pair;
     const size_t first = (levels < most ? levels : most) - count;
     const double length = choices->model_length_ratio;
-    const double mesh_length = fmax(length / 2, fmin(4, length));
+    const double mesh_length = fmax(length / 4, fmin(4, length));
     const struct variant mesh = {"model_mesh", MODEL_MESH_FIRST, 0.01, true, first,
                                  count,        mesh_length,      false};
     const struct variant model = {"model", MODEL_FIRST,       0.05,   true,
@@ -343,6 +384,8 @@ static int keep_named(cJSON *parameters, const struct choices *choices) {
         take_out(parameters, "contact", "tolerance");
     if (choices->weighting)
         take_out(parameters, "contact", "gap_weighting");
+    if (choices->transition)
+        take_out(parameters, "contact", "transition_depth");
     if (choices->mesh && !choices->own_grid)
         take_out(parameters, "surface", "points_per_wavelength");
     const double *finest = &choices->ladder[choices->levels - 1];

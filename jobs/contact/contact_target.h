@@ -1,6 +1,7 @@
 /* Contact studies that ask for an error: the components that answer a case, and their sum.
  *
- * The cheap model is the half-space. With f_l(M) the curve of model M on mesh level l,
+ * The cheap model is the half-space; in "model" it is layers of the same elements, whose limit is
+ * that. With f_l(M) the curve of model M on mesh level l,
  *     answer = f_0(cheap)                                      "base": many realisations
  *            + [f_limit(cheap) - f_0(cheap)]                   "mesh": the same surfaces on all
  * levels

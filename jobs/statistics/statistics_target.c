@@ -71,10 +71,11 @@ int statistics_target_answer(const cJSON *parameters, size_t count,
     status = merger_result(components[0].merger, out, err);
     if (status != 0)
         return status;
-    double error = relative_error(out, target.quantity), standard_error, multiplier;
+    double error = relative_error(out, target.quantity), standard_error;
+    double multiplier, quantile;
     const double variance = error * error * (double)components[0].done;
     const struct target_part part = {components[0].done, 1, components[0].seconds, &variance};
-    const struct target_plan plan = {&target, 1, &target.error, &multiplier};
+    const struct target_plan plan = {&target, 1, &target.error, &multiplier, &quantile};
     double reached = target_quantile(&target, 1, &part, 0, &standard_error) * standard_error;
     target_allot(&plan, 1, &part, wanted);
     status = target_add_scalar(out, "error_asked", target.error, err);

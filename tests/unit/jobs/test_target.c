@@ -39,8 +39,8 @@ static void allots_by_variance_and_cost(void **state) {
     const double base = 1, mesh = 1e-2, model = 1e-3, allowed = 0.01;
     struct target_part parts[] = {
         {16, 1, 1e-3, &base}, {8, 10, 1e-2, &mesh}, {8, 400, 0.4, &model}};
-    double multiplier;
-    const struct target_plan plan = {&TARGET, 1, &allowed, &multiplier};
+    double multiplier, quantile;
+    const struct target_plan plan = {&TARGET, 1, &allowed, &multiplier, &quantile};
     assert_true(rounds(&plan, 3, parts) > 1);
     const double z = 1.959964;
     double sum = sqrt(1.0 * 1) + sqrt(1e-2 * 10) + sqrt(1e-3 * 400);
@@ -57,8 +57,8 @@ static void meets_every_point(void **state) {
     (void)state;
     const double base[] = {1, 4, 1}, mesh[] = {0.3, 0.01, 7}, allowed[] = {0.05, 0.2, NAN};
     struct target_part parts[] = {{32, 1, 1, base}, {8, 5, 5, mesh}};
-    double multipliers[3];
-    const struct target_plan plan = {&TARGET, 3, allowed, multipliers};
+    double multipliers[3], quantiles[3];
+    const struct target_plan plan = {&TARGET, 3, allowed, multipliers, quantiles};
     rounds(&plan, 2, parts);
     for (size_t k = 0; k < 2; k++)
         assert_true(reached(2, parts, k) <= allowed[k]);
@@ -74,8 +74,8 @@ static void takes_the_least_work(void **state) {
     (void)state;
     const double base[] = {1, 0.1}, mesh[] = {0.02, 0.5}, allowed[] = {0.1, 0.1};
     const struct target_part parts[] = {{10, 1, 1, base}, {10, 3, 3, mesh}};
-    double multipliers[2], needed[2];
-    const struct target_plan plan = {&TARGET, 2, allowed, multipliers};
+    double multipliers[2], quantiles[2], needed[2];
+    const struct target_plan plan = {&TARGET, 2, allowed, multipliers, quantiles};
     double work = target_least_work(&plan, 2, parts, needed), best = INFINITY;
     const double z = 1.959964, scale = z * z / (0.1 * 0.1);
     for (double n = 10; n < 4000; n *= 1.0005) {
@@ -95,8 +95,8 @@ static void is_the_same_each_time(void **state) {
     (void)state;
     const double base = 1, mesh = 1e-2, allowed = 0.01;
     const struct target_part parts[] = {{100, 3, 1, &base}, {9, 17, 1, &mesh}};
-    double multiplier;
-    const struct target_plan plan = {&TARGET, 1, &allowed, &multiplier};
+    double multiplier, quantile;
+    const struct target_plan plan = {&TARGET, 1, &allowed, &multiplier, &quantile};
     uint64_t first[2], again[2];
     target_allot(&plan, 2, parts, first);
     target_allot(&plan, 2, parts, again);
@@ -115,6 +115,19 @@ static void distrusts_few_realisations(void **state) {
     check_close(target_quantile(&TARGET, 1, &many, 0, &standard_error), 1.95998, 1e-4);
 }
 
+/* What Student's quantile asks for beyond the normal one is paid where it costs least. */
+static void pays_what_few_realisations_ask_for_where_it_is_cheap(void **state) {
+    (void)state;
+    const double dear = 6e-5, cheap = 1e-2, allowed = 0.0207; /* 1.96 and 1.98 times 0.01049 */
+    struct target_part parts[] = {{6, 1000, 1, &dear}, {100, 1, 1, &cheap}};
+    double multiplier, quantile;
+    const struct target_plan plan = {&TARGET, 1, &allowed, &multiplier, &quantile};
+    assert_true(reached(2, parts, 0) > allowed && reached(2, parts, 0) < 1.01 * allowed);
+    assert_true(rounds(&plan, 2, parts) > 0);
+    assert_int_equal(parts[0].done, 6);
+    assert_true(parts[1].done > 100 && reached(2, parts, 0) <= allowed);
+}
+
 /* A round that would take longer than there is is cut, and the next adds nothing. */
 static void keeps_within_the_time(void **state) {
     (void)state;
@@ -122,8 +135,8 @@ static void keeps_within_the_time(void **state) {
     struct target target = TARGET;
     target.max_seconds = 500;
     struct target_part part = {100, 1, 2, &base};
-    double multiplier;
-    const struct target_plan plan = {&target, 1, &allowed, &multiplier};
+    double multiplier, quantile;
+    const struct target_plan plan = {&target, 1, &allowed, &multiplier, &quantile};
     rounds(&plan, 1, &part);
     assert_true(2 * (double)part.done <= 500 && part.done >= 240);
 }
@@ -190,6 +203,47 @@ static void chooses_what_is_left_out(void **state) {
                                 : expected[a] >= one->realisations);
     }
     study_destroy(&study);
+}
+
+static const char *first_model(const struct study_case *one) {
+    return json_at(one->parameters, "/contact/model")->child->valuestring;
+}
+
+static double coarsest_points(const struct study_case *one) {
+    return json_at(one->parameters, "/contact/levels")->child->valuedouble;
+}
+
+/* Full is compared with its own elements, on columns that widen as deep as the error asks, and on
+ * finer meshes for a small one; a named mesh with what the other components see of it. */
+static void compares_models_as_the_error_asks(void **state) {
+    (void)state;
+    static const char path[] = "/contact/transition_depth";
+    struct fault_list faults = {0};
+    struct study *coarse = read_study("", "", "\"full\"", "", &faults);
+    struct study *small = NULL;
+    static const char SMALL[] = "{\"name\":\"t\",\"kind\":\"contact\",\"target\":{\"error\":0.002},"
+                                "\"surface\":{\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,"
+                                "\"rms_slope\":0.1},\"contact\":{\"model\":\"full\"}}";
+    assert_int_equal(kind_read_study(&small, SMALL, strlen(SMALL), NULL, &faults, NULL), 0);
+    struct study *named =
+        read_study("", "", "\"full\"", ",\"levels\":[8],\"transition_depth\":9", &faults);
+    assert_non_null(coarse);
+    assert_non_null(named);
+    const struct study_case *mesh = component(coarse, "model_mesh");
+    assert_string_equal(first_model(mesh), "layered");
+    check_close(coarsest_points(mesh), 8, 0);
+    double depth = number_at(mesh, path);
+    assert_true(depth > 8 && depth < 16);
+    assert_true(isnan(number_at(&coarse->cases[0], path)));
+    const struct study_case *finer = component(small, "model_mesh");
+    check_close(coarsest_points(finer), 16, 0);
+    check_close(coarsest_points(component(small, "model")), 16, 0);
+    assert_true(number_at(finer, path) > 1.5 * depth);
+    assert_string_equal(first_model(component(named, "model")), "halfspace");
+    check_close(number_at(component(named, "model"), path), 9, 0);
+    study_destroy(&coarse);
+    study_destroy(&small);
+    study_destroy(&named);
 }
 
 /* A component that may never be needed does not keep a study from running where it has no room. */
@@ -313,8 +367,10 @@ int main(void) {
         cmocka_unit_test(takes_the_least_work),
         cmocka_unit_test(is_the_same_each_time),
         cmocka_unit_test(distrusts_few_realisations),
+        cmocka_unit_test(pays_what_few_realisations_ask_for_where_it_is_cheap),
         cmocka_unit_test(keeps_within_the_time),
         cmocka_unit_test(chooses_what_is_left_out),
+        cmocka_unit_test(compares_models_as_the_error_asks),
         cmocka_unit_test(goes_without_what_has_no_room),
         cmocka_unit_test(keeps_what_is_named),
         cmocka_unit_test(keeps_the_shape_of_a_rectangle),
