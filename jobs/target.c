@@ -230,15 +230,12 @@ void target_hold(const struct target *target, size_t count, const struct target_
 void target_allot(const struct target_plan *plan, size_t count, const struct target_part *parts,
                   uint64_t *wanted) {
     double needed[TARGET_PARTS_MOST];
+    double lacking = target_least_work(plan, count, parts, needed);
     bool enough = enough_by_student(plan, count, parts);
-    for (size_t a = 0; a < count; a++)
-        needed[a] = (double)parts[a].done;
-    if (!enough && !(target_least_work(plan, count, parts, needed) > 0)) {
-        (void)enough_by_student(plan, count, parts); /* Student's quantiles ask for more */
+    if (!enough && !(lacking > 0)) /* Student's quantiles ask for more than the normal one */
         (void)least_work(plan, count, parts, needed);
-    }
     for (size_t a = 0; a < count; a++)
-        wanted[a] = grown(parts[a].done, needed[a]);
+        wanted[a] = enough ? parts[a].done : grown(parts[a].done, needed[a]);
     target_hold(plan->target, count, parts, wanted);
 }
 

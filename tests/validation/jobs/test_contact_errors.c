@@ -255,8 +255,8 @@ static void errors_of_solvers_cover(void **state) {
     }
 }
 
-#define COLUMNS(dimension, heights, poisson, depth)                                                \
-    "{\"surface\": {\"dimension\": " dimension ", \"hurst\": 0.8, \"wavelength_ratio\": 4,"        \
+#define COLUMNS(heights, poisson, depth)                                                           \
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4,"                    \
     " \"length_ratio\": 2, \"rms_slope\": 0.1, \"points_per_wavelength\": 16, \"heights\":"        \
     " {\"distribution\": \"" heights "\", \"shape\": 1}}, \"contact\": {\"model\": \"full\","      \
     " \"poisson\": " poisson ", \"gap_weighting\": \"dual\", \"levels\": [8, 16],"                 \
@@ -270,10 +270,9 @@ static void errors_of_wider_columns_cover(void **state) {
     static const struct {
         const char *equal, *wider;
         double depth;
-    } CASES[] = {
-        {COLUMNS("1", "weibull_min", "0.3", "1e9"), COLUMNS("1", "weibull_min", "0.3", "8"), 8},
-        {COLUMNS("1", "gaussian", "0.4999", "1e9"), COLUMNS("1", "gaussian", "0.4999", "8"), 8},
-        {COLUMNS("1", "gaussian", "0.4999", "1e9"), COLUMNS("1", "gaussian", "0.4999", "16"), 16}};
+    } CASES[] = {{COLUMNS("weibull_min", "0.3", "1e9"), COLUMNS("weibull_min", "0.3", "8"), 8},
+                 {COLUMNS("gaussian", "0.4999", "1e9"), COLUMNS("gaussian", "0.4999", "8"), 8},
+                 {COLUMNS("gaussian", "0.4999", "1e9"), COLUMNS("gaussian", "0.4999", "16"), 16}};
     static const struct {
         const char *quantity, *series;
         double share; /* at a depth of 8 */
