@@ -31,13 +31,13 @@ APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev l
 HEADERS  = Random123/philox.h suitesparse/cholmod.h
 
 MODE     = $(SAN)$(COV)$(DEBUG)
-CFLAGS  ?= -g $(if $(SAN),-O1,$(if $(MODE),-O0,-O3)) -fstack-protector-strong \
+CFLAGS  ?= -g $(if $(SAN),-O2,$(if $(MODE),-O0,-O3)) -fstack-protector-strong \
            $(if $(MODE),,-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
 LDFLAGS ?= -Wl,-z,relro,-z,now
 
 # What the code needs stands before and after the user's flags, whatever these are.
 WARN     = -Wall -Wextra -Wpedantic -Wshadow -Wconversion $(if $(CI),-Werror)
-TESTED   = $(if $(SAN),-fsanitize=$(SAN)) $(if $(COV),--coverage)
+TESTED   = $(if $(SAN),-fsanitize=$(SAN) -DRUGO_SANITIZED) $(if $(COV),--coverage)
 # No contraction and no fast-math: one realisation gives the same digits whatever the vector width.
 LANGUAGE = -std=c11 -D_GNU_SOURCE -I.
 NEEDED   = $(LANGUAGE) -ffp-contract=off -fno-math-errno -fno-trapping-math -fPIC -fvisibility=hidden -pthread \
@@ -53,7 +53,7 @@ LIBS_server = -lmicrohttpd -lgnutls -lpng -lz $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
 embedded = $(filter %.html %.js %.css %.yaml %.py,$(wildcard $(addprefix $(1)/,web/* web/vendor/* http/* python/*)))
-# The migrations of the store as one piece of data in the order of their names, each ended by a NUL.
+# The migrations of the store as one block of data in the order of their names, each ended by a NUL.
 MIGRATIONS = $(sort $(wildcard schema/store/migrations/*.sql))
 DATA_schema = $(BUILD)/schema/store/migrations.data.o
 # The ready studies as one JSON list, for the page to begin new ones from.
@@ -68,17 +68,22 @@ BELOW_jobs   = jobs schema core
 BELOW_worker = worker jobs schema core
 BELOW_server = server worker jobs schema core
 MAIN     = server/command/main.c
-sources  = $(filter-out $(MAIN) core/example.c,$(wildcard $(1)/*.c $(1)/*/*.c))
+sources  = $(filter-out $(MAIN) core/example.c,$(wildcard $(1)/*.c $(1)/*/*.c $(1)/*/*/*.c))
 objects  = $(patsubst %,$(BUILD)/%.o,$(1))
 archive  = $(patsubst %,$(BUILD)/lib%.a,$(1))
 
 .PHONY: all library deps run test unit faults validation system bench lint format check-format install clean
 all: $(BUILD)/rugo library
 
-# Rewritten when the flags change; all that they make depends on it.
+# Rewritten when the flags change; all that they make depends on it. With new flags, or in a new folder, the compiler is
+# first asked for all headers that the code includes.
 export FLAGS = $(COMPILE) / $(LINK) / $(LDLIBS)
 $(BUILD)/flags: FORCE
-	@mkdir -p $(@D); echo "$$FLAGS" | cmp -s - $@ || echo "$$FLAGS" >$@
+	@mkdir -p $(@D); echo "$$FLAGS" | cmp -s - $@ || { \
+	    missing=$$(grep -rh --include='*.[ch]' --exclude=example.c '^#include <' $(LAYERS) | sort -u | \
+	        $(COMPILE) -E -x c - 2>&1 >/dev/null | sed -n '/fatal error\|not found/ { s/.*fatal error: //; p; q; }'); \
+	    [ -z "$$missing" ] || { echo "$$missing; make deps installs what is missing" >&2; exit 1; }; \
+	    echo "$$FLAGS" >$@; }
 FORCE:
 
 # The commit that is built, as a C file that is rewritten when it changes: the program alone links it, so that a commit
@@ -174,9 +179,13 @@ $(BUILD)/rugo.bash: $(BUILD)/rugo
 
 # Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them.
 SUPPORT = $(call objects,$(wildcard tests/support/*.c))
+# What draws whole inputs by choices: an archive, of which each test links what it uses.
+DRAWING = $(BUILD)/libdrawing.a
+$(DRAWING): $(call objects,$(filter-out %/replay.c,$(wildcard tests/support/fuzz/*.c)))
+	$(Q)rm -f $@; $(AR) rcs $@ $^
 define TESTS
 TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c))
-$$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(call archive,$(BELOW_$(2)))
+$$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(DRAWING) $(call archive,$(BELOW_$(2)))
 	$(say) LD $$@
 	$(Q)$(LINK) -pie -o $$@ $$^ -lcmocka $(LIBS_$(2)) $(LDLIBS)
 $(1)-$(2): $$(TESTS_$(1)_$(2))
@@ -249,28 +258,31 @@ SECONDS = 60
 REPLAY  = $(BUILD)/tests/support/fuzz/replay.c.o
 $(call all_tests,fuzz): $(REPLAY)
 fuzz: fuzz-deps
-	@$(MAKE) --no-print-directory BUILD=$(BUILD)-fuzz CC=clang SAN=address,undefined,fuzzer-no-link run-fuzz
+	@$(MAKE) --no-print-directory -j$$(nproc) BUILD=$(BUILD)-fuzz CC=clang SAN=address,undefined,fuzzer-no-link run-fuzz
 fuzz-deps: deps
 	@tests/install-deps "" "clang libclang-rt-dev" clang
+# Its threads are at work while libFuzzer looks for leaks after an input; those at the end are found.
+FUZZ_FLAGS_requests = -detect_leaks=0
 define FUZZ_TARGET
-$(BUILD)/fuzz/$(notdir $(1)): $(1).c.o $(call archive,$(BELOW_server))
+$(BUILD)/fuzz/$(notdir $(1)): $(1).c.o $(DRAWING) $(call archive,$(BELOW_server))
 	@mkdir -p $$(@D)
 	$(say) LD $$@
 	$(Q)$(LINK) -fsanitize=fuzzer -pie -o $$@ $$^ $(LIBS_server) $(LDLIBS)
 run-fuzz-$(notdir $(1)): $(BUILD)/fuzz/$(notdir $(1))
 	@mkdir -p $$<.corpus
-	@cd $$(<D) && ./$$(<F) -max_total_time=$(SECONDS) -timeout=20 -rss_limit_mb=4096 -max_len=8192 -close_fd_mask=2 \
-	    -verbosity=0 -print_final_stats=1 $$(<F).corpus $(abspath tests/fuzz/corpus)/$$(<F) >$$(<F).log 2>&1 || \
+	@cd $$(<D) && ./$$(<F) -max_total_time=$(SECONDS) -timeout=60 -rss_limit_mb=4096 -max_len=8192 -close_fd_mask=2 \
+	    -verbosity=0 -print_final_stats=1 $(FUZZ_FLAGS_$(notdir $(1))) $$(<F).corpus $(abspath tests/fuzz/corpus)/$$(<F) >$$(<F).log 2>&1 || \
 	    { tail -n 60 $$(<F).log; exit 1; }
 	@sed -n 's/^stat::number_of_executed_units: */fuzz $$(<F): executions /p' $$<.log
 .PHONY: run-fuzz-$(notdir $(1))
 endef
 $(foreach target,$(call all_tests,fuzz),$(eval $(call FUZZ_TARGET,$(target))))
-run-fuzz: $(foreach target,$(call all_tests,fuzz),run-fuzz-$(notdir $(target)))
+# WITHOUT="a b": but for these targets.
+run-fuzz: $(patsubst %,run-fuzz-%,$(filter-out $(WITHOUT),$(notdir $(call all_tests,fuzz))))
 .PHONY: fuzz fuzz-deps run-fuzz
 
 # Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads, and
-# system tests but those that count what is lost or told within seconds, which the sanitizer takes.
+# system tests but those that count what is lost or reported within seconds, which the sanitizer takes.
 UNTIMED := $(filter-out $(addprefix %/test_,same_answer slurm supervised target target_coverage \
 	commands contact_shown python),$(TESTS_system_server))
 run-unit:
@@ -281,6 +293,23 @@ run-threads:
 	@TSAN_OPTIONS=suppressions=$(abspath tests/thread-sanitizer.txt) \
 		RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(TESTS_unit_worker) $(UNTIMED)
 .PHONY: run-unit run-threads
+
+# All that .ci/run leaves out, or tries only where its paths changed: an hour and a half on two processors.
+nightly: all
+	$(MAKE) test
+	$(MAKE) lint
+	RUGO_EFFORT=4 $(MAKE) validation
+	$(MAKE) faults
+	$(MAKE) check-documents check-install check-units check-openapi check-figures tour
+	-@tests/install-deps "" "slurmctld slurmd slurm-client munge" munged slurmctld slurmd sbatch
+	$(MAKE) slurm-test
+	$(MAKE) check-static
+	$(MAKE) BUILD=$(BUILD)-O2 CFLAGS=-O2 run-unit
+	$(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-unit
+	$(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-faults
+	$(MAKE) BUILD=$(BUILD)-thread SAN=thread run-threads
+	$(MAKE) fuzz SECONDS=$(SECONDS)
+.PHONY: nightly
 
 deps:
 	@CC="$(CC) $(CPPFLAGS)" tests/install-deps "$(PACKAGES)" "$(APT)" $(firstword $(CC)) pkg-config $(HEADERS)
@@ -299,9 +328,10 @@ format:
 	@clang-format -i $(SOURCES)
 check-format:
 	@clang-format --dry-run --Werror $(SOURCES)
-# Not the programs that made fixtures: they need headers of others.
-LINTED = $(filter-out tests/fixtures/%,$(filter %.c,$(SOURCES)))
-lint: lint-deps check-format check-layers check-circles check-citations
+# Not the programs that made fixtures: they need headers of others. SINCE=REV: those alone that changed since a commit.
+CHANGED = $(if $(SINCE),$(shell git diff --name-only $(SINCE) -- '*.c'),%)
+LINTED = $(filter-out tests/fixtures/%,$(filter $(CHANGED),$(filter %.c,$(SOURCES))))
+lint: lint-deps check-format check-layers check-circles check-citations check-words
 	@printf '%s\n' $(LINTED) | \
 	    xargs -P $$(nproc) -I {} bash -o pipefail -c \
 	        "clang-tidy --quiet {} -- $(LANGUAGE) -Icore 2>&1 | sed '/^[0-9]* warnings* generated/d'"
@@ -316,6 +346,20 @@ check-citations:
 	@tests/check-citations
 	@echo "citations: all found"
 
+# Sentences of documents are short, and words that were given up stay away; the check notices both.
+check-words:
+	@tests/check-words --self-test
+	@tests/check-words
+.PHONY: check-words
+
+# The commands of the pages for users, from top to bottom, and what they print; a minute on two processors.
+DOCUMENTS = README.md server/command/COMMANDS.md jobs/contact/METHODS.md jobs/studies/measured/README.md
+check-documents: all
+	@tests/install-deps "" "curl jq sqlite3 librsvg2-bin" curl jq sqlite3 rsvg-convert
+	@tests/run-document --self-test
+	@tests/run-document $(abspath $(BUILD)/rugo) $(DOCUMENTS)
+.PHONY: check-documents
+
 # The pictures of the documents, drawn by the program; CI checks that they are what it draws today.
 FIGURES = jobs/studies/figures
 figures: all
@@ -329,7 +373,7 @@ check-figures: all
 	@echo "figures: as the program draws them"
 .PHONY: check-citations figures page-figures check-figures
 
-# From the file of an instrument to its contact, as jobs/studies/measured/README.md tells, a minute.
+# Whether the patch of jobs/studies/measured is what its recipe makes.
 tour: all
 	@jobs/studies/measured/tour $(abspath $(BUILD)/rugo)
 .PHONY: tour
@@ -354,14 +398,15 @@ $(foreach layer,$(LAYERS),$(eval $(call WHOLE,$(layer))))
 check-layers: $(patsubst %,$(BUILD)/whole-%,$(LAYERS))
 	@echo "layers: $(LAYERS): each links whole against those below"
 
-# No file includes itself by way of others, and the check of it notices one that does.
-check-circles:
-	@tests/check-circles --self-test
+# No file includes or calls itself by way of others, and the check of it notices one that does.
+check-circles: $(call archive,$(LAYERS))
+	@CC="$(CC)" tests/check-circles --self-test
 	@tests/check-circles
+	@tests/check-circles --symbols $(BUILD) $(foreach layer,$(LAYERS),$(call objects,$(call sources,$(layer))))
 .PHONY: check-layers check-circles
 
 INSTALLED = $(bindir)/rugo $(libdir)/$(SHARED) $(libdir)/$(SONAME) $(libdir)/librugo.so $(libdir)/librugo.a \
-            $(libdir)/pkgconfig/rugo.pc $(includedir)/rugo.h $(mandir)/man1/rugo.1 $(completion)/rugo \
+            $(libdir)/pkgconfig/rugo.pc $(includedir)/rugo.h $(includedir)/rugo_lists.h $(mandir)/man1/rugo.1 $(completion)/rugo \
             $(pythondir)/rugo.py $(addprefix $(unitdir)/,$(UNITS)) $(sysusersdir)/rugo.conf
 UNITS     = rugo.service rugo-work@.service
 install: all
@@ -373,6 +418,7 @@ install: all
 	$(INSTALL_DATA) $(BUILD)/librugo.a $(DESTDIR)$(libdir)/librugo.a
 	$(INSTALL_DATA) $(BUILD)/rugo.pc $(DESTDIR)$(libdir)/pkgconfig/rugo.pc
 	$(INSTALL_DATA) core/rugo.h $(DESTDIR)$(includedir)/rugo.h
+	$(INSTALL_DATA) core/rugo_lists.h $(DESTDIR)$(includedir)/rugo_lists.h
 	$(INSTALL_DATA) $(BUILD)/rugo.1 $(DESTDIR)$(mandir)/man1/rugo.1
 	$(INSTALL_DATA) $(BUILD)/rugo.bash $(DESTDIR)$(completion)/rugo
 	$(INSTALL_DATA) server/python/rugo.py $(DESTDIR)$(pythondir)/rugo.py
@@ -386,9 +432,10 @@ uninstall:
 # Into a prefix of its own: header, libraries and pkg-config agree, and the example runs with each library.
 check-install: all
 	@CC="$(CC)" MAKE="$(MAKE) --no-print-directory BUILD=$(BUILD)" tests/check-install core/example.c
-# The units of systemd, by its own tools; skipped where there are none.
+# The units of systemd, by its own tools, and the server's tried by kills; skipped where there are none.
 check-units: all
 	@tests/check-units $(abspath $(BUILD))/rugo
+	@tests/system/systemd/run $(abspath $(BUILD))/rugo
 .PHONY: uninstall check-install check-units
 clean:
 	rm -rf $(BUILD) $(dir $(wildcard build*/flags))

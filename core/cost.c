@@ -1,32 +1,32 @@
 #include "core/cost.h"
-#include "core/full/gmres.h"
+#include "core/full/linear/gmres.h"
 #include <math.h>
 
 /* --- surfaces --- */
 
-/* A point of a Gaussian surface takes so many nanoseconds (measured by bench_surface). */
+/* Nanoseconds a point of a Gaussian surface (bench_surface). */
 static const double GAUSSIAN_NS = 6;
 /* bench_nongaussian: nanoseconds a point and iteration; iterations after which plain alternation
- * stalls; plain iterations behind the relaxed ones. */
+ * stalls; plain iterations after the relaxed ones. */
 static const double ITERATION_NS = 15, PLAIN_ITERATIONS = 120, LAST_ITERATIONS = 3;
-/* The same of iterations that rank by a table, and how many there are until they stall. */
+/* As above, for iterations that rank by a table: nanoseconds, and the number after which they
+ * stall. */
 static const double FAST_ITERATION_NS = 9.5, FAST_ITERATIONS = 65;
-/* Until the tolerance is reached it takes REACH (tolerance sqrt(points))^-FALL + SKEWED skewness^2:
- * eps_h comes to rest at about 1/sqrt(points). Within 2 of what was counted for Weibull shapes 1 to
- * 3.602 and lognormal heights, surfaces of 256 x 256 to 1024 x 1024 and tolerances of 0.003 to
- * 0.03.
- */
+/* Iterations that reach the tolerance: REACH (tolerance sqrt(points))^-FALL + SKEWED skewness^2,
+ * because eps_h converges to about 1/sqrt(points). Within a factor of 2 of the counts for Weibull
+ * shapes 1 to 3.602 and lognormal heights, surfaces of 256 x 256 to 1024 x 1024 and tolerances of
+ * 0.003 to 0.03. */
 static const double REACH = 56, FALL = 0.8, SKEWED = 5;
-/* Refined summits and spectral curvatures take so many nanoseconds a point (bench_summits). */
+/* Nanoseconds a point of refined summits and of spectral curvatures (bench_summits). */
 static const double REFINED_NS = 15, SPECTRAL_CURVATURE_NS = 4;
-/* psd_measure and acf_measure together take so many nanoseconds a point, fitted to surfaces of 256
- * x 256 to 8192 x 8192 points. */
+/* Nanoseconds a point of psd_measure and acf_measure together, fitted to surfaces of 256 x 256 to
+ * 8192 x 8192 points. */
 static const double SPECTRA_NS = 17;
-/* Surfaces become slower by this much with each doubling of the points from 2^20 on
+/* Relative increase of a surface's time a point with each doubling of the points from 2^20 on
  * (bench_surface). */
 static const double CACHE_SLOPE = 0.4, CACHE_DOUBLINGS = 20;
 
-/* Returns the fast iterations until they stall or the tolerance is reached. */
+/* Returns the number of fast iterations until they stall or reach the tolerance. */
 static double fast_iterations(const struct surface_options *options, const struct grid *grid) {
     struct height_moments moments;
     double reach = grid != NULL ? options->tolerance * sqrt((double)grid_points(grid)) : 0;
@@ -67,19 +67,19 @@ double cost_caches(double points) {
 /* --- linear contact --- */
 
 /* bench_contact: transforms a load at a tolerance of 1e-8 are FRONT * nx^POWER, for profiles of 64
- * to 8192 points and surfaces of 128 x 128 to 1024 x 1024, loads up to 0.3; few loads lie far
+ * to 8192 points and surfaces of 128 x 128 to 1024 x 1024, loads up to 0.3. Few loads are farther
  * apart and take more each. */
 static const double PROFILE_FRONT = 30, PROFILE_POWER = 0.18;
 static const double SURFACE_FRONT = 9.3, SURFACE_POWER = 0.45;
 static const double FEW_LOADS = 1.5;
-/* The tolerance enters as (digits + 2)/10. */
+/* The tolerance enters by the factor (digits + 2)/10. */
 static const double DIGITS_MORE = 2, DIGITS_WHOLE = 10;
-/* bench_contact: nanoseconds a point and transform, with what belongs to it; slower by a tenth a
- * doubling of the points, from 2^14 points on. */
+/* bench_contact: nanoseconds a point and transform, with the other work of an iteration; a tenth
+ * more with each doubling of the points from 2^14 on. */
 static const double PROFILE_TRANSFORM_NS = 4, SURFACE_TRANSFORM_NS = 5;
 static const double TRANSFORM_CACHE_SLOPE = 0.1, TRANSFORM_CACHE_DOUBLINGS = 14;
 
-/* Points a side; of a rectangle the geometric mean, which is exact for squares. */
+/* Returns the points a side; of a rectangle the geometric mean, which is exact for squares. */
 static double mean_side(const struct grid *grid) {
     return grid_is_profile(grid) ? (double)grid->nx : sqrt((double)grid->nx * (double)grid->ny);
 }
@@ -100,26 +100,27 @@ double cost_linear_contact(const struct grid *grid, double tolerance, size_t loa
 
 /* --- finite elements (bench_full) --- */
 
-/* Iterations of Newton's method a load: NEWTON_LEAST and so many a doubling of nx. */
+/* Iterations of Newton's method a load: NEWTON_LEAST, plus the factor of the dimension for each
+ * doubling of nx. */
 static const double NEWTON_LEAST = 2, PROFILE_NEWTON = 0.22, SURFACE_NEWTON = 0.5;
-/* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.4, h' the
- * RMS slope and B = 1/(1 - 2 nu), about the bulk over the shear modulus; with pressures as unknowns
- * 0.12 B^0.55 more. */
+/* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.4, with
+ * h' the RMS slope and B = 1/(1 - 2 nu), about the bulk over the shear modulus. With pressures as
+ * unknowns there are 0.12 B^0.55 more. */
 static const double LINEAR_LEAST = 2, STEEP = 16, BULK_FRONT = 0.4, BULK_MOST = 10;
 static const double BULK_POWER = 0.4, PRESSURE_FRONT = 0.12, PRESSURE_POWER = 0.55;
-/* Beyond these iterations, and up to these degrees of freedom of a surface, the equations are
- * factorised (core/full/newton.h). */
+/* Equations that need more iterations are factorised (core/full/newton.h), on surfaces only up to
+ * SURFACE_FACTORED degrees of freedom. */
 static const double FACTORED_ITERATIONS = 20, SURFACE_FACTORED = 20000;
 /* Nanoseconds a degree of freedom: of an iteration of Newton's method without its linear equations,
- * of an iteration of these, what pressures add to that, and of an iteration of Newton's method with
- * a factorisation. */
+ * of an iteration of these, of the pressures in such an iteration, and of an iteration of Newton's
+ * method with a factorisation. */
 static const double PROFILE_NEWTON_NS = 250, SURFACE_NEWTON_NS = 1100;
 static const double PROFILE_LINEAR_NS = 36, SURFACE_LINEAR_NS = 80, PRESSURE_NS = 50;
 static const double PROFILE_FACTORED_NS = 5000, SURFACE_FACTORED_NS = 7e4;
-/* A factorisation takes so many bytes a degree of freedom. */
+/* Bytes a degree of freedom of a factorisation. */
 static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
-/* So many transforms of a point take the time of an iteration of Newton's method on a degree of
- * freedom. */
+/* Number of transforms of a point that take the time of an iteration of Newton's method on a degree
+ * of freedom. */
 static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
 
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
@@ -167,9 +168,9 @@ double cost_full_transforms(const struct grid *grid) {
 
 /* --- scatter --- */
 
-/* A cell of n longest waves holds about n^dimension independent pieces of surface. Fitted to
- * profiles of 2 to 32 and surfaces of 4 and 8 waves; small Hurst exponents put more into the short
- * waves, of which there are many, and scatter less. */
+/* A cell of n longest waves holds about n^dimension independent parts of surface. Fitted to
+ * profiles of 2 to 32 and surfaces of 4 and 8 waves. Spectra of small Hurst exponents have more of
+ * the short waves, of which there are many, and scatter less. */
 static const double PROFILE_SCATTER = 0.2, SURFACE_SCATTER = 0.05, HURST_LEAST = 0.25;
 
 double cost_area_scatter(int dimension, double long_waves, double hurst) {

@@ -1,28 +1,28 @@
-/* What computations cost before they run: CPU seconds on one core at 3 GHz, bytes, and the scatter
- * of results from one realisation to the next. Every constant in cost.c names its unit and the
- * bench in tests/bench/core that it was fitted to; estimates are within a factor of about 2. */
+/* Estimates of costs before a computation: CPU seconds on one core at 3 GHz, bytes, and the scatter
+ * of results between realisations. Every constant in cost.c names its unit and the bench in
+ * tests/bench/core that it was fitted to; estimates are within a factor of about 2. */
 #ifndef RUGO_CORE_COST_H
 #define RUGO_CORE_COST_H
 
 #include "core/full/full.h"
-#include "core/statistics/summits.h"
+#include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 
-/* Nanoseconds a point and realisation: to generate a surface (non-Gaussian ones in as many
- * iterations as their tolerance and heights are expected to take), to find its summits, and to
- * measure its spectral density and autocorrelation. */
+/* Nanoseconds a point and realisation: to generate a surface (non-Gaussian ones by the number of
+ * iterations expected for their tolerance and heights), to find its summits, and to measure its
+ * spectral density and autocorrelation. */
 double cost_generation(const struct surface_options *options, const struct grid *grid);
 double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature);
 double cost_spectra(void);
-/* By how much work on so many points slows down beyond the processor's caches. */
+/* Returns the factor by which work on this many points slows down beyond the processor's caches. */
 double cost_caches(double points);
 
 /* CPU seconds of a linear model (core/contact) for a series of loads of one surface. tolerance is
  * that of contact_options. */
 double cost_linear_contact(const struct grid *grid, double tolerance, size_t loads);
 
-/* How many equations the finite elements (core/full) have on a grid, and how hard they are to
- * solve. Fitted to profiles of 64 to 8192 points and surfaces of 8 x 8 to 64 x 64, RMS slopes of
+/* The number of equations of the finite elements (core/full) on a grid, and the iterations to solve
+ * them. Fitted to profiles of 64 to 8192 points and surfaces of 8 x 8 to 64 x 64, RMS slopes of
  * 0.01 to 0.7 and Poisson's ratios of 0.3 to 0.4999. */
 struct full_size {
     double degrees_of_freedom; /* 0 where the block takes too many layers */
@@ -34,20 +34,19 @@ struct full_size {
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
                                 const struct full_options *options, double rms_slope);
 /* CPU seconds for a series of loads of one surface, and bytes of the solver; 0 bytes where the
- * block takes too many layers. With the surface and the program the peak of profiles of 1024 to
- * 65536 points and of surfaces of 32 x 32 to 192 x 192 was 0.96 to 1.05 of what is told (0.45 for
- * steep profiles, not all of which are factorised in the end), and the time of three loads 1.0 to
- * 2.1 of it; 3.2 at a Poisson's ratio of 0.4999. */
+ * block takes too many layers. On profiles of 1024 to 65536 points and surfaces of 32 x 32 to
+ * 192 x 192, the measured peak, with the surface and the program, was 0.96 to 1.05 of the estimate;
+ * 0.45 for steep profiles, not all of which are factorised in the end. The time of three loads was
+ * 1.0 to 2.1 of the estimate; 3.2 at a Poisson's ratio of 0.4999. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, size_t loads);
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size);
-/* What an iteration of Newton's method on a degree of freedom is worth in Fourier transforms of a
- * point, the unit of contact_state.work. */
+/* Returns the number of Fourier transforms of a point, the unit of contact_state.work, that take as
+ * long as an iteration of Newton's method on a degree of freedom. */
 double cost_full_transforms(const struct grid *grid);
 
-/* Standard deviation of the contact fraction from one realisation to the next, over its mean.
- * long_waves: side of the cell in longest waves; hurst: NaN for spectra that are not self-affine.
- */
+/* Standard deviation of the contact fraction between realisations, over its mean. long_waves: side
+ * of the cell in longest waves; hurst: NaN for spectra that are not self-affine. */
 double cost_area_scatter(int dimension, double long_waves, double hurst);
 
 #endif

@@ -30,7 +30,7 @@ int error_context(struct error *err, const char *format, ...) {
     size_t head = strlen(context);
     memcpy(context + head, ": ", 3);
     head += 2;
-    /* What was said first is what went wrong: the context gives way where both do not fit. */
+    /* The first text names the fault: where both do not fit, the context is shortened. */
     size_t tail = strlen(err->text);
     size_t room = sizeof err->text - 1;
     if (head + tail > room)

@@ -1,23 +1,23 @@
 /* Errors as values.
  *
- * Every fallible function returns an int: 0, or one of the negative codes below, and then has
+ * Every fallible function returns an int: 0, or one of the negative codes below. With a code it has
  * filled the caller's struct error with a sentence that names the thing at fault, its value and
- * what is allowed; characters that a terminal would obey are '?' in it. Callers either handle it or
- * return it, with a word of context put in front.
+ * what is allowed. In this sentence, characters that a terminal would obey are replaced by '?'.
+ * Callers either handle the error or return it, with a word of context put in front.
  *
- * What a failure leaves, wherever a function says nothing else: *out of a constructor is NULL or
- * untouched, and nothing has to be destroyed; outputs that are filled in place are undefined; the
- * objects that were passed in can be used again. */
+ * After a failure, unless a function says otherwise: *out of a constructor is NULL or untouched,
+ * and nothing has to be destroyed; outputs that are filled in place are undefined; the objects that
+ * were passed in can be used again. */
 #ifndef RUGO_CORE_ERROR_H
 #define RUGO_CORE_ERROR_H
 
 #include <stddef.h>
 
 enum {
-    ERROR_INPUT = -1,   /* what the user gave is wrong; trying again will not help */
+    ERROR_INPUT = -1,   /* the user's input is wrong; trying again will not help */
     ERROR_MEMORY = -2,  /* an allocation failed */
     ERROR_SYSTEM = -3,  /* a file, the network, the operating system */
-    ERROR_NUMERIC = -4, /* no answer to the accuracy asked: no convergence, out of domain */
+    ERROR_NUMERIC = -4, /* no result of the required accuracy: no convergence, out of domain */
     ERROR_STATE = -5,   /* refused by the state of a study or job: a lost lease, already ended */
     ERROR_ABSENT = -6,  /* no such study, job or case */
     ERROR_STOPPED = -7, /* asked to stop; nothing is wrong */
@@ -28,8 +28,8 @@ struct error {
     char text[480];
 };
 
-/* Fills err (which may be NULL); its value is code, a constant where the call is, so that readers
- * and analysers see that it is not 0. */
+/* Fills err (which may be NULL). The value is code, a constant at the call, so that readers and
+ * analysers see that it is not 0. */
 #define error_set(err, code, ...) (error_fill((err), (code), __VA_ARGS__), error_code(code))
 static inline int error_code(int code) {
     return code;

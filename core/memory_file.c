@@ -7,7 +7,7 @@
 
 enum { ROOM_LEAST = 1024 };
 
-/* Makes room for so many bytes and a NUL; false when out of memory. */
+/* Allocates this many bytes and a NUL; returns false when out of memory. */
 static bool reserve(struct memory_file *memory, size_t size) {
     size_t room = memory->room < ROOM_LEAST ? ROOM_LEAST : memory->room;
     while (room <= size && room <= SIZE_MAX / 2)
@@ -50,6 +50,8 @@ bool memory_file_open(struct memory_file *memory) {
 }
 
 char *memory_file_close(struct memory_file *memory, size_t *size) {
+    if (memory->file == NULL)
+        return NULL;
     bool failed = ferror(memory->file) != 0;
     failed = fclose(memory->file) != 0 || failed || memory->failed;
     if (failed)

@@ -1,5 +1,5 @@
-/* A file in memory to print a text into. Unlike that of open_memstream, which neither ferror nor
- * fclose tells of, a want of memory is never lost: the text is whole, or there is none. */
+/* A file in memory to print a text into. With open_memstream neither ferror nor fclose reports a
+ * lack of memory. Here it is never lost: the text is whole, or there is none. */
 #ifndef RUGO_CORE_MEMORY_FILE_H
 #define RUGO_CORE_MEMORY_FILE_H
 
@@ -11,13 +11,13 @@ struct memory_file {
     char *text; /* owned, as all below */
     size_t size, room;
     bool failed;
-    char buffer[4096]; /* of the file: a large one of its own would be one more thing to fail */
+    char buffer[4096]; /* of the file: allocating a larger one could fail, too */
 };
-/* False when out of memory: nothing to close then. The struct must stay where it is until closed.
- */
+/* Returns false when out of memory; then there is nothing to close. The struct must not move until
+ * it is closed. */
 bool memory_file_open(struct memory_file *memory);
-/* The text, NUL-terminated, which the caller frees, and its size (NULL: not wanted); NULL when it
- * was out of memory. */
+/* The text, NUL-terminated, which the caller frees, and its size (NULL: not wanted); NULL when
+ * memory was lacking, for the opening too. */
 char *memory_file_close(struct memory_file *memory, size_t *size);
 
 #endif

@@ -17,7 +17,8 @@
 
 enum { TRIES_MOST = 100 };
 
-/* A path in which no character stands for others; NULL out of memory. The caller frees. */
+/* Returns the glob pattern of a path's parts, in which wildcards of the path are escaped; NULL when
+ * out of memory. The caller frees it. */
 static char *pattern_of(const char *path) {
     static const char RANDOM[] = PART_SUFFIX "??????";
     size_t length = strlen(path), used = 0;
@@ -53,8 +54,8 @@ void part_file_remove_left(const char *path) {
     free(pattern);
 }
 
-/* Makes the file and locks it. *held is false where the name was taken, or another process took the
- * file away between the two, as one that was left. */
+/* Makes the file and locks it. *held is false where the name was taken, or another process removed
+ * the file between the two steps because it seemed abandoned. */
 static int make_part(struct part_file *part, bool *held, struct error *err) {
     struct stat info;
     uint32_t word;
@@ -104,7 +105,7 @@ int part_file_create(struct part_file *part, const char *path, struct error *err
 }
 
 /* Renames without replacing; where the file system cannot do that in one step, in two. */
-static int put_in_place(const struct part_file *part) {
+static int rename_part(const struct part_file *part) {
     struct stat info;
     if (renameat2(AT_FDCWD, part->path, AT_FDCWD, part->target, RENAME_NOREPLACE) == 0)
         return 0;
@@ -117,7 +118,7 @@ static int put_in_place(const struct part_file *part) {
     return rename(part->path, part->target);
 }
 
-/* The name itself is on the disk when its folder is. */
+/* Writes the folder to disk, and with it the name of the file. */
 static int sync_folder(const char *path) {
     char *folder = strdup(path);
     if (folder == NULL)
@@ -137,13 +138,13 @@ int part_file_publish(struct part_file *part, struct error *err) {
     int status = 0;
     if (fsync(part->file) != 0)
         status = error_set(err, ERROR_SYSTEM, "%s: %s", part->target, strerror(errno));
-    else if (put_in_place(part) != 0)
+    else if (rename_part(part) != 0)
         status =
             error_set(err, errno == EEXIST ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s", part->target,
                       errno == EEXIST ? "exists; a new file is needed" : strerror(errno));
     else
-        (void)sync_folder(part->target); /* some file systems cannot, and the file is there */
-    part_file_destroy(part);             /* after a success there is no such path any more */
+        (void)sync_folder(part->target); /* some file systems cannot do it; the file is there */
+    part_file_destroy(part);             /* after a success no such path is left */
     return status;
 }
 

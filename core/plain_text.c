@@ -14,7 +14,7 @@ size_t text_character(const char *text) {
     return overlong || beyond ? 0 : length;
 }
 
-/* The code point of a well-formed sequence. */
+/* Returns the code point of a well-formed sequence. */
 static uint32_t code_point(const char *text, size_t length) {
     static const unsigned char FIRST_BITS[5] = {[1] = 0x7f, [2] = 0x1f, [3] = 0x0f, [4] = 0x07};
     uint32_t point = (unsigned char)text[0] & FIRST_BITS[length];

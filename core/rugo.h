@@ -5,41 +5,45 @@
  * grid.ny doubles, x fastest: z[j*nx + i] is the height at (i*lx/nx, j*ly/ny); it is periodic. A
  * profile has ny == 1, and ly is ignored.
  *
- * Errors. A function that returns int gives 0, or one of the negative codes below after it has
- * filled *err (which may be NULL) with a sentence that names what is at fault; outputs are
- * untouched then, unless a comment says otherwise. Functions of theory return NaN out of their
- * domain.
+ * Errors. A function that returns int returns 0, or one of the negative codes below. With a code it
+ * has filled *err (which may be NULL) with a sentence that names what is at fault, and outputs are
+ * untouched unless a comment says otherwise. Functions of theory return NaN outside their domain.
  *
- * Ownership. What x_create gives is given back by x_destroy, which accepts a pointer to NULL and
- * leaves NULL. Arrays that are passed in are borrowed for the call, or copied.
+ * Ownership. x_destroy frees what x_create has made. It accepts a pointer to NULL and leaves NULL.
+ * Arrays that are passed in are borrowed for the call, or copied.
  *
  * Threads. One object belongs to one thread at a time; different objects are independent. FFTW
- * plans are made behind a lock of the library: a program that makes such plans itself, in other
+ * plans are made behind a lock of the library. A program that makes such plans itself, in other
  * threads, calls fftw_make_planner_thread_safe.
+ *
+ * Choices (enum rugo_...) are listed and explained in rugo_lists.h, which the program reads as
+ * well.
  *
  * Sources are named by author and year; core/theory/BIBLIOGRAPHY.md lists them, and
  * core/theory/FORMULAS.md the formulas. */
 #ifndef RUGO_H
 #define RUGO_H
 
+#include "rugo_lists.h"
 #include <stddef.h>
 #include <stdint.h>
 
 #define RUGO_VERSION "0.1.0"
 #define RUGO_API __attribute__((visibility("default")))
+#define RUGO_ENTRY(type, name, value) RUGO_##type = (value),
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* The version of the library that is linked, as RUGO_VERSION; not to be freed. */
+/* Returns the version of the linked library, as RUGO_VERSION; not to be freed. */
 RUGO_API const char *rugo_version(void);
 
 enum {
     RUGO_ERROR_INPUT = -1,   /* an argument or a file is wrong */
     RUGO_ERROR_MEMORY = -2,  /* an allocation failed */
     RUGO_ERROR_SYSTEM = -3,  /* a file could not be opened, read or written */
-    RUGO_ERROR_NUMERIC = -4, /* no answer to the accuracy asked: no convergence, out of domain */
+    RUGO_ERROR_NUMERIC = -4, /* no result of the required accuracy: no convergence, out of domain */
 };
 struct rugo_error {
     int code; /* one of the above */
@@ -53,11 +57,8 @@ struct rugo_grid {
 
 /* --- spectra --- */
 
-enum rugo_spectrum_type {
-    RUGO_SELF_AFFINE,     /* power |k|^(-2 hurst - 2) (profile - 1), flat beyond the roll-off */
-    RUGO_EXPONENTIAL_ACF, /* autocorrelation exp(-sqrt((x/bx)^2 + (y/by)^2)) */
-    RUGO_TABLE            /* given by its density */
-};
+/* RUGO_SELF_AFFINE, RUGO_EXPONENTIAL_ACF, RUGO_TABLE. */
+enum rugo_spectrum_type { RUGO_SPECTRA(RUGO_ENTRY) };
 struct rugo_spectrum {
     enum rugo_spectrum_type type;
     double hurst;                             /* self-affine, in [0, 1] */
@@ -82,48 +83,45 @@ struct rugo_moments {
     double nayak_alpha;                          /* m0 m4/m2^2 (Nayak 1971); NaN for a flat map */
     double rms_height, rms_slope, rms_curvature; /* curvature: (z_xx + z_yy)/2; profile z_xx */
 };
-/* Of the surfaces that this spectrum makes on this grid; the same for each of them, or with random
- * amplitudes of their mean. INPUT where the grid holds no wave of the spectrum or does not resolve
- * its shortest one. */
+/* Moments of the surfaces with this spectrum on this grid: the same for each of them, or with
+ * random amplitudes those of their mean. INPUT where the grid holds no wave of the spectrum or does
+ * not resolve its shortest one. */
 RUGO_API int rugo_spectrum_moments(const struct rugo_spectrum *spectrum,
                                    const struct rugo_grid *grid, struct rugo_moments *out,
                                    struct rugo_error *err);
-/* Nayak's alpha of a continuous self-affine spectrum; dimension 1 (profile) or 2, ratio the longest
- * over the shortest wavelength, rolloff the longest over that of the roll-off, at least 1. */
+/* Returns Nayak's alpha of a continuous self-affine spectrum; dimension 1 (profile) or 2, ratio the
+ * longest over the shortest wavelength, rolloff the longest over that of the roll-off, at least
+ * 1. */
 RUGO_API double rugo_alpha_of_ratio(int dimension, double hurst, double ratio, double rolloff);
-/* Its inverse: the ratio that gives alpha. INPUT for another dimension, hurst outside [0, 1],
- * rolloff below 1 or an alpha that is not finite; NUMERIC, with the range, where no ratio gives
+/* The inverse: finds the ratio of an alpha. INPUT for another dimension, hurst outside [0, 1],
+ * rolloff below 1 or an alpha that is not finite; NUMERIC, with the range, where no ratio has this
  * alpha. */
 RUGO_API int rugo_ratio_of_alpha(int dimension, double hurst, double rolloff, double alpha,
                                  double *ratio, struct rugo_error *err);
 
 /* --- random surfaces --- */
 
-enum rugo_heights_type {
-    RUGO_GAUSSIAN,
-    RUGO_WEIBULL_MIN, /* F(z) = 1 - exp(-z^shape), z > 0 */
-    RUGO_WEIBULL_MAX, /* its mirror image */
-    RUGO_QUANTILE     /* any distribution of finite mean and deviation, by its quantiles */
-};
-/* Heights are brought to mean 0 and to the RMS height of the spectrum, whatever the distribution;
- * a non-Gaussian surface comes from alternating between the spectrum and the heights
- * (Perez-Rafols & Almqvist 2019). */
+/* RUGO_GAUSSIAN, RUGO_WEIBULL_MIN, RUGO_WEIBULL_MAX, RUGO_LOGNORMAL, RUGO_QUANTILE. */
+enum rugo_heights_type { RUGO_DISTRIBUTIONS(RUGO_ENTRY) RUGO_QUANTILE = RUGO_QUANTILE_VALUE };
+/* Heights are scaled to mean 0 and to the RMS height of the spectrum, whatever the distribution. A
+ * non-Gaussian surface is made by alternating between the spectrum and the heights (Perez-Rafols &
+ * Almqvist 2019). */
 struct rugo_surface_options {
     enum rugo_heights_type heights;
-    double shape;                                                /* Weibull's, [0.5, 20] */
+    double shape; /* Weibull's, [0.5, 20]; of the log-normal one, [0.01, 1] */
     double (*quantile)(double probability, const void *context); /* rising on (0, 1) */
     const void *quantile_context;                                /* borrowed */
-    int keep_heights;      /* which is exact in the end: 0 the spectrum, 1 the heights */
+    int keep_heights;      /* which is exact in the result: 0 the spectrum, 1 the heights */
     double tolerance;      /* of the iteration, on its three errors */
     size_t max_iterations; /* of the iteration */
-    int random_amplitudes; /* 0: each surface has the spectrum; 1: their mean has it, waves having
-                              amplitudes after Rayleigh, as a piece of an endless surface has */
+    int random_amplitudes; /* 0: each surface has the spectrum; 1: their mean has it, and waves have
+                              Rayleigh's amplitudes, as a part of an infinite surface has */
 };
 /* Returns options for Gaussian surfaces, with a tolerance of 1e-3 and at most 1000 iterations. */
 RUGO_API struct rugo_surface_options rugo_surface_defaults(void);
 
-/* What one generation did: errors of heights, of the spectrum and of waves outside of it; all 0 for
- * Gaussian heights, which need no iteration. */
+/* Errors of a generation: of heights, of the spectrum and of waves outside it; all 0 for Gaussian
+ * heights, which need no iteration. */
 struct rugo_surface_report {
     size_t iterations;
     double error_heights, error_spectrum, error_outside;
@@ -140,16 +138,16 @@ RUGO_API int rugo_generator_create(struct rugo_generator **out,
                                    struct rugo_error *err);
 RUGO_API void rugo_generator_destroy(struct rugo_generator **generator);
 /* Fills z, nx*ny heights. The surface depends on (seed, sequence, realisation) alone, by counted
- * random words (Salmon et al. 2011), with uniform phases (Wu 2000); a Gaussian one is the same on
- * every grid that resolves it. All cases of a study are of sequence 0; those of an independent
- * study, of the sequence of their number. report: NULL where not wanted. z is filled in place: what
- * it holds after a failure has no meaning. */
+ * random words (Salmon et al. 2011), with uniform phases (Wu 2000). A Gaussian surface is the same
+ * on every grid that resolves it. All cases of a study have sequence 0; those of an independent
+ * study have their number. report: NULL where not wanted. z is filled in place, and undefined after
+ * a failure. */
 RUGO_API int rugo_generator_run(struct rugo_generator *generator, uint64_t seed, uint64_t sequence,
                                 uint64_t realisation, double *z, struct rugo_surface_report *report,
                                 struct rugo_error *err);
-/* The map z of the grid `from`, sampled on the grid `to` of the same cell: exact for waves up to
- * mode_x, mode_y a cell, at most half the points of either grid; others are left out. Everything
- * that can fail does so before out is written, which may not overlap z. */
+/* Samples the map z of the grid `from` on the grid `to` of the same cell. This is exact for waves
+ * up to mode_x, mode_y a cell, at most half the points of either grid; others are removed. out may
+ * not overlap z; whatever can fail does so before out is written. */
 RUGO_API int rugo_resample(const struct rugo_grid *from, const double *z,
                            const struct rugo_grid *to, size_t mode_x, size_t mode_y, double *out,
                            struct rugo_error *err);
@@ -161,41 +159,38 @@ struct rugo_map {
     double *z; /* owned: rugo_map_clear */
 };
 /* Reads NumPy's npy, csv (a grid row a line) or xyz (x y z lines), by the ending of the name. dx:
- * the spacing of points where the file does not tell (0: 1). INPUT names the line at fault, or the
- * first hole (NaN); SYSTEM. */
+ * the spacing of points where the file has none (0: 1). INPUT names the line at fault, or the first
+ * hole (NaN); SYSTEM. */
 RUGO_API int rugo_map_read(struct rugo_map *out, const char *path, double dx,
                            struct rugo_error *err);
 /* Frees the heights; NULL and {0} are accepted. */
 RUGO_API void rugo_map_clear(struct rugo_map *map);
-/* Writes by the ending of the name, so that reading gives the same heights. */
+/* Writes in the format of the ending of the name; reading returns the same heights. */
 RUGO_API int rugo_map_write(const char *path, const struct rugo_grid *grid, const double *z,
                             struct rugo_error *err);
 
 /* --- statistics of a map --- */
 
-/* These are about the mean, and slopes and curvatures are finite differences on the grid. */
+/* Moments are about the mean; slopes and curvatures are finite differences on the grid. */
 struct rugo_roughness {
     double mean, rms_height, rms_slope, rms_curvature;
     double skewness, kurtosis; /* NaN for a flat map; a Gaussian has 0 and 3 */
-    double lowest, highest;    /* heights, not less the mean */
+    double lowest, highest;    /* heights, including the mean */
 };
 RUGO_API int rugo_roughness(const struct rugo_grid *grid, const double *z,
                             struct rugo_roughness *out, struct rugo_error *err);
 /* Spectral moments of a map: exact for band-limited ones, where finite differences are not. */
 RUGO_API int rugo_moments(const struct rugo_grid *grid, const double *z, struct rugo_moments *out,
                           struct rugo_error *err);
-/* Returns how many values rugo_psd gives on a grid; 0 for no grid. */
+/* Returns the number of values of rugo_psd on a grid; 0 for no grid. */
 RUGO_API size_t rugo_psd_size(const struct rugo_grid *grid);
 /* Power spectral density over |k| (radians per length), in rings: m00 is its integral over the
  * plane of k, of a profile over both signs. Both arrays have room for rugo_psd_size. */
 RUGO_API int rugo_psd(const struct rugo_grid *grid, const double *z, double *wave_number,
                       double *density, struct rugo_error *err);
 
-enum rugo_summit_rule {
-    RUGO_NINE_POINT, /* above the 8 neighbours */
-    RUGO_FIVE_POINT, /* above the 4 neighbours */
-    RUGO_REFINED     /* true maxima of the band-limited surface, between the points */
-};
+/* RUGO_NINE_POINT, RUGO_FIVE_POINT, RUGO_REFINED. */
+enum rugo_summit_rule { RUGO_SUMMIT_RULES(RUGO_ENTRY) };
 struct rugo_summit {
     double x, y, height;
     double curvature; /* -(z_xx + z_yy)/2, profile -z_xx; positive */
@@ -210,21 +205,23 @@ RUGO_API int rugo_summits_find(struct rugo_summits *out, const struct rugo_grid 
                                const double *z, enum rugo_summit_rule rule, struct rugo_error *err);
 RUGO_API void rugo_summits_clear(struct rugo_summits *summits);
 
-/* --- statistics of a map that does not repeat, or has holes --- */
+/* --- statistics of a map that is not periodic, or has holes --- */
 
-/* Here a map ends at its sides, NaN is a height that was not measured, and sums run over what is
- * there; lx is nx times the spacing, as for maps that repeat. */
+/* Here a map ends at its sides, NaN is a height that was not measured, and sums run over the
+ * heights there are; lx is nx times the spacing, as for periodic maps. */
 
-enum rugo_trend { RUGO_MEAN, RUGO_PLANE, RUGO_QUADRATIC };
-/* Takes the trend of least squares out of z in place. INPUT where too few heights are there, z is
- * as it was then. */
+/* RUGO_MEAN, RUGO_PLANE, RUGO_QUADRATIC. */
+enum rugo_trend { RUGO_TRENDS(RUGO_ENTRY) };
+/* Subtracts the trend of least squares from z in place. INPUT, z unchanged, where there are too few
+ * heights. */
 RUGO_API int rugo_detrend(const struct rugo_grid *grid, double *z, enum rugo_trend trend,
                           struct rugo_error *err);
-/* How rough the seam would be, did the map repeat, over the roughest place inside, the larger one
- * of both axes: above 1.2 it does not repeat. Infinite where nothing can be compared. */
+/* The roughness at the seam of the map, if it were repeated, over that of the roughest part inside;
+ * the larger ratio of both axes. Above 1.2 the map is not periodic. Infinite where there is nothing
+ * to compare with. */
 RUGO_API int rugo_seam(const struct rugo_grid *grid, const double *z, double *seam,
                        struct rugo_error *err);
-/* As rugo_roughness; NaN where the map does not tell. */
+/* As rugo_roughness; NaN where the heights do not determine a value. */
 RUGO_API int rugo_open_roughness(const struct rugo_grid *grid, const double *z,
                                  struct rugo_roughness *out, struct rugo_error *err);
 /* As rugo_moments, by derivatives of polynomials through the points nearby. */
@@ -233,14 +230,14 @@ RUGO_API int rugo_open_moments(const struct rugo_grid *grid, const double *z,
 /* As rugo_psd, under Hann's window. */
 RUGO_API int rugo_open_psd(const struct rugo_grid *grid, const double *z, double *wave_number,
                            double *density, struct rugo_error *err);
-/* As rugo_summits_find; *searched is the area (of a profile: the length) that they were found in.
- */
+/* As rugo_summits_find; *searched is the area (of a profile: the length) in which they were
+ * found. */
 RUGO_API int rugo_open_summits_find(struct rugo_summits *out, double *searched,
                                     const struct rugo_grid *grid, const double *z,
                                     enum rugo_summit_rule rule, struct rugo_error *err);
-/* Areal parameters of ISO 25178-2, of a surface that repeats (open 0) or not (1), as
- * core/theory/GLOSSARY.md has them; NaN where the map does not tell. INPUT for profiles, and for a
- * map that repeats with holes. */
+/* Areal parameters of ISO 25178-2, of a surface that is periodic (open 0) or not (1), as defined in
+ * core/theory/GLOSSARY.md; NaN where the heights do not determine a value. INPUT for profiles, and
+ * for a periodic map with holes. */
 struct rugo_areal {
     double sa, sq, ssk, sku, sp, sv, sz, sdq, sdr, sal, str, spd, spc;
 };
@@ -253,11 +250,13 @@ RUGO_API int rugo_areal(const struct rugo_grid *grid, const double *z, int open,
  * below. */
 RUGO_API double rugo_nayak_summit_pdf(double z, double alpha);
 RUGO_API double rugo_nayak_summit_cdf(double z, double alpha);
-/* Joint density of height z and t1 = -sqrt(3/m4) kappa, kappa the mean curvature; 0 for t1 >= 0. */
+/* Returns the joint density of height z and t1 = -sqrt(3/m4) kappa, kappa the mean curvature; 0 for
+ * t1 >= 0. */
 RUGO_API double rugo_nayak_joint_pdf(double z, double t1, double alpha);
 /* Returns the mean curvature of the summits at height z, over sqrt(m4). */
 RUGO_API double rugo_nayak_mean_curvature(double z, double alpha);
-/* Summits per area, from the isotropic moments; NaN unless both are finite, m2 > 0 and m4 >= 0. */
+/* Returns summits per area, from the isotropic moments; NaN unless both are finite, m2 > 0 and m4
+ * >= 0. */
 RUGO_API double rugo_nayak_summit_density(double m2, double m4);
 
 /* --- theories of contact; load = p/(E* h') --- */
@@ -266,9 +265,9 @@ RUGO_API double rugo_nayak_summit_density(double m2, double m4);
  * pressure over E* h'. */
 RUGO_API double rugo_persson_area(double load);
 RUGO_API double rugo_persson_pressure_pdf(double pressure, double load);
-/* Contact fraction by asperities pressed alone, load in [1e-250, 1e6], alpha > 3/2; it may exceed
- * 1. Bush, Gibson & Thomas (1975); Greenwood & Williamson (1966) with the parameters of McCool
- * (1986). */
+/* These return the contact fraction by asperities pressed alone, load in [1e-250, 1e6], alpha >
+ * 3/2; it may exceed 1. Bush, Gibson & Thomas (1975); Greenwood & Williamson (1966) with the
+ * parameters of McCool (1986). */
 RUGO_API double rugo_bgt_area(double load, double alpha);
 RUGO_API double rugo_gw_mccool_area(double load, double alpha);
 /* One wave, amplitude Delta (Westergaard 1939), by ratio = p/p* in [0, 1], p* = pi E* Delta/lambda:
@@ -280,11 +279,8 @@ RUGO_API double rugo_westergaard_gap(double ratio);
 
 /* --- contact --- */
 
-enum rugo_model {
-    RUGO_HALFSPACE, /* linear, roughness as a gap, infinite depth or an exact layer */
-    RUGO_LAYERED,   /* linear finite elements on a flat block */
-    RUGO_FULL       /* finite elements on the rough geometry, finite strain (Hencky) */
-};
+/* RUGO_HALFSPACE, RUGO_LAYERED, RUGO_FULL. */
+enum rugo_model { RUGO_MODELS(RUGO_ENTRY) };
 struct rugo_block {
     enum rugo_model model;
     double poisson;      /* [0, 0.5); without influence on a half-space */
@@ -298,12 +294,12 @@ RUGO_API struct rugo_block rugo_block_defaults(enum rugo_model model, const stru
 /* One load. Fractions are of the cell; arrays have nx*ny values and are the solver's, valid until
  * its next call. */
 struct rugo_contact_state {
-    double pressure;   /* mean */
-    const double *p;   /* local pressures; 0 where open */
-    const double *gap; /* between surface and flat */
-    double area;       /* contact fraction, its edges found below the grid: the best estimate */
-    double area_nodes; /* share of nodes in contact: too much ... */
-    double area_lower, area_upper; /* ... and the bracket of it */
+    double pressure;               /* mean */
+    const double *p;               /* local pressures; 0 where open */
+    const double *gap;             /* between surface and flat */
+    double area;                   /* contact fraction by edges between nodes: the best estimate */
+    double area_nodes;             /* share of nodes in contact: too large ... */
+    double area_lower, area_upper; /* ... and bounds of the contact fraction */
     double mean_gap;
     double stiffness;  /* -d pressure/d mean_gap; infinite in full contact */
     size_t patches;    /* islands of contact */
@@ -312,32 +308,33 @@ struct rugo_contact_state {
 };
 /* A solver for one grid and one block. */
 struct rugo_contact;
-/* Fails with INPUT for a block out of range or too deep a mesh, or with MEMORY. */
+/* INPUT for a block out of range, too deep a mesh, or points that are more than 100 times as far
+ * apart along one axis as along the other; MEMORY. */
 RUGO_API int rugo_contact_create(struct rugo_contact **out, const struct rugo_grid *grid,
                                  const struct rugo_block *block, struct rugo_error *err);
-/* Of a map that does not repeat: an elastic half-space in free space, in contact within the grid's
+/* For a map that is not periodic: an elastic half-space in free space, in contact within the grid's
  * lx by ly alone. Fails as rugo_contact_create. */
 RUGO_API int rugo_contact_create_open(struct rugo_contact **out, const struct rugo_grid *grid,
                                       struct rugo_error *err);
 RUGO_API void rugo_contact_destroy(struct rugo_contact **contact);
-/* Takes a surface (copies; any mean) that is not in contact yet: highest points touch first. INPUT
- * for a height that is not finite, and for the full model where the surface is too steep; there is
- * then no surface to press. */
+/* Copies a surface (any mean height) without contact: its highest points touch first. INPUT for a
+ * height that is not finite, and for the full model where the surface is too steep; there is then
+ * no surface to press. */
 RUGO_API int rugo_contact_begin(struct rugo_contact *contact, const double *z,
                                 struct rugo_error *err);
 /* Presses to a mean pressure >= 0 over E*, without friction or adhesion, by constrained conjugate
  * gradients (Polonsky & Keer 1999), the full model by Newton's method with an active set. Loads may
- * rise and fall. INPUT where rugo_contact_begin has not succeeded before. NUMERIC, with what was
- * reached, where there is no convergence; linear models then begin the next load anew. */
+ * rise and fall. INPUT where rugo_contact_begin has not succeeded before. NUMERIC, with the
+ * accuracy reached, where there is no convergence; linear models then begin the next load anew. */
 RUGO_API int rugo_contact_press(struct rugo_contact *contact, double pressure,
                                 struct rugo_contact_state *out, struct rugo_error *err);
-/* Returns by how much the flat has come nearer since it first touched, under the last load: towards
- * the mean plane of a face that repeats; in free space towards far points, of a profile (of which
- * none is at rest) towards a place on the face at a distance lx from a line load. NaN before a
+/* Returns the approach of the flat under the last load, since it first touched: towards the mean
+ * plane of a periodic face; in free space towards far points. A profile has no far points at rest,
+ * and its approach is towards a point on the face at a distance lx from a line load. NaN before a
  * load, and for the full model. */
 RUGO_API double rugo_contact_approach(const struct rugo_contact *contact);
-/* The least mean pressure of full contact of the surface begun; NaN where none is, and for the full
- * model. */
+/* Returns the least mean pressure of full contact of the surface begun; NaN where there is none,
+ * and for the full model. */
 RUGO_API double rugo_contact_full_pressure(const struct rugo_contact *contact);
 
 #ifdef __cplusplus

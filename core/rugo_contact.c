@@ -1,4 +1,4 @@
-/* Implements the contact of rugo.h: one solver with what measures its area. */
+/* Implements the contact of rugo.h: one solver with the workspace of its areas. */
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
 #include "core/full/full.h"
@@ -25,10 +25,11 @@ struct rugo_block rugo_block_defaults(enum rugo_model model, const struct rugo_g
 }
 
 static int block_take(struct block *out, const struct rugo_block *from, struct error *err) {
-    static const enum block_model MODELS[] = {[RUGO_HALFSPACE] = MODEL_HALFSPACE,
-                                              [RUGO_LAYERED] = MODEL_LAYERED,
-                                              [RUGO_FULL] = MODEL_LAYERED}; /* its flat block */
-    if ((unsigned)from->model > RUGO_FULL)
+#define MODEL(type, name, value) [RUGO_##type] = MODEL_##type,
+    static const enum block_model MODELS[] = {RUGO_LINEAR_MODELS(MODEL)[RUGO_FULL] =
+                                                  MODEL_LAYERED}; /* its flat block */
+#undef MODEL
+    if ((unsigned)from->model >= sizeof MODELS / sizeof *MODELS)
         return error_set(err, ERROR_INPUT, "there is no contact model %d", (int)from->model);
     *out = (struct block){.model = MODELS[from->model],
                           .poisson = from->poisson,

@@ -1,32 +1,11 @@
 /* Implements the height maps of rugo.h. */
 #include "core/map/height_map_file.h"
 #include "core/rugo_shared.h"
+#include "core/whole_file.h"
 #include <errno.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Reads the bytes of a file and puts a NUL behind them; the caller frees them. */
-static int read_file(const char *path, char **text, size_t *size, struct error *err) {
-    FILE *file = fopen(path, "rb");
-    char *bytes = NULL;
-    long end = -1;
-    if (file == NULL)
-        return error_set(err, ERROR_SYSTEM, "%s", strerror(errno));
-    int status = 0;
-    if (fseek(file, 0, SEEK_END) != 0 || (end = ftell(file)) < 0 || fseek(file, 0, SEEK_SET) != 0)
-        status = error_set(err, ERROR_SYSTEM, "%s", strerror(errno));
-    else if ((bytes = array_create((size_t)end + 1, 1)) == NULL)
-        status = error_memory(err, (size_t)end, "a file");
-    else if (fread(bytes, 1, (size_t)end, file) != (size_t)end)
-        status = error_set(err, ERROR_SYSTEM, "cannot read all of its %ld bytes", end);
-    fclose(file);
-    if (status == 0) {
-        *text = bytes;
-        *size = (size_t)end;
-    } else
-        free(bytes);
-    return status;
-}
 
 static int format_of(const char *path, enum height_map_format *format, struct error *err) {
     *format = height_map_format_of(path);
@@ -35,27 +14,33 @@ static int format_of(const char *path, enum height_map_format *format, struct er
                : error_set(err, ERROR_INPUT, "the name does not end in .npy, .csv or .xyz");
 }
 
-int rugo_map_read(struct rugo_map *out, const char *path, double dx, struct rugo_error *err) {
-    struct error why = {0};
+static int read_map(struct height_map *map, const char *path, double dx, struct error *err) {
     enum height_map_format format;
-    struct height_map map = {0};
     char *text = NULL;
     size_t size = 0;
-    int status = format_of(path, &format, &why);
-    if (status == 0)
-        status = read_file(path, &text, &size, &why);
-    if (status == 0)
-        status = height_map_parse(&map, format, text, size, dx, &why);
+    int status = format_of(path, &format, err);
+    if (status != 0)
+        return error_context(err, "%s", path);
+    status = whole_file_read(path, SIZE_MAX / 4, &text, &size, err);
+    if (status != 0) /* a file that is not there is one that could not be opened */
+        return status == ERROR_MEMORY ? status : ERROR_SYSTEM;
+    status = height_map_parse(map, format, text, size, dx, err);
     free(text);
     if (status == 0)
-        status = height_map_check_whole(&map, &why);
-    if (status != 0) {
-        height_map_clear(&map);
-        error_context(&why, "%s", path);
-        return error_give(status, &why, err);
-    }
-    *out = (struct rugo_map){{map.grid.nx, map.grid.ny, map.grid.lx, map.grid.ly}, map.z};
-    return 0;
+        status = height_map_check_whole(map, err);
+    if (status == 0)
+        return 0;
+    height_map_clear(map);
+    return error_context(err, "%s", path);
+}
+
+int rugo_map_read(struct rugo_map *out, const char *path, double dx, struct rugo_error *err) {
+    struct error why = {0};
+    struct height_map map = {0};
+    int status = read_map(&map, path, dx, &why);
+    if (status == 0)
+        *out = (struct rugo_map){{map.grid.nx, map.grid.ny, map.grid.lx, map.grid.ly}, map.z};
+    return error_give(status, &why, err);
 }
 
 void rugo_map_clear(struct rugo_map *map) {

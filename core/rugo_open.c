@@ -1,23 +1,23 @@
 /* Implements the statistics of open maps of rugo.h. */
 #include "core/map/detrend.h"
 #include "core/rugo_shared.h"
-#include "core/statistics/areal.h"
-#include "core/statistics/local_wave.h"
-#include "core/statistics/open_roughness.h"
-#include "core/statistics/open_summits.h"
-#include "core/statistics/seam.h"
-#include "core/statistics/windowed_psd.h"
+#include "core/statistics/heights/areal.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/spectra/windowed_psd.h"
+#include "core/statistics/summits/local_wave.h"
+#include "core/statistics/summits/open_summits.h"
+#include "core/statistics/uncertainty/seam.h"
 
 int rugo_detrend(const struct rugo_grid *grid, double *z, enum rugo_trend trend,
                  struct rugo_error *err) {
-    static const enum detrend KINDS[] = {[RUGO_MEAN] = DETREND_MEAN,
-                                         [RUGO_PLANE] = DETREND_PLANE,
-                                         [RUGO_QUADRATIC] = DETREND_QUADRATIC};
+#define KIND(type, name, value) [RUGO_##type] = DETREND_##type,
+    static const enum detrend KINDS[] = {RUGO_TRENDS(KIND)};
+#undef KIND
     struct error why = {0};
     struct grid cell;
     struct trend found;
     int status = grid_take(&cell, grid, &why);
-    if (status == 0 && (unsigned)trend > RUGO_QUADRATIC)
+    if (status == 0 && (unsigned)trend >= sizeof KINDS / sizeof *KINDS)
         status = error_set(&why, ERROR_INPUT, "there is no trend %d", (int)trend);
     if (status == 0)
         status = detrend(&cell, z, KINDS[trend], &found, &why);
@@ -36,7 +36,7 @@ int rugo_seam(const struct rugo_grid *grid, const double *z, double *seam, struc
     return error_give(status, &why, err);
 }
 
-/* Takes an open map; *cell is what its grid points to. */
+/* Converts an open map; *cell becomes the grid that it points to. */
 static int map_take(struct measured_map *out, struct grid *cell, const struct rugo_grid *grid,
                     const double *z, struct error *err) {
     *out = (struct measured_map){cell, z, BOUNDARY_OPEN};

@@ -58,10 +58,10 @@ void roughness_give(const struct roughness *from, struct rugo_roughness *to) {
 }
 
 int stencil_take(enum summit_stencil *out, enum rugo_summit_rule rule, struct error *err) {
-    static const enum summit_stencil STENCILS[] = {[RUGO_NINE_POINT] = SUMMITS_NINE_POINT,
-                                                   [RUGO_FIVE_POINT] = SUMMITS_FIVE_POINT,
-                                                   [RUGO_REFINED] = SUMMITS_REFINED};
-    if ((unsigned)rule > RUGO_REFINED)
+#define STENCIL(type, name, value) [RUGO_##type] = SUMMITS_##type,
+    static const enum summit_stencil STENCILS[] = {RUGO_SUMMIT_RULES(STENCIL)};
+#undef STENCIL
+    if ((unsigned)rule >= sizeof STENCILS / sizeof *STENCILS)
         return error_set(err, ERROR_INPUT, "there is no rule %d for summits", (int)rule);
     *out = STENCILS[rule];
     return 0;

@@ -1,7 +1,7 @@
 /* Implements the statistics of rugo.h. */
 #include "core/rugo_shared.h"
-#include "core/statistics/roughness.h"
-#include "core/statistics/summits.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/summits/summits.h"
 #include <stdlib.h>
 
 int rugo_roughness(const struct rugo_grid *grid, const double *z, struct rugo_roughness *out,

@@ -20,10 +20,10 @@ struct rugo_spectrum rugo_spectrum_self_affine(double hurst, double wavelength_l
 
 static int spectrum_take(struct spectrum *out, const struct rugo_spectrum *from,
                          struct error *err) {
-    static const enum spectrum_type TYPES[] = {[RUGO_SELF_AFFINE] = SPECTRUM_SELF_AFFINE,
-                                               [RUGO_EXPONENTIAL_ACF] = SPECTRUM_EXPONENTIAL_ACF,
-                                               [RUGO_TABLE] = SPECTRUM_TABLE};
-    if ((unsigned)from->type > RUGO_TABLE)
+#define TYPE(type, name, value) [RUGO_##type] = SPECTRUM_##type,
+    static const enum spectrum_type TYPES[] = {RUGO_SPECTRA(TYPE)};
+#undef TYPE
+    if ((unsigned)from->type >= sizeof TYPES / sizeof *TYPES)
         return error_set(err, ERROR_INPUT, "there is no spectrum of type %d", (int)from->type);
     if (!(from->rms_height >= 0 && from->rms_slope >= 0) ||
         (from->rms_height > 0 && from->rms_slope > 0))
@@ -98,14 +98,14 @@ struct rugo_surface_options rugo_surface_defaults(void) {
 
 static int options_take(struct surface_options *out, const struct rugo_surface_options *from,
                         struct error *err) {
-    static const enum heights_type TYPES[] = {[RUGO_GAUSSIAN] = HEIGHTS_GAUSSIAN,
-                                              [RUGO_WEIBULL_MIN] = HEIGHTS_WEIBULL_MIN,
-                                              [RUGO_WEIBULL_MAX] = HEIGHTS_WEIBULL_MAX,
-                                              [RUGO_QUANTILE] = HEIGHTS_QUANTILE};
+#define TYPE(type, name, value) [RUGO_##type] = HEIGHTS_##type,
+    static const enum heights_type TYPES[] = {RUGO_DISTRIBUTIONS(TYPE)[RUGO_QUANTILE] =
+                                                  HEIGHTS_QUANTILE};
+#undef TYPE
     *out = SURFACE_DEFAULTS;
     if (from == NULL)
         return 0;
-    if ((unsigned)from->heights > RUGO_QUANTILE)
+    if ((unsigned)from->heights >= sizeof TYPES / sizeof *TYPES)
         return error_set(err, ERROR_INPUT, "there is no distribution of heights of type %d",
                          (int)from->heights);
     if (from->heights == RUGO_QUANTILE && from->quantile == NULL)

@@ -40,7 +40,7 @@ struct estimate estimate_weighted(size_t n, const double *x, const double *weigh
     return estimate_ratio(n, x, weight);
 }
 
-/* What a realisation adds to a mean of a pair: its weighed deviation over the mean weight. */
+/* What a realisation adds to a mean of pairs: its weighted deviation over the mean weight. */
 struct column_mean {
     double mean, weight;
 };
@@ -70,7 +70,7 @@ static double deviation_of(const struct estimate_column *column, const struct co
     return weight_of(column->x, column->weight, r) * (column->x[r] - mean->mean) / mean->weight;
 }
 
-/* The error of a difference of two ratios over the same realisations: that of the mean of their
+/* The error of a difference of two ratios over the same realisations is that of the mean of their
  * linear parts (Cochran 1977, section 2.11). Without weights it is that of the mean difference. */
 struct pair_estimate estimate_pairs(size_t n, const struct estimate_column *minuend,
                                     const struct estimate_column *subtrahend) {
@@ -94,7 +94,8 @@ struct pair_estimate estimate_pairs(size_t n, const struct estimate_column *minu
     return out;
 }
 
-/* Of n groups; the mean number of things is over those that have any in either case. */
+/* Computes a ratio over n groups. The mean number of things is over the groups that have any in
+ * either case. */
 static struct column_mean ratio_of(size_t n, size_t used, const struct estimate_groups *groups) {
     struct sum counted = {0, 0}, things = {0, 0};
     for (size_t g = 0; g < n; g++) {

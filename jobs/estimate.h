@@ -1,5 +1,5 @@
 /* A value and its standard error over realisations. Realisations are taken in order, so that the
- * digits do not depend on how they were split into blocks. */
+ * digits do not depend on their division into blocks. */
 #ifndef RUGO_JOBS_ESTIMATE_H
 #define RUGO_JOBS_ESTIMATE_H
 
@@ -11,16 +11,17 @@ struct estimate {
 
 /* Estimates the mean of x over the realisations that have one (others are NaN). */
 struct estimate estimate_mean(size_t n, const double *x);
-/* sum of weight * x over sum of weight: the mean over all summits of what is known as a mean a
- * realisation. Ratio estimator (Cochran 1977, section 2.11). Entries with weight 0 are left out. */
+/* Estimates sum of weight * x over sum of weight, such as the mean over all summits of what is a
+ * mean for each realisation. Ratio estimator (Cochran 1977, section 2.11). Entries with weight 0
+ * are left out. */
 struct estimate estimate_weighted(size_t n, const double *x, const double *weight);
 
-/* A number of a realisation in each of two cases, of n realisations that both have; weights as of
- * estimate_weighted, NULL: all 1. */
+/* The values of one case at n realisations that both cases have. Weights are those of
+ * estimate_weighted; NULL: all 1. */
 struct estimate_column {
     const double *x, *weight;
 };
-/* The mean of one case less that of the other, over the pairs in which both have a value: */
+/* The mean of one case less that of the other, over the pairs in which both have a value. */
 struct pair_estimate {
     double value, standard_error; /* NaN as of struct estimate */
     double deviation;             /* of the difference of one pair */
@@ -29,13 +30,13 @@ struct pair_estimate {
 struct pair_estimate estimate_pairs(size_t n, const struct estimate_column *minuend,
                                     const struct estimate_column *subtrahend);
 
-/* The sums of a ratio by groups of realisations: of each what is counted and of how many things. */
+/* The sums of a ratio by groups of realisations: in each what is counted, of how many things. */
 struct estimate_groups {
     const double *counted, *things;
 };
-/* The ratio of one case less that of the other over groups that are pairs, with the error of the
- * differences of the groups (Wolter 2007, chapter 2); groups without things in either are left out.
- */
+/* Estimates the ratio of one case less that of the other over groups that are pairs. The error is
+ * that of the differences of the groups (Wolter 2007, chapter 2); groups without things in either
+ * case are left out. */
 struct pair_estimate estimate_group_pairs(size_t n, const struct estimate_groups *minuend,
                                           const struct estimate_groups *subtrahend);
 

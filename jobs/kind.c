@@ -1,24 +1,55 @@
 #include "jobs/kind.h"
 #include "core/rugo.h"
-#include "jobs/fingerprint.h"
-#include "jobs/memory.h"
 #include "schema/result/bytes.h"
-#include "schema/study/study_reader.h"
+#include "schema/study/value.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* A study may take this part of the memory there is; the rest is the system's. */
-static const double MEMORY_PART = 0.9;
+static uint64_t hash_number(uint64_t hash, double number) {
+    return hash_bytes(hash, sizeof number, &number);
+}
+
+static uint64_t hash_text(uint64_t hash, const char *text) {
+    return hash_bytes(hash, strlen(text), text);
+}
+
+/* Hashes one value; members of an object with their names. */
+static uint64_t hash_value(uint64_t hash, const cJSON *value) {
+    if (cJSON_IsNumber(value))
+        return hash_number(hash, value->valuedouble);
+    if (cJSON_IsString(value))
+        return hash_text(hash, value->valuestring);
+    for (const cJSON *item = value->child; item != NULL; item = item->next) {
+        if (item->string != NULL)
+            hash = hash_text(hash, item->string);
+        if (!cJSON_IsNumber(item)) /* so that ["ab"] is not ["a", "b"] */
+            hash = hash_number(hash, 0);
+        if (cJSON_IsNumber(item) || cJSON_IsString(item))
+            hash = hash_value(hash, item);
+    }
+    return hash;
+}
+
+uint64_t case_fingerprint(const struct values *values,
+                          const struct parameter_table *const *tables) {
+    uint64_t hash = HASH_START;
+    const struct parameter *row;
+    double number = 0;
+    for (size_t p = 0; (row = parameter_row(tables, p)) != NULL; p++) {
+        if (row->later)
+            continue;
+        hash = hash_number(hash, number++);
+        if (values_json(values, p) != NULL)
+            hash = hash_value(hash, values_json(values, p));
+    }
+    for (size_t p = 0; (row = parameter_row(tables, p)) != NULL; p++)
+        if (row->later && !values_is_default(values, p))
+            hash = hash_value(hash_text(hash, row->path), values_json(values, p));
+    return hash;
+}
 
 const struct job_kind *kind_of(const struct study_kind *study) {
     return (const struct job_kind *)study; /* its first member */
-}
-
-const struct job_kind *kind_find(const char *name) {
-    for (size_t k = 0; JOB_KINDS[k] != NULL; k++)
-        if (strcmp(JOB_KINDS[k]->name, name) == 0)
-            return kind_of(JOB_KINDS[k]);
-    return NULL;
 }
 
 /* A new version may compute other values in the same format. */
@@ -28,43 +59,21 @@ uint64_t kind_edition(const struct job_kind *kind) {
     return hash_bytes(hash, sizeof marks, marks);
 }
 
-static int read_study(struct study **out, const char *text, size_t size,
-                      const struct study_reading *reading, struct fault_list *faults,
-                      struct error *err) {
-    int status = study_read_ext(out, text, size, reading, faults, err);
-    if (status == 0)
-        (*out)->edition = kind_edition(kind_of((*out)->kind));
-    return status;
-}
-
-int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
-                    struct fault_list *faults, struct error *err) {
-    const struct study_reading reading = {.overrides = overrides,
-                                          .kinds = JOB_KINDS,
-                                          .memory_limit = MEMORY_PART * memory_available()};
-    return read_study(out, text, size, &reading, faults, err);
-}
-
-int kind_read_study_until(struct study **out, const char *text, size_t size,
-                          int (*stop)(void *context), void *context, struct fault_list *faults,
-                          struct error *err) {
-    const struct study_reading reading = {.kinds = JOB_KINDS,
-                                          .memory_limit = MEMORY_PART * memory_available(),
-                                          .stop = stop,
-                                          .stop_context = context};
-    return read_study(out, text, size, &reading, faults, err);
-}
-
-int kind_case_create(void **out, const struct job_kind *kind, const cJSON *parameters,
-                     struct fault_list *faults, struct error *err) {
+static int case_create(void **out, const struct job_kind *kind, const cJSON *parameters,
+                       double memory_limit, struct fault_list *faults, struct error *err) {
     void *study = array_create(1, kind->case_size);
     if (study == NULL)
         return error_memory(err, kind->case_size, "a case");
-    int status = kind->read(study, parameters, faults, err);
+    int status = kind->read(study, parameters, memory_limit, faults, err);
     if (status != 0)
         kind_case_destroy(kind, &study);
     *out = study;
     return status;
+}
+
+int kind_case_create(void **out, const struct job_kind *kind, const cJSON *parameters,
+                     struct fault_list *faults, struct error *err) {
+    return case_create(out, kind, parameters, 0, faults, err);
 }
 
 void kind_case_destroy(const struct job_kind *kind, void **study) {
@@ -74,12 +83,12 @@ void kind_case_destroy(const struct job_kind *kind, void **study) {
     *study = NULL;
 }
 
-int kind_check(const struct study_kind *head, const cJSON *parameters, struct fault_list *faults,
-               struct study_cost *cost, struct error *err) {
+int kind_check(const struct study_kind *head, const cJSON *parameters, double memory_limit,
+               struct fault_list *faults, struct study_cost *cost, struct error *err) {
     const struct job_kind *kind = kind_of(head);
     void *study = NULL;
     size_t before = faults->count;
-    int status = kind_case_create(&study, kind, parameters, faults, err);
+    int status = case_create(&study, kind, parameters, memory_limit, faults, err);
     if (status != 0)
         return status == ERROR_INPUT && faults->count > before ? 0 : status;
     kind->estimate(study, cost);

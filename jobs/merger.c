@@ -1,7 +1,7 @@
 #include "jobs/merger.h"
 #include "jobs/partial.h"
 #include "jobs/realisations.h"
-#include "jobs/surface_case.h"
+#include "jobs/surface/surface_case.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -77,8 +77,7 @@ int merger_create(struct job_merger **out, const struct job_kind *kind, const cJ
     return status;
 }
 
-/* Decodes a block that the merger could take into a new tally, the caller's to destroy; NULL on
- * failure. */
+/* Decodes a block into a new tally, which the caller destroys; NULL on failure. */
 static int block_read(const struct job_merger *merger, const struct block_result *result,
                       void **out, struct error *err) {
     const struct job_kind *kind = merger->kind;

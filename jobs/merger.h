@@ -10,22 +10,21 @@ struct job_merger;
 int merger_create(struct job_merger **out, const struct job_kind *kind, const cJSON *parameters,
                   struct error *err);
 void merger_destroy(struct job_merger **merger);
-/* Whether merger_add would take the block: 0 or its error. Changes nothing, so that many threads
- * may ask one merger. */
+/* Returns 0 if merger_add would take the block, or its error. Changes nothing, so that many threads
+ * may call it with one merger. */
 int merger_fits(const struct job_merger *merger, const struct block_result *result,
                 struct error *err);
 /* Decodes and adds one block; ERROR_INPUT for data that is not this case's (nothing added). After
- * ERROR_MEMORY the merger is good for nothing but merger_destroy. */
+ * ERROR_MEMORY the merger can only be destroyed. */
 int merger_add(struct job_merger *merger, const struct block_result *result, struct error *err);
-/* Fills an empty result with all that was added: count of realisations, scalars, curves, notes. On
- * failure it is cleared. */
+/* Fills an empty result with all that was added: number of realisations, scalars, curves, notes. On
+ * failure the result is cleared. */
 int merger_result(const struct job_merger *merger, struct case_result *out, struct error *err);
-/* The kind's case and tally, and the realisations in it; borrowed. */
+/* Return the kind's case and tally, and the number of realisations in it; borrowed. */
 const void *merger_case(const struct job_merger *merger);
 const void *merger_tally(const struct job_merger *merger, uint64_t *realisations);
-/* What pairs.h needs: the realisations that were added, in their order, and, as job_kind tells
- * them, the values of a point of a curve, or its sums by groups, and those of a scalar (of each
- * realisation, with its weight). */
+/* Return what pairs.h needs: the realisations in their order, the values of a point of a curve or
+ * its sums by groups, and the values of a scalar with their weights (as job_kind has them). */
 const struct realisations *merger_realisations(const struct job_merger *merger);
 bool merger_point(const struct job_merger *merger, const struct curve *curve, size_t at,
                   struct point_values *out);
@@ -33,9 +32,9 @@ bool merger_groups(const struct job_merger *merger, const struct curve *curve, s
                    struct point_groups *out);
 int merger_scalar(const struct job_merger *merger, size_t scalar, double *values, double *weights,
                   struct error *err);
-/* Returns the number of a scalar of a realisation; false for another name. */
+/* Finds the number of a scalar of a realisation; false for another name. */
 bool merger_find_scalar(const struct job_merger *merger, const char *name, size_t *scalar);
-/* Makes the theories that the curves of such a case name without holding them. */
+/* Makes the theories of which curves of such a case have the name alone. */
 int merger_complete(const struct job_kind *kind, const cJSON *parameters,
                     struct case_result *result, struct error *err);
 

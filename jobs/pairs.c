@@ -11,7 +11,7 @@
 struct side {
     const struct job_merger *merger; /* borrowed */
     size_t all;                      /* its realisations */
-    size_t *place;                   /* owned: of those in common, in their order among all */
+    size_t *position;                /* owned: index among all of each in common */
     double *x, *weight;              /* owned: scratch, a value a realisation in common */
     double *scratch;                 /* owned: 2 * all */
 };
@@ -22,7 +22,7 @@ struct pairs {
 };
 
 static void side_clear(struct side *side) {
-    free(side->place);
+    free(side->position);
     free(side->x);
     free(side->weight);
     free(side->scratch);
@@ -33,19 +33,19 @@ static int side_create(struct side *side, const struct job_merger *merger, size_
     size_t all = (size_t)merger_realisations(merger)->count;
     *side = (struct side){.merger = merger,
                           .all = all,
-                          .place = array_create(most, sizeof *side->place),
+                          .position = array_create(most, sizeof *side->position),
                           .x = array_create(most, sizeof *side->x),
                           .weight = array_create(most, sizeof *side->weight),
                           .scratch = array_create(2 * all, sizeof *side->scratch)};
-    if (side->place != NULL && side->x != NULL && side->weight != NULL && side->scratch != NULL)
+    if (side->position != NULL && side->x != NULL && side->weight != NULL && side->scratch != NULL)
         return 0;
     return error_memory(err, 2 * all * sizeof(double), "pairs of realisations");
 }
 
-/* A walk through all realisations of a set. */
+/* The position in a walk through all realisations of a set. */
 struct walk {
     const struct realisations *set;
-    size_t block, place;
+    size_t block, position;
     uint64_t within;
 };
 
@@ -57,7 +57,7 @@ static bool walk_at(const struct walk *walk, uint64_t *realisation) {
 }
 
 static void walk_on(struct walk *walk) {
-    walk->place++;
+    walk->position++;
     if (++walk->within == walk->set->blocks[walk->block].count) {
         walk->block++;
         walk->within = 0;
@@ -70,8 +70,8 @@ static void find_common(struct pairs *pairs) {
     uint64_t one, other;
     while (walk_at(&a, &one) && walk_at(&b, &other)) {
         if (one == other) {
-            pairs->a.place[pairs->count] = a.place;
-            pairs->b.place[pairs->count++] = b.place;
+            pairs->a.position[pairs->count] = a.position;
+            pairs->b.position[pairs->count++] = b.position;
         }
         bool first = one <= other, second = other <= one;
         if (first)
@@ -81,9 +81,9 @@ static void find_common(struct pairs *pairs) {
     }
 }
 
-/* --- what difference_make asks --- */
+/* --- call backs of difference_make --- */
 
-static void tell(const struct pairs *pairs, bool weighed, struct paired_value *out) {
+static void set_value(const struct pairs *pairs, bool weighed, struct paired_value *out) {
     const struct estimate_column a = {pairs->a.x, weighed ? pairs->a.weight : NULL};
     const struct estimate_column b = {pairs->b.x, weighed ? pairs->b.weight : NULL};
     struct pair_estimate estimate = estimate_pairs(pairs->count, &a, &b);
@@ -100,15 +100,15 @@ static bool take_point(const struct pairs *pairs, struct side *side, const struc
     if (!merger_point(side->merger, curve, at, &values))
         return false;
     for (size_t r = 0; r < pairs->count; r++)
-        side->x[r] = values.values[side->place[r] * values.stride];
+        side->x[r] = values.values[side->position[r] * values.stride];
     return true;
 }
 
-/* Groups are pairs where both cases have the same realisations. Points that too few of them tell of
- * have the error of two cases that do not go together, which is known even where nothing is seen.
- */
-static bool tell_groups(const struct pairs *pairs, const struct curve *minuend, size_t a,
-                        const struct curve *subtrahend, size_t b, struct paired_value *out) {
+/* Compares by groups, which are pairs where both cases have the same realisations. Points with
+ * something counted in too few groups take the error of independent cases, which is known even
+ * where nothing was counted. */
+static bool compare_groups(const struct pairs *pairs, const struct curve *minuend, size_t a,
+                           const struct curve *subtrahend, size_t b, struct paired_value *out) {
     struct point_groups one, other;
     if (pairs->count != pairs->a.all || pairs->count != pairs->b.all ||
         !merger_groups(pairs->a.merger, minuend, a, &one) ||
@@ -121,7 +121,7 @@ static bool tell_groups(const struct pairs *pairs, const struct curve *minuend, 
                                  .standard_error = estimate.standard_error,
                                  .deviation = estimate.deviation,
                                  .pairs = pairs->count};
-    if (one.telling < TALLY_RARE || other.telling < TALLY_RARE)
+    if (one.informative < TALLY_RARE || other.informative < TALLY_RARE)
         out->standard_error = hypot(minuend->standard_error[a], subtrahend->standard_error[b]);
     return true;
 }
@@ -130,8 +130,8 @@ static bool point(void *context, const struct curve *minuend, size_t a,
                   const struct curve *subtrahend, size_t b, struct paired_value *out) {
     struct pairs *pairs = context;
     if (!take_point(pairs, &pairs->a, minuend, a) || !take_point(pairs, &pairs->b, subtrahend, b))
-        return tell_groups(pairs, minuend, a, subtrahend, b, out);
-    tell(pairs, false, out);
+        return compare_groups(pairs, minuend, a, subtrahend, b, out);
+    set_value(pairs, false, out);
     return true;
 }
 
@@ -140,8 +140,8 @@ static int take_scalar(const struct pairs *pairs, struct side *side, size_t scal
     double *values = side->scratch, *weights = side->scratch + side->all;
     int status = merger_scalar(side->merger, scalar, values, weights, err);
     for (size_t r = 0; r < pairs->count && status == 0; r++) {
-        side->x[r] = values[side->place[r]];
-        side->weight[r] = weights[side->place[r]];
+        side->x[r] = values[side->position[r]];
+        side->weight[r] = weights[side->position[r]];
     }
     return status;
 }
@@ -153,7 +153,7 @@ static bool scalar(void *context, const char *name, struct paired_value *out) {
         take_scalar(pairs, &pairs->a, number, &pairs->err) != 0 ||
         take_scalar(pairs, &pairs->b, number, &pairs->err) != 0)
         return false;
-    tell(pairs, true, out);
+    set_value(pairs, true, out);
     return true;
 }
 

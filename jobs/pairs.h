@@ -4,11 +4,11 @@
 
 #include "jobs/merger.h"
 
-/* Fills an empty result with what one case has merged less what the other has (difference.h).
- * common: they are of the same random numbers, so that realisations of the same number are pairs;
- * its count of realisations is then of those in common, else of the fewer. ERROR_INPUT where common
- * cases have no realisation in common. On failure the result is cleared. Both results: of the
- * mergers, with the theories and parameters wanted. */
+/* Fills an empty result with one case less the other (difference.h), from what both have merged.
+ * common: they have the same random numbers, so that realisations of the same number are pairs. The
+ * result's number of realisations is then of those in common, else the smaller of the two.
+ * ERROR_INPUT where common cases have no realisation in common. On failure the result is cleared.
+ * Both results are those of the mergers, with the theories and parameters wanted. */
 int pairs_difference(const struct job_merger *minuend, const struct case_result *minuend_result,
                      const struct job_merger *subtrahend,
                      const struct case_result *subtrahend_result, bool common,

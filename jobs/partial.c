@@ -7,7 +7,7 @@ int partial_encode(const struct job_kind *kind, uint64_t fingerprint, const void
     bytes_put_unsigned(&bytes, kind->format_version);
     bytes_put_unsigned(&bytes, fingerprint);
     kind->put(&bytes, tally);
-    bytes_seal(&bytes);
+    bytes_put_checksum(&bytes);
     if (bytes.failed) {
         bytes_clear(&bytes);
         return error_memory(err, bytes.capacity, "a partial result");
@@ -25,7 +25,7 @@ int partial_decode(const struct job_kind *kind, uint64_t fingerprint, const unsi
                    size_t size, void *tally, struct error *err) {
     struct byte_reader reader = bytes_open(data, size);
     if (reader.failed)
-        return refuse(err, "is cut short or damaged: its seal does not match");
+        return refuse(err, "is cut short or damaged: its checksum does not match");
     if (bytes_get_unsigned(&reader) != kind->format)
         return error_set(err, ERROR_INPUT, "the partial result is not one of %s", kind->study.name);
     if (bytes_get_unsigned(&reader) != kind->format_version)

@@ -1,6 +1,6 @@
 #include "jobs/publishing_cost.h"
 
-/* A case, a curve and a point take so many seconds. */
+/* Seconds for a case, a curve and a point. */
 static const double CASE_SECONDS = 6e-4, CURVE_SECONDS = 1.6e-5, POINT_SECONDS = 1.5e-6;
 
 double publishing_cost(size_t curves, size_t points) {

@@ -9,8 +9,8 @@ void realisations_clear(struct realisations *set) {
     *set = (struct realisations){.scalar_count = set->scalar_count};
 }
 
-/* Returns the place of the first block that starts at or behind `first`. */
-static size_t place_of(const struct realisations *set, uint64_t first) {
+/* Returns the index of the first block that starts at or behind `first`. */
+static size_t first_block_from(const struct realisations *set, uint64_t first) {
     size_t low = 0, high = set->block_count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
@@ -31,12 +31,12 @@ int realisations_check(const struct realisations *set, const struct block_result
         return error_set(err, ERROR_INPUT, "the result holds no realisation");
     if (set->block_count == 0)
         return 0;
-    size_t place = place_of(set, result->first);
-    const struct realisation_block *next = set->blocks + place;
-    if (place < set->block_count && next->first - result->first < result->count)
+    size_t index = first_block_from(set, result->first);
+    const struct realisation_block *next = set->blocks + index;
+    if (index < set->block_count && next->first - result->first < result->count)
         return error_set(err, ERROR_INPUT, "realisation %llu is there already",
                          (unsigned long long)next->first);
-    if (place > 0 && result->first - next[-1].first < next[-1].count)
+    if (index > 0 && result->first - next[-1].first < next[-1].count)
         return error_set(err, ERROR_INPUT, "realisation %llu is there already",
                          (unsigned long long)result->first);
     return 0;
@@ -57,10 +57,10 @@ int realisations_add(struct realisations *set, const struct block_result *result
     if (scalars == NULL)
         return error_memory(err, (size_t)result->count * row, "scalars of realisations");
     memcpy(scalars, result->scalars, (size_t)result->count * row);
-    size_t place = place_of(set, result->first);
-    memmove(set->blocks + place + 1, set->blocks + place,
-            (set->block_count - place) * sizeof *set->blocks);
-    set->blocks[place] = (struct realisation_block){result->first, result->count, scalars};
+    size_t index = first_block_from(set, result->first);
+    memmove(set->blocks + index + 1, set->blocks + index,
+            (set->block_count - index) * sizeof *set->blocks);
+    set->blocks[index] = (struct realisation_block){result->first, result->count, scalars};
     set->block_count++;
     set->count += result->count;
     return 0;

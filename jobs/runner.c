@@ -1,6 +1,6 @@
 #include "jobs/runner.h"
 #include "jobs/partial.h"
-#include "jobs/surface_case.h"
+#include "jobs/surface/surface_case.h"
 #include <stdlib.h>
 #include <time.h>
 
@@ -144,7 +144,7 @@ int runner_create(struct job_runner **out, const struct job_kind *kind, const cJ
 
 /* --- a block --- */
 
-/* A block in progress knows whom to ask whether to stop, and what is done. */
+/* What a block in progress passes to the call that may stop it. */
 struct progress {
     const struct job_control *control; /* may be NULL */
     uint64_t done;
@@ -182,8 +182,8 @@ static int realise(struct job_runner *runner, uint64_t number, struct progress *
     return status != 0 ? error_context(err, "realisation %llu", (unsigned long long)number) : 0;
 }
 
-/* Adds a realisation to the tally: by way of a tally of its own where the kind may stop half way,
- * so that the others can be handed out. */
+/* Adds a realisation to the tally. A kind that may stop within a realisation adds it to a tally of
+ * its own first, so that no part of it is merged. */
 static int realise_into(struct job_runner *runner, uint64_t number, struct progress *progress,
                         void *tally, double *scalars, struct error *err) {
     const struct job_kind *kind = runner->kind;
@@ -202,8 +202,8 @@ static int realise_into(struct job_runner *runner, uint64_t number, struct progr
     return status;
 }
 
-/* Runs the realisations of a block into a result that has room for them. Where it is told to stop,
- * the count of the result becomes that of those which are done; ERROR_STOPPED where none is. */
+/* Runs the realisations of a block into a result with room for them. After a stop the count of the
+ * result is that of the realisations that are done; ERROR_STOPPED where none is. */
 static int realise_all(struct job_runner *runner, const struct job_control *control,
                        struct block_result *result, void *tally, double *scalars,
                        struct error *err) {
@@ -249,8 +249,8 @@ static int block_fill(struct job_runner *runner, const struct job_control *contr
     return status;
 }
 
-/* CLOCK_MONOTONIC never steps; CLOCK_THREAD_CPUTIME_ID counts what this thread computes, and not
- * what others leave it waiting for. NaN where there is no such clock. */
+/* CLOCK_MONOTONIC never steps; CLOCK_THREAD_CPUTIME_ID counts what this thread computes, without
+ * its waits. NaN where there is no such clock. */
 static double clock_seconds(clockid_t clock) {
     struct timespec now;
     if (clock_gettime(clock, &now) != 0)

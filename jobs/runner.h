@@ -7,7 +7,7 @@
 
 #include "jobs/kind.h"
 
-/* Asked between realisations, and again and again within one that may take long: how many of the
+/* Called between realisations, and repeatedly within one that may take long, with how many of the
  * block are done; non-zero stops the block. */
 struct job_control {
     int (*poll)(void *context, uint64_t done);
@@ -22,14 +22,15 @@ void job_shared_destroy(struct job_shared **shared);
 const void *job_shared_content(const struct job_shared *shared); /* the kind's struct */
 
 struct job_runner;
-/* Borrows shared, of the same parameters, as long as it lives; NULL where the kind shares nothing,
- * or for the runner to make its own. seed and sequence: of the random numbers (core/random.h). */
+/* shared is of the same parameters and borrowed for the life of the runner. NULL: the kind shares
+ * nothing, or the runner makes its own. seed and sequence: of the random numbers
+ * (core/random.h). */
 int runner_create(struct job_runner **out, const struct job_kind *kind, const cJSON *parameters,
                   const struct job_shared *shared, uint64_t seed, uint64_t sequence,
                   struct error *err);
 void runner_destroy(struct job_runner **runner);
-/* Runs realisations first .. first + count - 1 into out (untouched on failure), the caller's to
- * clear. control may be NULL. A block that is stopped has the realisations that were done, fewer
+/* Runs realisations first .. first + count - 1 into out (untouched on failure), which the caller
+ * clears. control may be NULL. A block that is stopped has the realisations that were done, fewer
  * than count; ERROR_STOPPED where none was. */
 int runner_run(struct job_runner *runner, uint64_t first, uint64_t count,
                const struct job_control *control, struct block_result *out, struct error *err);

@@ -2,17 +2,18 @@
 #include "schema/json/json.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
+#include <string.h>
 
-/* Of a component in one round, since variances are estimates: of few realisations, and of others.
- */
+/* Most growth of a component in one round, as variances are estimates: after few realisations, and
+ * after more. */
 static const double GROWTH_FEW = 2, GROWTH_MOST = 4;
 enum { FEW = 24 };
-static const double GROWTH_LEAST = 1.25; /* so that rounds are few */
+static const double GROWTH_LEAST = 1.25; /* keeps rounds few */
 static const double MARGIN = 1.05;       /* above what is needed, for the same reason */
 static const double REALISATIONS_MOST = 1e7;
 
-static const double CONFIDENCE = 0.95;  /* unless given */
-static const double CHANCE_USUAL = 0.5; /* of the error asked for */
+static const double CONFIDENCE = 0.95;      /* unless given */
+static const double STATISTICAL_PART = 0.5; /* of the error asked for, as is assumed */
 enum { ROUNDS_MOST = 40, STEPS = 60, BISECTIONS = 50 };
 static const double SCALE_MOST = 1e30;
 
@@ -90,6 +91,27 @@ int target_read(struct target *out, const cJSON *parameters,
     return status;
 }
 
+static bool is_choice(const cJSON *value, const char *choice) {
+    if (cJSON_GetArraySize(value) == 1)
+        value = value->child;
+    return choice != NULL && cJSON_IsString(value) && strcmp(value->valuestring, choice) == 0;
+}
+
+void target_refuse(const cJSON *document, const struct parameter_table *const *tables,
+                   struct fault_list *faults) {
+    const struct parameter *row;
+    for (size_t p = 0; (row = parameter_row(tables, p)) != NULL; p++) {
+        const cJSON *value = json_at(document, row->path);
+        if (row->target_refusal == NULL || value == NULL || is_choice(value, row->target_choice))
+            continue;
+        if (row->target_choice != NULL)
+            fault_add(faults, row->path, "%s; leave it out, or take \"%s\"", row->target_refusal,
+                      row->target_choice);
+        else
+            fault_add(faults, row->path, "%s; leave it out", row->target_refusal);
+    }
+}
+
 const char *target_quantity_name(enum target_quantity quantity) {
     return choice_name(QUANTITIES, (int)quantity);
 }
@@ -108,7 +130,7 @@ double target_quantile(const struct target *target, size_t count, const struct t
     return gsl_cdf_tdist_Pinv((1 + target->confidence) / 2, variance * variance / square);
 }
 
-/* A plan whose least work is sought. */
+/* A search for the plan of least work. */
 struct search {
     const struct target_plan *plan;
     size_t count;
@@ -116,15 +138,16 @@ struct search {
     const double *numbers;
 };
 
-/* Variance of one realisation of a part over what is allowed at a point; 0 where it is left out. */
+/* Returns the variance of one realisation of a part over the variance allowed at a point; 0 where
+ * the point is left out. */
 static double relative_variance(const struct search *search, size_t part, size_t point) {
     double ratio = search->plan->quantiles[point] / search->plan->allowed[point];
     double relative = search->parts[part].variance[point] * ratio * ratio;
     return isfinite(relative) ? relative : 0;
 }
 
-/* The sum of V/N over what is allowed at a point; N of a part is `scale` times its number, at least
- * what is done. */
+/* Returns the sum of V/N over what is allowed at a point. N of a part is `scale` times its number,
+ * and at least what is done. */
 static double sum_at(const struct search *search, double scale, size_t point) {
     double sum = 0;
     for (size_t a = 0; a < search->count; a++) {
@@ -142,7 +165,7 @@ static bool suffices(const struct search *search, double scale) {
     return true;
 }
 
-/* The least scale of the numbers that suffices; they suffice from some scale on. */
+/* Returns the least scale at which the numbers suffice; they suffice for every larger one. */
 static double least_scale(const struct search *search) {
     double low = 0, high = 1;
     if (suffices(search, 0))
@@ -156,8 +179,8 @@ static double least_scale(const struct search *search) {
     return high;
 }
 
-/* Each step multiplies the multiplier of a point by its sum, which falls where more is done there
- * than it needs; all numbers are scaled to what the hardest point needs. */
+/* Each step multiplies the multiplier of a point by its sum, which is smaller where more is done
+ * than the point needs. Then all numbers are scaled to what the hardest point needs. */
 static double least_work(const struct target_plan *plan, size_t count,
                          const struct target_part *parts, double *needed) {
     double scale = 0, lacking = 0;
@@ -189,8 +212,8 @@ double target_least_work(const struct target_plan *plan, size_t count,
     return least_work(plan, count, parts, needed);
 }
 
-/* Whether the parts are as many as the plan needs at every point, by Student's quantiles, which it
- * leaves in the plan. */
+/* Returns whether the parts have as many realisations as the plan needs at every point, by
+ * Student's quantiles, which it leaves in the plan. */
 static bool enough_by_student(const struct target_plan *plan, size_t count,
                               const struct target_part *parts) {
     bool enough = true;
@@ -232,7 +255,7 @@ void target_allot(const struct target_plan *plan, size_t count, const struct tar
     double needed[TARGET_PARTS_MOST];
     double lacking = target_least_work(plan, count, parts, needed);
     bool enough = enough_by_student(plan, count, parts);
-    if (!enough && !(lacking > 0)) /* Student's quantiles ask for more than the normal one */
+    if (!enough && !(lacking > 0)) /* Student's quantiles need more than the normal one */
         (void)least_work(plan, count, parts, needed);
     for (size_t a = 0; a < count; a++)
         wanted[a] = enough ? parts[a].done : grown(parts[a].done, needed[a]);
@@ -245,7 +268,7 @@ int target_add_scalar(struct case_result *result, const char *name, double value
     return result_add_scalar(result, &scalar, err);
 }
 
-/* The components that begin, as far as they are known beforehand; which they are, in begun. */
+/* Finds the components that start for certain, and sets begun to their indices. */
 static size_t expected_parts(const struct study_case *one, struct target_part *parts,
                              double *variance, size_t *begun) {
     size_t count = 0;
@@ -267,7 +290,7 @@ double target_expect(const struct study_case *one, uint64_t *out) {
         .error = json_number_at(one->parameters, "/target/error", 1),
         .confidence = json_number_at(one->parameters, "/target/confidence", CONFIDENCE),
         .max_seconds = json_number_at(one->parameters, "/target/max_seconds", INFINITY)};
-    const double allowed = CHANCE_USUAL * target.error;
+    const double allowed = STATISTICAL_PART * target.error;
     double multiplier, quantile;
     const struct target_plan plan = {&target, 1, &allowed, &multiplier, &quantile};
     struct target_part parts[TARGET_PARTS_MOST];

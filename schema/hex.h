@@ -1,4 +1,4 @@
-/* Bytes as hexadecimal digits, and random ones: identifiers, keys and tokens. */
+/* Bytes as hexadecimal digits, and random digits for identifiers, keys and tokens. */
 #ifndef RUGO_SCHEMA_HEX_H
 #define RUGO_SCHEMA_HEX_H
 

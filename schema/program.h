@@ -1,9 +1,9 @@
-/* Which program this is, for what it computes to say so. */
+/* The version and commit of this program, with which results are marked. */
 #ifndef RUGO_SCHEMA_PROGRAM_H
 #define RUGO_SCHEMA_PROGRAM_H
 
-/* The commit that the program was built from, "-dirty" behind it where the tree had changes, or
- * "unknown". The build links its own; a program without one has "unknown". */
+/* The commit that the program was built from, with "-dirty" behind it where the tree had changes,
+ * or "unknown". The build links it; a program linked without it has "unknown". */
 extern const char PROGRAM_COMMIT[];
 
 enum { PROGRAM_SIZE = 128 };

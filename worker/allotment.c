@@ -9,7 +9,7 @@
 
 enum { PATH_MOST = 4096, LINE_MOST = 8192, PROCESSORS_MOST = 1 << 20 };
 
-/* 0 stands for no restriction. */
+/* 0 is no limit. */
 static unsigned least_of(unsigned a, unsigned b) {
     return a == 0 ? b : b == 0 || a < b ? a : b;
 }
@@ -39,8 +39,8 @@ static unsigned processors_of(double quota, double period) {
     return whole < count ? whole + 1 : whole;
 }
 
-/* cpu.max of version 2 holds "QUOTA PERIOD" or "max PERIOD"; version 1 has a file for each, and -1
- * for no quota. */
+/* Reads the quota of a group. cpu.max of version 2 holds "QUOTA PERIOD" or "max PERIOD"; version 1
+ * has a file for each, and -1 for no quota. */
 static unsigned quota_of(const char *folder) {
     char quota[64], period[64], *rest;
     if (read_line(folder, "cpu.max", quota, sizeof quota)) {
@@ -53,7 +53,7 @@ static unsigned quota_of(const char *folder) {
     return processors_of(strtod(quota, NULL), strtod(period, NULL));
 }
 
-/* The quotas of a group and of all above it, as far as they are mounted: each restricts. */
+/* Returns the least quota of a group and of all above it, as far as they are mounted. */
 static unsigned quota_upward(const char *mounted, const char *group) {
     char folder[PATH_MOST];
     size_t base = strlen(mounted);
@@ -72,7 +72,7 @@ static unsigned quota_upward(const char *mounted, const char *group) {
 
 /* --- which groups the process is in, and where they are mounted --- */
 
-/* Whether a list with commas between has this word. */
+/* Returns whether a list with commas between has this word. */
 static bool has_word(const char *list, const char *word) {
     size_t size = strlen(word);
     for (const char *at = list; at != NULL; at = strchr(at, ',')) {
@@ -83,7 +83,7 @@ static bool has_word(const char *list, const char *word) {
     return false;
 }
 
-/* Finds the process's group of the hierarchy that limits processors: "0::PATH" is that of version
+/* Finds the process's group of the hierarchy that limits processors. "0::PATH" is that of version
  * 2, "N:cpu,cpuacct:PATH" one of version 1. */
 static bool group_find(const char *root, bool unified, char *group, size_t size) {
     char path[PATH_MOST], line[LINE_MOST];
@@ -105,8 +105,8 @@ static bool group_find(const char *root, bool unified, char *group, size_t size)
     return found;
 }
 
-/* A line of mountinfo: ID PARENT DEVICE ROOT POINT OPTIONS [TAGS] - TYPE SOURCE OPTIONS. Gives ROOT
- * and POINT where it mounts the hierarchy that limits processors. */
+/* Reads a line of mountinfo: ID PARENT DEVICE ROOT POINT OPTIONS [TAGS] - TYPE SOURCE OPTIONS.
+ * Returns ROOT and POINT where it mounts the hierarchy that limits processors. */
 static bool mount_read(char *line, bool *unified, char **top, char **point) {
     char *tail = strstr(line, " - "), *next = NULL;
     if (tail == NULL)
@@ -128,7 +128,7 @@ static bool mount_read(char *line, bool *unified, char **top, char **point) {
 }
 
 /* In a container the mount shows a part of the hierarchy, from its ROOT on. A group that is not
- * below it is one of another name space: the mount's own top is ours then. */
+ * below it is one of another name space: then the top of the mount is the process's group. */
 static unsigned quota_of_mount(const char *root, bool unified, const char *top, const char *point) {
     char group[PATH_MOST], mounted[PATH_MOST];
     if (!group_find(root, unified, group, sizeof group))
@@ -171,7 +171,7 @@ unsigned allotment_of_slurm(const char *per_task, const char *on_node) {
     return least_of(count_of(per_task), count_of(on_node));
 }
 
-/* A mask of more processors than the usual set holds needs a larger one. */
+/* A mask of more processors than cpu_set_t holds needs a larger set. */
 static unsigned allotment_of_affinity(void) {
     for (int most = 1024; most <= PROCESSORS_MOST; most *= 4) {
         cpu_set_t *set = CPU_ALLOC((size_t)most);

@@ -9,13 +9,13 @@
 
 enum { CASES_KEPT = 4 };
 
-/* An empty merger of one case; never merged into, so that all threads may ask it. */
+/* An empty merger of one case. As nothing is merged into it, all threads may use it. */
 struct case_merger {
     char study[STUDY_ID_SIZE];
     uint64_t case_number;
     const struct job_kind *kind;
     struct job_merger *merger; /* owned */
-    unsigned holders;          /* the checker that keeps it, and each thread that asks it */
+    unsigned holders;          /* the checker that keeps it, and each thread that uses it */
 };
 
 struct checker {
@@ -55,7 +55,7 @@ static void let_go(struct checker *checker, struct case_merger *one) {
         case_merger_destroy(&one);
 }
 
-/* Moves the case's merger to the front and holds it; NULL when it is not kept. */
+/* Moves the case's merger to the front and counts a holder; NULL when it is not kept. */
 static struct case_merger *take(struct checker *checker, const struct claimed_job *job) {
     struct case_merger *found = NULL;
     pthread_mutex_lock(&checker->mutex);
@@ -71,7 +71,8 @@ static struct case_merger *take(struct checker *checker, const struct claimed_jo
     return found;
 }
 
-/* Two threads may keep the same case for a while: the older one drops out at the end. */
+/* Keeps a merger in front. Two threads may keep the same case for a while: the older merger drops
+ * out at the end. */
 static void keep(struct checker *checker, struct case_merger *one) {
     pthread_mutex_lock(&checker->mutex);
     struct case_merger *dropped = checker->kept[CASES_KEPT - 1];

@@ -1,4 +1,4 @@
-/* Times and waits by CLOCK_MONOTONIC, which nobody can set. */
+/* Times and waits by CLOCK_MONOTONIC, which cannot be set. */
 #ifndef RUGO_WORKER_CLOCK_H
 #define RUGO_WORKER_CLOCK_H
 

@@ -1,59 +1,67 @@
-/* Between the worker threads of a process and the source of its jobs: one thread that owns the
- * source, and with a server the process's one connection.
+/* Passes jobs between the worker threads of a process and the source of its jobs: one thread that
+ * owns the source, and with a server the process's one connection.
  *
  * It claims jobs for all threads, as many small ones at once as fill a few seconds, and keeps those
- * not begun in a stock; renews all leases; and hands in what became of jobs, several at a time. A
- * source that is away is waited for with growing pauses, and a result is kept and sent again until
- * it is taken or refused.
+ * not begun in a stock. It renews all leases, and hands in the ends of jobs, several at a time. It
+ * waits with growing pauses for a source that is away, and keeps a result, and sends it again,
+ * until it is taken or refused.
  *
  *     waiting --claim--> stock --take--> running --hand in--> ended --reported--> gone
  *                          |                |
- *                          +--------------->+-- at the end: given back
- */
+ *                          +--------------->+-- at the end: given back */
 #ifndef RUGO_WORKER_DISPATCHER_H
 #define RUGO_WORKER_DISPATCHER_H
 
-#include "worker/dispatcher_options.h"
-#include "worker/report.h"
+#include "worker/link/report.h"
+#include "worker/link/source_options.h"
 #include <stdbool.h>
+
+/* How a process takes jobs. */
+
+struct dispatcher_options {
+    const struct source_options *source; /* borrowed, as its texts, until the end */
+    unsigned threads;                    /* that take jobs */
+    bool drain;                          /* nothing is offered once no job waits or runs anywhere */
+};
 
 struct dispatcher;
 int dispatcher_create(struct dispatcher **out, const struct dispatcher_options *options,
                       struct error *err);
-/* Hands in what is left, once, and ends. No thread may use it any more. Accepts NULL. */
+/* Hands in what is left, once, and ends the thread. The caller sees to it that no thread uses the
+ * dispatcher any more. Accepts NULL. */
 void dispatcher_destroy(struct dispatcher **dispatcher);
 
-/* Offers nothing from here on, and gives the stock back. What is handed in later is sent once. */
+/* Offers nothing from here on, and releases the stock. What is handed in later is sent once. */
 void dispatcher_end(struct dispatcher *dispatcher);
-/* Gives back the jobs that still run, so that other workers can have them at once. */
+/* Releases the jobs that still run, so that other workers can have them at once. */
 void dispatcher_give_back(struct dispatcher *dispatcher);
-/* Returns the first error that waiting cannot cure, 0 before: nothing is offered after it. */
+/* Returns the first error that a later try cannot cure, 0 before; nothing is offered after it. */
 int dispatcher_status(struct dispatcher *dispatcher, struct error *err);
 
 /* --- for the worker threads --- */
 
-struct lease; /* a job that the process has */
+struct lease; /* a job that the process has claimed */
 enum offer {
     OFFER_JOB,
     OFFER_NOTHING, /* for now */
     OFFER_PUBLISH, /* cases are due in the local store; dispatcher_published is due then */
     OFFER_END,
 };
-/* Waits for a job. patient: else OFFER_NOTHING is returned once a claim has found none. */
+/* Waits for a job. Unless patient, returns OFFER_NOTHING once a claim has found none. */
 enum offer dispatcher_take(struct dispatcher *dispatcher, bool patient, struct lease **out);
-/* postponed: cases stay due that cannot be published now. */
+/* postponed: some cases stay due, which cannot be published now. */
 void dispatcher_published(struct dispatcher *dispatcher, bool postponed);
 
 /* Valid until the job is handed in. */
 const struct claimed_job *lease_job(const struct lease *lease);
 /* Sets the number of finished realisations that the next heartbeat reports. */
 void lease_progress(struct lease *lease, uint64_t done);
-/* Returns whether nobody wants the result: the lease is lost or given back, or the study
+/* Returns whether the result is not wanted: the lease is lost or given back, or the study
  * cancelled. */
 bool lease_is_lost(const struct lease *lease);
 
-/* Takes the lease, which it nulls, and the result, which it empties; sends them soon. Waits while
- * much is to be sent. */
+/* Hands in a job: takes the lease, which it nulls, and the result, which it empties, and sends them
+ * soon. Waits while much is to be sent. */
 void dispatcher_hand_in(struct dispatcher *dispatcher, struct lease **lease, struct job_end *end);
 
 #endif

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-/* A line is built here; once it is full, what follows is dropped. */
+/* A line under construction; once it is full, what follows is dropped. */
 struct line {
     char *text;
     size_t size, length; /* size leaves room for the newline and the NUL */
@@ -34,8 +34,8 @@ __attribute__((format(printf, 2, 3))) static void line_print(struct line *line, 
         line_text(line, text);
 }
 
-/* Bare where logfmt allows it, else quoted, with control bytes escaped so that no value can start a
- * line of its own. */
+/* Adds a value, bare where logfmt allows it, else quoted. Control bytes are escaped, so that no
+ * value can start a line of its own. */
 static void line_value(struct line *line, const char *value) {
     size_t length = strlen(value);
     bool bare = length > 0;
@@ -108,7 +108,7 @@ size_t log_format(char *line, size_t size, int64_t time_ms, enum log_level level
     return made.length;
 }
 
-/* Of the process, as its standard error is: set by the command line alone. */
+/* The process's level, as its standard error is one; set by the command line alone. */
 static atomic_int least_level = LEVEL_INFO;
 
 void log_set_least(enum log_level least) {

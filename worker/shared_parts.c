@@ -28,7 +28,7 @@ void shared_parts_destroy(struct shared_parts *parts) {
     pthread_mutex_destroy(&parts->lock);
 }
 
-/* The caller holds the lock here and in all functions below that do not say otherwise. */
+/* The caller holds the lock, here and in all functions below that do not say otherwise. */
 static struct shared_part *part_find(struct shared_parts *parts, const char *study,
                                      uint64_t case_number) {
     struct shared_part *part = parts->first;
@@ -44,8 +44,8 @@ static void part_unlink(struct shared_parts *parts, struct shared_part *part) {
     *link = part->next;
 }
 
-/* Counts one more holder of the part and returns it, or NULL where there is none. Waits while the
- * part is being made. */
+/* Counts one more holder of the part and returns it, or NULL where there is none. Waits while
+ * another thread makes the part. */
 static struct shared_part *part_hold(struct shared_parts *parts, const char *study,
                                      uint64_t case_number) {
     struct shared_part *part;
@@ -71,7 +71,8 @@ static struct shared_part *part_link(struct shared_parts *parts, const struct jo
     return part;
 }
 
-/* The caller does not hold the lock: this may take long, and threads of other cases go on. */
+/* Makes a part. The caller does not hold the lock: this may take long, and threads of other cases
+ * go on. */
 static int part_make(struct shared_parts *parts, struct shared_part *part, const cJSON *parameters,
                      struct error *err) {
     struct job_shared *content = NULL;

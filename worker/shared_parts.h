@@ -1,8 +1,8 @@
-/* What the runners of a case share (job_kind.shared_create), made once for each case and process:
- * the threads that work on a case hold a part, the first one makes it, the last one destroys it.
+/* What the runners of a case share (job_kind.shared_create), made once for each case and process.
+ * Threads that work on a case hold it: the first one makes it, the last one destroys it.
  *
- * take -> (one thread makes it, others wait) -> held by n threads -> let go n times -> destroyed.
- */
+ * take -> (one thread makes it, others wait) -> held by n threads -> let go n times ->
+ * destroyed. */
 #ifndef RUGO_WORKER_SHARED_PARTS_H
 #define RUGO_WORKER_SHARED_PARTS_H
 
@@ -20,8 +20,8 @@ int shared_parts_init(struct shared_parts *parts, struct error *err);
 /* The caller must have let go of all parts. */
 void shared_parts_destroy(struct shared_parts *parts);
 
-/* Puts the part of a case into *out, or NULL for a kind that shares nothing. Waits while another
- * thread makes the part; if that thread fails, the caller tries itself. */
+/* Puts what the case shares into *out, or NULL for a kind that shares nothing. Waits while another
+ * thread makes it; if that thread fails, this one tries. */
 int shared_parts_take(struct shared_parts *parts, const struct job_kind *kind, const char *study,
                       uint64_t case_number, const cJSON *parameters, struct shared_part **out,
                       struct error *err);

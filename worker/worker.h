@@ -1,17 +1,31 @@
-/* The worker: threads that claim a job, run it, report it, until told to stop or the queue is
- * empty.
+/* The worker: threads that claim a job, run it and report it, until they are stopped or the queue
+ * is empty.
  *
- * Each thread has its own runner; one more, the dispatcher (dispatcher.h), claims, keeps leases and
- * hands results in for all of them, so that a process has one connection to its server.
- */
+ * Each thread has its own runner. One more, the dispatcher (dispatcher.h), claims, renews leases
+ * and hands in results for all of them, so that a process has one connection to its server. */
 #ifndef RUGO_WORKER_WORKER_H
 #define RUGO_WORKER_WORKER_H
 
 #include "core/error.h"
-#include "worker/worker_options.h"
+#include "worker/link/source_options.h"
+#include <stdatomic.h>
+#include <stdbool.h>
 
-/* Returns when drained or stopped: 0, or ERROR_STOPPED; or the first error that cannot be waited
- * out. */
+/* Options of the worker threads of a process. */
+
+struct worker_options {
+    struct source_options source; /* worker and host may be NULL */
+    unsigned threads;             /* at least 1 */
+    bool drain;                   /* end when no job is waiting and none is running */
+    unsigned idle_s;              /* end when no job has run for so long; 0: never */
+    const atomic_int *stop;       /* non-zero: release the job at once and end; may be NULL */
+    /* Called twice a second on the caller's thread; non-zero ends the workers. May be NULL. */
+    int (*tick)(void *context);
+    void *context;
+};
+
+/* Returns when drained or stopped: 0, or ERROR_STOPPED; or the first error that a later try cannot
+ * cure. */
 int workers_run(const struct worker_options *options, struct error *err);
 
 #endif

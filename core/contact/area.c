@@ -1,6 +1,6 @@
 #include "core/contact/area.h"
 #include "core/contact/area_law.h"
-#include "core/contact/edge_area.h"
+#include "core/contact/edge/edge_area.h"
 #include "core/contact/mesh_error.h"
 #include <math.h>
 #include <stdlib.h>
@@ -75,7 +75,7 @@ static void count_nodes(const struct grid *grid, bool open, const double *p,
     out->upper = (double)any / n;
 }
 
-/* Keeps an estimate where an area can be, which states that no solver makes would leave. */
+/* Limits an estimate to what an area can be; only states that are no solutions exceed it. */
 static double within(const struct contact_area *area, double estimate) {
     return fmin(area->upper, fmax(estimate, area->nodes / 100));
 }
@@ -90,7 +90,7 @@ void contact_area(struct area_workspace *workspace, const struct contact_state *
     edge_area_measure(&law->edge, grid, workspace->open, state, workspace->rise, &edges);
     mesh_error_measure(workspace->mesh_error, state, &error);
     out->mean_gap = state->mean_gap - error.weighting - error.compliance;
-    /* The pressure that the block would take at the mesh's mean gap, less the one it has. */
+    /* The pressure that the exact block would have at this mean gap, less the mesh's. */
     double pressure =
         state->tangent == NULL
             ? 0
@@ -100,8 +100,8 @@ void contact_area(struct area_workspace *workspace, const struct contact_state *
     out->perimeter = NAN;
     if (grid_is_profile(grid))
         return;
-    /* A side across x is dy long, and nodes reach beyond it along x by a share of dx; for sides
-     * across y it is the other way round. */
+    /* A side across x is dy long, and contact by nodes reaches beyond it along x by a fraction of
+     * dx; for sides across y the axes are exchanged. */
     out->perimeter = within(out, out->nodes - law->overlap * edges.sides +
                                      law->patch_of_nodes * edges.patches - less);
 }

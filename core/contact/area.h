@@ -1,5 +1,5 @@
-/* The real contact area of a discrete solution, by several estimators, and its mean gap: of the
- * block, as far as the solution on a mesh tells them. */
+/* The real contact area of a discrete solution by several estimators, and its mean gap. Both are
+ * estimates for the exact block from the solution on a mesh. */
 #ifndef RUGO_CORE_CONTACT_AREA_H
 #define RUGO_CORE_CONTACT_AREA_H
 
@@ -10,7 +10,7 @@ struct contact_area {
     double nodes; /* share of nodes in contact, each with the cell around it */
     double lower; /* segments (profiles) or cells with all corners in contact ... */
     double upper; /* ... and with any */
-    double edges; /* within edges found below the grid, without the mesh's error to second order */
+    double edges; /* within edges found between nodes; without the mesh's error to second order */
     /* Surfaces: nodes less what they count beyond edges, in proportion to the length of the
      * boundary of their cells (after Yastrebov, Anciaux & Molinari 2017); profiles: NaN. */
     double perimeter;
@@ -19,8 +19,9 @@ struct contact_area {
 
 struct area_law;
 struct area_workspace;
-/* Learns where edges lie in this model on this grid (area_law.h): some ten milliseconds. Borrows
- * the compliance, which must outlive it. */
+/* Calibrates the position of edges for this model on this grid (area_law.h), in some ten
+ * milliseconds. Borrows the compliance, which must outlive it. ERROR_INPUT where a grid's spacings
+ * differ by more than a factor of 100. */
 int area_workspace_create(struct area_workspace **out, const struct compliance *compliance,
                           struct error *err);
 void area_workspace_destroy(struct area_workspace **workspace);

@@ -1,20 +1,21 @@
 #include "core/contact/area_law.h"
-#include "core/contact/edge_area.h"
+#include "core/contact/edge/edge_area.h"
 #include "core/contact/mesh_error.h"
 #include <math.h>
 #include <stdlib.h>
 
 static const double PI = 3.14159265358979323846;
 
-/* The double sine on about WAVE_STEPS points a wave, in several places: patches of a rough surface
- * at 8 points a shortest wave are of the size of those at the lower loads. */
-enum { WAVE_STEPS = 20, PLACES = 16, LOADS = 5 };
+/* The double sine has about WAVE_STEPS points a wave and is pressed at several positions on the
+ * grid. At the lower loads its patches are as large as those of a rough surface with 8 points a
+ * shortest wave. */
+enum { WAVE_STEPS = 20, POSITIONS = 16, LOADS = 5 };
 /* Pressures over that of full contact, and the contact fractions there: limits of a half-space's at
  * 256 and 512 points a wave (tests/bench/core/bench_edges.c prints them). */
 static const double LOAD[LOADS] = {0.05, 0.1, 0.2, 0.5, 0.7};
 static const double FRACTION[LOADS] = {0.112986, 0.190605, 0.345222, 0.704224, 0.839958};
 
-/* The least squares of a + weighting b + patch c = 0 over loads and places, and then of
+/* Normal equations of a + weighting b + patch c = 0 over loads and positions, and then of
  * d + weighting b + patch_of_nodes c = 0. */
 struct squares {
     double ab, ac, bb, bc, cc, dc;
@@ -73,8 +74,9 @@ static int double_sine_open(struct double_sine *wave, const struct grid *grid,
     return status;
 }
 
-/* Fills z with the wave in one of its places, amplitude dx; they fill a cell of the grid evenly. */
-static void place(struct double_sine *wave, size_t which) {
+/* Fills z with the wave of amplitude dx at one of its positions, which fill a cell of the grid
+ * evenly. */
+static void wave_shift(struct double_sine *wave, size_t which) {
     const struct grid *grid = &wave->grid;
     double x = 0.37 + 0.6180339887498949 * (double)which,
            y = 0.21 + 0.7548776662466927 * (double)which;
@@ -112,18 +114,21 @@ int area_law_make(const struct grid *grid, const struct block *block, struct are
     struct double_sine wave = {0};
     struct squares squares = {0};
     bool weighted = block->model == MODEL_LAYERED && block->weighting == GAP_STANDARD;
-    int status = edge_law_make(grid, block, &out->edge, err);
+    int status = compliance_check_spacings(grid, err);
+    if (status == 0)
+        status = edge_law_make(grid, block, &out->edge, err);
     if (status != 0)
         return status;
-    /* A straight edge at an angle has a boundary of cells 4/pi times as long in the mean. */
+    /* The boundary of cells along a straight edge is 4/pi times as long as the edge, averaged over
+     * angles. */
     out->overlap = PI / 4 * edge_overlap(&out->edge);
     out->patch = out->patch_of_nodes = 0;
     out->weighting = 1;
     if (grid_is_profile(grid))
         return 0;
     status = double_sine_open(&wave, grid, block, err);
-    for (size_t a = 0; status == 0 && a < PLACES; a++) {
-        place(&wave, a);
+    for (size_t a = 0; status == 0 && a < POSITIONS; a++) {
+        wave_shift(&wave, a);
         status = add_loads(&wave, out, &squares, err);
     }
     if (status == 0)

@@ -2,10 +2,13 @@
 #ifndef RUGO_CORE_CONTACT_BLOCK_H
 #define RUGO_CORE_CONTACT_BLOCK_H
 
+#include "core/rugo_lists.h"
 #include "core/surface/grid.h"
 
-/* The linear models. The finite elements of core/full use all of a block but its model. */
-enum block_model { MODEL_HALFSPACE, MODEL_LAYERED };
+/* The linear models. The finite elements of core/full use a block's other fields alone. */
+#define BLOCK_MODEL(type, name, value) MODEL_##type,
+enum block_model { RUGO_LINEAR_MODELS(BLOCK_MODEL) };
+#undef BLOCK_MODEL
 /* Weighting of the gap by the mortar functions of the finite elements (F10.5): the standard ones
  * (Petrov-Galerkin, as in the reference, core/theory/BIBLIOGRAPHY.md) average it over neighbours by
  * (1, 4, 1)/6 along each axis; the dual ones take the gap at the node. */
@@ -23,9 +26,9 @@ enum { LAYERS_MOST = 4096 };
 /* Fails with ERROR_INPUT for a block out of the ranges above. */
 int block_check(const struct block *block, struct error *err);
 
-/* Thicknesses of the layers of a block from the face down, at most LAYERS_MOST into thickness: the
- * first is as the finer of dx and dy, all are scaled down by one factor so that they fill the
- * block. How many, or 0 when too many are needed. */
+/* Thicknesses of the layers of a block from the face down, at most LAYERS_MOST into thickness. The
+ * first is the finer of dx and dy; one factor scales all of them down so that they fill the block.
+ * Returns their number, or 0 when too many are needed. */
 size_t block_layers(const struct grid *grid, const struct block *block, double *thickness);
 
 #endif

@@ -92,7 +92,19 @@ static int compliance_fill(struct compliance *compliance, struct error *err) {
     return status != 0 ? status : lengths_check(compliance, err);
 }
 
-static int open_check(const struct block *block, struct error *err) {
+int compliance_check_spacings(const struct grid *grid, struct error *err) {
+    enum { RATIO_MOST = 100 };
+    const double dx = grid_dx(grid), dy = grid_is_profile(grid) ? dx : grid_dy(grid);
+    if (fmax(dx, dy) <= RATIO_MOST * fmin(dx, dy))
+        return 0;
+    return error_set(
+        err, ERROR_INPUT,
+        "points %g by %g apart: contact can be computed where one spacing is at most %d "
+        "times the other",
+        dx, dy, RATIO_MOST);
+}
+
+static int open_check(const struct grid *grid, const struct block *block, struct error *err) {
     if (block->model != MODEL_HALFSPACE)
         return error_set(err, ERROR_INPUT,
                          "a map that does not repeat is pressed on a half-space alone: a mesh of "
@@ -101,7 +113,7 @@ static int open_check(const struct block *block, struct error *err) {
         return error_set(err, ERROR_INPUT,
                          "block height %g under a map that does not repeat; allowed: infinite",
                          block->height);
-    return 0;
+    return compliance_check_spacings(grid, err);
 }
 
 static int create(struct compliance **out, const struct grid *grid, const struct block *block,
@@ -111,7 +123,7 @@ static int create(struct compliance **out, const struct grid *grid, const struct
     if (status == 0)
         status = block_check(block, err);
     if (status == 0 && open)
-        status = open_check(block, err);
+        status = open_check(grid, block, err);
     if (status != 0)
         return status;
     struct compliance *compliance = array_create(1, sizeof *compliance);
@@ -152,7 +164,7 @@ void compliance_destroy(struct compliance **compliance) {
 }
 
 double compliance_bytes(const struct grid *grid, const struct block *block) {
-    size_t columns = grid->nx / 2 + 1; /* the product may not fit a size_t yet */
+    size_t columns = grid->nx / 2 + 1; /* grid_check has not passed yet: the product may overflow */
     double waves = (double)columns * (double)grid->ny;
     return sizeof(struct compliance) + waves * sizeof(double) * (has_weight(block) ? 2 : 1);
 }

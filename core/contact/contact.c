@@ -1,5 +1,5 @@
 #include "core/contact/contact.h"
-#include "core/contact/conjugate_gradient.h"
+#include "core/contact/solver/conjugate_gradient.h"
 #include "core/sum.h"
 #include <fftw3.h>
 #include <float.h>
@@ -10,7 +10,7 @@
 const struct contact_options CONTACT_DEFAULTS = {
     .tolerance = 1e-8, .max_iterations = 5000, .stall_iterations = 400};
 
-/* Nodes of a side, up to which the most iterations are those of the options. */
+/* Sides up to this number of nodes take the max_iterations of the options. */
 static const double SIDE_USUAL = 4096;
 
 /* In this file heights are in units of the surface's RMS height and pressures in RMS height over
@@ -129,7 +129,7 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
     int status = take_heights(c, z, err);
     if (status != 0)
         return status;
-    /* The results of a surface must not depend on the one before. */
+    /* The results of a surface must not depend on the surface before. */
     memset(d->q, 0, d->padded * sizeof *d->q);
     memcpy(d->z, c->z, d->n * sizeof *d->z);
     if (c->compliance->weight != NULL)
@@ -140,7 +140,7 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
     c->full = INFINITY;
     if (c->compliance->open)
         return 0;
-    transform_filter(d->transform, d->stiff, 1, d->z, d->w);
+    transform_filter(d->transform, d->inverse, 1, d->z, d->w);
     c->full = 0;
     for (size_t i = 0; i < d->n; i++)
         c->full = fmax(c->full, -d->w[i]);
@@ -165,9 +165,9 @@ static void fill_open(struct contact *c, struct contact_state *out) {
 /* The state of full contact: the pressures are those that flatten the surface (F9.3). */
 static void fill_full(struct contact *c, double pressure, struct contact_state *out) {
     struct conjugate_gradient *d = &c->solver;
-    transform_filter(d->transform, d->stiff, pressure_unit(c), d->z, c->pressure);
+    transform_filter(d->transform, d->inverse, pressure_unit(c), d->z, c->pressure);
     for (size_t i = 0; i < d->n; i++) {
-        c->pressure[i] = fmax(DBL_MIN, c->pressure[i] + pressure); /* in contact, if barely */
+        c->pressure[i] = fmax(DBL_MIN, c->pressure[i] + pressure); /* a node in contact has p > 0 */
         c->gap[i] = c->opening[i] = 0;
     }
     out->approach = c->highest * c->unit;
@@ -199,7 +199,7 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
     /* All nodes can be in contact when the load is a rounding error below that of full contact. */
     bool full = out->nodes == d->n && !c->compliance->open;
     if (out->nodes == d->n && c->compliance->open)
-        out->mean_gap = 0; /* but for rounding */
+        out->mean_gap = 0; /* without rounding errors */
     out->stiffness = full ? INFINITY : (double)NAN;
     if (c->tangent && !full) {
         out->stiffness = 1 / (conjugate_gradient_tangent(d) * d->largest);
@@ -214,8 +214,8 @@ static void take_secant(struct contact *c, double change) {
         d->q[i] = (d->p[i] - c->last[i]) / change;
 }
 
-/* Predicts the pressures at a mean from those of the last load and their tangent or secant; uniform
- * before the first load. */
+/* Predicts the pressures at a mean from those of the last load and their tangent or secant; they
+ * are uniform before the first load. */
 static void predict(struct contact *c, double mean) {
     struct conjugate_gradient *d = &c->solver;
     double sum = 0;
@@ -226,13 +226,14 @@ static void predict(struct contact *c, double mean) {
         d->p[i] = fmax(0, p);
         sum += d->p[i];
     }
-    /* A load that falls by many orders is below the rounding of the pressures before. */
+    /* When the load falls by many orders, it may be below the rounding of the last pressures. */
     double factor = mean * (double)d->n / sum;
     for (size_t i = 0; i < d->n; i++)
         d->p[i] = isfinite(factor) ? d->p[i] * factor : mean;
 }
 
-/* Conjugate gradients take about the square root of a side as many iterations. */
+/* Returns the limit of iterations, which grows with the square root of the longer side, as their
+ * number does. */
 static size_t iterations_most(const struct contact *c) {
     const struct grid *grid = &c->compliance->grid;
     double side = fmax((double)grid->nx, (double)grid->ny);

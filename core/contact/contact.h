@@ -1,12 +1,13 @@
 /* Elastic, frictionless, non-adhesive contact of a rough block on a rigid flat, under a prescribed
  * mean pressure: the linear models.
  *
- * Unknown are the pressures p at the grid points. With u = S p (compliance.h), roughness z towards
- * the flat and an approach D, the gap is g = D + u - z; p >= 0, g >= 0, p g = 0, mean p = pressure.
- * Pressures are in units of E*, lengths in the grid's. In free space (compliance_create_open) the
- * same holds within the grid's rectangle, outside of which nothing touches.
+ * The unknowns are the pressures p at the grid points. With u = S p (compliance.h), roughness z
+ * towards the flat and an approach D, the gap is g = D + u - z; p >= 0, g >= 0, p g = 0, mean
+ * p = pressure. Pressures are in units of E*, lengths in the grid's. In free space
+ * (compliance_create_open) the same holds within the grid's rectangle, outside of which nothing
+ * touches.
  *
- * A solver belongs to one thread and one grid; it keeps the surface and the last state, from which
+ * A solver belongs to one thread and one grid. It keeps the surface and the last state, from which
  * the next load starts. Loads may rise and fall: the contact is elastic. */
 #ifndef RUGO_CORE_CONTACT_CONTACT_H
 #define RUGO_CORE_CONTACT_CONTACT_H
@@ -16,17 +17,18 @@
 struct contact_options {
     double tolerance;        /* on the largest violation of complementarity, over the largest
                                 displacement from the mean; default 1e-8; 1e-12 is reachable */
-    size_t max_iterations;   /* a load; default 5000; on sides of more than 4096 nodes more, by the
+    size_t max_iterations;   /* a load; default 5000; on sides of more than 4096 nodes more, as the
                                 square root of their number */
     size_t stall_iterations; /* without halving the violation, after which steps become careful
                                 (conjugate_gradient.h); default 400 */
-    bool without_tangent; /* neither stiffness nor tangent is found, which takes up to a quarter of
-                             the work; of no effect on meshes of elements, whose areas need them */
+    bool without_tangent; /* neither stiffness nor tangent is computed, which saves up to a quarter
+                             of the work; without effect on meshes of elements, whose areas need
+                             them */
 };
 extern const struct contact_options CONTACT_DEFAULTS;
 
-/* The state under one load, and how it was found. The arrays belong to the solver and are valid
- * until its next call. */
+/* The state under one load, and the cost of its solution. The arrays belong to the solver and are
+ * valid until its next call. */
 struct contact_state {
     double pressure;   /* mean, in E* */
     const double *p;   /* grid_points, in E*; mean = pressure, 0 where open */
@@ -45,7 +47,7 @@ struct contact_state {
                            without_tangent */
     size_t nodes;       /* in contact (p > 0) */
     size_t iterations;  /* of the conjugate gradients on this grid, 0 in full contact */
-    double work;        /* points x transforms, over all grids: what the time is made of */
+    double work;        /* points x transforms over all grids, to which the time is proportional */
     double violation;   /* largest |g| inside or penetration outside, over the RMS height */
     double penetration; /* largest -g outside of the contact, over the RMS height; >= 0 */
 };
@@ -56,15 +58,15 @@ struct contact;
 int contact_create(struct contact **out, const struct compliance *compliance,
                    const struct contact_options *options, struct error *err);
 void contact_destroy(struct contact **contact);
-/* Of a periodic grid; in free space free_space_bytes come on top. */
+/* For a periodic grid; in free space free_space_bytes are added. */
 double contact_bytes(const struct grid *grid);
-/* From now on stop is called every few iterations; when it returns non-zero, contact_press fails
- * with ERROR_STOPPED, as it fails where it does not converge. NULL, the initial value, never stops.
- */
+/* Sets stop, which is called every few iterations. When it returns non-zero, contact_press fails
+ * with ERROR_STOPPED, as it fails where it does not converge. NULL, the initial value, never
+ * stops. */
 void contact_set_stop(struct contact *contact, int (*stop)(void *context), void *context);
 
-/* Takes a surface (copies; any height of its mean) and lifts it off: the next load starts anew.
- * ERROR_INPUT for a height that is not finite. */
+/* Copies a surface (any mean height) and removes the load: the next load starts anew. ERROR_INPUT
+ * for a height that is not finite. */
 int contact_begin(struct contact *contact, const double *z, struct error *err);
 /* Presses to a mean pressure >= 0. ERROR_NUMERIC, with the load and what was reached, when the
  * tolerance is not met; the state before is lost then, and the next load starts anew. */

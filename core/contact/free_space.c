@@ -7,12 +7,12 @@
 static const double PI = 3.14159265358979323846;
 static const double EULER = 0.57721566490153286061;
 
-/* The kernel is split in two, both known in closed form (F18.24): a smooth far part, whose waves
- * are below erfc(SPLIT) beyond the grid's, and a near part, which is below erfc(NEAR) of its value
+/* The kernel is the sum of two parts, both known in closed form (F18.24). The far part is smooth:
+ * its waves beyond the grid's are below erfc(SPLIT). The near part is below erfc(NEAR) of its value
  * beyond NEAR/alpha. */
 static const double SPLIT = 6, NEAR = 6;
 
-/* Returns the greater of the spacings, which waves of the grid are no shorter than twice of. */
+/* Returns the greater spacing: waves of the grid are at least twice as long. */
 static double spacing_of(const struct grid *grid) {
     return grid_is_profile(grid) ? grid_dx(grid) : fmax(grid_dx(grid), grid_dy(grid));
 }
@@ -21,7 +21,7 @@ static double alpha_of(const struct grid *grid) {
     return PI / (2 * SPLIT * spacing_of(grid));
 }
 
-/* Twice the side, so that no two points of the map meet across the padding; of small maps more, so
+/* Twice the side, so that no two points of the map meet across the padding; more for small maps, so
  * that the near part does not reach across it either. */
 static size_t padded_count(size_t count, double step, double reach) {
     double near = fmin(ceil(reach / step), 1e9); /* grid_check has bounded the counts */
@@ -40,8 +40,8 @@ void free_space_padded(const struct grid *grid, struct grid *padded) {
     padded->ly = grid_dy(grid) * (double)padded->ny;
 }
 
-/* Far part of the displacement E* at a distance from a unit force, of a profile from a unit line
- * load. */
+/* Returns the far part of the displacement E* at a distance from a unit force; for a profile, from
+ * a unit line load. */
 static double far_kernel(const struct grid *grid, double alpha, double distance) {
     if (!grid_is_profile(grid))
         return distance > 0 ? erf(alpha * distance) / (PI * distance) : 2 * alpha / pow(PI, 1.5);
@@ -52,7 +52,7 @@ static double far_kernel(const struct grid *grid, double alpha, double distance)
     return -(2 * log(distance / grid->lx) + rest) / PI;
 }
 
-/* Transform of the near part. */
+/* Returns the transform of the near part. */
 static double near_symbol(double alpha, double k) {
     return k > 0 ? 2 / k * erf(k / (2 * alpha)) : 2 / (alpha * sqrt(PI));
 }

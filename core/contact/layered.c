@@ -35,8 +35,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* Number of waves that are taken through the layers together, one in each lane of the innermost
- * loops. */
+/* Number of waves that are eliminated together, one in each lane of the innermost loops. */
 enum { LANES = 32 };
 typedef double lane[LANES];
 
@@ -49,7 +48,7 @@ struct layered_material layered_material(double poisson) {
     return (struct layered_material){mu, local, 2 * mu * poisson / compressible - local};
 }
 
-/* The symbols of one direction for one wave are these. */
+/* The symbols of one direction for one wave. */
 struct symbols {
     double mass;       /* <N, N> */
     double stiffness;  /* <N', N'> */
@@ -68,11 +67,11 @@ static struct symbols symbols_of(size_t mode, size_t n, double distance) {
                             .tilt = 2 * s / distance};
 }
 
-/* The waves that are taken through the layers. Lanes from count on are undefined and not read. Of
+/* The waves that are eliminated together. Lanes from count on are undefined and not read. Of
  * symmetric matrices one half is stored; entries left out are 0. */
 struct wave_lanes {
     lane axx, axy, ayy, azz; /* A */
-    lane bxx, bxy, byy;      /* the part of A that sees the mean of phi: zeta zeta is h/4 */
+    lane bxx, bxy, byy;      /* the part of A that depends on the mean of phi: zeta zeta is h/4 */
     lane cxz, cyz, czx, czy; /* C: row phi, column phi' */
     lane fh, fz;             /* F of X and Y, of Z */
     lane mxx, mxy, myy, mxz, myz, mzz; /* M */
@@ -155,8 +154,8 @@ static inline void condense(struct wave_lanes *w, size_t l, struct symmetric n, 
     w->mzz[l] = n.zz - product(f, z, z);
 }
 
-/* The layer on the far side, where Z = 0 and X, Y are free: Z of w is that of the near face and
- * stays; X and Y of w go, and a unit pivot stands in for Z. */
+/* The layer on the far side, where Z = 0 and X, Y are free. Z of w is that of the near face and
+ * stays; X and Y of w are eliminated, with a unit pivot in place of Z. */
 WIDE_VECTORS static void far_layer(struct wave_lanes *w, double h) {
     double a = h / 2, b = h / 3, c = h / 12;
     for (size_t l = 0; l < LANES; l++) {
@@ -174,8 +173,8 @@ WIDE_VECTORS static void far_layer(struct wave_lanes *w, double h) {
     }
 }
 
-/* Any other layer. Its energy has blocks P for v v, Q for v w, R for w w; v is the near face less
- * w, so that w meets G = N - Q and H = N - Q - Q^T + R, with N = M + P. */
+/* Any other layer. Its energy has blocks P for v v, Q for v w, R for w w. v is the near face less
+ * w, so that G = N - Q and H = N - Q - Q^T + R, with N = M + P. */
 WIDE_VECTORS static void next_layer(struct wave_lanes *w, double h) {
     double a = h / 2, b = h / 3, c = h / 12;
     for (size_t l = 0; l < LANES; l++) {
@@ -204,11 +203,12 @@ WIDE_VECTORS static void face(struct wave_lanes *w) {
     }
 }
 
-/* A mesh being solved. Lengths are in units of dx, so that no unit of the user's can overflow. */
+/* A mesh under elimination. Lengths are in units of dx, so that no unit of the user's can
+ * overflow. */
 struct layered_mesh {
     const struct grid *grid;
     struct layered_material material;
-    double *length;    /* what is filled, as in struct compliance */
+    double *length;    /* filled: as in struct compliance */
     double *thickness; /* layers, from the face down */
     size_t layers;
     struct symbols *x, *y; /* nx/2 + 1, ny/2 + 1 */

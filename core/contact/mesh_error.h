@@ -1,9 +1,9 @@
-/* By how much the mesh and its weighting put the face of a block too near the flat, or too far.
+/* How far the mesh and its weighting shift the mean gap of a block.
  *
- * The solution p of the mesh makes the energy p.Sp/2 - p.z of the block itself, with its exact
- * compliance S (F10.2) and the gap at each point, differ from its least value by the square of its
- * error alone. The derivative of that energy by the mean pressure is minus the approach: with
- * q = dp/d pressure, the mean of q (S p - z) in place of the mesh's own (F12.6). */
+ * With the block's exact compliance S (F10.2) and the gap at each point, the energy is
+ * p.Sp/2 - p.z. At the mesh's solution p it exceeds its least value only by the square of p's
+ * error. Minus the derivative of that energy by the mean pressure is the approach: with q = dp/d
+ * pressure, the mean of q (S p - z) in place of the mesh's own (F12.6). */
 #ifndef RUGO_CORE_CONTACT_MESH_ERROR_H
 #define RUGO_CORE_CONTACT_MESH_ERROR_H
 
@@ -11,7 +11,7 @@
 
 /* Mean gap of the state less that of the block, to first order, the grid's length. */
 struct mesh_error {
-    double weighting; /* as contact holds in the mean about a node, not at it */
+    double weighting; /* because contact holds in the mean about a node, not at the node */
     double compliance;
 };
 

@@ -13,11 +13,11 @@ struct patches {
 };
 struct patch_finder;
 int patch_finder_create(struct patch_finder **out, const struct grid *grid, struct error *err);
-/* From now on nothing is joined across the sides. */
+/* Joins nothing across the sides from then on. */
 void patch_finder_open(struct patch_finder *finder);
 void patch_finder_destroy(struct patch_finder **finder);
-/* In contact: p > 0. sizes (NULL: not wanted) gets the nodes of each patch, room for grid_points.
- */
+/* A node is in contact where p > 0. sizes (NULL: not wanted) gets the nodes of each patch, room for
+ * grid_points. */
 void patches_find(struct patch_finder *finder, const double *p, struct patches *out, size_t *sizes);
 
 #endif

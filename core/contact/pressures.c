@@ -1,26 +1,26 @@
 #include "core/contact/pressures.h"
 #include "core/contact/area_law.h"
-#include "core/contact/edge_find.h"
+#include "core/contact/edge/edge_find.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
-/* The least: steps that a strip reaches, those that a chord of few nodes is wide, and cells that a
- * strip covers. The most: how much the law changes a squared pressure further inside, and how much
- * all strips together are stretched to make the area. */
+/* Least values: of the reach of a strip and the width of a chord, in steps, and of the cells that a
+ * strip covers. Largest ones: of the law's factor on a squared pressure further inside, and of the
+ * factor by which all strips together are stretched to make the area. */
 static const double REACH_LEAST = 0.25, CHORD_LEAST = 0.3, CELL_LEAST = 1e-3;
 static const double NEXT_MOST = 2, STRETCH_MOST = 2;
 enum { CHORD_NODES = 2 };
 #define NO_NODE SIZE_MAX
 
 /* An area beside an edge over which the squared pressure (edge_fill_rise) is slope t (1 - bend t),
- * evenly spread over 0 < t < reach. */
+ * evenly distributed over 0 < t < reach. */
 struct strip {
-    double area; /* in cells; at first without that of its nodes */
+    double area; /* in cells; without that of its nodes until assign_cells */
     double slope, bend, reach;
-    double part;               /* of the cells of its nodes that it stands for */
+    double part;               /* fraction of the cells of its nodes that it replaces */
     size_t nodes[CHORD_NODES]; /* or NO_NODE */
 };
 
@@ -28,14 +28,14 @@ struct pressures {
     struct grid grid;
     const struct edge_law *law; /* borrowed */
     double *rise;               /* grid_points, as all here */
-    double *covered;            /* parts of a node's cell that strips stand for */
+    double *covered;            /* fraction of a node's cell that strips replace */
     double *correction;         /* what the law adds to the logarithm of a squared pressure */
-    struct strip *strips;       /* owned: those of the state under way */
+    struct strip *strips;       /* owned: those of the present state */
     size_t count, room;
 };
 
-/* Area in cells, and the sum of the pressures over it, over the largest one. */
-struct burden {
+/* Area in cells, and the sum over it of the pressures over the largest one. */
+struct loaded_area {
     double area, force;
 };
 
@@ -84,13 +84,13 @@ static double rise_at(const struct strip *s, double t) {
     return fmax(0, s->slope * t * (1 - s->bend * t));
 }
 
-/* Returns up to which t the squared pressure is below a value. */
+/* Returns the t up to which the squared pressure is below a value. */
 static double reach_below(const struct strip *s, double rise) {
     double root = sqrt(fmax(0, 1 - 4 * s->bend * rise / s->slope));
     return fmin(2 * rise / (s->slope * (1 + root)), s->reach);
 }
 
-/* Mean of the pressure, by Gauss's three points over the root of t. */
+/* Returns the mean pressure, by Gauss's three points over the root of t. */
 static double strip_mean(const struct strip *s) {
     static const double AT[3] = {0.11270166537925831, 0.5, 0.88729833462074169};
     static const double WEIGHT[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
@@ -132,8 +132,8 @@ static size_t run_node(const struct run *run, size_t a) {
     return edge_node(run->family, run->line, run->first + a);
 }
 
-/* Over a short chord between two edges the pressure is an ellipse, with the force of its nodes.
- * beyond: area beyond their cells. */
+/* Over a short chord between two edges the pressure is an ellipse that carries the force of its
+ * nodes. beyond: area beyond their cells. */
 static void add_chord(struct pressures *p, const struct run *run, double part, double width,
                       double beyond) {
     double force = 0;
@@ -149,8 +149,8 @@ static void add_chord(struct pressures *p, const struct run *run, double part, d
                      .nodes = {run_node(run, 0), run->count > 1 ? run_node(run, 1) : NO_NODE}});
 }
 
-/* A patch of one node of a surface is met in a row and in a column. On Hertz's ellipse each squared
- * pressure has as much area. */
+/* A patch of one node of a surface is met in a row and in a column; the row counts. Over Hertz's
+ * ellipse the squared pressure is evenly distributed. */
 static void add_lone(struct pressures *p, const struct run *run, double area) {
     if (!run->family->row)
         return;
@@ -162,7 +162,8 @@ static void add_lone(struct pressures *p, const struct run *run, double area) {
                                  .nodes = {run_node(run, 0), NO_NODE}});
 }
 
-/* The outer node of a longer run, with its own half of the step to the next one. */
+/* The outer node of a longer run, with the half of the step to the next node that is in its
+ * cell. */
 static void add_border(struct pressures *p, const struct edge_crossing *x,
                        const struct edge_found *f) {
     add_strip(p, &(struct strip){.area = f->part * (f->share - 0.5),
@@ -249,9 +250,10 @@ static int find_strips(struct pressures *p, struct error *err) {
 
 /* --- all of the contact --- */
 
-/* Gives strips the cells of their nodes: no more than these are, where several meet in a node. */
-static struct burden settle_strips(struct pressures *p) {
-    struct burden all = {0};
+/* Gives strips the cells of their nodes; where several strips meet in a node, they share its
+ * cell. */
+static struct loaded_area assign_cells(struct pressures *p) {
+    struct loaded_area all = {0};
     for (size_t a = 0; a < p->count; a++) {
         struct strip *s = &p->strips[a];
         for (size_t b = 0; b < CHORD_NODES; b++)
@@ -264,7 +266,8 @@ static struct burden settle_strips(struct pressures *p) {
     return all;
 }
 
-/* What is left to a node of its cell, and its pressure over the largest one. */
+/* Return the part of a node's cell that no strip replaces, and its pressure over the largest
+ * one. */
 static double cell_left(const struct pressures *p, size_t i) {
     return p->rise[i] > 0 ? fmax(0, 1 - p->covered[i]) : 0;
 }
@@ -283,13 +286,14 @@ int pressures_share(struct pressures *pressures, const struct contact_state *sta
     memset(shares, 0, (bins->count + 2) * sizeof *shares);
     if (!(most > 0))
         return 0;
-    struct burden strips = settle_strips(pressures), nodes = {0};
+    struct loaded_area strips = assign_cells(pressures), nodes = {0};
     for (size_t i = 0; i < n; i++) {
         double left = cell_left(pressures, i);
         nodes.area += left;
         nodes.force += left > 0 ? left * pressure_of(pressures, i) : 0;
     }
-    /* Edges make the area, as far as they can, and all pressures together the load. */
+    /* Strips are stretched to make the area, within limits, and all pressures are scaled to make
+     * the load. */
     double stretch = strips.area > 0 ? (area * (double)n - nodes.area) / strips.area : 1;
     stretch = fmin(fmax(stretch, 1 / STRETCH_MOST), STRETCH_MOST);
     double scale = area / (nodes.area + stretch * strips.area);

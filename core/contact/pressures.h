@@ -1,10 +1,10 @@
-/* How much of the cell bears which pressure: nodes in contact theirs, each on its cell, but where
- * an edge of contact is near, the law of edges (F12.8). */
+/* The distribution of the pressure over the cell: nodes in contact bear their pressures on their
+ * cells, and near an edge of contact the law of edges gives the pressure (F12.8). */
 #ifndef RUGO_CORE_CONTACT_PRESSURES_H
 #define RUGO_CORE_CONTACT_PRESSURES_H
 
 #include "core/contact/area.h"
-#include "core/statistics/histogram.h"
+#include "core/statistics/heights/histogram.h"
 
 struct pressures;
 /* Borrows the workspace, which must outlive it. */

@@ -20,7 +20,7 @@ INLINE void parent_gradients(int d, double reach, pointwise parent[8][3]) {
             }
 }
 
-/* Fills the same at those points, and jacobian[k][l] = dX_l/dxi_k. */
+/* Fills parent at those points, and jacobian[k][l] = dX_l/dxi_k. */
 INLINE void jacobians(int d, double reach, double position[8][3], pointwise parent[8][3],
                       pointwise jacobian[3][3]) {
     parent_gradients(d, reach, parent);
@@ -109,7 +109,7 @@ double element_quality(int dimension, double position[8][3]) {
 
 /* --- energy, forces, stiffness --- */
 
-/* In these values the node is the innermost index. */
+/* The node is the innermost index. */
 typedef double nodes[ELEMENT_NODES];
 
 struct field {

@@ -27,12 +27,12 @@ struct element_shape {        /* undeformed */
 /* Makes the shape of an element with undeformed positions [a][k]. Returns false when the Jacobian
  * at a Gauss point is not positive. */
 bool element_shape_make(int dimension, double position[8][3], struct element_shape *out);
-/* Smallest value over the corners of the Jacobian over the product of its edges' lengths: 1 for a
- * brick, 0 or less for an element that is folded there. */
+/* Returns the smallest value over the corners of the Jacobian over the product of its edges'
+ * lengths: 1 for a brick, 0 or less for an element that is folded there. */
 double element_quality(int dimension, double position[8][3]);
 
-/* What an element whose pressure p (E*, positive outward) is an unknown of its own adds to the
- * equations; in balance p = mean e. */
+/* The part of the equations that belongs to an element's pressure p (E*, positive outward) where p
+ * is an unknown of its own; in balance p = mean e. */
 struct element_volumetric {
     double gradient[ELEMENT_DEGREES_OF_FREEDOM]; /* derivative of V e by the displacements, which is
                                                     the force of p = 1 */

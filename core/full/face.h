@@ -1,5 +1,5 @@
-/* Areas and volumes of the face as it is under load: of its cells as displaced, projected on the
- * flat. The cells tile the periodic cell, whose area stays. Private to core/full.
+/* Areas and volumes of the face under load: its cells as displaced, projected on the flat. The
+ * cells tile the periodic cell, whose area stays. Private to core/full.
  *
  * u: displacements (mesh_degrees_of_freedom values, or more); lengths are in the mesh's unit. */
 #ifndef RUGO_CORE_FULL_FACE_H
@@ -11,11 +11,12 @@
  * face); NaN where there are none. */
 double face_contact_stretch(const struct mesh *mesh, const double *u, const bool *active);
 
-/* Returns the volume between the face and the flat over the area of the periodic cell. gap: by node
- * of the face, bilinear in between; exact. u may be NULL: of the cells as they are undeformed. */
+/* Returns the volume between the face and the flat over the area of the periodic cell, which is
+ * exact for gaps that are bilinear between nodes. gap: by node of the face. u may be NULL: the
+ * cells are undeformed. */
 double face_mean_gap(const struct mesh *mesh, const double *u, const double *gap);
-/* Returns its change, to first order, when the displacements change by `change` and the flat stays;
- * with u = NULL the cells stay too. */
+/* Returns the change of the mean gap, to first order, when the displacements change by `change` and
+ * the flat stays; with u = NULL the cells stay too. */
 double face_mean_gap_change(const struct mesh *mesh, const double *u, const double *gap,
                             const double *change);
 

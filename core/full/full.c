@@ -12,7 +12,7 @@ const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
                                            .max_iterations = 60,
                                            .least_step = 1.0 / 256};
 
-/* Returns the largest change of the relative area of a cell of the face in one load step. */
+/* The largest change of the relative area of a cell of the face in one load step. */
 static const double STRETCH_MOST = 0.25;
 
 /* All lengths in this file are in units of dx, the mesh's unit. */
@@ -22,7 +22,7 @@ struct full {
     struct mesh *mesh;
     struct newton newton;
     struct compliance *compliance;
-    struct contact *linear;                     /* guesses which nodes touch */
+    struct contact *linear;                     /* predicts which nodes touch */
     double *z;                                  /* heights of mean 0 */
     double *pressure, *gap, *opening, *tangent; /* by node of the face: results in the user's
                                                    units */
@@ -228,7 +228,8 @@ static void restore(struct full *f) {
     memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
 }
 
-/* Largest change of the relative area of a cell of the face since the last load that converged. */
+/* Returns the largest change of the relative area of a cell of the face since the last load that
+ * converged. */
 static double stretch_change(const struct full *f) {
     const struct mesh *m = f->mesh;
     double most = 0;
@@ -239,13 +240,13 @@ static double stretch_change(const struct full *f) {
     return most;
 }
 
-/* Takes one load step; *change says how far the equilibrium is from the last one. An equilibrium
- * that changed by more than STRETCH_MOST is refused, because the face may have reached it only by
+/* Takes one load step; *change is stretch_change after it, 0 where it failed. An equilibrium that
+ * changed by more than STRETCH_MOST is refused, because the face may have reached it only by
  * folding. */
 static int step_to(struct full *f, double load, double *change, struct newton_end *end,
                    struct full_report *report, struct error *err) {
     predict(f, load);
-    int status = newton_settle(&f->newton, load, end, err);
+    int status = newton_solve(&f->newton, load, end, err);
     report->newton += end->iterations;
     report->linear += end->linear;
     report->factored += end->factored;
@@ -263,8 +264,8 @@ static int step_to(struct full *f, double load, double *change, struct newton_en
     return status;
 }
 
-/* Goes from the last load to another: in one step, or in smaller ones that grow again once two in a
- * row have converged with changes below half of STRETCH_MOST. */
+/* Goes from the last load to another, in one step or in smaller ones. Steps grow again once two in
+ * a row have converged with changes below half of STRETCH_MOST. */
 static int raise_load(struct full *f, double goal, struct newton_end *end,
                       struct full_report *report, struct error *err) {
     double whole = goal - f->load, step = whole, change;

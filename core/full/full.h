@@ -3,15 +3,15 @@
  * set (newton.h).
  *
  * The surface, the loads and the results are those of core/contact/contact.h. The linear layered
- * model of the same block guesses which nodes touch at each load; the answer does not depend on it.
- * Pressures are contact forces over the nodes' tributary areas on the undeformed grid, so that
- * their mean equals the load exactly; full_report.stretch says how much the contact shrank or
- * stretched sideways. Mean gap and stiffness are of the face as it is under load (F14.6), unless
- * strains are small. Contact of the face with itself is not modelled: a load under which the face
- * would fold has no equilibrium. No load step changes the area of a cell of the face by more than a
- * quarter, so that one load and many lead to the same answer, or fail at the same load to within a
- * few smallest steps. A solver belongs to one thread. The elastic state has no history, but the
- * iteration for each load starts from the load before. */
+ * model of the same block predicts which nodes touch at each load; the solution does not depend on
+ * it. Pressures are contact forces over the nodes' tributary areas on the undeformed grid, so that
+ * their mean equals the load exactly. full_report.stretch is how much the contact shrank or
+ * stretched sideways. Mean gap and stiffness are of the face under load (F14.6), unless strains are
+ * small. Contact of the face with itself is not modelled: a load under which the face would fold
+ * has no equilibrium. No load step changes the area of a cell of the face by more than a quarter.
+ * So one load and many lead to the same solution, or fail at the same load to within a few smallest
+ * steps. A solver belongs to one thread. The elastic state has no history, but the iteration for
+ * each load starts from the load before. */
 #ifndef RUGO_CORE_FULL_FULL_H
 #define RUGO_CORE_FULL_FULL_H
 
@@ -28,7 +28,7 @@ struct full_options {
 };
 extern const struct full_options FULL_DEFAULTS;
 
-/* How the last load was solved; counts are sums over its load steps. */
+/* Statistics of the last load; counts are sums over its load steps. */
 struct full_report {
     enum kinematics kinematics;
     size_t newton;      /* iterations */
@@ -46,7 +46,7 @@ struct full_report {
     double penetration, weighted_penetration;
     double stretch; /* deformed over undeformed tributary area of the nodes in contact; NaN without
                        contact */
-    double open_stretch; /* the same of the nodes out of contact; 1 where there are none */
+    double open_stretch; /* as stretch, of the nodes out of contact; 1 where there are none */
     double slope;        /* steepest edge of the face */
     double quality;      /* smallest quality of an element (element_quality); 1 for bricks */
     double history[NEWTON_HISTORY]; /* residuals of Newton's method, the latest last */
@@ -67,7 +67,7 @@ size_t full_degrees_of_freedom(const struct grid *grid, const struct block *bloc
 double full_bytes(const struct grid *grid, const struct block *block,
                   const struct full_options *options, double iterations);
 
-/* From now on stop is called before each iteration of Newton's method; when it returns non-zero,
+/* Sets stop, which is called before each iteration of Newton's method. When it returns non-zero,
  * full_press ends with ERROR_STOPPED and leaves the solver as after a load that was not reached.
  * NULL, the initial value, never stops. */
 void full_set_stop(struct full *full, int (*stop)(void *context), void *context);
@@ -75,9 +75,9 @@ void full_set_stop(struct full *full, int (*stop)(void *context), void *context)
 /* Meshes the block below a surface (copied; the mean height does not matter), without contact.
  * ERROR_INPUT for a surface that is not finite or too steep. */
 int full_begin(struct full *full, const double *z, struct error *err);
-/* Presses to a mean pressure >= 0, in load steps where needed. ERROR_NUMERIC names the load that
- * was reached; the solver keeps that state, and another load may be tried from there. report may be
- * NULL. */
+/* Presses to a mean pressure >= 0, in load steps where needed. The message of ERROR_NUMERIC names
+ * the load that was reached. The solver keeps that state, and another load may be tried from there.
+ * report may be NULL. */
 int full_press(struct full *full, double pressure, struct contact_state *out,
                struct full_report *report, struct error *err);
 /* The mesh, and the displacements of the last state in the grid's unit of length: component k of a

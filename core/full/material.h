@@ -24,8 +24,8 @@ struct material {
     double shear;       /* Lame's mu, in E* */
     double local, mean; /* parts of Lame's lambda, in E*: of the local dilatation, and of the
                            element's mean dilatation */
-    bool convex; /* moduli leave out what stress adds to them: they are no tangent any more, but
-                    positive definite, so that a step along them lowers the energy */
+    bool convex;        /* moduli leave out the terms of the stress: they are no exact tangent, but
+                           positive definite, so that a step with them lowers the energy */
 };
 /* Lambda is split as in the layered model (F10.4). */
 struct material material_of(double poisson, enum kinematics kinematics);

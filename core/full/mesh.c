@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum { COLUMNS_LEAST = 4 };
-/* No edge of the face may be steeper: those would shear elements by more than 80 degrees. */
+/* The steepest edge of the face: steeper ones would shear elements by more than 80 degrees. */
 static const double SLOPE_MOST = 6;
 /* Depth of the fine zone in RMS heights, and its least depth in largest heights: the factor of
  * mesh.h falls by 3/2 over the zone at most, so that 4 heights keep elements upright. */

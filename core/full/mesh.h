@@ -5,10 +5,10 @@
  * columns, where displacements are interpolated (hanging nodes), so that they stay continuous. The
  * sides are periodic: one node stands for all its images.
  *
- * Lengths are in units of dx. The node in row j and column i of a level is level.first + j*level.nx
- * + i; level 0 is the face. Its vertical position is level.depth - z * factor, where the factor
- * falls smoothly from 1 at the face to 0 at the end of the fine zone, which is 40 RMS heights deep
- * where the block allows, as in the reference (core/theory/BIBLIOGRAPHY.md). */
+ * Lengths are in units of dx. The node in row j and column i of a level is level.first +
+ * j*level.nx + i; level 0 is the face. Its vertical position is level.depth - z * factor. The
+ * factor falls smoothly from 1 at the face to 0 at the end of the fine zone, which is 40 RMS
+ * heights deep where the block allows, as in the reference (core/theory/BIBLIOGRAPHY.md). */
 #ifndef RUGO_CORE_FULL_MESH_H
 #define RUGO_CORE_FULL_MESH_H
 
@@ -81,15 +81,16 @@ void mesh_corners_add(const struct mesh *mesh, const struct mesh_element *elemen
 void mesh_position(const struct mesh *mesh, const struct mesh_element *element,
                    double position[8][3]);
 
-/* Area of the face's cell in row j and column i under displacements u (mesh_degrees_of_freedom
- * values), projected on the flat, over the undeformed area: half of the cross product of its
- * diagonals. */
+/* Returns the area of the face's cell in row j and column i under displacements u
+ * (mesh_degrees_of_freedom values), projected on the flat, over the undeformed area: half of the
+ * cross product of its diagonals. */
 double mesh_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i);
 
 static inline size_t mesh_degrees_of_freedom(const struct mesh *mesh) {
     return mesh->nodes * (size_t)mesh->dimension;
 }
-/* Degrees of freedom and, where they are unknowns of their own (gmres.h), pressures of elements. */
+/* Returns the number of degrees of freedom and, where they are unknowns of their own (gmres.h),
+ * pressures of elements. */
 static inline size_t mesh_unknowns(const struct mesh *mesh, bool pressures) {
     return mesh_degrees_of_freedom(mesh) + (pressures ? mesh->elements : 0);
 }
@@ -101,7 +102,7 @@ static inline size_t mesh_vertical(const struct mesh *mesh, size_t node) {
 static inline size_t mesh_far_side(const struct mesh *mesh) {
     return mesh->level[mesh->layers].first;
 }
-/* The node in a row and column; the index one beyond the last means the first. */
+/* Returns the node in a row and column; the index one beyond the last means the first. */
 static inline size_t level_node(const struct level *level, size_t j, size_t i) {
     size_t row = j < level->ny ? j : 0, column = i < level->nx ? i : 0;
     return level->first + row * level->nx + column;

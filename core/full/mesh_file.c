@@ -134,12 +134,13 @@ static void write_points(const struct vtu_writer *w) {
 
 /* --- elements --- */
 
-/* Where it is, and its number before those of its layer's upper and lower side. */
+/* Layer and element, and the numbers of elements before those of its layer's upper and lower
+ * side. */
 struct vtu_cell {
     size_t layer, j, i, upper, lower;
 };
 
-/* VTK goes around each face; the mesh counts in binary (element.h). */
+/* VTK orders corners around each face; the mesh in binary (element.h). */
 static void put_corners(const struct vtu_writer *w, const struct vtu_cell *cell) {
     static const int AROUND[] = {0, 1, 3, 2, 4, 5, 7, 6};
     bool profile = w->mesh->dimension == 2;
@@ -160,8 +161,9 @@ static void put_quality(const struct vtu_writer *w, const struct vtu_cell *cell)
     fprintf(w->file, "%.4g\n", element_quality(w->mesh->dimension, position));
 }
 
-/* Mean Cauchy stress: the sum of the nodes' inner forces times their places is the volume integral
- * of the stress, now; of the linear strain, before. False for an element that is inside out. */
+/* Mean Cauchy stress: the sum over nodes of inner force times position is the volume integral of
+ * the stress. Positions are the deformed ones; of the linear strain, the undeformed ones. Returns
+ * false for an inverted element. */
 static bool element_stress(const struct vtu_writer *w, double position[8][3], double u[8][3],
                            double stress[3][3]) {
     int d = w->mesh->dimension, nodes = 1 << d;
@@ -196,7 +198,7 @@ static void put_stress(const struct vtu_writer *w, const struct vtu_cell *cell) 
     for (size_t a = 0; a < (size_t)1 << d; a++)
         for (size_t k = 0; k < d; k++)
             u[a][k] /= mesh->unit;
-    /* No equilibrium has elements inside out; a state that is none leaves zeros. */
+    /* No equilibrium has inverted elements; other states leave zeros. */
     (void)element_stress(w, position, u, s);
     double shear = (s[0][1] + s[1][0]) / 2;
     if (d == 2)

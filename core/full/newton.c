@@ -7,19 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Stiffness c that weighs gaps against forces in the choice of the active set: E* over the mesh's
+/* Stiffness c that weights gaps against forces in the choice of the active set: E* over the mesh's
  * unit. */
 static const double COMPLEMENTARITY = 1;
 /* Contact forces may change the active set once the largest residual over the largest contact force
- * is below TRUSTED; while nodes change one at a time, below SETTLED. */
-static const double TRUSTED = 0.1, SETTLED = 1e-4;
+ * is below TRUSTED; while nodes change one at a time, below TRUSTED_ONE. */
+static const double TRUSTED = 0.1, TRUSTED_ONE = 1e-4;
 /* Residuals at which iterations of the linear equations end: LINEAR_PART times Newton's residual,
  * at most LINEAR_MOST; LINEAR_EXACT with a factorisation; LINEAR_STIFFNESS for newton_compliance.
  */
 static const double LINEAR_MOST = 1e-2, LINEAR_PART = 0.1, LINEAR_EXACT = 1e-10;
 static const double LINEAR_STIFFNESS = 1e-6;
-/* Gaps are sums of heights and displacements, whose rounding errors are taken as ROUNDINGS units of
- * the last place of the highest height. A load is refused when forces by strains of that size
+/* Gaps are sums of heights and displacements. Their rounding error is taken as ROUNDINGS units in
+ * the last digit of the highest height. A load is refused when forces by strains of that size
  * exceed ROUNDING_MOST times the load. */
 static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
 /* HALVINGS: of a step that folds the face or inverts an element. PATIENCE: rounds with the same
@@ -87,8 +87,8 @@ static double contact_force(const struct newton *n, size_t node) {
     return n->force[mesh_vertical(n->mesh, node)];
 }
 
-/* Rounding error of gaps, which are sums of heights and displacements as large as the highest
- * height, and of the forces that strains of that size make. */
+/* Return the rounding error of gaps, which are sums of heights and displacements as large as the
+ * highest height, and of the forces that strains of that size cause. */
 static double gap_rounding(const struct newton *n) {
     return ROUNDINGS * DBL_EPSILON * fabs(n->flat_height);
 }
@@ -106,8 +106,8 @@ static double largest_force(const struct newton *n) {
     return most;
 }
 
-/* Returns by how much force a node's state (active or not) contradicts its contact force and gap; 0
- * where it agrees or contradicts by less than `least`. */
+/* Returns the force by which a node's state (active or not) contradicts its contact force and gap;
+ * 0 where it agrees or contradicts by less than `least`. */
 static double contradiction(const struct newton *n, size_t node, double least) {
     double gap = COMPLEMENTARITY * n->opening[node];
     double wrong = n->active[node] ? gap - contact_force(n, node) : -gap;
@@ -135,8 +135,8 @@ static void active_fill(struct newton *n) {
         n->active[nearest_node(n)] = true;
 }
 
-/* Changes the state of the nodes that contradict it: of all, or of the worst one alone. Returns how
- * many were changed. */
+/* Changes the state of all nodes that contradict it, or of the worst one alone. Returns their
+ * number. */
 static size_t active_update(struct newton *n, bool one) {
     double least = fmax(n->tolerance * largest_force(n), force_rounding(n)), worst = 0;
     size_t changes = 0, which = 0;
@@ -158,7 +158,7 @@ static size_t active_update(struct newton *n, bool one) {
     return changes;
 }
 
-/* A hash of the active set (Fowler, Noll & Vo 1991), by which a set that was met before is
+/* Returns a hash of the active set (Fowler, Noll & Vo 1991), by which a set that was met before is
  * recognised. */
 static uint64_t active_hash(const struct newton *n) {
     uint64_t hash = UINT64_C(14695981039346656037);
@@ -188,7 +188,7 @@ static bool set_history_meets(struct set_history *history, uint64_t hash) {
 /* --- equilibrium --- */
 
 /* Computes out-of-balance forces, outer less inner, in the layout of gmres_solve; they are 0 at
- * active nodes, where the flat carries what is left. Returns the largest. */
+ * active nodes, where the flat carries the difference. Returns the largest. */
 static double residual(const struct newton *n, double pressure, double *out) {
     const struct mesh *mesh = n->mesh;
     size_t far_side = mesh_far_side(mesh);
@@ -249,7 +249,7 @@ static int solve_factored(struct newton *n, double tolerance, struct newton_end 
     if (status == 0)
         status = factorisation_run(n->factorisation, n->tangent, n->active, err);
     if (status == ERROR_NUMERIC) { /* stress makes the tangent indefinite: the factorised matrix
-                                      leaves stress out */
+                                      leaves its terms out */
         n->material.convex = true;
         status =
             evaluate(n) ? factorisation_run(n->factorisation, n->tangent, n->active, err) : status;
@@ -321,7 +321,7 @@ static void remember_residual(struct newton_end *end, double value, bool changed
     end->unchanged++;
 }
 
-/* A round of the loop finds this state at u before it steps from there. */
+/* State of u at the beginning of an iteration of Newton's method. */
 struct round {
     double largest; /* largest contact force, at least the mean force of a node */
     double residual, inside;
@@ -330,8 +330,8 @@ struct round {
 };
 
 /* Measures gaps and forces at u and, except in the first round, updates the active set from them.
- * Once a set that was met before returns, the set changes one node at a time and only near balance;
- * where sets still return, there is no equilibrium (RETURNS). */
+ * Once an earlier set returns, the set changes one node at a time and only near balance. If sets
+ * still return, there is no equilibrium (RETURNS). */
 static struct round assess(struct newton *n, double pressure, bool first,
                            struct set_history *history, struct newton_end *end) {
     struct round round = {.largest = 0};
@@ -339,7 +339,7 @@ static struct round assess(struct newton *n, double pressure, bool first,
     round.largest = fmax(largest_force(n), pressure * newton_node_area(n));
     round.residual = residual(n, pressure, n->change);
     bool careful = end->cycles > 0;
-    if (!first && round.residual <= (careful ? SETTLED : TRUSTED) * round.largest)
+    if (!first && round.residual <= (careful ? TRUSTED_ONE : TRUSTED) * round.largest)
         round.changes = active_update(n, careful);
     if (round.changes > 0) {
         end->changes += round.changes;
@@ -355,13 +355,13 @@ static struct round assess(struct newton *n, double pressure, bool first,
     return round;
 }
 
-/* The loop remembers the best round since the active set changed. */
+/* The best round since the active set changed. */
 struct newton_progress {
     double least;  /* smallest residual, in the units of the tolerance */
     size_t rounds; /* rounds since then */
 };
 
-/* Returns 0 when the loop may go on from a round whose residual is `off`. */
+/* Returns 0 when the iteration may go on from a round whose residual is `off`. */
 static int check_progress(const struct newton *n, struct newton_progress *progress, double off,
                           bool changed, const struct newton_end *end, struct error *err) {
     bool better = changed || off < progress->least;
@@ -379,7 +379,7 @@ static int check_progress(const struct newton *n, struct newton_progress *progre
     return 0;
 }
 
-int newton_settle(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
+int newton_solve(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
     struct set_history history = {0};
     struct newton_progress progress = {.least = INFINITY};
     *end = (struct newton_end){0};
@@ -417,7 +417,7 @@ int newton_settle(struct newton *n, double pressure, struct newton_end *end, str
     }
 }
 
-/* Returns the displacements under which the face's cells change; NULL where strains are small. */
+/* Returns the displacements for areas of the face's cells; NULL where strains are small. */
 static const double *face_displacement(const struct newton *n) {
     return n->material.kinematics != KINEMATICS_SMALL ? n->u : NULL;
 }
@@ -426,7 +426,8 @@ double newton_mean_gap(const struct newton *n) {
     return face_mean_gap(n->mesh, face_displacement(n), n->gap);
 }
 
-/* The forces at the nodes in contact under the displacements in change, to a mean of 1. */
+/* Computes the forces at the nodes in contact under the displacements in change, scaled to a mean
+ * of 1. */
 static void tangent_pressures(struct newton *n, double *tangent) {
     struct sum sum = {0};
     tangent_apply(n->tangent, n->change, n->before);

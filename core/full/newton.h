@@ -9,8 +9,8 @@
 #ifndef RUGO_CORE_FULL_NEWTON_H
 #define RUGO_CORE_FULL_NEWTON_H
 
-#include "core/full/factorisation.h"
-#include "core/full/gmres.h"
+#include "core/full/linear/factorisation.h"
+#include "core/full/linear/gmres.h"
 
 enum { NEWTON_HISTORY = 64 };
 
@@ -50,7 +50,7 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct mate
 size_t newton_unknowns(const struct newton *newton);
 void newton_clear(struct newton *newton);
 
-/* Tells how an equilibrium was reached. */
+/* The course of a solution. */
 struct newton_end {
     size_t iterations; /* Newton's */
     size_t linear;     /* iterations of the linear equations */
@@ -68,15 +68,14 @@ struct newton_end {
 /* Solves for u and the active set, starting from those given, which should be a good guess; where
  * no node is active, the nearest one becomes so. After ERROR_NUMERIC, and ERROR_STOPPED when stop
  * returned non-zero, u and the set are undefined. */
-int newton_settle(struct newton *newton, double pressure, struct newton_end *end,
-                  struct error *err);
+int newton_solve(struct newton *newton, double pressure, struct newton_end *end, struct error *err);
 /* Computes gap and opening from u. */
 void newton_measure_gaps(struct newton *newton);
-/* Tributary area of a node in squares (profiles: steps) of the mesh's unit; all nodes have the
- * same. */
+/* Returns the tributary area of a node in squares (profiles: steps) of the mesh's unit; all nodes
+ * have the same. */
 double newton_node_area(const struct newton *newton);
-/* Returns the mean gap over the face as it is under load (face.h); over the undeformed one where
- * strains are small. Of the gaps last measured. */
+/* Returns the mean of the gaps last measured over the face under load (face.h); over the undeformed
+ * face where strains are small. */
 double newton_mean_gap(const struct newton *newton);
 /* Computes -d(mean gap)/d(pressure) >= 0 from the tangent at u, of the gaps last measured, and, by
  * node of the face, the derivative of its pressure by the mean pressure: mean 1, 0 where open. */

@@ -1,6 +1,6 @@
-/* What the material laws of finite strain share: deformation, principal axes, and moduli turned
- * from the principal axes to those of space. Inlined into each law, for d = 2 and d = 3. Private to
- * core/full/material_*.c.
+/* Common parts of the material laws of finite strain: deformation, principal axes, and rotation of
+ * moduli from the principal axes to those of space. Inlined into each law, for d = 2 and d = 3.
+ * Private to core/full/material_*.c.
  *
  * p and r are principal axes, q is a Gauss point. */
 #ifndef RUGO_CORE_FULL_PRINCIPAL_AXES_H
@@ -123,9 +123,8 @@ INLINE bool deform(int d, pointwise h[3][3], pointwise c[3][3], struct strained 
     return folded == 0;
 }
 
-/* out->inverse, out->dilatation = J - 1, out->square and out->axis of a deformation h, and
- * c = F F^T - 1, whose principal values go to value[p]. False where a point is turned inside out.
- */
+/* Computes out->inverse, out->dilatation = J - 1, out->square and out->axis of a deformation h, and
+ * c = F F^T - 1, whose principal values go to value[p]. Returns false where a point is inverted. */
 INLINE bool deform_principal(int d, pointwise h[3][3], pointwise c[3][3], pointwise value[3],
                              struct strained *out) {
     pointwise turned[3][3];
@@ -184,7 +183,7 @@ INLINE void turn_dyads(int d, const struct strained *point, by_pairs dyad) {
                     }
 }
 
-/* Computes what each dyad is multiplied with, times the weight. */
+/* Computes the factor of each dyad, times the weight. */
 INLINE void turn_factors(int d, const struct principal_moduli *m, const pointwise weight,
                          by_pairs dyad, by_pairs factor) {
     int components = d * (d + 1) / 2;

@@ -49,8 +49,8 @@ double tangent_bytes(const struct mesh *mesh, bool pressures) {
            (pressures ? volumetric_bytes(mesh, false) : 0);
 }
 
-/* Neighbours of row j, column i within a level: one step back, none and one step on along each
- * axis, x fastest. */
+/* Finds the neighbours of row j, column i within a level: one step back, none and one step on along
+ * each axis, x fastest. */
 INLINE void neighbours_of(int d, const struct level *level, size_t j, size_t i, size_t *out) {
     const size_t column[3] = {i == 0 ? level->nx - 1 : i - 1, i, i + 1 == level->nx ? 0 : i + 1};
     const size_t row[3] = {j == 0 ? level->ny - 1 : j - 1, j, j + 1 == level->ny ? 0 : j + 1};
@@ -59,8 +59,8 @@ INLINE void neighbours_of(int d, const struct level *level, size_t j, size_t i, 
             *out++ = level->first + row[r] * level->nx + column[c];
 }
 
-/* Neighbours in the level and in the next one. For a node between two wide columns of the next
- * level, the last slot along that axis repeats a neighbour, and its values are 0. */
+/* Finds neighbours in the level and in the next one. For a node between two wide columns of the
+ * next level, the last slot along that axis repeats a neighbour, and its values are 0. */
 INLINE void neighbours(int d, const struct mesh *mesh, size_t level, size_t j, size_t i,
                        size_t *out) {
     const size_t half = d == 2 ? 3 : 9;
@@ -121,14 +121,15 @@ WIDE_VECTORS void tangent_apply(const struct tangent *tangent, const double *x, 
 
 /* --- assembly --- */
 
-/* An element contributes this, by its corners. */
+/* Contribution of an element, by its corners. */
 struct contribution {
     double energy, force[ELEMENT_DEGREES_OF_FREEDOM],
         stiffness[ELEMENT_DEGREES_OF_FREEDOM][ELEMENT_DEGREES_OF_FREEDOM];
 };
 
 /* Distributes values at the deeper corners, `step` apart, to the nodes that the corners are
- * interpolated from: out_b = sum over a of weight_ab in_a. Serves rows and columns alike. */
+ * interpolated from: out_b = sum over a of weight_ab in_a. It does so for rows and columns
+ * alike. */
 static void pass_on(size_t d, size_t sideways, const struct mesh_element *element, double *value,
                     size_t step) {
     for (size_t i = 0; i < d; i++) {
@@ -154,9 +155,9 @@ static void untie(size_t d, const struct mesh_element *element, struct contribut
         pass_on(d, sideways, element, &c->stiffness[0][f], ELEMENT_DEGREES_OF_FREEDOM);
 }
 
-/* Slot of element node b among the neighbours of its node a, where b is not above a. Steps sideways
- * are counted in columns of b's level; a node above a wide column counts as that column's first
- * node, unless it lies on the second side of the column's second element. */
+/* Returns the slot of element node b among the neighbours of its node a, where b is not above a.
+ * Steps sideways are counted in columns of b's level. A node above a wide column counts as that
+ * column's first node, unless it lies on the second side of the column's second element. */
 INLINE size_t slot_between(int d, int a, int b, int parity) {
     bool across = (a ^ b) >> (d - 1) & 1;
     size_t slot = 0, power = 1;
@@ -196,8 +197,8 @@ struct layer_pressures {
     double *force;
 };
 
-/* One element at the displacements u; e counts it within own. Its energy is that of c only where
- * energy is asked, likewise its stiffness. False where it is turned inside out. */
+/* Evaluates one element at the displacements u; e is its number within own. c has its energy and
+ * its stiffness only where they are asked for. Returns false where the element is inverted. */
 INLINE bool evaluate_element(int d, const struct mesh *mesh, const struct material *material,
                              const struct mesh_element *element, const double *u,
                              const struct layer_pressures *own, size_t e, bool energy,

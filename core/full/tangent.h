@@ -33,16 +33,16 @@ void tangent_neighbours(const struct mesh *mesh, size_t level, size_t j, size_t 
 /* Computes y = K x; x and y have mesh_degrees_of_freedom values. */
 void tangent_apply(const struct tangent *tangent, const double *x, double *y);
 
-/* Displacements and, where the tangent tells the volumetric apart, the pressures of the elements.
- */
+/* Returns the number of displacements and, where the tangent stores the volumetric part apart, of
+ * the elements' pressures. */
 size_t tangent_unknowns(const struct tangent *tangent);
 
 /* Computes the energy (E* times the cube, of profiles the square, of the mesh's unit; may be NULL),
  * the inner forces at displacements u, and the tangent (may be NULL), which contains all forces as
  * functions of u alone. With a volumetric part, u and force have tangent_unknowns values: behind
- * the displacements the elements' pressures, and behind the forces how far these exceed the
- * pressures of the dilatations. Returns false, with undefined outputs, when an element is inverted.
- */
+ * the displacements the elements' pressures, and behind the forces the excess of these pressures
+ * over those of the dilatations. Returns false, with undefined outputs, when an element is
+ * inverted. */
 bool tangent_evaluate(const struct mesh *mesh, const struct material *material, const double *u,
                       double *energy, double *force, struct tangent *tangent);
 

@@ -1,5 +1,5 @@
-/* The mean dilatations of a mesh's elements and the pressures that they make. This part of the
- * stiffness grows without bound as Poisson's ratio tends to 1/2; gmres.h says how it is treated.
+/* The mean dilatations of a mesh's elements and the pressures that they cause. This part of the
+ * stiffness grows without bound as Poisson's ratio tends to 1/2; gmres.h describes its treatment.
  * Private to core/full. */
 #ifndef RUGO_CORE_FULL_VOLUMETRIC_H
 #define RUGO_CORE_FULL_VOLUMETRIC_H

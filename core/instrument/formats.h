@@ -1,30 +1,31 @@
-/* What a reader of files is, and the readers of this folder, a file each: rows of the table in
- * instrument.c. */
+/* The interface of a reader of files, and the readers of this folder, one a file: rows of the table
+ * in instrument.c. */
 #ifndef RUGO_CORE_INSTRUMENT_FORMATS_H
 #define RUGO_CORE_INSTRUMENT_FORMATS_H
 
 #include "core/map/height_map.h"
 
-/* What the caller wants of a file. */
+/* The caller's request. */
 struct instrument_request {
     const char *layer; /* borrowed: name of a layer (channel), or its number from 1; NULL: the first
                           that holds heights */
 };
 
-/* A reader takes the bytes of a file, data[size] being 0, and fills *out, which the caller owns
- * then: lengths in metres where the file tells their units (height_map.h), z in rows of rising y as
- * the file has them, NaN where the file has no height. ERROR_INPUT names what is at fault, its
- * value and what is allowed, and for an absent layer those that there are; ERROR_MEMORY. *out is
- * untouched on failure. Memory is bounded by a small multiple of the bytes of the file, and where
- * it is compressed by that of height_map_shape's bound and of what the file says that it holds,
- * checked while it is unpacked. */
+/* A reader takes the bytes of a file, data[size] being 0, and fills *out, which the caller then
+ * owns. Lengths are in metres where the file has their units (height_map.h). z is in rows of rising
+ * y, as in the file, NaN where the file has no height. ERROR_INPUT names the fault, its value and
+ * what is allowed, and for an absent layer those present; ERROR_MEMORY. *out is untouched on
+ * failure. Memory is bounded by a small multiple of the bytes of the file. For a compressed file
+ * the bounds are that of height_map_shape and the size that the file states, which is checked while
+ * it is unpacked. */
 typedef int instrument_reader(struct height_map *out, const char *data, size_t size,
                               const struct instrument_request *request, struct error *err);
 
 struct instrument_format {
-    const char *name;    /* "x3p", as messages and provenance say it */
-    const char *endings; /* of names of files, with spaces between: "sdf bsdf" */
-    bool (*owns)(const char *data, size_t size); /* by the first bytes; NULL: cannot be told so */
+    const char *name;    /* "x3p", as in messages and provenance */
+    const char *endings; /* endings of file names, separated by spaces: "sdf bsdf" */
+    bool (*owns)(const char *data,
+                 size_t size); /* recognises the first bytes; NULL: they have no mark */
     instrument_reader *read;
 };
 
@@ -36,7 +37,7 @@ extern const struct instrument_format INSTRUMENT_ZYGO;
 extern const struct instrument_format INSTRUMENT_SURFER;
 extern const struct instrument_format INSTRUMENT_ESRI;
 extern const struct instrument_format INSTRUMENT_POINTS;
-/* For what neither begins nor is named as a row of the table. */
+/* For files that no row of the table recognises by first bytes or name. */
 extern const struct instrument_format INSTRUMENT_TEXT;
 
 #endif

@@ -1,14 +1,265 @@
 /* Gwyddion's own format, GWY: the channels of a file by number or title, a channel's mask as its
- * holes. Graphs, spectra, volumes and point clouds are named where a layer is missed, and not read.
- */
+ * holes. Graphs, spectra, volumes and point clouds are not read, but counted in the message about
+ * an absent layer. */
+#include "core/error.h"
 #include "core/instrument/formats.h"
-#include "core/instrument/gwy_field.h"
 #include "core/instrument/layers.h"
 #include "core/instrument/little_endian.h"
 #include "core/instrument/unit_of.h"
+#include "core/map/height_map.h"
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* --- the tree: objects of named components, which may be objects again. Nothing is copied: results
+ * point into the bytes of the file. --- */
+
+/* Bytes of the file that are not read yet. */
+struct gwy_span {
+    const char *file; /* borrowed: where the file begins, for offsets in messages */
+    const char *at;   /* borrowed */
+    size_t size;
+};
+
+struct gwy_component {
+    const char *name;      /* borrowed, ends with 0 */
+    char type;             /* b c i q d s o, and C I Q D S O for arrays of these */
+    size_t count;          /* values of an array; 1 otherwise */
+    const char *kind;      /* borrowed: the name of an object's type ("GwyDataField"); else NULL */
+    struct gwy_span value; /* the bytes of the value, of an object its components; a text ends with
+                              0 */
+};
+
+static void advance(struct gwy_span *span, size_t bytes) {
+    span->at += bytes;
+    span->size -= bytes;
+}
+
+static int ends_early(const struct gwy_span *rest, const char *name, const char *what,
+                      struct error *err) {
+    return error_set(err, ERROR_INPUT, "'%.60s' at byte %zu: %s does not fit into the file", name,
+                     (size_t)(rest->at - rest->file), what);
+}
+
+/* Reads a text that ends with 0. */
+static int take_text(struct gwy_span *rest, const char *name, const char **out, struct error *err) {
+    const char *stop = rest->size > 0 ? memchr(rest->at, 0, rest->size) : NULL;
+    if (stop == NULL)
+        return ends_early(rest, name, "a text", err);
+    *out = rest->at;
+    advance(rest, (size_t)(stop - rest->at) + 1);
+    return 0;
+}
+
+static int take_count(struct gwy_span *rest, const char *name, size_t *out, struct error *err) {
+    if (rest->size < 4)
+        return ends_early(rest, name, "a count", err);
+    *out = (size_t)little_integer(rest->at, 4);
+    advance(rest, 4);
+    return 0;
+}
+
+/* Takes an object from *rest: its type and its components. */
+static int gwy_object(struct gwy_span *rest, struct gwy_component *out, struct error *err) {
+    const char *name = out->name != NULL ? out->name : "the whole";
+    size_t size;
+    int status = take_text(rest, name, &out->kind, err);
+    if (status == 0)
+        status = take_count(rest, name, &size, err);
+    if (status != 0)
+        return status;
+    if (size > rest->size)
+        return error_set(err, ERROR_INPUT,
+                         "'%.60s' at byte %zu: the object says %zu bytes, %zu are there; the file "
+                         "is cut off or damaged",
+                         name, (size_t)(rest->at - rest->file), size, rest->size);
+    out->value = (struct gwy_span){rest->file, rest->at, size};
+    advance(rest, size);
+    return 0;
+}
+
+/* Returns the bytes of a value of this type; 0 where that depends on the value or there is no such
+ * type. */
+static size_t value_size(char type) {
+    switch (type) {
+    case 'b':
+    case 'c':
+    case 'C':
+        return 1;
+    case 'i':
+    case 'I':
+        return 4;
+    case 'q':
+    case 'Q':
+    case 'd':
+    case 'D':
+        return 8;
+    default:
+        return 0;
+    }
+}
+
+/* Reads values of `size` > 0 bytes each. */
+static int take_values(struct gwy_span *rest, size_t size, struct gwy_component *out,
+                       struct error *err) {
+    if (out->count > rest->size / size)
+        return error_set(err, ERROR_INPUT,
+                         "'%.60s' at byte %zu: %zu values of %zu bytes, %zu bytes are there; the "
+                         "file is cut off or damaged",
+                         out->name, (size_t)(rest->at - rest->file), out->count, size, rest->size);
+    out->value = (struct gwy_span){rest->file, rest->at, out->count * size};
+    advance(rest, out->count * size);
+    return 0;
+}
+
+/* Reads an array of texts or of objects: each has at least a byte of the file. */
+static int take_members(struct gwy_span *rest, struct gwy_component *out, struct error *err) {
+    struct gwy_span whole = *rest;
+    int status = 0;
+    for (size_t member = 0; member < out->count && status == 0; member++) {
+        struct gwy_component object = {.name = out->name};
+        const char *text;
+        status = out->type == 'O' ? gwy_object(rest, &object, err)
+                                  : take_text(rest, out->name, &text, err);
+    }
+    whole.size -= rest->size;
+    out->value = whole;
+    return status;
+}
+
+static int take_string(struct gwy_span *rest, struct gwy_component *out, struct error *err) {
+    const char *text;
+    struct gwy_span whole = *rest;
+    int status = take_text(rest, out->name, &text, err);
+    whole.size -= rest->size;
+    out->value = whole;
+    return status;
+}
+
+/* Takes the next component, of any type, from *rest. ERROR_INPUT names it and its byte. */
+static int gwy_next(struct gwy_span *rest, struct gwy_component *out, struct error *err) {
+    *out = (struct gwy_component){.count = 1};
+    int status = take_text(rest, "a component", &out->name, err);
+    if (status != 0)
+        return status;
+    if (rest->size < 1)
+        return ends_early(rest, out->name, "a type", err);
+    out->type = *rest->at;
+    advance(rest, 1);
+    if (out->type == '\0' || strchr("bciqdsoCIQDSO", out->type) == NULL)
+        return error_set(err, ERROR_INPUT,
+                         "'%.60s' at byte %zu: there is no type '%c'; allowed: one of bciqdso and "
+                         "CIQDSO",
+                         out->name, (size_t)(rest->at - rest->file) - 1, out->type);
+    if (strchr("CIQDSO", out->type) != NULL)
+        status = take_count(rest, out->name, &out->count, err);
+    if (status != 0)
+        return status;
+    size_t size = value_size(out->type);
+    if (size > 0)
+        return take_values(rest, size, out, err);
+    if (out->type == 's')
+        return take_string(rest, out, err);
+    return out->type == 'o' ? gwy_object(rest, out, err) : take_members(rest, out, err);
+}
+
+/* Finds the last component of this name and type in an object; out->name is NULL where there is
+ * none. */
+static int gwy_find(struct gwy_span object, const char *name, char type, struct gwy_component *out,
+                    struct error *err) {
+    *out = (struct gwy_component){0};
+    while (object.size > 0) {
+        struct gwy_component component;
+        int status = gwy_next(&object, &component, err);
+        if (status != 0)
+            return status;
+        if (component.type == type && strcmp(component.name, name) == 0)
+            *out = component;
+    }
+    return 0;
+}
+
+/* --- a data field: numbers on a grid with units --- */
+
+struct gwy_field {
+    struct grid grid;
+    const char *numbers;          /* borrowed: grid_points doubles, lowest byte first, row by row */
+    const char *xy_unit, *z_unit; /* borrowed: "" where the file has none */
+};
+
+static int need(struct gwy_span object, const char *name, char type, struct gwy_component *out,
+                struct error *err) {
+    int status = gwy_find(object, name, type, out, err);
+    if (status == 0 && out->name == NULL)
+        status = error_set(err, ERROR_INPUT, "the data field has no '%s'", name);
+    return status;
+}
+
+static int read_resolution(struct gwy_span object, const char *name, size_t *out,
+                           struct error *err) {
+    struct gwy_component found;
+    int status = need(object, name, 'i', &found, err);
+    if (status != 0)
+        return status;
+    uint64_t count = little_integer(found.value.at, 4);
+    if (count < 1 || count > INT32_MAX)
+        return error_set(err, ERROR_INPUT, "%s is %d; allowed: 1 and above", name,
+                         (int)(int32_t)(uint32_t)count);
+    *out = (size_t)count;
+    return 0;
+}
+
+static int read_length(struct gwy_span object, const char *name, double *out, struct error *err) {
+    struct gwy_component found;
+    int status = need(object, name, 'd', &found, err);
+    if (status == 0)
+        *out = little_double(found.value.at);
+    return status;
+}
+
+/* Reads one of its units, "si_unit_xy" or "si_unit_z"; "" where there is none. */
+static int gwy_unit_read(struct gwy_span object, const char *name, const char **out,
+                         struct error *err) {
+    struct gwy_component unit, text = {0};
+    int status = gwy_find(object, name, 'o', &unit, err);
+    if (status == 0 && unit.name != NULL)
+        status = gwy_find(unit.value, "unitstr", 's', &text, err);
+    *out = status == 0 && text.name != NULL ? text.value.at : "";
+    return status;
+}
+
+/* Reads a GwyDataField, and checks its header against its data. */
+static int gwy_field_read(struct gwy_span object, struct gwy_field *out, struct error *err) {
+    struct gwy_component data;
+    struct gwy_field field = {0};
+    int status = read_resolution(object, "xres", &field.grid.nx, err);
+    if (status == 0)
+        status = read_resolution(object, "yres", &field.grid.ny, err);
+    if (status == 0)
+        status = read_length(object, "xreal", &field.grid.lx, err);
+    if (status == 0)
+        status = read_length(object, "yreal", &field.grid.ly, err);
+    if (status == 0)
+        status = gwy_unit_read(object, "si_unit_xy", &field.xy_unit, err);
+    if (status == 0)
+        status = gwy_unit_read(object, "si_unit_z", &field.z_unit, err);
+    if (status == 0)
+        status = need(object, "data", 'D', &data, err);
+    if (status != 0)
+        return status;
+    if (data.count / field.grid.nx != field.grid.ny || data.count % field.grid.nx != 0)
+        return error_set(err, ERROR_INPUT,
+                         "xres %zu and yres %zu do not make the %zu numbers of "
+                         "the data field",
+                         field.grid.nx, field.grid.ny, data.count);
+    field.numbers = data.value.at;
+    *out = field;
+    return 0;
+}
+
+/* --- the channels of a file --- */
 
 static const char MAGIC[] = "GWYP";
 
@@ -29,7 +280,7 @@ struct gwy_file {
     size_t graphs, spectra, volumes, clouds; /* what is not read */
 };
 
-/* Whether a name is "/NUMBER" and then this ending. */
+/* Returns whether a name is "/NUMBER" followed by this ending. */
 static bool is_key(const char *name, const char *ending, unsigned long *number) {
     if (name[0] != '/' || name[1] < '0' || name[1] > '9' || strlen(name) > 24)
         return false;
@@ -62,7 +313,7 @@ static void count_other(struct gwy_file *file, const struct gwy_component *compo
             ++*(size_t *)((char *)file + KINDS[k].offset);
 }
 
-/* The first pass: counts the channels, which may stand in any order, and what is no channel. */
+/* The first pass: counts the channels, which may be in any order, and objects of other types. */
 static int count_channels(struct gwy_file *file, struct gwy_span rest, struct error *err) {
     size_t count = 0;
     while (rest.size > 0) {
@@ -80,7 +331,7 @@ static int count_channels(struct gwy_file *file, struct gwy_span rest, struct er
                : error_memory(err, count * sizeof *file->channels, "the channels of a file");
 }
 
-/* Where the mask or the title of a channel stands, by its number; the channels are sorted. */
+/* Finds a channel by its number, to set its mask or title; the channels are sorted. */
 static struct channel *channel_of(const struct gwy_file *file, unsigned long number) {
     const struct channel key = {.number = number};
     return bsearch(&key, file->channels, file->count, sizeof key, by_number);
@@ -157,8 +408,8 @@ static int choose_channel(const struct gwy_file *file, const char *asked, size_t
     return status;
 }
 
-/* Gwyddion writes units without prefixes and takes them so: a prefix says that another program
- * wrote the file, and not whether its numbers follow it. */
+/* Gwyddion writes units without prefixes and reads them so. A unit with a prefix is from another
+ * program, whose numbers may or may not include it. */
 static int keep_unit(char kept[UNIT_ROOM], const char *name, struct error *err) {
     double metres;
     unit_keep(kept, name, &metres);

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* X3P stands behind NPZ: it owns every other zip archive, to say what is wrong with it. */
+/* X3P follows NPZ: it owns every other zip archive, so that its reader reports the fault. */
 const struct instrument_format *const INSTRUMENT_FORMATS[] = {
     &INSTRUMENT_GWY,  &INSTRUMENT_SDF,    &INSTRUMENT_NPZ,
     &INSTRUMENT_X3P,  &INSTRUMENT_ZYGO,   &INSTRUMENT_SURFER,

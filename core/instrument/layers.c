@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Puts "1 'Topography' [m], 2 'Phase' [deg]" into text, and how many more there are where it does
+/* Writes "1 'Topography' [m], 2 'Phase' [deg]" to text, and the number of the others where it does
  * not hold them all. */
 static void list_layers(const struct layer *layers, size_t count, char *text, size_t room) {
     size_t used = 0;

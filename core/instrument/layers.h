@@ -1,4 +1,4 @@
-/* Which of a file's layers is read: shared by the formats that hold several. */
+/* The choice of a file's layer, for all formats that hold several. */
 #ifndef RUGO_CORE_INSTRUMENT_LAYERS_H
 #define RUGO_CORE_INSTRUMENT_LAYERS_H
 
@@ -7,16 +7,16 @@
 
 struct layer {
     const char *title;  /* borrowed; NULL: none */
-    const char *z_unit; /* borrowed; "" where the file tells none */
+    const char *z_unit; /* borrowed; "" where the file has none */
 };
 
 /* Sets *out, from 0, to the layer of this title or, where none has it, of this number, counted from
- * 1; asked NULL: the first whose unit is a length, or else the first. ERROR_INPUT lists the layers
- * that there are, and then `others`, which may be "". */
+ * 1. With asked NULL it is the first whose unit is a length, or else the first. ERROR_INPUT lists
+ * the layers present, and then `others`, which may be "". */
 int layer_choose(const struct layer *layers, size_t count, const char *asked, const char *others,
                  size_t *out, struct error *err);
 
-/* The same of a file with one layer, which has no title. */
+/* Checks a request for a file with one layer, which has no title. */
 int layer_check_only(const char *asked, struct error *err);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* The unsigned integer of so many bytes, at most 8. */
+/* Returns the unsigned integer of this many bytes, at most 8. */
 static inline uint64_t little_integer(const char *at, size_t bytes) {
     uint64_t value = 0;
     for (size_t byte = bytes; byte-- > 0;)

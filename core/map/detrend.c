@@ -2,12 +2,16 @@
 #include "core/sum.h"
 #include <math.h>
 
+#define NAME(type, name, value) name,
+const char *const DETREND_NAMES[] = {"none", RUGO_TRENDS(NAME)};
+#undef NAME
+
 enum { TERMS = 6, PASSES = 2, ORDERS = 5 };
 
 /* The terms are u^px v^py; u and v run from -1 to 1 over the points of the map. */
 static const size_t POWER_X[TERMS] = {0, 1, 0, 2, 1, 0}, POWER_Y[TERMS] = {0, 0, 1, 0, 1, 2};
 
-/* Which of them are fitted: all of the kind's degree, of a profile those without v. */
+/* The terms that are fitted: all of the kind's degree, of a profile those without v. */
 struct terms {
     size_t count, list[TERMS];
 };
@@ -23,8 +27,8 @@ static struct terms terms_of(const struct grid *grid, enum detrend kind) {
     return terms;
 }
 
-/* Returns where point i of n lies between -1 and 1. */
-static double place(size_t i, size_t n) {
+/* Returns the position of point i of n, between -1 and 1. */
+static double position(size_t i, size_t n) {
     return n > 1 ? (2 * (double)i - (double)(n - 1)) / (double)(n - 1) : 0;
 }
 
@@ -40,12 +44,12 @@ struct equations {
     double matrix[TERMS][TERMS], vector[TERMS];
 };
 
-/* Sums over one row of u^a, and of z u^a, where there is a height. */
+/* Sums u^a and z u^a over one row, where there is a height. */
 static void row_powers(const double *row, size_t nx, double *powers, double *heights) {
     for (size_t a = 0; a < ORDERS; a++)
         powers[a] = heights[a] = 0;
     for (size_t i = 0; i < nx; i++) {
-        double u = place(i, nx), term = 1;
+        double u = position(i, nx), term = 1;
         if (isnan(row[i]))
             continue;
         for (size_t a = 0; a < ORDERS; a++, term *= u) {
@@ -60,7 +64,7 @@ static void equations_make(const struct grid *grid, const double *z, const struc
     struct sum matrix[TERMS][TERMS] = {0}, vector[TERMS] = {0};
     double powers[ORDERS], heights[ORDERS];
     for (size_t j = 0; j < grid->ny; j++) {
-        double v = place(j, grid->ny);
+        double v = position(j, grid->ny);
         row_powers(z + j * grid->nx, grid->nx, powers, heights);
         for (size_t a = 0; a < terms->count; a++) {
             size_t s = terms->list[a];
@@ -79,8 +83,8 @@ static void equations_make(const struct grid *grid, const double *z, const struc
     }
 }
 
-/* Eliminates in place, which needs no pivots as the matrix is positive definite, and leaves the
- * answer in the vector. Returns false where points do not tell the terms apart. */
+/* Eliminates in the matrix, without pivots as it is positive definite, and leaves the
+ * solution in the vector. Returns false where the points do not determine the terms. */
 static bool equations_solve(struct equations *e, size_t n) {
     double whole[TERMS]; /* the diagonal before */
     for (size_t a = 0; a < n; a++)
@@ -106,9 +110,9 @@ static bool equations_solve(struct equations *e, size_t n) {
 static void subtract(const struct grid *grid, double *z, const double *coefficient) {
     const double *c = coefficient;
     for (size_t j = 0; j < grid->ny; j++) {
-        double *row = z + j * grid->nx, v = place(j, grid->ny);
+        double *row = z + j * grid->nx, v = position(j, grid->ny);
         for (size_t i = 0; i < grid->nx; i++) {
-            double u = place(i, grid->nx);
+            double u = position(i, grid->nx);
             row[i] -= c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v;
         }
     }
@@ -118,7 +122,7 @@ int detrend(const struct grid *grid, double *z, enum detrend kind, struct trend 
             struct error *err) {
     const struct terms terms = terms_of(grid, kind);
     double total[TERMS] = {0};
-    /* The second pass takes out what rounding left of a steep trend. */
+    /* The second pass removes the rounding errors of a steep trend. */
     for (int pass = 0; pass < PASSES && terms.count > 0; pass++) {
         struct equations equations;
         double coefficient[TERMS] = {0};

@@ -7,18 +7,18 @@
 
 struct gaussian_filter {
     double cut_off;        /* wavelength, in the unit of the grid */
-    bool keeps_long_waves; /* an S-filter; otherwise an L-filter, which takes them out */
+    bool keeps_long_waves; /* an S-filter; otherwise an L-filter, which removes them */
     bool robust;           /* heights far from the mean surface lose their weight */
 };
 struct gaussian_filter_result {
     double transmission; /* of the Gaussian, for waves as long as the cut-off */
     size_t steps;        /* of the weights of a robust filter */
-    double rejected;     /* share of the heights that have no weight in the end */
+    double rejected;     /* share of the heights whose weight is 0 in the end */
 };
 
-/* Filters the heights in place; holes stay. Beside the sides of an open map, and beside holes, the
- * weights of the heights that are there are brought to sum 1. Memory: up to four maps.
- * ERROR_INPUT where the cut-off is too short for the points or longer than the map. */
+/* Filters the heights in place; holes stay. Near the sides of an open map, and near holes, the
+ * weights of the heights present are normalised to sum 1. Memory: up to four maps. ERROR_INPUT
+ * where the cut-off is too short for the points or longer than the map. */
 int gaussian_filter_run(const struct grid *grid, double *z, enum boundary boundary,
                         const struct gaussian_filter *filter, struct gaussian_filter_result *out,
                         struct error *err);

@@ -4,23 +4,30 @@
 
 #include "core/surface/grid.h"
 
-/* Points at most: 2^31; at least 2 along x. */
+/* At most 2^31 points; at least 2 along x. */
 struct height_map {
     struct grid grid; /* spacing from the file (xyz) or from dx */
     double *z;        /* owned, grid_points; NaN: a hole, where nothing was measured */
-    /* Units of x and y, and of z: "m" where the file tells a length, which is in metres then; ""
-     * where it tells none; else what the file says, of layers that hold no heights ("V"). */
+    /* Units of x and y, and of z: "m" where the file has a unit of length, and values are in metres
+     * then; "" where it has none; otherwise the file's unit, for layers that hold no heights
+     * ("V"). */
     char xy_unit[16], z_unit[16];
 };
 void height_map_clear(struct height_map *map);
 
-/* Returns how many heights are holes. */
+/* Returns the number of holes. */
 size_t height_map_holes(const struct height_map *map);
-/* ERROR_INPUT with the number and the first of the holes where there are any: for callers that need
- * all heights. */
+/* ERROR_INPUT, with the number of holes and the first of them, where there are any: for callers
+ * that need all heights. */
 int height_map_check_whole(const struct height_map *map, struct error *err);
 
 /* Checks the counts and sets the grid of a map with spacing dx. */
 int height_map_shape(struct height_map *map, size_t ny, size_t nx, double dx, struct error *err);
+
+/* Makes the map one of 2nx by 2ny points (a profile: 2nx). The mirrors are half a spacing beyond
+ * the outermost points, so that the map is periodic without steps; the old map is in its first rows
+ * and columns. ERROR_INPUT where that is more than a map may have, ERROR_MEMORY; the map is
+ * untouched then. */
+int height_map_mirror(struct height_map *map, struct error *err);
 
 #endif

@@ -1,9 +1,9 @@
 /* Height maps in files: NumPy's npy, CSV, and x y z lines.
  *
  * npy: versions 1 and 2, '<f8' or '<f4', C order, shape (ny, nx) or (n,). csv: one grid row a line,
- * separated by commas, semicolons, tabs or spaces; lines that start with # and empty lines are left
- * out; one column is a profile. xyz: three numbers a line, x fastest, a regular grid. A height that
- * was not measured is NaN, in text "nan". */
+ * separated by commas, semicolons, tabs or spaces; lines that start with # and empty lines are
+ * skipped; one column is a profile. xyz: three numbers a line, x fastest, a regular grid. A height
+ * that was not measured is NaN, in text "nan". */
 #ifndef RUGO_CORE_MAP_HEIGHT_MAP_FILE_H
 #define RUGO_CORE_MAP_HEIGHT_MAP_FILE_H
 
@@ -13,16 +13,16 @@
 enum height_map_format { HEIGHT_MAP_NPY, HEIGHT_MAP_CSV, HEIGHT_MAP_XYZ, HEIGHT_MAP_FORMATS };
 extern const char *const HEIGHT_MAP_NAMES[HEIGHT_MAP_FORMATS]; /* "npy", "csv", "xyz" */
 
-/* The format of a name's ending, or HEIGHT_MAP_FORMATS where it has none of these. */
+/* Returns the format of a name's ending, or HEIGHT_MAP_FORMATS for any other ending. */
 enum height_map_format height_map_format_of(const char *name);
 
 /* Reads a map from the bytes of a file; text[size] must be 0. dx: spacing of points in x and y,
- * where the file does not say (0: 1). ERROR_INPUT names the line or field at fault; an infinite
- * height is one, NaN is none. *out is untouched on failure. */
+ * where the file has none (0: 1). ERROR_INPUT names the line or field at fault; an infinite height
+ * is a fault, NaN is none. *out is untouched on failure. */
 int height_map_parse(struct height_map *out, enum height_map_format format, const char *text,
                      size_t size, double dx, struct error *err);
 
-/* Writes so that reading gives the same heights bit for bit. ERROR_SYSTEM when a write fails. */
+/* Writes heights so that reading returns the same bits. ERROR_SYSTEM when a write fails. */
 int height_map_write(FILE *file, enum height_map_format format, const struct grid *grid,
                      const double *z, struct error *err);
 

@@ -22,8 +22,8 @@ static uint64_t big_endian(const char *at, size_t bytes) {
     return word;
 }
 
-/* Text behind 'key': in the header's dictionary, whose keys have quotes of either kind; NULL where
- * it is not. */
+/* Returns the text after 'key': in the header's dictionary, whose keys have quotes of either kind;
+ * NULL where there is no such key. */
 static const char *value_behind(const char *header, const char *key) {
     char single[32], twofold[32];
     snprintf(single, sizeof single, "'%s'", key);
@@ -56,7 +56,7 @@ static const char *read_extent(const char *at, size_t *extent) {
     return stop;
 }
 
-/* (n,) or (ny, nx), with an optional comma at the end. */
+/* Reads (n,) or (ny, nx), with an optional comma at the end. */
 static bool read_shape(const char *at, size_t *ny, size_t *nx) {
     if (at == NULL || *at != '(' || (at = read_extent(at + 1, nx)) == NULL)
         return false;
@@ -77,7 +77,7 @@ static bool read_shape(const char *at, size_t *ny, size_t *nx) {
     return at != NULL && *at == ')';
 }
 
-/* The header's text into header[HEADER_MOST], and where the data start. */
+/* Copies the header's text to header[HEADER_MOST], and finds where the data start. */
 static int read_header(const char *data, size_t size, char *header, size_t *start,
                        struct error *err) {
     if (size < MAGIC_SIZE + 4 || memcmp(data, MAGIC, MAGIC_SIZE) != 0)
@@ -101,14 +101,14 @@ static int read_header(const char *data, size_t size, char *header, size_t *star
 
 /* --- numbers --- */
 
-/* What the words of a file are: 'f', 'i' or 'u' of 1 to 8 bytes. */
+/* Type of the words of a file: 'f', 'i' or 'u' of 1 to 8 bytes. */
 struct word {
     char kind;
     size_t bytes;
     bool big_endian;
 };
 
-/* Reads '<f8' and the like, quoted in either way; = is the order of the machine that reads. */
+/* Reads '<f8' and the like, in quotes of either kind; = is the order of the machine that reads. */
 static bool read_type(const char *at, struct word *word) {
     static const char KINDS[] = "f2 f4 f8 i1 i2 i4 i8 u1 u2 u4 u8";
     const uint16_t one = 1;
@@ -163,8 +163,8 @@ static int read_heights(struct height_map *map, const char *data, const struct w
     size_t nx = map->grid.nx, ny = map->grid.ny;
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {
-            size_t place = fortran ? i * ny + j : j * nx + i;
-            double z = read_word(word, data + place * word->bytes);
+            size_t at = fortran ? i * ny + j : j * nx + i;
+            double z = read_word(word, data + at * word->bytes);
             if (isinf(z))
                 return error_set(err, ERROR_INPUT,
                                  "row %zu, column %zu: the height is not finite; allowed: finite "
@@ -190,7 +190,7 @@ static int check_type(const char *type, const char *order, struct word *word, bo
     return 0;
 }
 
-/* What a header says. */
+/* Contents of a header. */
 struct npy {
     size_t start, nx, ny; /* bytes before the heights */
     struct word word;

@@ -1,5 +1,4 @@
-/* NumPy's npy format, as far as height maps go. For height_map_file.c, and for archives of such
- * files. */
+/* NumPy's npy format for height maps. For height_map_file.c, and for archives of such files. */
 #ifndef RUGO_CORE_MAP_HEIGHT_MAP_NPY_H
 #define RUGO_CORE_MAP_HEIGHT_MAP_NPY_H
 
@@ -8,8 +7,8 @@
 
 int height_map_npy_parse(struct height_map *map, const char *data, size_t size, double dx,
                          struct error *err);
-/* Reads rows and columns from the first bytes of a file; ERROR_INPUT where it is no map, for its
- * type or its dimensions. */
+/* Reads rows and columns from the first bytes of a file; ERROR_INPUT where its type or dimensions
+ * are not those of a map. */
 int height_map_npy_shape(const char *data, size_t size, size_t *ny, size_t *nx, struct error *err);
 void height_map_npy_write(FILE *file, const struct grid *grid, const double *z);
 

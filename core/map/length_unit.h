@@ -1,16 +1,17 @@
-/* Units of length by the names that files give them. */
+/* Units of length by their names in files. */
 #ifndef RUGO_CORE_MAP_LENGTH_UNIT_H
 #define RUGO_CORE_MAP_LENGTH_UNIT_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Metres in one unit of this name ("m", "mm", "um", "\xc2\xb5m" in either code point and in
- * Latin-1, "nm", "pm", "A" or "\xc3\x85", "inch", ...; blanks around it do not count); false where
- * it is no length. */
+/* Finds metres in one unit of this name ("m", "mm", "um", "\xc2\xb5m" in either code point and in
+ * Latin-1, "nm", "pm", "A" or "\xc3\x85", "inch", ...; blanks around it do not count). Returns
+ * false where it is no length. */
 bool length_unit_metres(const char *name, size_t size, double *metres);
 
-/* The unit in which a length of so many metres is best read ("mm", "\xc2\xb5m", ...); static. */
+/* Returns the unit in which a length of this many metres is easiest to read ("mm", "\xc2\xb5m",
+ * ...); static. */
 const char *length_unit_readable(double metres, double *metres_in_one);
 
 #endif

@@ -1,12 +1,166 @@
 #include "core/map/membrane.h"
-#include "core/map/membrane_levels.h"
+#include "core/surface/grid.h"
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
-/* Conjugate gradients end where the error has fallen to this, in the norm of the membrane's energy
- * and of what one cycle of the levels takes for it. */
+/* The equations of a membrane on successively coarser points. */
+
+enum { MEMBRANE_SIDES = 4, MEMBRANE_LEVELS_MOST = 40 };
+#define MEMBRANE_NONE UINT32_MAX
+
+/* Point a has the equation diagonal[a] u[a] - sum over its sides of weight[d] u[neighbour[d]] =
+ * right side. Points stand in rising order of their cells, row by row. */
+struct membrane_level {
+    size_t nx, ny, count;
+    uint32_t *cell_x, *cell_y;             /* owned, count each: where the point lies */
+    uint32_t (*neighbour)[MEMBRANE_SIDES]; /* owned: left, right, below, above, or NONE */
+    double (*weight)[MEMBRANE_SIDES];      /* owned; 0 where there is no neighbour */
+    double *diagonal, *solution, *right;   /* owned */
+    uint32_t *parent;                      /* owned: point of the next level; NULL: the last */
+};
+
+static void membrane_level_clear(struct membrane_level *level) {
+    free(level->cell_x);
+    free(level->cell_y);
+    free(level->neighbour);
+    free(level->weight);
+    free(level->diagonal);
+    free(level->solution);
+    free(level->right);
+    free(level->parent);
+    *level = (struct membrane_level){0};
+}
+
+/* Allocates the arrays of a level but `parent`. */
+static int membrane_level_create(struct membrane_level *level, size_t nx, size_t ny, size_t count,
+                                 struct error *err) {
+    *level = (struct membrane_level){.nx = nx, .ny = ny, .count = count};
+    level->cell_x = array_create(count, sizeof *level->cell_x);
+    level->cell_y = array_create(count, sizeof *level->cell_y);
+    level->neighbour = array_create(count, sizeof *level->neighbour);
+    level->weight = array_create(count, sizeof *level->weight);
+    level->diagonal = array_create(count, sizeof *level->diagonal);
+    level->solution = array_create(count, sizeof *level->solution);
+    level->right = array_create(count, sizeof *level->right);
+    if (level->cell_x == NULL || level->cell_y == NULL || level->neighbour == NULL ||
+        level->weight == NULL || level->diagonal == NULL || level->solution == NULL ||
+        level->right == NULL) {
+        membrane_level_clear(level);
+        return error_memory(err, count * 80, "a membrane over holes");
+    }
+    for (size_t a = 0; a < count; a++)
+        for (size_t d = 0; d < MEMBRANE_SIDES; d++)
+            level->neighbour[a][d] = MEMBRANE_NONE;
+    return 0;
+}
+
+/* Numbers the points of the next level in rising order of their cells; returns how many there are.
+ * row: nx/2 + 1 values of scratch. */
+static size_t number_parents(struct membrane_level *fine, uint32_t *row) {
+    const size_t cells = fine->nx / 2 + 1;
+    uint32_t count = 0;
+    for (size_t first = 0, last; first < fine->count; first = last) {
+        for (size_t c = 0; c < cells; c++)
+            row[c] = MEMBRANE_NONE;
+        for (last = first; last < fine->count && fine->cell_y[last] / 2 == fine->cell_y[first] / 2;
+             last++)
+            row[fine->cell_x[last] / 2] = 0;
+        for (size_t c = 0; c < cells; c++)
+            if (row[c] == 0)
+                row[c] = count++;
+        for (size_t a = first; a < last; a++)
+            fine->parent[a] = row[fine->cell_x[a] / 2];
+    }
+    return count;
+}
+
+static void sum_equations(const struct membrane_level *fine, struct membrane_level *coarse) {
+    for (size_t a = 0; a < fine->count; a++) {
+        const uint32_t parent = fine->parent[a];
+        coarse->cell_x[parent] = fine->cell_x[a] / 2;
+        coarse->cell_y[parent] = fine->cell_y[a] / 2;
+        coarse->diagonal[parent] += 0.5 * fine->diagonal[a];
+        for (size_t d = 0; d < MEMBRANE_SIDES; d++) {
+            const uint32_t other = fine->neighbour[a][d];
+            if (other == MEMBRANE_NONE)
+                continue;
+            const double weight = 0.5 * fine->weight[a][d];
+            if (fine->parent[other] == parent)
+                coarse->diagonal[parent] -= weight;
+            else {
+                coarse->neighbour[parent][d] = fine->parent[other];
+                coarse->weight[parent][d] += weight;
+            }
+        }
+    }
+}
+
+/* Makes the next level: the points within two by two cells become one, whose equation is half the
+ * sum of theirs. periodic: the first cell of a row or column is a neighbour of the last. */
+static int membrane_level_coarsen(struct membrane_level *fine, struct membrane_level *coarse,
+                                  struct error *err) {
+    uint32_t *row = array_create(fine->nx / 2 + 1, sizeof *row);
+    fine->parent = array_create(fine->count, sizeof *fine->parent);
+    int status = row != NULL && fine->parent != NULL
+                     ? 0
+                     : error_memory(err, fine->count * sizeof *row, "a membrane over holes");
+    if (status == 0) {
+        size_t count = number_parents(fine, row);
+        status = membrane_level_create(coarse, (fine->nx + 1) / 2, (fine->ny + 1) / 2, count, err);
+    }
+    if (status == 0)
+        sum_equations(fine, coarse);
+    free(row);
+    return status;
+}
+
+/* Returns the part of a point's equation that is due to its neighbours. */
+static double neighbours_sum(const struct membrane_level *level, size_t a) {
+    double total = 0;
+    for (size_t d = 0; d < MEMBRANE_SIDES; d++)
+        if (level->neighbour[a][d] != MEMBRANE_NONE)
+            total += level->weight[a][d] * level->solution[level->neighbour[a][d]];
+    return total;
+}
+
+static void relax(struct membrane_level *level, size_t a) {
+    level->solution[a] = (level->right[a] + neighbours_sum(level, a)) / level->diagonal[a];
+}
+
+static void descend(const struct membrane_level *fine, struct membrane_level *coarse) {
+    for (size_t a = 0; a < coarse->count; a++)
+        coarse->right[a] = 0;
+    for (size_t a = 0; a < fine->count; a++)
+        coarse->right[fine->parent[a]] +=
+            fine->right[a] + neighbours_sum(fine, a) - fine->diagonal[a] * fine->solution[a];
+}
+
+/* Makes one multigrid cycle: solves levels[0] approximately, from 0, for its right side. It is
+ * symmetric, so that it is a preconditioner of conjugate gradients. */
+static void membrane_cycle(struct membrane_level *levels, size_t count) {
+    for (size_t l = 0; l < count; l++) {
+        struct membrane_level *level = &levels[l];
+        for (size_t a = 0; a < level->count; a++)
+            level->solution[a] = 0;
+        for (size_t a = 0; a < level->count; a++)
+            relax(level, a);
+        if (l + 1 < count)
+            descend(level, &levels[l + 1]);
+    }
+    for (size_t l = count; l-- > 0;) {
+        struct membrane_level *level = &levels[l];
+        for (size_t a = 0; a < level->count && l + 1 < count; a++)
+            level->solution[a] += levels[l + 1].solution[level->parent[a]];
+        for (size_t a = level->count; a-- > 0;)
+            relax(level, a);
+    }
+}
+
+/* Conjugate gradients end where the error has fallen to this factor, in the norm of the membrane's
+ * energy and in the estimate of it by one multigrid cycle. */
 static const double ACCURACY = 1e-12;
-/* Where rounding lets it fall no further, this is enough. */
+/* This accuracy is enough where rounding prevents a better one. */
 static const double ACCURACY_LEAST = 1e-9;
 enum { STEPS_MOST = 300 };
 
@@ -42,8 +196,8 @@ static size_t beside(const struct grid *grid, enum boundary boundary, size_t i, 
     return d < 2 ? j * grid->nx + next : next * grid->nx + i;
 }
 
-/* Sets up the equations of the holes: number[point] is that of a hole. base: a height that is taken
- * from all, against rounding. */
+/* Sets up the equations of the holes: number[point] is the number of a hole. base: a height that is
+ * subtracted from all against rounding. */
 static void equations_make(struct membrane *m, const struct grid *grid, const double *z,
                            enum boundary boundary, const uint32_t *number, double base) {
     struct membrane_level *level = &m->levels[0];
@@ -100,7 +254,7 @@ static void multiply(const struct membrane_level *level, const double *direction
     }
 }
 
-/* The levels applied to the residual; returns their product. */
+/* Applies a multigrid cycle to the residual; returns the product of result and residual. */
 static double precondition(struct membrane *m) {
     struct membrane_level *level = &m->levels[0];
     for (size_t a = 0; a < level->count; a++)
@@ -109,7 +263,7 @@ static double precondition(struct membrane *m) {
     return dot(m->residual, level->solution, level->count);
 }
 
-/* Conjugate gradients for the heights, from 0; the residual is the right side at first. */
+/* Solves for the heights by conjugate gradients from 0; the residual is the right side at first. */
 static int solve(struct membrane *m, struct error *err) {
     const struct membrane_level *level = &m->levels[0];
     const size_t n = level->count;

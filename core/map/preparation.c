@@ -1,13 +1,75 @@
 #include "core/map/preparation.h"
-#include "core/map/crop.h"
+#include "core/error.h"
 #include "core/map/gaussian_filter.h"
+#include "core/map/height_map.h"
+#include "core/map/length_unit.h"
+#include "core/map/map_resample.h"
 #include "core/map/membrane.h"
-#include "core/map/preparation_internal.h"
 #include "core/plain_text.h"
+#include "core/sum.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+static const double PI = 3.14159265358979323846;
+static const double TUKEY_SIDE = 0.1; /* share of the length that falls, at each end */
+
+/* Returns the window at point i of n. */
+static double weight_at(size_t i, size_t n, enum map_window window) {
+    const double position = ((double)i + 0.5) / (double)n, side = fmin(position, 1 - position);
+    const double width = window == MAP_WINDOW_HANN ? 0.5 : TUKEY_SIDE;
+    if (n == 1 || window == MAP_WINDOW_NONE || side >= width)
+        return 1;
+    const double root = sin(PI / 2 * side / width);
+    return root * root;
+}
+
+double map_taper(const struct grid *grid, double *z, enum map_window window) {
+    struct sum heights = {0}, weights = {0}, squares = {0};
+    for (size_t j = 0; j < grid->ny; j++) {
+        const double row = weight_at(j, grid->ny, window);
+        for (size_t i = 0; i < grid->nx; i++) {
+            const double weight = row * weight_at(i, grid->nx, window);
+            sum_add(&heights, weight * z[j * grid->nx + i]);
+            sum_add(&weights, weight);
+            sum_add(&squares, weight * weight);
+        }
+    }
+    const double mean = sum_value(&heights) / sum_value(&weights);
+    for (size_t j = 0; j < grid->ny; j++) {
+        const double row = weight_at(j, grid->ny, window);
+        for (size_t i = 0; i < grid->nx; i++)
+            z[j * grid->nx + i] =
+                row * weight_at(i, grid->nx, window) * (z[j * grid->nx + i] - mean);
+    }
+    return sum_value(&squares) / (double)grid_points(grid);
+}
+
+/* A part of a map. */
+
+/* Keeps the points of columns x to x + width - 1 and rows y to y + height - 1, with their heights
+ * bit for bit and their spacing. ERROR_INPUT, the map untouched, where they are not all in the map
+ * or fewer than 2 by 1. */
+static int map_crop(struct height_map *map, size_t x, size_t y, size_t width, size_t height,
+                    struct error *err) {
+    struct grid *grid = &map->grid;
+    if (width < 2 || height < 1 || width > grid->nx || x > grid->nx - width || height > grid->ny ||
+        y > grid->ny - height)
+        return error_set(
+            err, ERROR_INPUT,
+            "columns from %zu and rows from %zu, %zu by %zu points, of a map of %zu by "
+            "%zu; allowed: at least 2 by 1, within the map",
+            x, y, width, height, grid->nx, grid->ny);
+    double dx = grid_dx(grid), dy = grid_dy(grid);
+    for (size_t j = 0; j < height; j++)
+        memmove(map->z + j * width, map->z + (y + j) * grid->nx + x, width * sizeof *map->z);
+    double *less = realloc(map->z, width * height * sizeof *map->z);
+    map->z = less != NULL ? less : map->z;
+    *grid = (struct grid){width, height, dx * (double)width, dy * (double)height};
+    return 0;
+}
 
 void preparation_note(struct preparation_record *record, const char *name, const char *format,
                       ...) {
@@ -20,6 +82,208 @@ void preparation_note(struct preparation_record *record, const char *name, const
     va_end(arguments);
     text_make_plain(step->text);
     step->name = name;
+}
+
+static bool is_metre(const char *unit) {
+    return strcmp(unit, "m") == 0;
+}
+
+int height_map_check_units(const struct height_map *map, struct error *err) {
+    if (strcmp(map->xy_unit, map->z_unit) == 0)
+        return 0;
+    if (is_metre(map->xy_unit))
+        return error_set(
+            err, ERROR_INPUT,
+            "x and y are lengths and heights are %s%s, so that slopes have no meaning; "
+            "--z-unit nm (or another; z_unit in studies and requests) says what they "
+            "are in",
+            *map->z_unit != '\0' ? "in " : "without a unit", map->z_unit);
+    return error_set(err, ERROR_INPUT,
+                     "the unit of heights is '%s' and that of x and y '%s', so that slopes have no "
+                     "meaning; --unit um (or another) and --z-unit say what they are",
+                     map->z_unit, map->xy_unit);
+}
+
+/* Returns a length as messages print it, "2.5 \xc2\xb5m" of a map in metres. */
+static const char *preparation_length_text(const struct height_map *map, double length,
+                                           char text[40]) {
+    double one = 1;
+    const char *unit = is_metre(map->xy_unit) ? length_unit_readable(length, &one) : "";
+    snprintf(text, 40, "%.6g%s%s", length / one, *unit != '\0' ? " " : "", unit);
+    return text;
+}
+
+/* Sets *out to a requested length, in the map's unit; ERROR_INPUT names the option. */
+static int preparation_length(double *out, const struct height_map *map,
+                              const struct asked_length *asked, const char *option,
+                              struct error *err) {
+    if (asked->has_unit && !is_metre(map->xy_unit))
+        return error_set(err, ERROR_INPUT,
+                         "%s has a unit, %g m, and the map's lengths have none: --unit um (or "
+                         "another) says it, or a plain number is in the unit of the map",
+                         option, asked->value);
+    if (!asked->has_unit && is_metre(map->xy_unit))
+        return error_set(err, ERROR_INPUT,
+                         "%s %g needs a unit, such as %gum, since the map's lengths have one",
+                         option, asked->value, asked->value);
+    *out = asked->value;
+    return 0;
+}
+
+static int set_spacing(struct height_map *map, const struct preparation *asked, struct error *err) {
+    struct grid *grid = &map->grid;
+    double dx = asked->dx.value, ratio = grid_dy(grid) / grid_dx(grid);
+    double dy = asked->dy.value > 0 ? asked->dy.value : dx * ratio;
+    if (asked->dx.has_unit && asked->unit > 0)
+        return error_set(err, ERROR_INPUT, "--dx has a unit, so that --unit has nothing to say");
+    if (!asked->dx.has_unit && is_metre(map->xy_unit) && !(asked->unit > 0))
+        return error_set(err, ERROR_INPUT,
+                         "--dx %g needs a unit, such as %gum, since the file's lengths have one",
+                         dx, dx);
+    double one = asked->unit > 0 ? asked->unit : 1;
+    grid->lx = dx * one * (double)grid->nx;
+    grid->ly = dy * one * (double)grid->ny;
+    if (asked->dx.has_unit || asked->unit > 0)
+        strcpy(map->xy_unit, "m");
+    return grid_check(grid, err);
+}
+
+static int preparation_units(struct preparation_record *record, struct height_map *map,
+                             const struct preparation *asked, struct error *err) {
+    char dx[40], dy[40];
+    int status = 0;
+    if (asked->dx.value > 0)
+        status = set_spacing(map, asked, err);
+    else if (asked->unit > 0 && is_metre(map->xy_unit))
+        return error_set(err, ERROR_INPUT,
+                         "the file has lengths with their unit; --unit is for files that have "
+                         "none, and for --dx");
+    else if (asked->unit > 0) {
+        map->grid.lx *= asked->unit;
+        map->grid.ly *= asked->unit;
+        strcpy(map->xy_unit, "m");
+        status = grid_check(&map->grid, err);
+    }
+    if (status == 0 && (asked->dx.value > 0 || asked->unit > 0))
+        preparation_note(record, "spacing", "%s by %s",
+                         preparation_length_text(map, grid_dx(&map->grid), dx),
+                         preparation_length_text(map, grid_dy(&map->grid), dy));
+    if (status != 0 || asked->z_unit == 0)
+        return status;
+    if (is_metre(map->z_unit))
+        return error_set(err, ERROR_INPUT,
+                         "the file has heights with their unit; --z-unit is for files that have "
+                         "none");
+    for (size_t i = 0; i < grid_points(&map->grid); i++)
+        map->z[i] *= asked->z_unit;
+    preparation_note(record, "z_unit", "1%s%s is %g m", *map->z_unit != '\0' ? " " : "",
+                     map->z_unit, asked->z_unit);
+    strcpy(map->z_unit, "m");
+    return 0;
+}
+
+/* The requested points. */
+struct points {
+    double nx, ny; /* whole numbers, which may be too large */
+    double dx, dy;
+};
+
+/* Returns the number of points `spacing` apart within n points `old` apart. */
+static double count_within(size_t n, double old, double spacing) {
+    return floor((double)(n - 1) * old / spacing * (1 + 1e-12) + 1e-9) + 1;
+}
+
+/* Points within the old ones; the spacing along y is that along x unless another is requested. */
+static void points_of_open(struct points *out, const struct grid *grid, double spacing,
+                           const struct preparation *asked) {
+    const double dx = grid_dx(grid), dy = grid_dy(grid);
+    out->dx = spacing > 0 ? spacing
+                          : (double)(grid->nx - 1) * dx / fmax((double)asked->resample_x - 1, 1);
+    out->nx = spacing > 0 ? count_within(grid->nx, dx, spacing) : (double)asked->resample_x;
+    out->dy = asked->resample_y > 1 ? (double)(grid->ny - 1) * dy / (double)(asked->resample_y - 1)
+                                    : out->dx;
+    out->ny =
+        asked->resample_y > 0 ? (double)asked->resample_y : count_within(grid->ny, dy, out->dy);
+}
+
+/* Points that divide the cell evenly. */
+static void points_of_periodic(struct points *out, const struct grid *grid, double spacing,
+                               const struct preparation *asked) {
+    out->nx = spacing > 0 ? round(grid->lx / spacing) : (double)asked->resample_x;
+    out->dx = grid->lx / out->nx;
+    out->ny =
+        asked->resample_y > 0 ? (double)asked->resample_y : fmax(round(grid->ly / out->dx), 1);
+    out->dy = grid->ly / out->ny;
+}
+
+static int preparation_resample(struct preparation_record *record, struct height_map *map,
+                                const struct preparation *asked, struct error *err) {
+    const struct grid before = map->grid;
+    const bool open = record->boundary == BOUNDARY_OPEN, profile = grid_is_profile(&before);
+    struct points points = {0};
+    double spacing = 0;
+    char dx[40], dy[40];
+    if (asked->resample_x == 0 && asked->resample_dx.value == 0)
+        return 0;
+    int status = height_map_check_whole(map, err);
+    if (status != 0)
+        return error_context(err, "--resample, before which --fill fills holes");
+    if (asked->resample_dx.value > 0)
+        status = preparation_length(&spacing, map, &asked->resample_dx, "--resample", err);
+    if (status != 0)
+        return status;
+    if (open)
+        points_of_open(&points, &before, spacing, asked);
+    else
+        points_of_periodic(&points, &before, spacing, asked);
+    if (profile && asked->resample_y == 0)
+        points.ny = 1;
+    if (profile != (points.ny == 1))
+        return error_set(err, ERROR_INPUT,
+                         "--resample: %g rows of a map of %zu; a profile has 1, other maps more",
+                         points.ny, before.ny);
+    if (!(points.nx * points.ny <= 0x1p31))
+        return error_set(err, ERROR_INPUT,
+                         "--resample: %g by %g points; at most 2^31 in all can be made", points.nx,
+                         points.ny);
+    status = map_resample(map, record->boundary, (size_t)points.nx, (size_t)points.ny, points.dx,
+                          points.dy, err);
+    if (status != 0)
+        return error_context(err, "--resample");
+    preparation_note(record, "resample", "%zu by %zu points to %zu by %zu, %s by %s apart, %s",
+                     before.nx, before.ny, map->grid.nx, map->grid.ny,
+                     preparation_length_text(map, grid_dx(&map->grid), dx),
+                     preparation_length_text(map, grid_dy(&map->grid), dy),
+                     !open                          ? "by waves"
+                     : points.dx > grid_dx(&before) ? "without waves that these cannot show"
+                                                    : "by a cubic spline");
+    return 0;
+}
+
+const char *preparation_text(const struct preparation_record *record, const char *name) {
+    for (size_t n = 0; n < record->count; n++)
+        if (strcmp(record->steps[n].name, name) == 0)
+            return record->steps[n].text;
+    return NULL;
+}
+
+static bool is_origin(const char *name) {
+    static const char *const NAMES[] = {"file", "bytes", "sha256", "format", "layer", "program"};
+    for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
+        if (strcmp(NAMES[n], name) == 0)
+            return true;
+    return false;
+}
+
+void preparation_steps_text(const struct preparation_record *record, char *out, size_t size) {
+    size_t used = 0;
+    *out = '\0';
+    for (size_t n = 0; n < record->count && used < size; n++)
+        if (!is_origin(record->steps[n].name))
+            used += (size_t)snprintf(out + used, size - used, "%s%s: %s", used > 0 ? "; " : "",
+                                     record->steps[n].name, record->steps[n].text);
+    for (char *c = out; *c != '\0'; c++)
+        *c = *c == '_' ? ' ' : *c;
 }
 
 /* --- crop --- */
@@ -51,6 +315,42 @@ static int crop(struct preparation_record *record, struct height_map *map,
     return 0;
 }
 
+/* --- what can be computed with --- */
+
+/* Within these the fourth powers of slopes, and products of such of curvatures, are numbers, and
+ * none of what is measured. Instruments are far inside, and so is the largest number of 32 bits,
+ * which some write into holes. */
+static const double HEIGHT_MOST = 1e40, HEIGHT_LEAST = 1e-40;
+static const double SPACING_MOST = 1e30, SPACING_LEAST = 1e-30;
+
+static bool is_spacing(double spacing) {
+    return spacing >= SPACING_LEAST && spacing <= SPACING_MOST;
+}
+
+static int check_range(const struct height_map *map, struct error *err) {
+    const struct grid *grid = &map->grid;
+    const double dx = grid_dx(grid), dy = grid_is_profile(grid) ? dx : grid_dy(grid);
+    double low = INFINITY, high = -INFINITY;
+    for (size_t point = 0; point < grid_points(grid); point++) {
+        low = fmin(low, map->z[point]); /* holes are passed over */
+        high = fmax(high, map->z[point]);
+    }
+    if (!is_spacing(dx) || !is_spacing(dy))
+        return error_set(err, ERROR_INPUT,
+                         "points %g by %g apart; allowed: %g to %g (--dx and --unit say others)",
+                         dx, dy, SPACING_LEAST, SPACING_MOST);
+    if (low < -HEIGHT_MOST || high > HEIGHT_MOST)
+        return error_set(
+            err, ERROR_INPUT,
+            "heights from %g to %g; allowed: at most %g above or below 0, and nan in holes", low,
+            high, HEIGHT_MOST);
+    if (high > low && high - low < HEIGHT_LEAST)
+        return error_set(err, ERROR_INPUT,
+                         "heights that differ by %g in all; allowed: %g at the least, or none",
+                         high - low, HEIGHT_LEAST);
+    return 0;
+}
+
 /* --- boundary and trend --- */
 
 static int check_holes(const struct height_map *map, const struct preparation *asked, double holes,
@@ -74,7 +374,8 @@ static void decide_boundary(struct preparation_record *record, enum asked_bounda
                                                      : "seam";
 }
 
-/* The seam is looked at as the map is measured, but for a trend that only an open map loses. */
+/* The seam is measured on the heights that are analysed later, except for a trend that only an open
+ * map loses. */
 static int level(struct preparation_record *record, struct height_map *map,
                  const struct preparation *asked, struct error *err) {
     bool given = asked->detrend != ASK_DETREND_AUTO;
@@ -92,10 +393,9 @@ static int level(struct preparation_record *record, struct height_map *map,
         record->detrend = DETREND_PLANE;
         status = detrend(&map->grid, map->z, record->detrend, &record->trend, err);
     }
-    static const char *const NAMES[] = {"none", "mean", "plane", "quadratic"};
     if (status == 0 && record->detrend != DETREND_NONE)
-        preparation_note(record, "detrend", "%s%s, of least squares", NAMES[record->detrend],
-                         given ? "" : " (an open map)");
+        preparation_note(record, "detrend", "%s%s, of least squares",
+                         DETREND_NAMES[record->detrend], given ? "" : " (an open map)");
     return status;
 }
 
@@ -167,6 +467,8 @@ int preparation_run(struct preparation_record *record, struct height_map *map,
     int status = preparation_units(record, map, asked, err);
     if (status == 0)
         status = crop(record, map, asked, err);
+    if (status == 0)
+        status = check_range(map, err);
     if (status == 0)
         status = level(record, map, asked, err);
     if (status == 0 && asked->fill)

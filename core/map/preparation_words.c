@@ -22,7 +22,7 @@ bool asked_length_parse(struct asked_length *out, const char *text, size_t size)
     return true;
 }
 
-/* Reads lengths with commas between, at most `most`; *count tells how many there are. */
+/* Reads lengths separated by commas, at most `most`; *count is their number. */
 static bool parse_lengths(struct asked_length *out, size_t most, size_t *count, const char *text) {
     *count = 0;
     for (;; text++) {
@@ -86,7 +86,7 @@ static int parse_crop(struct preparation *out, const char *text, struct error *e
                             text);
 }
 
-/* One part of a filter, of so many letters. */
+/* Reads one part of a filter, of `width` letters. */
 static bool parse_filter_part(struct preparation *out, const char *text, size_t width) {
     static const char ROBUST[] = "robust";
     if (width == strlen(ROBUST) && strncmp(text, ROBUST, width) == 0 && !out->robust)

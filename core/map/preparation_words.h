@@ -1,5 +1,4 @@
-/* What is asked for of a map's preparation, in words as they stand on a command line or in a
- * query. */
+/* The requested preparation of a map as texts, as they stand on a command line or in a query. */
 #ifndef RUGO_CORE_MAP_PREPARATION_WORDS_H
 #define RUGO_CORE_MAP_PREPARATION_WORDS_H
 
@@ -7,17 +6,18 @@
 
 /* In the order of the enums in preparation.h: */
 #define MAP_BOUNDARIES "auto|open|periodic"
-#define MAP_DETRENDS "auto|none|mean|plane|quadratic"
+#define MAP_DETREND_NAME(type, name, value) "|" name
+#define MAP_DETRENDS "auto|none" RUGO_TRENDS(MAP_DETREND_NAME)
 #define MAP_WINDOWS "none|hann|tukey"
 
-/* NULL: not asked for. */
+/* NULL: not requested. */
 struct preparation_words {
-    const char *dx;                /* "0.5um", "0.5", "0.5um,0.25um" */
-    const char *unit;              /* "um": of x and y */
-    const char *z_unit;            /* "nm", "25nm": of z, or how much one of the file's is */
-    const char *crop;              /* "X0,Y0,WIDTH,HEIGHT", points or lengths with units */
-    const char *resample;          /* "512", "512,256", "0.5um", "dx=0.5" */
-    const char *filter;            /* "S=2.5um,L=0.8mm,robust", each part at most once */
+    const char *dx;       /* "0.5um", "0.5", "0.5um,0.25um" */
+    const char *unit;     /* "um": of x and y */
+    const char *z_unit;   /* "nm", "25nm": of z, or the length of one of the file's units */
+    const char *crop;     /* "X0,Y0,WIDTH,HEIGHT", points or lengths with units */
+    const char *resample; /* "512", "512,256", "0.5um", "dx=0.5" */
+    const char *filter;   /* "S=2.5um,L=0.8mm,robust", each part at most once */
     int boundary, detrend, window; /* the enums of preparation.h */
     bool fill;
 };
@@ -26,8 +26,8 @@ struct preparation_words {
 int preparation_parse(struct preparation *out, const struct preparation_words *words,
                       struct error *err);
 
-/* Reads "10um" or "10", with nothing behind it; false where it is no finite number, or has a unit
- * that is none of length. */
+/* Reads "10um" or "10", with nothing behind it; returns false where it is no finite number, or its
+ * unit is none of length. */
 bool asked_length_parse(struct asked_length *out, const char *text, size_t size);
 
 #endif

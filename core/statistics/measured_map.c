@@ -1,7 +1,7 @@
 #include "core/statistics/measured_map.h"
 
 /* Turns marks along a line of n into marks of the points whose neighbours from -before to after are
- * marked; on the way the new mark is the second bit. */
+ * marked; meanwhile the new mark is the second bit. */
 static void line_erode(unsigned char *mark, size_t n, size_t step, size_t before, size_t after,
                        bool periodic) {
     size_t reach = before + after + 1, run = 0;

@@ -1,7 +1,7 @@
 #include "core/statistics/patch.h"
-#include "core/statistics/correlation.h"
-#include "core/statistics/open_roughness.h"
-#include "core/statistics/open_summits.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/spectra/correlation.h"
+#include "core/statistics/summits/open_summits.h"
 #include <math.h>
 #include <stdlib.h>
 

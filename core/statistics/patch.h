@@ -1,13 +1,13 @@
-/* What is measured of a patch: a piece of a surface that does not repeat, such as an instrument
- * sees. Measured surfaces and pieces of random ones are told by the same numbers, so that they can
- * be compared. */
+/* What is measured of a patch: a sub-map of a surface that does not repeat, such as an instrument
+ * sees. Measured surfaces and sub-maps of random ones have the same parameters, so that they can be
+ * compared. */
 #ifndef RUGO_CORE_STATISTICS_PATCH_H
 #define RUGO_CORE_STATISTICS_PATCH_H
 
 #include "core/statistics/measured_map.h"
 
-/* ENTRY(quantity, name, power): a quantity is told in the unit of length to this power, and of a
- * profile where PATCH_AREAL stands in its first one less. */
+/* ENTRY(quantity, name, power): a quantity has the unit of length to this power; that of
+ * PATCH_AREAL is -2, and -1 of a profile. */
 #define PATCH_QUANTITIES(ENTRY)                                                                    \
     ENTRY(RMS_HEIGHT, "rms_height", 1)                                                             \
     ENTRY(RMS_SLOPE, "rms_slope", 0)                                                               \
@@ -32,14 +32,14 @@
 enum patch_quantity { PATCH_QUANTITIES(PATCH_NUMBER) PATCH_QUANTITY_COUNT };
 #undef PATCH_NUMBER
 extern const char *const PATCH_NAMES[PATCH_QUANTITY_COUNT];
-/* Returns the power of the unit of length in which a quantity is told. */
+/* Returns the power of the unit of length that a quantity has. */
 int patch_power(enum patch_quantity quantity, bool profile);
 
 /* Measures a map as an open one, which it must be: roughness by finite differences (FORMULAS.md,
  * F18.2), the shortest lag at which the autocorrelation is 0.2 and its share of the longest such
- * lag (F18.8), summits and pits by nine points, of profiles by three. Heights of summits are about
- * the mean of the map; those of pits are depths, with curvatures as of summits. NaN: what the map
- * does not tell. ERROR_MEMORY, or what a correlation fails with. */
+ * lag (F18.8). Summits and pits are found by nine points, of profiles by three. Heights of summits
+ * are about the mean of the map; those of pits are depths, with curvatures as of summits. NaN: what
+ * the map does not have. ERROR_MEMORY, or what a correlation fails with. */
 int patch_measure(const struct measured_map *map, double out[PATCH_QUANTITY_COUNT],
                   struct error *err);
 

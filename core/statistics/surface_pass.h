@@ -3,8 +3,8 @@
 #ifndef RUGO_CORE_STATISTICS_SURFACE_PASS_H
 #define RUGO_CORE_STATISTICS_SURFACE_PASS_H
 
-#include "core/statistics/histogram.h"
-#include "core/statistics/summits.h"
+#include "core/statistics/heights/histogram.h"
+#include "core/statistics/summits/summits.h"
 
 /* Of heights about 0: of a surface without a mean, as generated ones are, those about its mean. */
 struct height_sums {

@@ -14,15 +14,15 @@ struct height_error {
     double power;            /* sum of the powers of all modes, in the caller's unit */
     double mean_amplitude;   /* mean over the non-null modes of sqrt(power/sum) */
     size_t bins_most;
-    /* number of bins; the first and the last one hold all that lies outside */
+    /* number of bins; the first and the last one count everything outside */
     size_t bins;
     double first_edge, width; /* lower edge of bin 1 */
     uint32_t *target;         /* counts of z_h */
     uint32_t *count;          /* counts of z_s */
 };
 
-/* Bins that can be needed: n values of standard deviation 1 lie within sqrt(n) of their mean, and
- * an edge may be one width away. */
+/* Returns an upper bound of the number of bins: n values of standard deviation 1 lie within sqrt(n)
+ * of their mean, and an edge may be one width away. */
 static size_t bins_for(size_t points) {
     double n = (double)points;
     return (size_t)(2 * sqrt(n) * cbrt(n) / SCOTT) + 8;

@@ -5,15 +5,15 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* What lies beyond the outermost knot: up to a bound the height is linear in the probability;
- * without one it is linear in the score. */
+/* The distribution beyond the outermost knot: up to a bound the height is linear in the
+ * probability; without a bound it is linear in the score. */
 struct tail {
     bool bounded;
     double bound;
     double slope; /* raw height by score; 0: no height lies beyond */
 };
 
-/* Raw heights are 0 in the middle of the table, and 1 apart from its lowest to its highest. */
+/* Raw heights are scaled to 0 in the middle of the table, and to a range of 1. */
 struct height_table {
     size_t n;            /* knots: the quantiles at probabilities other than 0 and 1 */
     double *score;       /* n: standard Gaussian quantiles of the probabilities, rising */
@@ -23,9 +23,9 @@ struct height_table {
     struct height_moments moments;
 };
 
-/* Beyond this score a Gaussian tail holds nothing of any moment. */
+/* Beyond this score a Gaussian tail adds nothing to any moment. */
 static const double SCORE_MOST = 12;
-/* Without a bound the slope over so much of the score goes on. */
+/* Without a bound, the slope over this much of the score is extrapolated. */
 static const double SLOPE_REACH = 1;
 /* Heights that differ by less than this part of them differ by rounding. */
 static const double DIFFERENCE_LEAST = 1e-12;
@@ -144,7 +144,7 @@ static void add_scores(const struct height_table *t, double low, double high,
     }
 }
 
-/* Between a knot and a bound heights are spread evenly. */
+/* Between a knot and a bound heights are evenly distributed. */
 static void add_bounded(double share, double height, double bound, struct powers *powers) {
     for (int q = 0; q < NODES; q++)
         powers_add(powers, height + (bound - height) * (1 + NODE[q]) / 2, share * WEIGHT[q] / 2);
@@ -166,7 +166,7 @@ static struct powers powers_about(const struct height_table *t, double shift) {
     return powers;
 }
 
-/* Returns where a tail ends, INFINITY (high) or -INFINITY (low) where it does not. */
+/* Returns the end of a tail; INFINITY (high) or -INFINITY (low) where it has none. */
 static double tail_end(const struct tail *tail, double height, double endless) {
     return tail->bounded ? tail->bound : tail->slope > 0 ? endless : height;
 }
@@ -189,7 +189,7 @@ void height_table_moments(const struct height_table *table, struct height_moment
     *out = table->moments;
 }
 
-/* --- making one --- */
+/* --- construction --- */
 
 int height_table_check(size_t n, const double *probability, struct error *err) {
     if (n < HEIGHT_QUANTILES_LEAST)
@@ -299,9 +299,10 @@ int height_table_of_samples(struct height_table **out, size_t n, const double *s
     if (n < HEIGHT_SAMPLES_LEAST)
         return error_set(err, ERROR_INPUT, "%zu samples; at least %d are needed", n,
                          HEIGHT_SAMPLES_LEAST);
-    double *sorted = array_create(2 * n, sizeof *sorted), *probability = sorted + n;
+    double *sorted = array_create(2 * n, sizeof *sorted);
     if (sorted == NULL)
         return error_memory(err, 2 * n * sizeof *sorted, "samples of heights");
+    double *probability = sorted + n;
     int status = 0;
     for (size_t a = 0; a < n && status == 0; a++) {
         sorted[a] = sample[a];

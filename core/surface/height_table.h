@@ -14,11 +14,10 @@ enum { HEIGHT_QUANTILES_LEAST = 5, HEIGHT_SAMPLES_LEAST = 8 };
 /* Checks n probabilities of quantiles: ERROR_INPUT unless there are enough, in [0, 1] and rising.
  */
 int height_table_check(size_t n, const double *probability, struct error *err);
-/* Makes a table of n heights of any unit, that of number a being the quantile at probability[a].
- * Heights may be equal, which is flat ground of that share, but not fall. Those at probabilities 0
- * and 1 are the bounds; without them the distribution goes on as a Gaussian one. Copies the
- * arrays. ERROR_INPUT for what is checked above, and heights that are not finite, fall or do not
- * differ; ERROR_MEMORY. */
+/* Makes a table of n heights of any unit, height number a being the quantile at probability[a].
+ * Heights may not fall; equal ones are a plateau of that share. Those at probabilities 0 and 1 are
+ * the bounds; without them the tails are Gaussian. Copies the arrays. ERROR_INPUT for probabilities
+ * as above, and for heights that are not finite, fall or are all equal; ERROR_MEMORY. */
 int height_table_of_quantiles(struct height_table **out, size_t n, const double *probability,
                               const double *height, struct error *err);
 /* Makes one of n samples in any order: in rising order, number a from 0 is the quantile at
@@ -27,7 +26,8 @@ int height_table_of_samples(struct height_table **out, size_t n, const double *s
                             struct error *err);
 void height_table_destroy(struct height_table **table);
 
-/* The raw variable has a unit of the table's own. Takes a probability in (0, 1). */
+/* Returns the quantile of the raw variable, whose unit is the table's own, at a probability in (0,
+ * 1). */
 double height_table_quantile(const struct height_table *table, double probability);
 /* Returns the share of heights up to a raw one. */
 double height_table_cdf(const struct height_table *table, double raw);

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Tails of less probability than this should hold next to nothing of any moment. */
+/* Tails of less probability than this should add next to nothing to any moment. */
 static const double TAIL_PROBABILITY = 1e-12;
 static const double TAIL_SHARE = 1e-3;
 
@@ -26,11 +26,10 @@ static double gaussian_cdf(double shape, double raw) {
 
 /* --- Weibull, scale 1: a minimum lies above 0, a maximum is its mirror image below 0 --- */
 
-/* Central moments of a Weibull minimum of scale 1 in units of its mean, F4.2. With
- * e_k = Gamma(1 + k/C)/Gamma(1 + 1/C)^k - 1 the large equal terms cancel on paper, not in digits.
- */
+/* Central moments of a Weibull minimum of scale 1 in units of its mean, F4.2. They are written in
+ * e_k = Gamma(1 + k/C)/Gamma(1 + 1/C)^k - 1, so that the large equal terms cancel exactly. */
 static void weibull_min_moments(double shape, struct height_moments *out) {
-    int sign; /* lgamma() would write a global */
+    int sign; /* lgamma() would write a global variable */
     double log1 = lgamma_r(1 + 1 / shape, &sign);
     double e2 = expm1(lgamma_r(1 + 2 / shape, &sign) - 2 * log1);
     double e3 = expm1(lgamma_r(1 + 3 / shape, &sign) - 3 * log1);
@@ -89,7 +88,7 @@ static double lognormal_cdf(double shape, double raw) {
     return raw > 0 ? gaussian_cdf(0, log(raw) / shape) : 0;
 }
 
-/* The functions of a distribution, whose names begin with its own. */
+/* The functions of a distribution have its name at their beginning. */
 #define FUNCTIONS(name) .moments = name##_moments, .quantile = name##_quantile, .cdf = name##_cdf
 #define WEIBULL                                                                                    \
     .family = "weibull", .shape_means = "shape C of a Weibull distribution", .shape_low = 0.5,     \
@@ -177,7 +176,7 @@ static int quantile_moments(const struct heights *heights, struct height_moments
     return 0;
 }
 
-/* --- of any of them --- */
+/* --- all distributions --- */
 
 static int table_moments(const struct heights *heights, struct height_moments *out,
                          struct error *err) {

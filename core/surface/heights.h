@@ -1,22 +1,16 @@
-/* Height distributions: those of the table below, any monotone quantile function, or numbers.
- * All are centred (mean 0) and scaled to standard deviation 1 here; callers scale. */
+/* Height distributions: those of the table below, any monotone quantile function, or numbers. All
+ * are centred (mean 0) and scaled to standard deviation 1 here; callers scale. */
 #ifndef RUGO_CORE_SURFACE_HEIGHTS_H
 #define RUGO_CORE_SURFACE_HEIGHTS_H
 
 #include "core/error.h"
+#include "core/rugo_lists.h"
 #include "core/surface/height_moments.h"
 #include "core/surface/height_table.h"
 
-/* Distributions, and their names in studies: ENTRY(type, name). A new one is an entry here and its
- * row with its functions in heights.c. */
-#define HEIGHT_DISTRIBUTIONS(ENTRY)                                                                \
-    ENTRY(GAUSSIAN, "gaussian")                                                                    \
-    ENTRY(WEIBULL_MIN, "weibull_min")                                                              \
-    ENTRY(WEIBULL_MAX, "weibull_max")                                                              \
-    ENTRY(LOGNORMAL, "lognormal")
-
-#define HEIGHTS_TYPE(type, name) HEIGHTS_##type,
-enum heights_type { HEIGHT_DISTRIBUTIONS(HEIGHTS_TYPE) HEIGHTS_QUANTILE, HEIGHTS_TABLE };
+/* A new distribution is an entry of rugo_lists.h, and its row with its functions in heights.c. */
+#define HEIGHTS_TYPE(type, name, value) HEIGHTS_##type,
+enum heights_type { RUGO_DISTRIBUTIONS(HEIGHTS_TYPE) HEIGHTS_QUANTILE, HEIGHTS_TABLE };
 #undef HEIGHTS_TYPE
 
 struct heights {
@@ -29,13 +23,13 @@ struct heights {
     const struct height_table *table; /* HEIGHTS_TABLE: borrowed */
 };
 
-/* What is known of a distribution. Its raw variable has whatever scale is handiest: standardising
- * takes that out. Weibull: scale 1; log-normal: median 1. */
+/* A distribution's properties. Its raw variable has any convenient scale, which standardising
+ * removes. Weibull: scale 1; log-normal: median 1. */
 struct distribution {
     const char *family; /* names its theory curves */
-    /* What the shape is, NULL without one, and its range. Generation meets spectrum and heights in
-     * most of it; at the most skewed end (Weibull 0.5, log-normal 1) tenths remain between them,
-     * which the report of a generation tells. */
+    /* The meaning of the shape, NULL without one, and its range. Over most of it generation meets
+     * spectrum and heights. At the most skewed end (Weibull 0.5, log-normal 1) errors of some
+     * tenths remain, which surface_report contains. */
     const char *shape_means;
     double shape_low, shape_high;
     void (*moments)(double shape, struct height_moments *out);

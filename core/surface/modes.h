@@ -1,11 +1,14 @@
-/* Height spectra as they are asked for, and what they are on a periodic cell (spectrum.h makes the
- * second of the first). */
+/* Height spectra as prescribed, and their discrete form on a periodic cell (spectrum.h computes
+ * it). */
 #ifndef RUGO_CORE_SURFACE_MODES_H
 #define RUGO_CORE_SURFACE_MODES_H
 
+#include "core/rugo_lists.h"
 #include "core/surface/grid.h"
 
-enum spectrum_type { SPECTRUM_SELF_AFFINE, SPECTRUM_EXPONENTIAL_ACF, SPECTRUM_TABLE };
+#define SPECTRUM_TYPE(type, name, value) SPECTRUM_##type,
+enum spectrum_type { RUGO_SPECTRA(SPECTRUM_TYPE) };
+#undef SPECTRUM_TYPE
 enum spectrum_scale {
     SCALE_NONE,       /* m0 = 1 */
     SCALE_RMS_HEIGHT, /* sqrt(m00) = value */
@@ -18,11 +21,11 @@ struct spectrum {
      * <= |m| <= lx/short includes both edges, with a relative guard of 1e-9 against rounding */
     double hurst; /* [0, 1] */
     double wavelength_long, wavelength_rolloff, wavelength_short;
-    /* of surfaces, self-affine ones and tables: all waves are so many times as long along x as they
-     * are along y; 0 is as 1 */
+    /* of self-affine surfaces and tables: ratio of wavelengths along x to those along y; 0 is as 1
+     */
     double anisotropy;
-    /* exponential autocorrelation exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (F2.2), as it is at the points
-     * of the grid; it has no band limit and fills the grid */
+    /* exponential autocorrelation exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (F2.2) at the points of the
+     * grid; it has no band limit and fills the grid */
     double correlation_x, correlation_y;
     /* table: density of any scale at rising |k|, of waves along y, interpolated in logarithms, 0
      * outside; borrowed */
@@ -33,23 +36,23 @@ struct spectrum {
     double scale_value; /* unused for SCALE_NONE */
 };
 
-/* The discrete spectrum on a grid: power P(mx, my) = |Z|^2, mean square height = sum over all
- * modes of the full plane. Half plane mx >= 0 is stored, for |mx| <= mode_x, |my| <= mode_y:
- * power[mx*(2*mode_y + 1) + my + mode_y]. P(0,0) = 0. Fields are read by all, changed by none. */
+/* The discrete spectrum on a grid: power P(mx, my) = |Z|^2, mean square height = sum over all modes
+ * of the full plane. Half plane mx >= 0 is stored, for |mx| <= mode_x, |my| <= mode_y:
+ * power[mx*(2*mode_y + 1) + my + mode_y]. P(0,0) = 0. Callers read the fields and change none. */
 struct modes {
     struct grid grid;
     size_t mode_x, mode_y; /* highest wave number present (mode_y = 0 for a profile) */
     double *power;         /* owned, (mode_x + 1) x (2 mode_y + 1) */
     size_t count;          /* non-null modes of the full plane */
-    double clipped; /* share of the power that was left out as negative: exponential_acf alone */
+    double clipped; /* share of the power that was omitted as negative: exponential_acf alone */
 };
 
 static inline double modes_power(const struct modes *modes, size_t mx, long my) {
     return modes->power[mx * (2 * modes->mode_y + 1) + (size_t)(my + (long)modes->mode_y)];
 }
-/* How many modes of the full plane a stored one stands for. Column 0 and, for even nx, the Nyquist
- * column hold both signs of my themselves; every other column stands for its mirror image too. The
- * Nyquist row of an even ny is stored once, at +ny/2. */
+/* Returns the number of modes of the full plane that a stored one stands for. Column 0 and, for
+ * even nx, the Nyquist column hold both signs of my themselves; every other column stands for its
+ * mirror image too. The Nyquist row of an even ny is stored once, at +ny/2. */
 static inline unsigned modes_weight(const struct grid *grid, size_t mx) {
     return mx == 0 || 2 * mx == grid->nx ? 1 : 2;
 }

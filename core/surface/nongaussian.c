@@ -1,16 +1,196 @@
 #include "core/surface/nongaussian.h"
-#include "core/surface/fast_step.h"
 #include "core/surface/height_error.h"
-#include "core/surface/impose.h"
 #include "core/surface/rank.h"
+#include "core/surface/rank_table.h"
+#include "core/surface/spectrum.h"
 #include "core/surface/target_heights.h"
+#include "core/surface/transform.h"
+#include <complex.h>
 #include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Schedule of ITERATION_RELAXED: so much of it is momentum, the rest reflections, and a few plain
- * iterations settle on the constraints, as they do behind every iteration but ITERATION_PLAIN. */
+/* The surface of a given spectrum that is nearest to another one: phases stay, amplitudes are given
+ * (FORMULAS.md, F5.1). */
+
+/* Returns a mode with the given amplitude and the phase of `mode`, or the phase 0 where that is 0.
+ */
+static double complex with_amplitude(double complex mode, double amplitude) {
+    double size = sqrt(creal(mode) * creal(mode) + cimag(mode) * cimag(mode));
+    return size > 0 ? amplitude / size * mode : amplitude;
+}
+
+/* A column that is its own mirror image (mx = 0, and Nyquist of an even nx): rows my > 0 determine
+ * the others, so that the symmetry is exact; modes that are their own conjugates keep their
+ * sign. */
+static void mirror_column_impose(double complex *column, const double *amplitude, size_t ny,
+                                 size_t mode_y) {
+    for (size_t my = 0; my <= mode_y; my++) {
+        if (my == 0 || 2 * my == ny) {
+            column[my] = creal(column[my]) < 0 ? -amplitude[mode_y + my] : amplitude[mode_y + my];
+            continue;
+        }
+        column[my] = with_amplitude(column[my], amplitude[mode_y + my]);
+        column[ny - my] = conj(column[my]);
+    }
+}
+
+/* Sets the amplitudes of a half spectrum (as transforms on the grid and band of modes have it),
+ * laid out as modes->power; all other modes become zero. */
+static void amplitudes_impose(const struct modes *modes, const double *amplitude,
+                              double complex *spectrum) {
+    const struct grid *grid = &modes->grid;
+    size_t mode_x = modes->mode_x;
+    size_t mode_y = modes->mode_y;
+    size_t ny = grid->ny;
+    for (size_t mx = 0; mx <= mode_x; mx++) {
+        double complex *column = spectrum + mx * ny;
+        const double *wanted = amplitude + mx * (2 * mode_y + 1);
+        if (2 * mode_y + 1 < ny)
+            memset(column + mode_y + 1, 0, (ny - 2 * mode_y - 1) * sizeof *column);
+        if (mx == 0 || 2 * mx == grid->nx) {
+            mirror_column_impose(column, wanted, ny, mode_y);
+            continue;
+        }
+        for (size_t my = 0; my <= mode_y; my++)
+            column[my] = with_amplitude(column[my], wanted[mode_y + my]);
+        for (size_t my = 1; my <= mode_y && 2 * my != ny; my++)
+            column[ny - my] = with_amplitude(column[ny - my], wanted[mode_y - my]);
+    }
+}
+
+/* A step of the alternation between spectrum and heights that ranks by a table (rank_table.h) and
+ * processes rows while they are in cache. Heights are in standard deviations. */
+
+/* With s the surface of exact spectrum nearest to the iterate and h the heights in the order of y:
+ *     momentum     y = s,        next iterate h + factor (h - h of the step before);
+ *     reflection   y = 2 s - x,  next iterate x <- factor (x + h) + (1 - 2 factor) s
+ * (FORMULAS.md, F5.4 and F5.6). */
+enum fast_kind { FAST_MOMENTUM, FAST_REFLECTION };
+
+struct fast_move {
+    enum fast_kind kind;
+    double factor;
+    bool first; /* the first step of its kind: x is s, and h of the step before is h */
+};
+
+enum { ROWS = 8 }; /* handled together: they fit into the second-level cache up to 16384 points */
+/* The range of keys of a step is that of the step before, widened by this part on both sides. */
+static const double WIDER = 1.0 / 16;
+
+struct fast_step {
+    const struct modes *modes;
+    struct rank_table *table;
+    double *block;    /* ROWS x nx: ordered heights, then the next iterate */
+    double low, high; /* range of the last keys */
+};
+
+static void fast_step_destroy(struct fast_step **step) {
+    if (*step == NULL)
+        return;
+    rank_table_destroy(&(*step)->table);
+    free((*step)->block);
+    free(*step);
+    *step = NULL;
+}
+
+/* Borrows all arguments, as the steps do. ERROR_MEMORY. */
+static int fast_step_create(struct fast_step **out, const struct modes *modes, struct error *err) {
+    struct fast_step *step = array_create(1, sizeof *step);
+    if (step == NULL)
+        return error_memory(err, sizeof *step, "a step of generation");
+    size_t block = ROWS * modes->grid.nx;
+    step->modes = modes;
+    step->block = array_create(block, sizeof *step->block);
+    int status = step->block != NULL
+                     ? rank_table_create(&step->table, grid_points(&modes->grid), err)
+                     : error_memory(err, block * sizeof *step->block, "rows");
+    if (status != 0)
+        fast_step_destroy(&step);
+    *out = step;
+    return status;
+}
+
+static double fast_step_bytes(const struct grid *grid) {
+    return sizeof(struct fast_step) + ROWS * sizeof(double) * (double)grid->nx +
+           rank_table_bytes(grid_points(grid));
+}
+
+/* Begins a run with this surface. */
+static void fast_step_start(struct fast_step *step, const double *z) {
+    step->low = step->high = z[0];
+    for (size_t i = 0; i < grid_points(&step->modes->grid); i++) {
+        step->low = z[i] < step->low ? z[i] : step->low;
+        step->high = z[i] > step->high ? z[i] : step->high;
+    }
+}
+
+/* y from s, in place; at the first step x is s. */
+static void reflect(size_t n, double *z, double *x, bool first) {
+    for (size_t i = 0; i < n && first; i++)
+        x[i] = z[i];
+    for (size_t i = 0; i < n; i++)
+        z[i] = 2 * z[i] - x[i];
+}
+
+/* Computes and counts all keys y; where errors are given, the surfaces s, too. */
+static void keys_count(struct fast_step *step, struct transform *transform, struct fast_move move,
+                       double *z, double *x, struct height_error *errors) {
+    size_t nx = step->modes->grid.nx, ny = step->modes->grid.ny;
+    double wider = WIDER * (step->high - step->low);
+    rank_table_start(step->table, step->low - wider, step->high + wider);
+    for (size_t j = 0; j < ny; j += ROWS) {
+        size_t rows = ny - j < ROWS ? ny - j : ROWS;
+        transform_inverse_rows(transform, j, rows, z + j * nx);
+        if (errors != NULL)
+            height_error_heights_add(errors, rows * nx, z + j * nx);
+        if (move.kind == FAST_REFLECTION)
+            reflect(rows * nx, z + j * nx, x + j * nx, move.first);
+        rank_table_count(step->table, rows * nx, z + j * nx);
+    }
+}
+
+/* Replaces n heights h by the next iterate, and updates x. s is the mean of x and y. */
+static void move_rows(struct fast_move move, size_t n, const double *y, double *h, double *x) {
+    double b = move.factor;
+    if (move.kind == FAST_REFLECTION)
+        for (size_t i = 0; i < n; i++)
+            h[i] = x[i] = b * (x[i] + h[i]) + (0.5 - b) * (x[i] + y[i]);
+    else
+        for (size_t i = 0; i < n; i++) {
+            double here = h[i];
+            h[i] += move.first ? 0 : b * (here - x[i]);
+            x[i] = here;
+        }
+}
+
+/* From the transform's spectrum of an iterate to that of the next. amplitude: of s, laid out as
+ * modes->power. sorted: the heights, rising. z, x: one value a point; z is overwritten by y, and x
+ * is kept between steps of a kind. Returns eps_h of s where errors are given, NaN where NULL. */
+static double fast_step_run(struct fast_step *step, struct transform *transform,
+                            const double *amplitude, const double *sorted, struct fast_move move,
+                            double *z, double *x, struct height_error *errors) {
+    size_t nx = step->modes->grid.nx, ny = step->modes->grid.ny;
+    amplitudes_impose(step->modes, amplitude, transform_spectrum(transform));
+    transform_inverse_columns(transform);
+    if (errors != NULL)
+        height_error_heights_start(errors);
+    keys_count(step, transform, move, z, x, errors);
+    rank_table_finish(step->table, sorted, &step->low, &step->high);
+    for (size_t j = 0; j < ny; j += ROWS) {
+        size_t rows = ny - j < ROWS ? ny - j : ROWS;
+        rank_table_order(step->table, rows * nx, z + j * nx, step->block);
+        move_rows(move, rows * nx, z + j * nx, step->block, x + j * nx);
+        transform_forward_rows(transform, j, rows, step->block);
+    }
+    transform_forward_columns(transform);
+    return errors != NULL ? height_error_heights(errors) : (double)NAN;
+}
+
+/* Schedule of ITERATION_RELAXED: this many of RELAXED_PARTS are momentum, the rest reflections.
+ * POLISHING plain iterations follow, as behind every iteration but ITERATION_PLAIN, and make the
+ * surface satisfy the constraints. */
 enum { ACCELERATED_PARTS = 3, RELAXED_PARTS = 8, POLISHING = 3 };
 static const double MOMENTUM_MOST = 0.9;
 
@@ -25,9 +205,9 @@ struct nongaussian {
     struct ranker *ranker;
     double *sorted; /* points: target heights, rising */
     double *h;      /* points: z_h, the target heights in the order of z_s */
-    double *x;      /* points: iterate of reflections, last one of momentum; NULL for the plain
+    double *x;      /* points: iterate of reflections, or last one of momentum; NULL for the plain
                        iteration */
-    struct fast_step *fast; /* NULL for iterations that rank exactly throughout */
+    struct fast_step *fast; /* NULL for iterations that always rank exactly */
     struct height_error *height_error;
 };
 
@@ -126,22 +306,32 @@ void nongaussian_destroy(struct nongaussian **nongaussian) {
     *nongaussian = NULL;
 }
 
-/* The steps below start from the transform's spectrum of an iterate and leave that of the next. */
-
-/* Makes z_s of z: the surface of exact spectrum nearest to the iterate. */
-static void spectral_surface(const struct nongaussian *g, struct transform *transform, double *z) {
-    amplitudes_impose(g->modes, g->amplitude, transform_spectrum(transform));
-    transform_inverse(transform, z);
+static bool is_stopped(const struct nongaussian *g) {
+    return g->options.stop != NULL && g->options.stop(g->options.stop_context) != 0;
 }
 
-/* Alternation with the momentum of Nesterov (1983): the next iterate is z_h, carried on along its
+/* The steps below begin with the transform's spectrum of an iterate and end with that of the
+ * next. */
+
+/* Begins an iteration: computes z_s in z, the surface of exact spectrum nearest to the iterate. */
+static int spectral_surface(const struct nongaussian *g, struct transform *transform, double *z,
+                            struct error *err) {
+    if (is_stopped(g))
+        return error_set(err, ERROR_STOPPED, "stopped while a surface was made");
+    amplitudes_impose(g->modes, g->amplitude, transform_spectrum(transform));
+    transform_inverse(transform, z);
+    return 0;
+}
+
+/* Alternation with the momentum of Nesterov (1983): the next iterate is z_h, extrapolated along its
  * last step. */
 static int accelerated_phase(struct nongaussian *g, struct transform *transform, double *z,
                              size_t iterations, struct error *err) {
     double *last = g->x;
     for (size_t iteration = 0; iteration < iterations; iteration++) {
-        spectral_surface(g, transform, z);
-        int status = rank_place(g->ranker, z, g->sorted, g->h, err);
+        int status = spectral_surface(g, transform, z, err);
+        if (status == 0)
+            status = rank_order(g->ranker, z, g->sorted, g->h, err);
         if (status != 0)
             return status;
         double t = (double)iteration;
@@ -159,24 +349,28 @@ static int accelerated_phase(struct nongaussian *g, struct transform *transform,
 
 /* Relaxed averaged alternating reflections (Luke 2005). With s the nearest surface of the exact
  * spectrum, y = 2 s - x its reflection and h the exact heights in the order of y:
+ *
  *     x <- b (x + h) + (1 - 2 b) s.
- * b rises from the relaxation towards 1, by three quarters of the way. z serves as y. */
+ *
+ * b rises evenly from the relaxation by three quarters of its distance from 1. z stores y. */
 static int relaxed_phase(struct nongaussian *g, struct transform *transform, double *z,
                          size_t iterations, struct error *err) {
     double *x = g->x;
     double first = g->options.relaxation;
     double rise = 0.75 * (1 - first);
     for (size_t iteration = 0; iteration < iterations; iteration++) {
-        spectral_surface(g, transform, z);
+        int status = spectral_surface(g, transform, z, err);
+        if (status != 0)
+            return status;
         if (iteration == 0)
             memcpy(x, z, g->points * sizeof *x);
         for (size_t i = 0; i < g->points; i++)
             z[i] = 2 * z[i] - x[i];
-        int status = rank_place(g->ranker, z, g->sorted, g->h, err);
+        status = rank_order(g->ranker, z, g->sorted, g->h, err);
         if (status != 0)
             return status;
-        double way = iterations > 1 ? (double)iteration / (double)(iterations - 1) : 0;
-        double b = first + rise * way;
+        double progress = iterations > 1 ? (double)iteration / (double)(iterations - 1) : 0;
+        double b = first + rise * progress;
         for (size_t i = 0; i < g->points; i++)
             x[i] = b * (x[i] + g->h[i]) + (0.5 - b) * (x[i] + z[i]);
         transform_forward(transform, x);
@@ -186,8 +380,9 @@ static int relaxed_phase(struct nongaussian *g, struct transform *transform, dou
 
 static int plain_iterate(struct nongaussian *g, struct transform *transform, double *z,
                          struct error *err) {
-    spectral_surface(g, transform, z);
-    int status = rank_place(g->ranker, z, g->sorted, g->h, err);
+    int status = spectral_surface(g, transform, z, err);
+    if (status == 0)
+        status = rank_order(g->ranker, z, g->sorted, g->h, err);
     if (status == 0)
         transform_forward(transform, g->h);
     return status;
@@ -221,16 +416,17 @@ static int plain_phase(struct nongaussian *g, struct transform *transform, doubl
     return 0;
 }
 
-/* ITERATION_REFLECTIONS. Plain alternation takes thousands of iterations to come to rest, and
- * stalls long before. Reflections reach its error after 1500 in 50 to 90, and nothing that was
- * tried is as fast without finding surfaces of another kind: after this opening the C = 1 maximum
- * and minimum (H = 0.8, ratio 4, 256 x 256, 16 surfaces) have summits that differ from those of
- * 6000 plain iterations by 1.1 +- 0.6 and 1.2 +- 0.9 % in number, -0.5 and -0.4 % in mean height,
- * -0.7 and 0.0 % in mean curvature, which is what plain iterations of 1500 and 6000 differ, or
- * twice that (bench_nongaussian drift). Momentum alone ends with curvatures of the maximum 1 to 2 %
- * off. Steps beyond the heights are faster early, but end with other numbers of summits. On a grid
- * of 4 points a shortest wave, where the heights between the points are free, the number of summits
- * stays low whatever follows. */
+/* ITERATION_REFLECTIONS. Plain alternation takes thousands of iterations to converge, and stalls
+ * long before. Reflections reach its error after 1500 iterations in 50 to 90; no variant that was
+ * tried is as fast without changing the statistics of surfaces.
+ *
+ * After this opening the C = 1 maximum and minimum (H = 0.8, ratio 4, 256 x 256, 16 surfaces) have
+ * summits that differ from those of 6000 plain iterations by 1.1 +- 0.6 and 1.2 +- 0.9 % in number,
+ * -0.5 and -0.4 % in mean height, -0.7 and 0.0 % in mean curvature. Plain iterations of 1500 and
+ * 6000 differ by as much, or half of it (bench_nongaussian drift). Momentum alone gives curvatures
+ * of the maximum that are 1 to 2 % off. Steps beyond the heights are faster early, but end with
+ * other numbers of summits. On a grid of 4 points a shortest wave, where the heights between the
+ * points are free, the number of summits stays low in all cases. */
 enum { OPENING = 15, CHECKED_EACH = 5 };
 static const double REFLECTION = 0.9;
 
@@ -252,7 +448,9 @@ static void fast_phase(struct nongaussian *g, struct transform *transform, doubl
     size_t best_at = 0;
     fast_step_start(g->fast, z);
     report->end = END_LIMIT;
-    for (size_t number = 0; number < limit && report->end == END_LIMIT; number++) {
+    /* The plain iterations behind it find that it was stopped. */
+    for (size_t number = 0; number < limit && report->end == END_LIMIT && !is_stopped(g);
+         number++) {
         bool checked = number % CHECKED_EACH == 0;
         double eps = fast_step_run(g->fast, transform, g->amplitude, g->sorted,
                                    fast_move(options->iteration, number), z, g->x,
@@ -271,8 +469,8 @@ static void fast_phase(struct nongaussian *g, struct transform *transform, doubl
     }
 }
 
-/* Fast iterations, and a few plain ones that settle on the constraints: as many as it takes where
- * the tolerance is near. */
+/* Makes fast iterations and then plain ones: POLISHING of them, or where the fast ones reached the
+ * tolerance, up to max_iterations. */
 static int iterate_fast(struct nongaussian *g, struct transform *transform, double *z,
                         struct surface_report *report, struct error *err) {
     size_t most = g->options.max_iterations;

@@ -12,13 +12,13 @@
 struct nongaussian;
 
 /* Borrows modes; copies options. With random amplitudes modes are those of the next run's start:
- * their powers may change from run to run, not to or from 0. ERROR_INPUT (options or heights out of
- * range), ERROR_MEMORY. */
+ * their powers may change from run to run, but not to or from 0. ERROR_INPUT (options or heights
+ * out of range), ERROR_MEMORY. */
 int nongaussian_create(struct nongaussian **out, const struct modes *modes,
                        const struct surface_options *options, struct error *err);
 void nongaussian_destroy(struct nongaussian **nongaussian);
 
-/* Changes what the next runs work down to. */
+/* Changes the tolerances and limits of the next runs. */
 void nongaussian_aim(struct nongaussian *g, const struct surface_aim *aim);
 
 /* On entry z[ny*nx] is the Gaussian start, on return the surface. transform belongs to the grid and
@@ -26,8 +26,8 @@ void nongaussian_aim(struct nongaussian *g, const struct surface_aim *aim);
 int nongaussian_run(struct nongaussian *g, struct transform *transform, struct random_key key,
                     double *z, struct surface_report *report, struct error *err);
 
-/* Returns the peak bytes that one of these holds on a grid and band; z and the caller's transform
- * not counted. */
+/* Returns the peak bytes of a workspace on a grid and band, without z and the caller's
+ * transform. */
 double nongaussian_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
                          const struct surface_options *options);
 

@@ -1,14 +1,16 @@
 /* Rank ordering by distribution, exact for every input.
  *
- * 1. The range of the keys is cut into equal cells and the keys in each are counted: the exact
- *    distribution at the cell edges. 2. Neighbouring cells are joined to buckets of a few hundred
- * keys. 3. The keys are dealt to their buckets, in order of index, so that position in a bucket
- * stands for the index and no index travels along. 4. Each bucket, now within the first-level
- * cache, is ordered by a counting sort on finer cells and an insertion sort, and every key is
- * replaced by its ranked value. 5. The values are collected again in order of index. All maps from
- * key to cell are rounded expressions that rise with the key, so that cells never contradict a
- * comparison; equal keys share a cell and every step keeps their order. A bucket that is too large,
- * or whose keys crowd in a few fine cells, is merge-sorted: the worst case is n log n.
+ * 1. The range of the keys is divided into equal cells and the keys in each are counted: the exact
+ * distribution at the cell edges. 2. Neighbouring cells are joined to buckets of a few hundred
+ * keys. 3. The keys are copied to their buckets in order of index, so that the position in a bucket
+ * stands for the index, which is not stored. 4. Each bucket, now within the first-level cache, is
+ * ordered by a counting sort on finer cells and an insertion sort, and every key is replaced by the
+ * value of its rank. 5. The values are collected again in order of index.
+ *
+ * All maps from key to cell are rounded expressions that rise with the key, so that cells never
+ * contradict a comparison. Equal keys share a cell, and every step keeps their order. A bucket that
+ * is too large, or whose keys crowd in a few fine cells, is merge-sorted: the worst case is n log
+ * n.
  *
  * Memory: 18 bytes a key and some tables (ranker_bytes). */
 #include "core/surface/rank.h"
@@ -25,7 +27,7 @@ enum {
     BUCKETS_AIM = 2048,  /* more write streams than this miss the second-level cache */
     KEYS_FAST = 4096,    /* larger buckets are merge-sorted */
     FINE_A_KEY = 2,      /* fine cells a key: most hold one key or none */
-    SHIFTS_A_KEY = 8,    /* insertion gives way to merging beyond this */
+    SHIFTS_A_KEY = 8,    /* beyond this, merging replaces insertion */
 };
 /* Factor that keeps a product below the number of cells whatever the rounding. */
 static const double JUST_BELOW_ONE = 1 - 0x1p-40;
@@ -118,7 +120,7 @@ void ranker_destroy(struct ranker **ranker) {
 static int map_set(struct ranker *ranker, const double *key, struct error *err) {
     double low[4] = {key[0], key[0], key[0], key[0]};
     double high[4] = {key[0], key[0], key[0], key[0]};
-    double faulty[4] = {0}; /* 0 * key is NaN for a NaN or infinite key, and stays */
+    double faulty[4] = {0}; /* 0 * key is NaN for a NaN or infinite key, and NaN stays */
     size_t n = ranker->n;
     size_t whole = n - n % 4;
     for (size_t i = 0; i < whole; i += 4)
@@ -193,11 +195,11 @@ static void keys_deal(struct ranker *ranker, const double *key) {
         ranker->dealt[cursor[ranker->bucket[ranker->cell[i]]]++] = key[i];
 }
 
-static void values_collect(struct ranker *ranker, double *placed) {
+static void values_collect(struct ranker *ranker, double *ordered) {
     uint32_t *cursor = ranker->cursor;
     memcpy(cursor, ranker->start, ranker->buckets * sizeof *cursor);
     for (size_t i = 0; i < ranker->n; i++)
-        placed[i] = ranker->dealt[cursor[ranker->bucket[ranker->cell[i]]]++];
+        ordered[i] = ranker->dealt[cursor[ranker->bucket[ranker->cell[i]]]++];
 }
 
 /* Merges the neighbouring runs from[0..middle) and from[middle..n) of positions into to. */
@@ -242,8 +244,8 @@ static void order_merge(const double *key, uint32_t *order, uint32_t *spare, siz
         memcpy(order, from, n * sizeof *order);
 }
 
-/* Insertion sort of keys that lie near their places, positions along. False, with all pairs still
- * there and equal keys in order, when it takes too many shifts. */
+/* Insertion sort of keys that are nearly in order, with their positions. Returns false when it
+ * takes too many shifts; then all pairs are still there, and equal keys in order. */
 static bool pairs_insert(double *rising, uint32_t *order, size_t n) {
     size_t shifts = SHIFTS_A_KEY * n;
     for (size_t p = 1; p < n; p++) {
@@ -320,7 +322,7 @@ static int keys_to_buckets(struct ranker *ranker, const double *key, struct erro
     return 0;
 }
 
-int rank_place(struct ranker *ranker, const double *key, const double *sorted, double *placed,
+int rank_order(struct ranker *ranker, const double *key, const double *sorted, double *ordered,
                struct error *err) {
     int status = keys_to_buckets(ranker, key, err);
     if (status != 0)
@@ -336,7 +338,7 @@ int rank_place(struct ranker *ranker, const double *key, const double *sorted, d
         for (size_t p = 0; p < m; p++)
             dealt[ranker->order[p]] = value[p];
     }
-    values_collect(ranker, placed);
+    values_collect(ranker, ordered);
     return 0;
 }
 

@@ -1,4 +1,4 @@
-/* Rank ordering: the hot spot of non-Gaussian generation. */
+/* Rank ordering, which takes most of the time of non-Gaussian generation. */
 #ifndef RUGO_CORE_SURFACE_RANK_H
 #define RUGO_CORE_SURFACE_RANK_H
 
@@ -12,10 +12,10 @@ int ranker_create(struct ranker **out, size_t n, struct error *err);
 void ranker_destroy(struct ranker **ranker);
 size_t ranker_bytes(size_t n);
 
-/* placed[i] = sorted[rank of key[i]], equal keys ranked in order of index (as a stable sort).
- * sorted rises; placed may not overlap key or sorted. ERROR_NUMERIC when a key is NaN or infinite
- * (placed is then undefined). */
-int rank_place(struct ranker *ranker, const double *key, const double *sorted, double *placed,
+/* ordered[i] = sorted[rank of key[i]], equal keys ranked in order of index (as a stable sort).
+ * sorted rises; ordered may not overlap key or sorted. ERROR_NUMERIC when a key is NaN or infinite
+ * (ordered is then undefined). */
+int rank_order(struct ranker *ranker, const double *key, const double *sorted, double *ordered,
                struct error *err);
 /* Sorts z so that it rises; fails with ERROR_NUMERIC as above. */
 int rank_sort(struct ranker *ranker, double *z, struct error *err);

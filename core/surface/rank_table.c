@@ -14,7 +14,7 @@ struct rank_line {
 
 struct rank_table {
     size_t n, bins;
-    double origin, scale, end; /* position = (key - origin) * scale, held within [0, end] */
+    double origin, scale, end; /* position = (key - origin) * scale, limited to [0, end] */
     double lowest, highest;    /* of the keys counted so far */
     uint32_t *count;           /* bins */
     struct rank_line *lines;   /* bins */
@@ -67,7 +67,7 @@ void rank_table_start(struct rank_table *table, double low, double high) {
 
 static double position_of(const struct rank_table *table, double key) {
     double position = (key - table->origin) * table->scale;
-    position = position > 0 ? position : 0; /* also where the key is no number */
+    position = position > 0 ? position : 0; /* NaN, too, becomes 0 */
     return position < table->end ? position : table->end;
 }
 
@@ -112,7 +112,8 @@ void rank_table_finish(struct rank_table *table, const double *sorted, double *l
     *high = table->highest;
 }
 
-void rank_table_place(const struct rank_table *table, size_t n, const double *key, double *placed) {
+void rank_table_order(const struct rank_table *table, size_t n, const double *key,
+                      double *ordered) {
     for (size_t i = 0; i < n; i += TOGETHER) {
         size_t some = n - i < TOGETHER ? n - i : TOGETHER;
         double position[TOGETHER];
@@ -120,7 +121,7 @@ void rank_table_place(const struct rank_table *table, size_t n, const double *ke
             position[a] = position_of(table, key[i + a]);
         for (size_t a = 0; a < some; a++) {
             const struct rank_line *line = &table->lines[(int32_t)position[a]];
-            placed[i + a] = line->value + line->slope * position[a];
+            ordered[i + a] = line->value + line->slope * position[a];
         }
     }
 }

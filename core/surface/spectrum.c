@@ -1,8 +1,101 @@
 #include "core/surface/spectrum.h"
 #include "core/sum.h"
-#include "core/surface/spectrum_exponential.h"
+#include "core/surface/transform.h"
+#include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
+
+static const double TWO_PI = 6.283185307179586;
+
+enum { STEPS = 200 }; /* midpoints of the integrals over log k */
+
+/* Returns the radial density at k > 0 in any scale (F2.1, F2.2). */
+static double radial_density(const struct spectrum *spectrum, int dimension, double k) {
+    double exponent = dimension;
+    if (spectrum->type == SPECTRUM_SELF_AFFINE)
+        return pow(fmax(1, k * spectrum->wavelength_rolloff / TWO_PI),
+                   -(2 * spectrum->hurst + exponent));
+    if (spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
+        return pow(1 + k * k * spectrum->correlation_x * spectrum->correlation_y,
+                   -(1 + exponent) / 2);
+    return 1;
+}
+
+/* The means of cos^2 and cos^4 over directions give m2 and m4 of plane sections from the radial
+ * moments of a surface. */
+double spectrum_expected_summits(const struct spectrum *spectrum, const struct grid *grid,
+                                 double long_waves, double short_waves, double *alpha) {
+    int dimension = grid_is_profile(grid) ? 1 : 2;
+    double section2 = dimension == 2 ? 1.0 / 2 : 1, section4 = dimension == 2 ? 3.0 / 8 : 1;
+    double low = TWO_PI * long_waves / grid->lx, high = TWO_PI * short_waves / grid->lx;
+    double step = log(fmax(high / low, 1 + 1e-6)) / STEPS, m0 = 0, m2 = 0, m4 = 0;
+    for (int a = 0; a < STEPS; a++) {
+        double k = low * exp((a + 0.5) * step);
+        double power = radial_density(spectrum, dimension, k) * pow(k, dimension);
+        m0 += power;
+        m2 += power * k * k * section2;
+        m4 += power * k * k * k * k * section4;
+    }
+    *alpha = m0 * m4 / (m2 * m2);
+    if (dimension == 1)
+        return grid->lx * sqrt(m4 / m2) / TWO_PI;
+    return grid->lx * grid->ly * m4 / m2 / (3 * sqrt(3) * TWO_PI);
+}
+
+/* The rounding error of a transform is below this share of R(0); smaller powers, of either sign,
+ * become 0. */
+static const double ROUNDING = 1e-17;
+
+static double shorter_way(size_t i, size_t points) {
+    return (double)(2 * i <= points ? i : points - i);
+}
+
+double exponential_correlation(const struct spectrum *spectrum, const struct grid *grid, size_t i,
+                               size_t j) {
+    double x = shorter_way(i, grid->nx) * grid_dx(grid) / spectrum->correlation_x;
+    if (grid_is_profile(grid))
+        return exp(-x);
+    return exp(-hypot(x, shorter_way(j, grid->ny) * grid_dy(grid) / spectrum->correlation_y));
+}
+
+static void powers_take(struct modes *modes, const double complex *mode) {
+    const struct grid *grid = &modes->grid;
+    size_t rows = 2 * modes->mode_y + 1;
+    struct sum positive = {0, 0}, negative = {0, 0};
+    for (size_t mx = 0; mx <= modes->mode_x; mx++)
+        for (size_t row = 0; row < grid->ny; row++, mode++) {
+            size_t at = row <= modes->mode_y ? row + modes->mode_y : row + modes->mode_y - grid->ny;
+            double power = creal(*mode), weight = modes_weight(grid, mx);
+            if ((mx == 0 && row == 0) || fabs(power) <= ROUNDING)
+                continue;
+            sum_add(power > 0 ? &positive : &negative, weight * fabs(power));
+            if (power < 0)
+                continue;
+            modes->power[mx * rows + at] = power;
+            modes->count += modes_weight(grid, mx);
+        }
+    double all = sum_value(&positive) + sum_value(&negative);
+    modes->clipped = all > 0 ? sum_value(&negative) / all : 0;
+}
+
+int exponential_fill(struct modes *modes, const struct spectrum *spectrum, struct error *err) {
+    const struct grid *grid = &modes->grid;
+    struct transform *transform = NULL;
+    double *field = fftw_alloc_real(grid_points(grid));
+    if (field == NULL)
+        return error_memory(err, grid_points(grid) * sizeof *field, "an autocorrelation");
+    int status = transform_create(&transform, grid, modes->mode_x, modes->mode_y, err);
+    if (status == 0) {
+        for (size_t j = 0; j < grid->ny; j++)
+            for (size_t i = 0; i < grid->nx; i++)
+                field[j * grid->nx + i] = exponential_correlation(spectrum, grid, i, j);
+        transform_forward(transform, field);
+        powers_take(modes, transform_spectrum(transform));
+    }
+    transform_destroy(&transform);
+    fftw_free(field);
+    return status;
+}
 
 /* A mode whose relative distance to a band edge is below this counts as on the edge, because
  * wavelengths and cells come from divisions. */
@@ -213,7 +306,7 @@ void modes_destroy(struct modes **modes) {
     *modes = NULL;
 }
 
-/* The moments weigh the power by kx^p ky^q; powers stand in the order of their fields. */
+/* The moments weight the power by kx^p ky^q; powers stand in the order of their fields. */
 static const unsigned char POWERS[][2] = {{0, 0}, {2, 0}, {0, 2}, {1, 1}, {2, 2},
                                           {4, 0}, {0, 4}, {3, 1}, {1, 3}};
 enum { MOMENTS = sizeof POWERS / sizeof *POWERS };

@@ -1,11 +1,32 @@
 /* Height spectra, and their discrete form on a periodic cell.
  *
- * A spectrum is a shape; its scale is fixed on the cell by the wanted m0 or RMS slope, so that
+ * A spectrum is a shape; its scale on the cell follows from the prescribed m0 or RMS slope, so that
  * the discrete sums of a surface are exact. Wave numbers are k = 2 pi m / L, m integer. */
 #ifndef RUGO_CORE_SURFACE_SPECTRUM_H
 #define RUGO_CORE_SURFACE_SPECTRUM_H
 
 #include "core/surface/modes.h"
+
+/* The exponential autocorrelation (FORMULAS.md, F2.2) of a periodic cell. It is prescribed at the
+ * points of the grid, and the spectrum is its transform there. */
+
+/* Returns the autocorrelation over its value at 0 for the lag (i dx, j dy), or its shorter periodic
+ * image. */
+double exponential_correlation(const struct spectrum *spectrum, const struct grid *grid, size_t i,
+                               size_t j);
+/* Fills the powers of modes, whose band is the whole grid, and their count. No surface has a
+ * negative power: there it is set to 0, and modes->clipped is the share of these modes in all.
+ * ERROR_MEMORY alone. */
+int exponential_fill(struct modes *modes, const struct spectrum *spectrum, struct error *err);
+
+/* Quick estimates from the radial spectrum alone, before a discrete spectrum is made. */
+
+/* Estimates the number of summits (of profiles: peaks) on a cell of the grid's size, and the Nayak
+ * parameter, by Nayak's density (F6.7, F7.2). Its moments are integrals of the radial spectrum from
+ * wave number long_waves to short_waves, both in waves per side lx of the cell. A table counts as a
+ * constant density. */
+double spectrum_expected_summits(const struct spectrum *spectrum, const struct grid *grid,
+                                 double long_waves, double short_waves, double *alpha);
 
 /* Samples the spectrum on the grid and scales it. ERROR_INPUT when the spectrum is out of range,
  * has no mode on this grid, or the grid does not resolve its shortest wavelength (needs at least 2
@@ -22,31 +43,30 @@ struct moments {
     double nayak_alpha;                          /* m0 m4 / m2^2 (F2.4) */
     double rms_height, rms_slope, rms_curvature; /* F1.2 */
 };
-/* Whether moments are those of an isotropic surface, which has m20 = m02 and 3 m22 = m40 = m04,
- * within a quarter: a lattice of four or twelve modes has not, one of forty has. False for
- * profiles. */
+/* Returns whether moments are those of an isotropic surface, within a quarter: m20 = m02 and
+ * 3 m22 = m40 = m04. They are not on a lattice of four or twelve modes; they are on one of forty.
+ * False for profiles. */
 bool moments_isotropic(const struct moments *moments);
 /* Sums pairwise or compensated, with a relative error of about 1e-15. */
 void modes_moments(const struct modes *modes, struct moments *out);
-/* The same of a spectrum on a grid, for those who need nothing else of its modes. Fails as
- * modes_create does; *out is untouched then. */
+/* As modes_moments, of a spectrum on a grid. Fails as modes_create does; *out is untouched then. */
 int spectrum_moments(const struct spectrum *spectrum, const struct grid *grid, struct moments *out,
                      struct error *err);
 
-/* Nayak parameter of the continuous self-affine spectrum (F2.5) of dimension 1 or 2; ratio_long is
- * lambda_l/lambda_s, ratio_rolloff lambda_l/lambda_r >= 1. NaN outside of the domain. */
+/* Returns the Nayak parameter of the continuous self-affine spectrum (F2.5) of dimension 1 or 2;
+ * ratio_long is lambda_l/lambda_s, ratio_rolloff lambda_l/lambda_r >= 1. NaN outside the domain. */
 double spectrum_alpha_continuous(int dimension, double hurst, double ratio_long,
                                  double ratio_rolloff);
-/* The wavelength ratio lambda_l/lambda_s that gives alpha; ERROR_NUMERIC with the range that can
- * be reached when none does. */
+/* Finds the wavelength ratio lambda_l/lambda_s that gives alpha. ERROR_NUMERIC, with the range that
+ * can be reached, when none does. */
 int spectrum_ratio_continuous(int dimension, double hurst, double ratio_rolloff, double alpha,
                               double *ratio, struct error *err);
-/* The same by the discrete sums of a cell of length_ratio long waves (square). The discrete alpha
- * is a step function of the ratio; the returned ratio's lambda_s is that of the mode ring whose
- * alpha is nearest, and *reached says which alpha that is. */
+/* Finds that ratio by the discrete sums of a cell of length_ratio long waves (square). The discrete
+ * alpha is a step function of the ratio. The returned ratio's lambda_s is that of the mode ring
+ * whose alpha is nearest; *reached is that alpha. */
 int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, double length_ratio,
                             double alpha, double *ratio, double *reached, struct error *err);
-/* The same of surfaces on a cell of length_x by length_y long waves. */
+/* As above, of surfaces on a cell of length_x by length_y long waves. */
 int spectrum_ratio_rectangle(double hurst, double ratio_rolloff, double length_x, double length_y,
                              double alpha, double *ratio, double *reached, struct error *err);
 

@@ -1,5 +1,7 @@
 #include "core/surface/surface.h"
 #include "core/surface/nongaussian.h"
+#include "core/surface/surface_options.h"
+#include "core/surface/transform.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +13,7 @@ struct generator {
     struct modes *drawn;             /* spectrum of the last draw, where amplitudes are random and
                                         heights not Gaussian; else NULL */
     double *amplitude;  /* sqrt(power), rows of wave numbers: [(my + mode_y)*(mode_x + 1) + mx] */
-    size_t *row_length; /* 2 mode_y + 1: 1 + highest mx of the row that is not null; 0: none */
+    size_t *row_length; /* 2 mode_y + 1: 1 + highest mx of the row with power; 0: none */
     uint64_t *words;    /* mode_x + 1, as row_drawn */
     double *row_drawn;  /* amplitudes of a row, where they are random; else NULL */
 };
@@ -44,7 +46,7 @@ static int arrays_create(struct generator *g, bool random, struct error *err) {
     return 0;
 }
 
-/* Makes room for the spectrum of a draw, which is that of the mean until something is drawn. */
+/* Allocates the spectrum of a draw, which is that of the mean until something is drawn. */
 static int drawn_create(struct generator *g, struct error *err) {
     size_t count = (g->modes->mode_x + 1) * (2 * g->modes->mode_y + 1);
     struct modes *drawn = array_create(1, sizeof *drawn);
@@ -119,8 +121,8 @@ double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
     return bytes + nongaussian_bytes(grid, mode_x, mode_y, options);
 }
 
-/* Words of a row are numbered by its wave vectors alone (in units of 2 pi/L), so that a wave has
- * the same phase, and the same chance of its amplitude, on every grid and in every spectrum of the
+/* Random words are numbered by wave vectors alone (in units of 2 pi/L). So a wave has the same
+ * phase, and the same random factor of its amplitude, on every grid and in every spectrum of the
  * same cell. */
 static uint64_t row_first_word(long my) {
     uint64_t zigzag = my >= 0 ? 2 * (uint64_t)my : 2 * (uint64_t)-my - 1;
@@ -142,8 +144,9 @@ static double complex with_phase(double amplitude, uint64_t word) {
     return amplitude * cosine + amplitude * sine * I;
 }
 
-/* Returns a mode that is its own conjugate, and so real: of one of two signs and full amplitude, or
- * where amplitudes are random normal of that deviation (the real part of a normal complex mode). */
+/* Returns a mode that is its own conjugate, and so real. It has a random sign and the full
+ * amplitude, or where amplitudes are random a normal value of that deviation (the real part of a
+ * normal complex mode). */
 static double own_conjugate_mode(const struct generator *g, double amplitude, uint64_t word) {
     double size =
         g->row_drawn != NULL ? M_SQRT2 * fabs(creal(with_phase(amplitude, word))) : amplitude;
@@ -164,8 +167,8 @@ static void own_mirror_mode(const struct generator *g, double complex *column, l
     column[column_row(-my, ny)] = conj(mode);
 }
 
-/* Returns the amplitudes of a row of wave numbers, those that are random drawn anew: after
- * Rayleigh, of the prescribed mean square. */
+/* Returns the amplitudes of a row of wave numbers. Random ones are drawn from Rayleigh's
+ * distribution with the prescribed mean square. */
 static const double *row_amplitudes(struct generator *g, struct random_key key, long my) {
     size_t row = (size_t)(my + (long)g->modes->mode_y), length = g->row_length[row];
     const double *amplitude = g->amplitude + row * (g->modes->mode_x + 1);
@@ -178,7 +181,7 @@ static const double *row_amplitudes(struct generator *g, struct random_key key, 
     return g->row_drawn;
 }
 
-/* Draws phases that are random, with amplitudes that are fixed (Wu 2000; F3.1) or random (F3.4). */
+/* Draws random phases, with fixed (Wu 2000; F3.1) or random (F3.4) amplitudes. */
 static void spectrum_draw(struct generator *g, struct random_key key) {
     const struct modes *modes = g->modes;
     size_t columns = modes->mode_x + 1, ny = modes->grid.ny, nx = modes->grid.nx;
@@ -201,7 +204,7 @@ static void spectrum_draw(struct generator *g, struct random_key key) {
     }
 }
 
-/* Fills in the powers of what was drawn; modes without power stay so. */
+/* Computes the powers of the last draw; modes without power stay without. */
 static void drawn_measure(struct generator *g) {
     struct modes *drawn = g->drawn;
     size_t rows = 2 * drawn->mode_y + 1, ny = drawn->grid.ny;
@@ -233,3 +236,33 @@ int generator_run(struct generator *g, struct random_key key, double *z,
         *report = (struct surface_report){.end = END_DIRECT};
     return 0;
 }
+
+int surface_resample(const struct grid *from, const double *z, const struct grid *to, double *out,
+                     size_t mode_x, size_t mode_y, struct error *err) {
+    struct transform *coarse = NULL, *fine = NULL;
+    int status = transform_create(&coarse, from, mode_x, mode_y, err);
+    if (status == 0)
+        status = transform_create(&fine, to, mode_x, mode_y, err);
+    if (status == 0) {
+        transform_forward(coarse, z);
+        transform_pad(coarse, fine);
+        transform_inverse(fine, out);
+    }
+    transform_destroy(&coarse);
+    transform_destroy(&fine);
+    return status;
+}
+
+const struct surface_options SURFACE_DEFAULTS = {
+    .heights = {.type = HEIGHTS_GAUSSIAN},
+    .amplitudes = AMPLITUDES_FIXED,
+    .keep = KEEP_SPECTRUM,
+    .iteration = ITERATION_REFLECTIONS,
+    .draw = DRAW_RANDOM,
+    .tolerance = 1e-3,
+    .stall_gain = 0.05,
+    .stall_iterations = 10,
+    .max_iterations = 1000,
+    .relaxed_iterations = 40,
+    .relaxation = 0.8,
+};

@@ -1,10 +1,10 @@
 /* Random rough surfaces with a prescribed spectrum and height distribution.
  *
- * A generator is made once a case and used for every realisation of it; one thread each. Phases
- * belong to wave numbers in units of 2 pi/L, not to points: the same realisation on a finer grid is
- * the same surface, one of other amplitudes (H, scale) has the same phases, and one of shorter
- * waves has those of the longer ones too; of random amplitudes it is alike, each over the
- * prescribed one. Target heights are quantiles of the same uniform numbers, as many as the grid has
+ * A generator is made once a case and used for every realisation of it, by one thread at a time.
+ * Phases belong to wave numbers in units of 2 pi/L, not to points. So the same realisation on a
+ * finer grid is the same surface; with another H or scale it has the same phases; with shorter
+ * waves added it keeps the phases of the longer ones. Random amplitudes, over the prescribed ones,
+ * behave alike. Target heights are quantiles of the same uniform numbers, as many as the grid has
  * points. */
 #ifndef RUGO_CORE_SURFACE_SURFACE_H
 #define RUGO_CORE_SURFACE_SURFACE_H
@@ -15,24 +15,25 @@
 
 struct generator;
 
-/* Copies what it is given (table spectra are sampled here). ERROR_INPUT, ERROR_MEMORY. */
+/* Copies its arguments (table spectra are sampled here). ERROR_INPUT, ERROR_MEMORY. */
 int generator_create(struct generator **out, const struct spectrum *spectrum,
                      const struct grid *grid, const struct surface_options *options,
                      struct error *err);
 void generator_destroy(struct generator **generator);
-/* Returns the prescribed spectrum, which lives as long as the generator: that of every surface, or
- * where amplitudes are random that of the mean. */
+/* Returns the prescribed spectrum, which lives as long as the generator. It is that of every
+ * surface, or with random amplitudes that of the mean. */
 const struct modes *generator_modes(const struct generator *generator);
-/* Peak bytes of a generator with these settings, the caller's z of grid_points doubles included. */
+/* Peak bytes of a generator with these settings, including the caller's z of grid_points
+ * doubles. */
 double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
                        const struct surface_options *options);
 
 /* Fills z[grid_points] (from any aligned allocation). report may be NULL. Non-Gaussian generation
- * converges on the generator's grid; a finer grid of the same realisation is surface_resample. */
+ * converges on the generator's grid; surface_resample gives the same realisation on a finer one. */
 int generator_run(struct generator *generator, struct random_key key, double *z,
                   struct surface_report *report, struct error *err);
 
-/* Changes what the next runs work down to; nothing where heights are Gaussian. */
+/* Changes the tolerances and limits of the next runs; without effect where heights are Gaussian. */
 void generator_aim(struct generator *generator, const struct surface_aim *aim);
 
 /* Samples the band-limited surface z on grid `from` exactly on grid `to` (same cell, any grid that

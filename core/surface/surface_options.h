@@ -1,15 +1,15 @@
-/* How a surface is to be made, and what came of it. */
+/* Options of the generation of a surface, and its report. */
 #ifndef RUGO_CORE_SURFACE_SURFACE_OPTIONS_H
 #define RUGO_CORE_SURFACE_SURFACE_OPTIONS_H
 
 #include "core/surface/heights.h"
 
-/* What chance there is in a wave (FORMULAS.md, F3.1 and F3.4): its phase alone, so that every
- * surface of a cell has the prescribed spectrum; or its amplitude too, so that the spectrum is that
- * of the mean over surfaces, and a cell is like a piece cut out of an endless Gaussian surface. */
+/* What is random in a wave (FORMULAS.md, F3.1 and F3.4): its phase alone, so that every surface of
+ * a cell has the prescribed spectrum; or its amplitude too, so that the spectrum is that of the
+ * mean over surfaces, and a cell is like a part of an infinite Gaussian surface. */
 enum surface_amplitudes { AMPLITUDES_FIXED, AMPLITUDES_RANDOM };
 enum surface_keep { KEEP_SPECTRUM, KEEP_HEIGHTS };
-/* How generation comes near to spectrum and heights (FORMULAS.md, F5.3 to F5.6). */
+/* The iteration towards spectrum and heights (FORMULAS.md, F5.3 to F5.6). */
 enum surface_iteration {
     ITERATION_RELAXED,     /* 43 iterations of a fixed schedule, whatever the tolerance */
     ITERATION_PLAIN,       /* alternation, as in the reference */
@@ -18,8 +18,8 @@ enum surface_iteration {
 };
 enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
 
-/* Behind `amplitudes`: the iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4).
- * Gaussian heights need none of it. */
+/* The iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4). Of these options,
+ * Gaussian heights need `amplitudes` alone. */
 struct surface_options {
     struct heights heights;
     enum surface_amplitudes amplitudes; /* random, not Gaussian: heights have the deviation and the
@@ -29,15 +29,19 @@ struct surface_options {
     enum surface_draw draw; /* target heights drawn at random, or exact quantiles */
     double
         tolerance; /* on eps_h, eps_s and eps_s0 (F5.2); default 1e-3; 0 iterates until it stalls */
-    double stall_gain;         /* default 0.05: stuck when the worst error has not gained this */
-    size_t stall_iterations;   /* default 10: ... in so many iterations */
+    double stall_gain; /* default 0.05: it stalls when the largest error has not fallen by this
+                          share */
+    size_t stall_iterations;   /* default 10: ... in this many iterations */
     size_t max_iterations;     /* default 1000, of all kinds together */
     size_t relaxed_iterations; /* of ITERATION_RELAXED, default 40 */
     double relaxation;         /* of ITERATION_RELAXED, default 0.8 */
+    /* Asked before each iteration: non-zero stops the run with ERROR_STOPPED. NULL: none is. */
+    int (*stop)(void *context);
+    void *stop_context;
 };
 extern const struct surface_options SURFACE_DEFAULTS; /* Gaussian, and the defaults above */
 
-/* What the next runs of a generator work down to, in place of what its options say: iteration is
+/* Tolerances and limits of a generator's next runs, in place of those of its options. iteration is
  * ITERATION_REFLECTIONS or ITERATION_MOMENTUM, as that of the options must be. */
 struct surface_aim {
     enum surface_iteration iteration;
@@ -46,14 +50,14 @@ struct surface_aim {
 };
 
 /* END_DIRECT: Gaussian. END_CONVERGED: all errors are within the tolerance. END_LIMIT: the schedule
- * of ITERATION_RELAXED, or max_iterations, ended it; the errors say how near it came. */
+ * of ITERATION_RELAXED, or max_iterations, ended it; the errors are those reached. */
 enum surface_end { END_DIRECT, END_CONVERGED, END_STALLED, END_LIMIT };
-/* Tells what one generation did. Errors are those of the returned pair of iterates. */
+/* Statistics of a generation. Errors are those of the returned pair of iterates. */
 struct surface_report {
     size_t iterations;
     enum surface_end end;
-    double eps_h, eps_s, eps_s0;              /* PSD form (the one that stops) */
-    double eps_s_amplitude, eps_s0_amplitude; /* amplitude form, as the authors' code */
+    double eps_h, eps_s, eps_s0;              /* of the PSD, compared with the tolerance */
+    double eps_s_amplitude, eps_s0_amplitude; /* of the amplitude, as in the authors' code */
 };
 
 #endif

@@ -29,8 +29,8 @@ int target_heights_draw(const struct heights *heights, const struct height_momen
                         enum surface_draw draw, struct random_key key, size_t n,
                         struct ranker *ranker, double *sorted, struct error *err) {
     if (draw == DRAW_RANDOM) {
-        /* Sorted before the quantile function, which keeps the order, the values are spread evenly.
-         */
+        /* The values are evenly distributed: they are sorted before the quantile function, which
+         * keeps the order. */
         random_uniform(key, STREAM_HEIGHTS, 0, n, sorted);
         int status = rank_sort(ranker, sorted, err);
         if (status != 0)
@@ -38,12 +38,12 @@ int target_heights_draw(const struct heights *heights, const struct height_momen
     }
     double last = -INFINITY;
     for (size_t i = 0; i < n; i++) {
-        /* A drawn 0 lies outside (0, 1): half a step of the generator stands for it. */
+        /* A drawn 0 lies outside (0, 1); it is replaced by half a step of the generator. */
         double p = draw == DRAW_RANDOM ? fmax(sorted[i], 0x1p-54) : ((double)i + 0.5) / (double)n;
         double z = heights_quantile(heights, moments, p);
         if (!isfinite(z))
             return error_set(err, ERROR_NUMERIC, "the height of probability %g is not finite", p);
-        last = fmax(last, z); /* pow() may fall by a last digit where p rises by one */
+        last = fmax(last, z); /* pow() may fall in its last digit where p rises by one */
         sorted[i] = last;
     }
     return standardise(sorted, n, err);

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* FFTW's planner is the one part of it that is not safe from many threads. */
+/* FFTW's planner is its only part that is not safe from many threads. */
 static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
 
-enum { ROWS = 8 }; /* rows gathered together: a cache line of each column serves four of them */
+enum { ROWS = 8 }; /* rows processed together: a cache line of each column serves four of them */
 
 struct transform {
     size_t nx, ny, columns; /* columns = mode_x + 1 */
@@ -120,7 +120,7 @@ void transform_inverse_columns(struct transform *t) {
         fftw_execute(t->column_inverse);
 }
 
-/* The lines of rows j .. j + rows - 1, at most ROWS of them, from the spectrum. */
+/* Computes the lines of rows j .. j + rows - 1, at most ROWS of them, from the spectrum. */
 static void inverse_lines(struct transform *t, size_t j, size_t rows) {
     for (size_t row = 0; row < t->batch; row++)
         memset(t->rows + row * t->half + t->columns, 0, (t->half - t->columns) * sizeof *t->rows);
@@ -163,7 +163,7 @@ void transform_pad(struct transform *from, struct transform *to) {
     }
 }
 
-/* The lines as rows j .. j + rows - 1, at most ROWS of them, into the spectrum. */
+/* Transforms the lines as rows j .. j + rows - 1, at most ROWS of them, into the spectrum. */
 static void forward_lines(struct transform *t, size_t j, size_t rows, double scale) {
     fftw_execute(t->row_forward);
     for (size_t i = 0; i < t->columns; i++)

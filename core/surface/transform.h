@@ -28,21 +28,21 @@ void transform_destroy(struct transform **transform);
 /* Returns the plan's own half spectrum, (mode_x + 1) * ny values, aligned; valid as long as the
  * plan. */
 double complex *transform_spectrum(struct transform *transform);
-/* z[ny*nx] from the plan's spectrum, which it destroys. Rows beyond mode_y are taken as zero.
- * Self-conjugate modes must be real; the mx = 0 column must be conjugate-symmetric. */
+/* Computes z[ny*nx] from the plan's spectrum, which it destroys. Rows beyond mode_y are taken as
+ * zero. Self-conjugate modes must be real; the mx = 0 column must be conjugate-symmetric. */
 void transform_inverse(struct transform *transform, double *z);
-/* The same in two steps, for surfaces too big to hold: the columns once, then any rows
- * first .. first + count - 1 into z[count*nx], as often as wanted. */
+/* As transform_inverse, in two steps, for surfaces larger than memory: the columns once, then any
+ * rows first .. first + count - 1 into z[count*nx], as often as needed. */
 void transform_inverse_columns(struct transform *transform);
 void transform_inverse_rows(struct transform *transform, size_t first, size_t count, double *z);
-/* The spectrum of `from` into that of `to`, which has the same band and another grid: zero padding.
- * A Nyquist mode of an even grid stands for two modes of a finer one, each of half its amplitude.
- */
+/* Copies the spectrum of `from` into that of `to`, which has the same band and another grid: zero
+ * padding. A Nyquist mode of an even grid stands for two modes of a finer one, each of half its
+ * amplitude. */
 void transform_pad(struct transform *from, struct transform *to);
-/* The plan's spectrum (all of rows, columns up to mode_x) from z, which it keeps. */
+/* Computes the plan's spectrum (all rows, columns up to mode_x) from z, which it keeps. */
 void transform_forward(struct transform *transform, const double *z);
-/* The same in two steps: rows first .. first + count - 1 from z[count*nx], all of them in any
- * order, then the columns once. The columns of transform_inverse are to be done with before. */
+/* As transform_forward, in two steps: rows first .. first + count - 1 from z[count*nx], all of them
+ * in any order, then the columns once. The columns of transform_inverse are lost. */
 void transform_forward_rows(struct transform *transform, size_t first, size_t count,
                             const double *z);
 void transform_forward_columns(struct transform *transform);
@@ -51,8 +51,8 @@ void transform_forward_columns(struct transform *transform);
  * Needs the whole band in y; in and out may be the same. */
 void transform_filter(struct transform *transform, const double *symbol, double factor,
                       const double *in, double *out);
-/* The same of a field in the first ny rows of nx points of the transform's grid, beside which it is
- * 0; out holds as many. */
+/* As transform_filter, of a field in the first ny rows of nx points of the transform's grid that is
+ * 0 elsewhere; out holds as many points. */
 void transform_filter_part(struct transform *transform, const double *symbol, double factor,
                            size_t nx, size_t ny, const double *in, double *out);
 

@@ -26,9 +26,10 @@ static double first_moment(double x) {
     return density > 0 ? density * (1 - x / gsl_sf_hazard(x)) : 0;
 }
 
-/* E[max(0, t - x)^(3/2)], t standard normal, by the trapezoidal rule, which converges geometrically
- * for entire integrands. Where next to no t lies below x that is the mean over t itself; elsewhere,
- * with t - x = u^2, the integral over all u of u^4 exp(-(u^2 + x)^2/2)/sqrt(2 pi). */
+/* Returns E[max(0, t - x)^(3/2)], t standard normal, by the trapezoidal rule, which converges
+ * geometrically for entire integrands. Where hardly any t lies below x, that is the mean over t
+ * itself. Elsewhere, with t - x = u^2, it is the integral over all u of
+ * u^4 exp(-(u^2 + x)^2/2)/sqrt(2 pi). */
 static double three_halves_moment(double x) {
     double reach = sqrt(2 * DEPTH), sum = 0;
     if (x < -12) {
@@ -100,8 +101,9 @@ static void shape_at(double theta, double weight, double *square, double *area, 
 }
 
 static void shapes_fill(struct shapes *shapes) {
-    /* b/a = exp(-theta): in theta the logarithms of thin ellipses are straight. Panels grow from
-     * the round shapes, all that is left at high curvature; exp(-3 theta) is nothing at the end. */
+    /* b/a = exp(-theta): as functions of theta the logarithms of thin ellipses are straight. Panels
+     * grow from the round shapes, which alone matter at high curvature; exp(-3 theta) is negligible
+     * at the end. */
     static const double ENDS[SHAPE_PANELS + 1] = {0, 0.06, 0.3, 1.2, 4, 12.5};
     for (size_t panel = 0; panel < SHAPE_PANELS; panel++) {
         double theta[QUADRATURE_NODES], weight[QUADRATURE_NODES];
@@ -114,8 +116,8 @@ static void shapes_fill(struct shapes *shapes) {
     }
 }
 
-/* Given s, heights are normal about rise s with the deviation below; s itself has the density
- * sqrt(3/pi)/2 exp(-s^2/4) times its shapes' (nayak.c). */
+/* Given s, heights are normal about rise s with the deviation below. The density of s itself is
+ * sqrt(3/pi)/2 exp(-s^2/4) times that of its shapes (nayak.c). */
 struct ellipses {
     struct shapes shapes;
     double c1, rise, deviation;
@@ -151,19 +153,19 @@ static struct asperity_contact ellipses_of_curvature(const struct ellipses *t, d
                                      area * common * first_moment(x)};
 }
 
-/* Adds the integrals between the curvatures from and to. They turn around the curvature
- * `turn` whose mean height is the separation, over a width small for alpha near 3/2: panels grow
- * away from it, from width to longest. Their variable is sqrt(s), for the load starts as
- * s^(7/2). */
-struct stretch {
+/* ellipses_add adds the integrals between two curvatures. Their integrands change around the
+ * curvature `turn`, whose mean height is the separation, over a width that is small for alpha near
+ * 3/2. So panels grow away from it, from width to longest. Their variable is sqrt(s), for the load
+ * starts as s^(7/2). */
+struct curvature_range {
     double from, to, turn, width, longest;
 };
-static void ellipses_add(const struct ellipses *t, double separation, struct stretch stretch,
+static void ellipses_add(const struct ellipses *t, double separation, struct curvature_range range,
                          struct asperity_contact *sum) {
-    double sign = stretch.to > stretch.from ? 1 : -1, at = stretch.from;
-    while (sign * (stretch.to - at) > 0) {
-        double length = fmin(stretch.longest, stretch.width + fabs(at - stretch.turn));
-        double next = sign * fmin(sign * stretch.to, sign * at + length);
+    double sign = range.to > range.from ? 1 : -1, at = range.from;
+    while (sign * (range.to - at) > 0) {
+        double length = fmin(range.longest, range.width + fabs(at - range.turn));
+        double next = sign * fmin(sign * range.to, sign * at + length);
         double root[QUADRATURE_NODES], weight[QUADRATURE_NODES];
         quadrature_panel(sqrt(fmin(at, next)), sqrt(fmax(at, next)), root, weight);
         for (size_t node = 0; node < QUADRATURE_NODES; node++) {
@@ -178,7 +180,7 @@ static void ellipses_add(const struct ellipses *t, double separation, struct str
 
 static struct asperity_contact ellipses_contact(const void *theory, double separation) {
     const struct ellipses *t = theory;
-    if (separation > 40) /* exp(-d^2/2) underflows; far out, panels would vanish in rounding */
+    if (separation > 40) /* exp(-d^2/2) underflows; farther out, panels would vanish in rounding */
         return (struct asperity_contact){0, 0};
     /* The integrand's exponent is -s^2/4 - C1 max(0, d - rise s)^2: for d > 0 it is -d^2/2 at its
      * peak s = 2 rise d, with the second derivative -C1 as far as the turn. */
@@ -189,8 +191,9 @@ static struct asperity_contact ellipses_contact(const void *theory, double separ
         separation > 0 && peak + reach < turn ? peak + reach : 2 * sqrt(above * above / 2 + DEPTH);
     double start = fmin(fmax(turn, low), high), width = 2 * t->deviation / t->rise;
     struct asperity_contact sum = {0, 0};
-    ellipses_add(t, separation, (struct stretch){start, high, turn, width, 3.5}, &sum);
-    ellipses_add(t, separation, (struct stretch){start, low, turn, width, 2.5 / sqrt(t->c1)}, &sum);
+    ellipses_add(t, separation, (struct curvature_range){start, high, turn, width, 3.5}, &sum);
+    ellipses_add(t, separation,
+                 (struct curvature_range){start, low, turn, width, 2.5 / sqrt(t->c1)}, &sum);
     return (struct asperity_contact){t->load * sum.load, t->area * sum.area};
 }
 
@@ -228,7 +231,7 @@ void gw_mccool_curve(double alpha, size_t n, const double *separation, double *l
 struct inversion {
     contact_at *at;
     const void *theory;
-    double load;          /* wanted */
+    double load;          /* required */
     double closest, area; /* smallest |logarithm of the load over it| so far, the area there */
 };
 
@@ -248,8 +251,8 @@ static double excess(double separation, void *context) {
  * relative error is no larger. */
 static const double CLOSE = 1e-12;
 
-/* Finds the separation of the wanted load between two separations whose loads are at or above it
- * and at or below it. */
+/* Finds the separation of the required load between one whose load is not below it and one whose
+ * load is not above it. */
 static void approach(struct inversion *inversion, double low, double high) {
     gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     if (solver == NULL)

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Below this mean density a bin's mean curvature is taken at its centre: far out numerator and
- * denominator underflow, while the curvature itself is smooth there. */
+/* Below this mean density a bin's mean curvature is that at its centre: numerator and denominator
+ * underflow there, while the curvature itself is smooth. */
 static const double DENSITY_LEAST = 1e-200;
 
 enum { PERSSON_PANELS = 4 };

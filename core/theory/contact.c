@@ -36,7 +36,8 @@ double westergaard_pressure(double x, double ratio) {
 double westergaard_gap(double ratio) {
     if (!(ratio >= 0 && ratio <= 1))
         return NAN;
-    /* The block sinks under its mean pressure as an array of flat punches of the contact's width
-     * would, d(gap)/d(ratio) = ln(ratio) (Johnson 1985); its integral, zero at full contact. */
+    /* The block sinks under its mean pressure as under an array of flat punches of the contact's
+     * width, d(gap)/d(ratio) = ln(ratio) (Johnson 1985). This is the integral, zero at full
+     * contact. */
     return ratio > 0 ? (1 - ratio) + ratio * log(ratio) : 1;
 }

@@ -15,8 +15,8 @@ void height_cells_add(double cells[HEIGHT_CELLS], double mean, double weight) {
     cells[cell + 1] += weight * upper;
 }
 
-/* Of heights that are normal about a mean, so many deviations below an edge: the shares below and
- * above the edge, and the normal density there. */
+/* Of heights that are normal about a mean, which is a number of deviations below an edge: the
+ * shares below and above the edge, and the normal density there. */
 struct share {
     double below, above, density;
 };
@@ -28,9 +28,9 @@ static struct share share_at(double a) {
 /* Shares by the distance from a cell to an edge, in parts of a cell. */
 struct share_table {
     const double *cells;
-    size_t first, end;    /* cells outside of these are empty */
+    size_t first, end;    /* cells outside this range are empty */
     double deviation;     /* of heights about the mean of their cell */
-    long parts;           /* of a cell; 0: edges lie on no such lattice, and shares is NULL */
+    long parts;           /* of a cell; 0: edges lie on no lattice of parts, and shares is NULL */
     long edge, edge_step; /* parts from the first cell to the first edge, from edge to edge */
     long nearest;         /* distance of shares[0] */
     struct share *shares; /* owned */
@@ -42,7 +42,7 @@ static bool is_whole(double x) {
 }
 
 /* Finds the lattice of the edges. */
-static void table_place(struct share_table *table, const struct bins *bins) {
+static void table_align(struct share_table *table, const struct bins *bins) {
     double step = bins_width(bins) / CELL_WIDTH, edge = (bins->low - FIRST_CENTRE) / CELL_WIDTH;
     double last = edge + step * (double)bins->count;
     if (!(fabs(edge) <= HEIGHT_CELLS && fabs(last) <= 2 * HEIGHT_CELLS))
@@ -62,7 +62,7 @@ static int table_create(struct share_table *table, const double *cells, double d
         table->first++;
     while (table->end > table->first && cells[table->end - 1] == 0)
         table->end--;
-    table_place(table, bins);
+    table_align(table, bins);
     if (table->parts == 0 || table->end == table->first)
         return 0;
     long farthest = table->edge + (long)bins->count * table->edge_step;

@@ -73,7 +73,8 @@ double nayak_joint_pdf(double z, double t1, double alpha) {
         return NAN;
     if (t1 >= 0)
         return 0;
-    /* The exponents are added first: their exponentials overflow singly for alpha near 3/2. */
+    /* The exponents are added first, because the single exponentials overflow for alpha near 3/2.
+     */
     double c1 = alpha / (2 * alpha - 3), slant = sqrt(12 / alpha);
     double exponent = -c1 * (z * z + (t1 * t1 + slant * t1 * z) / 2);
     return sqrt(3 * c1) / (2 * M_PI) * weight(-t1) * exp(exponent);

@@ -12,11 +12,11 @@ double nayak_summit_cdf(double z, double alpha);
 double nayak_joint_pdf(double z, double t1, double alpha);
 /* Returns the expected mean curvature of summits at height z over sqrt(m4) (F6.5). */
 double nayak_mean_curvature(double z, double alpha);
-/* Summits per area (F6.7); m2 and m4 are the isotropic moments. NaN unless both are finite, m2 > 0
- * and m4 >= 0. */
+/* Returns summits per area (F6.7); m2 and m4 are the isotropic moments. NaN unless both are finite,
+ * m2 > 0 and m4 >= 0. */
 double nayak_summit_density(double m2, double m4);
-/* Mean and variance of summit heights z* (F6.4); mean of kappa_m/sqrt(m4) over all summits (F6.5).
- */
+/* Return mean and variance of summit heights z* (F6.4), and the mean of kappa_m/sqrt(m4) over all
+ * summits (F6.5). */
 double nayak_summit_mean(double alpha);
 double nayak_summit_variance(double alpha);
 double nayak_overall_curvature(void);
@@ -24,7 +24,7 @@ double nayak_overall_curvature(void);
 /* Peaks of profiles, alpha = m0 m4/m2^2 > 1 (F7.1, F7.2; Rice 1945; Cartwright & Longuet-Higgins
  * 1956): density of peak heights, its integral, joint density with t1 = z''/sqrt(m4) < 0, expected
  * curvature -z''/sqrt(m4) of peaks at height z, and peaks per length. */
-/* Computes density and mean curvature at a height together, for the work of one. */
+/* Computes density and mean curvature at a height together, at the cost of one. */
 void profile_peak(double z, double alpha, double *pdf, double *curvature);
 double profile_peak_pdf(double z, double alpha);
 double profile_peak_cdf(double z, double alpha);
@@ -32,8 +32,8 @@ double profile_peak_joint_pdf(double z, double t1, double alpha);
 double profile_mean_curvature(double z, double alpha);
 double profile_peak_density(double m2, double m4);
 
-/* Theory expects this of the summits of a surface (dimension 2: F6.4, F6.5, F6.7, F6.11) or the
- * peaks of a profile (dimension 1: F7.2 to F7.4). */
+/* Expected values of the summits of a surface (dimension 2: F6.4, F6.5, F6.7, F6.11) or the peaks
+ * of a profile (dimension 1: F7.2 to F7.4). */
 struct summit_expectation {
     double density;                                                        /* per area (length) */
     double height_mean, height_variance, height_skewness, height_kurtosis; /* of z* */

@@ -9,7 +9,7 @@ static bool in_domain(double alpha) {
     return alpha > 1 && isfinite(alpha);
 }
 
-/* The continued fraction starts at this term, which gives it 2e-14 at x = 1 and 1e-15 beyond. */
+/* The continued fraction starts at this term, with errors of 2e-14 at x = 1 and 1e-15 beyond. */
 enum { TERMS = 200 };
 
 /* Integrals over u > 0 of u and u^2, times exp(-u^2/2 - x u) and, for x < 0, times exp(-x^2/2).

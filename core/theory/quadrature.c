@@ -1,6 +1,6 @@
 #include "core/theory/quadrature.h"
 
-/* These are the positive half of the 16-point rule on [-1, 1]. */
+/* The positive half of the 16-point rule on [-1, 1]. */
 static const double NODES[8] = {0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863,
                                 0.6178762444026437484, 0.7554044083550030339, 0.8656312023878317439,
                                 0.9445750230732325761, 0.9894009349916499326};

@@ -13,8 +13,8 @@ static struct half_phase half_phase(double wave, size_t points) {
     return (struct half_phase){sin(angle), cos(angle)};
 }
 
-/* What a mode adds to the vectors per unit of its amplitude: s is 2 sin^2 of half the phase between
- * the point and its neighbour, t the sine of that phase. */
+/* Fills the contribution of a mode to the vectors, per unit of its amplitude: s is 2 sin^2 of half
+ * the phase between the point and its neighbour, t the sine of that phase. */
 static void mode_fill(struct half_phase x, struct half_phase y, size_t pairs, double *even,
                       double *odd) {
     struct half_phase up = {x.sine * y.cosine + x.cosine * y.sine,
@@ -123,8 +123,8 @@ static void moments_add(struct moment_sums *sums, double power, double weight, d
     sum_add(&sums->bend_x, weighted * x * x);
     sum_add(&sums->bend_y, weighted * y * y);
     sum_add(&sums->both, weighted * x * y);
-    /* A wave A cos(phase) has the variance A^2/2 = 2 P, its two modes together, and the fourth
-     * cumulant -3 A^4/8; one that is its own conjugate is A or -A, with -2 A^4. */
+    /* A wave A cos(phase), of two modes, has the variance A^2/2 = 2 P and the fourth cumulant
+     * -3 A^4/8. A mode that is its own conjugate is A or -A, with the fourth cumulant -2 A^4. */
     sum_add(&sums->cumulant, (single ? 2 : 3) * weighted * power);
 }
 

@@ -8,8 +8,8 @@
 
 #include "core/surface/spectrum.h"
 
-/* Pairs of a profile, a five-point and a nine-point stencil; in their order along x, along y, and
- * along the two diagonals. */
+/* Numbers of pairs of a profile, a five-point and a nine-point stencil, in the order along x, along
+ * y, and along the two diagonals. */
 enum { PAIRS_PROFILE = 1, PAIRS_FIVE_POINT = 2, PAIRS_NINE_POINT = 4, PAIRS_MOST = 4 };
 /* The even vector holds s of each pair, then z(0), then the exact mean curvature at the point
  * -(z_xx + z_yy)/2 (profiles: -z''). */
@@ -28,8 +28,8 @@ struct sampled_field {
 int sampled_field_fill(const struct modes *modes, const struct moments *moments, size_t pairs,
                        struct sampled_field *out, struct error *err);
 
-/* What finite differences (F1.3) find on surfaces with exactly this spectrum, as in struct
- * roughness; and the kurtosis of their heights on the mean over random phases (F3.3). */
+/* Expected values of finite differences (F1.3) on surfaces with exactly this spectrum, as in struct
+ * roughness; and the mean kurtosis of their heights over random phases (F3.3). */
 struct sampled_moments {
     double rms_slope, rms_curvature, m2, m4, nayak_alpha;
     double kurtosis;

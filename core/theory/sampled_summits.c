@@ -1,17 +1,254 @@
 #include "core/theory/sampled_summits.h"
 #include "core/random.h"
+#include "core/statistics/summits/summits.h"
 #include "core/theory/height_cells.h"
-#include "core/theory/summit_integrand.h"
+#include "core/theory/sampled_field.h"
+#include <float.h>
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* The integrand of sampled_summits.h, over the Gaussian vectors of a point and its neighbours
+ * (sampled_field.h) for which the point is a summit.
+ *
+ * The even vector is transformed to other coordinates. The first is the curvature by differences,
+ * which is positive at a summit; then s along x, which it bounds (s along y is the rest of the
+ * curvature); then s along the diagonals. */
+
+/* A lower triangle such that root root' is a covariance. A pivot that is 0 but for rounding, given
+ * the pivots before it, is set to 0: such a variable follows from those before. */
+struct triangle {
+    size_t n;
+    double root[PAIRS_MOST][PAIRS_MOST];
+};
+
+/* A Gaussian variable as a linear function of the unit normals of a triangle, plus an independent
+ * normal variable. */
+struct regression {
+    double slope[PAIRS_MOST];
+    double variance; /* of the independent variable */
+};
+
+static inline double regression_value(const struct regression *regression, const double *y) {
+    double sum = 0;
+    for (size_t a = 0; a < PAIRS_MOST; a++)
+        sum += regression->slope[a] * y[a];
+    return sum;
+}
+
+/* The data of the integrand. */
+struct summit_integrand {
+    size_t pairs;
+    double bend[2];
+    struct triangle even, odd;
+    struct regression height, curvature; /* of z* and of kappa_m/sqrt(m4) */
+    double common; /* covariance of the independent parts of height and curvature */
+};
+
+/* The curvature by differences runs from 0 to this many of its deviations, beyond which exp(-36) of
+ * the density remains. */
+#define LEAD_MOST 8.5
+enum { UNIFORMS = 2 * PAIRS_MOST - 2 }; /* dimensions beside that of the curvature */
+
+/* A pivot that is 0 but for rounding, given the ones before it, is set to 0. */
+static const double EXPLAINED = 1e-13; /* of a variance, by the variables before */
+
+static void triangle_fill(size_t n, double covariance[PAIRS_MOST][PAIRS_MOST],
+                          struct triangle *out) {
+    *out = (struct triangle){.n = n};
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b <= a; b++) {
+            double rest = covariance[a][b];
+            for (size_t c = 0; c < b; c++)
+                rest -= out->root[a][c] * out->root[b][c];
+            if (a == b)
+                out->root[a][a] = rest > EXPLAINED * covariance[a][a] ? sqrt(rest) : 0;
+            else
+                out->root[a][b] = out->root[b][b] > 0 ? rest / out->root[b][b] : 0;
+        }
+}
+
+static struct regression regress(const struct triangle *t, const double *covariance,
+                                 double variance) {
+    struct regression out = {.variance = variance};
+    for (size_t a = 0; a < t->n; a++) {
+        double rest = covariance[a];
+        for (size_t c = 0; c < a; c++)
+            rest -= out.slope[c] * t->root[a][c];
+        out.slope[a] = t->root[a][a] > 0 ? rest / t->root[a][a] : 0;
+        out.variance -= out.slope[a] * out.slope[a];
+    }
+    out.variance = fmax(out.variance, 0);
+    return out;
+}
+
+static double dot(size_t n, const double *a, const double *b) {
+    double sum = 0;
+    for (size_t c = 0; c < n; c++)
+        sum += a[c] * b[c];
+    return sum;
+}
+
+/* Expresses the coordinates by the even vector, a row each. */
+static void coordinates_fill(const struct sampled_field *field,
+                             double rows[PAIRS_MOST][EVEN_MOST]) {
+    memset(rows, 0, sizeof(double[PAIRS_MOST][EVEN_MOST]));
+    rows[0][0] = field->bend[0];
+    if (field->pairs > 1) {
+        rows[0][1] = field->bend[1];
+        rows[1][0] = 1;
+    }
+    for (size_t a = 2; a < field->pairs; a++)
+        rows[a][a] = 1;
+}
+
+static void summit_integrand_prepare(struct sampled_field *field, enum summit_curvature curvature,
+                                     struct summit_integrand *out) {
+    size_t n = field->pairs, all = n + 2;
+    double rows[PAIRS_MOST][EVEN_MOST], half[PAIRS_MOST][EVEN_MOST];
+    double covariance[PAIRS_MOST][PAIRS_MOST], heights[PAIRS_MOST] = {0};
+    double curvatures[PAIRS_MOST] = {0};
+    coordinates_fill(field, rows);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < all; b++)
+            half[a][b] = dot(all, rows[a], field->even[b]);
+    for (size_t a = 0; a < n; a++) {
+        for (size_t b = 0; b < n; b++)
+            covariance[a][b] = dot(all, half[a], rows[b]);
+        heights[a] = half[a][n];
+        curvatures[a] = half[a][n + 1];
+    }
+    *out = (struct summit_integrand){.pairs = n, .bend = {field->bend[0], field->bend[1]}};
+    triangle_fill(n, covariance, &out->even);
+    triangle_fill(n, field->odd, &out->odd);
+    out->height = regress(&out->even, heights, field->even[n][n]);
+    if (curvature == CURVATURE_FINITE_DIFFERENCE) {
+        out->curvature.slope[0] = out->even.root[0][0];
+        return;
+    }
+    out->curvature = regress(&out->even, curvatures, field->even[n + 1][n + 1]);
+    out->common = field->even[n][n + 1] - dot(n, out->height.slope, out->curvature.slope);
+}
+
+/* --- the integrand --- */
+
+static double normal_below(double x) {
+    return erfc(-x / M_SQRT2) / 2;
+}
+
+/* Returns the unit normal variable at the share u of its probability between low and high, and
+ * multiplies the weight by that probability. */
+static double between(double low, double high, double u, double *weight) {
+    bool upper = low > 0; /* mirrored: lower tails are accurate to the last digit */
+    double a = upper ? -high : low, b = upper ? -low : high;
+    double below = normal_below(a), share = normal_below(b) - below;
+    if (!(share > 0 && high > low)) {
+        *weight = 0;
+        return 0;
+    }
+    *weight *= share;
+    /* limited to where the quantile is finite */
+    double y = gsl_cdf_ugaussian_Pinv(fmin(fmax(below + u * share, DBL_MIN), 1 - 0x1p-53));
+    return upper ? -y : y;
+}
+
+/* Bounds of one variable by several conditions. */
+struct interval {
+    double low, high;
+};
+
+/* Narrows the interval to where low < fixed + slope x < high. */
+static void narrow(struct interval *x, double fixed, double slope, double low, double high) {
+    if (slope == 0) {
+        if (!(fixed > low && fixed < high))
+            x->high = -INFINITY;
+        return;
+    }
+    double one = (low - fixed) / slope, other = (high - fixed) / slope;
+    x->low = fmax(x->low, fmin(one, other));
+    x->high = fmin(x->high, fmax(one, other));
+}
+
+/* Returns the interval of the unit normal y[at], which is 0 on entry, in which a triangle's
+ * variables from `first` on satisfy low[a] < variable < high[a]; the others are known. */
+static struct interval bounds(const struct triangle *t, size_t at, size_t first, const double *y,
+                              const double *low, const double *high) {
+    struct interval x = {-INFINITY, INFINITY};
+    for (size_t a = first; a < t->n && a < PAIRS_MOST; a++)
+        narrow(&x, dot(a + 1, t->root[a], y), t->root[a][at], low[a], high[a]);
+    return x;
+}
+
+/* On fine grids the diagonals follow nearly from the sides: s of the second one from s of the other
+ * three, t of both from t along x and y. Their independent parts are drawn first. All conditions
+ * then bound the variable before at once, so that no condition is a step. */
+
+/* Draws the unit normals of the even vector of a point from y[1] on, fills s of each pair and
+ * returns the weight. */
+static double weigh_even(const struct summit_integrand *f, const double *u, double *y, double *s) {
+    static const double LEAST[PAIRS_MOST] = {0, 0, 0, 0};
+    static const double MOST[PAIRS_MOST] = {INFINITY, INFINITY, INFINITY, INFINITY};
+    double curvature = y[0] * f->even.root[0][0], weight = 1;
+    s[0] = curvature / f->bend[0];
+    if (f->pairs == 1)
+        return weight;
+    struct interval x = {-INFINITY, INFINITY};
+    narrow(&x, f->even.root[1][0] * y[0], f->even.root[1][1], 0, s[0]);
+    y[1] = between(x.low, x.high, u[0], &weight);
+    s[0] = dot(2, f->even.root[1], y);
+    s[1] = (curvature - f->bend[0] * s[0]) / f->bend[1];
+    if (f->pairs == PAIRS_NINE_POINT) {
+        y[3] = gsl_cdf_ugaussian_Pinv(u[1]);
+        x = bounds(&f->even, 2, 2, y, LEAST, MOST);
+        y[2] = between(x.low, x.high, u[2], &weight);
+        for (size_t a = 2; a < f->pairs; a++)
+            s[a] = dot(a + 1, f->even.root[a], y);
+    }
+    return weight;
+}
+
+/* Returns the probability that |t| < s for all pairs, by draws of t along x and of the independent
+ * parts of the diagonals. */
+static double weigh_odd(const struct summit_integrand *f, const double *u, const double *s) {
+    const struct triangle *t = &f->odd;
+    double y[PAIRS_MOST] = {0}, least[PAIRS_MOST] = {0}, weight = 2;
+    for (size_t a = 0; a < f->pairs; a++)
+        least[a] = -s[a];
+    struct interval x = {0, INFINITY}; /* the other half is its mirror image */
+    narrow(&x, 0, t->root[0][0], -s[0], s[0]);
+    y[0] = between(x.low, x.high, u[0], &weight);
+    if (f->pairs == 1)
+        return weight;
+    for (size_t a = 2; a < f->pairs; a++)
+        y[a] = gsl_cdf_ugaussian_Pinv(u[a - 1]);
+    x = bounds(t, 1, 1, y, least, s);
+    between(x.low, x.high, 0.5, &weight);
+    return weight;
+}
+
+/* Fills the unit normals y[PAIRS_MOST] of the even vector of a point, whose curvature by
+ * differences is lead of its deviations, and returns its weight. The mean of weights over lead,
+ * evenly from 0 to LEAD_MOST, and over u, evenly in the unit cube, is the share of points that are
+ * summits. u[UNIFORMS] lies inside (0, 1). */
+static double summit_integrand_weigh(const struct summit_integrand *f, double lead, const double *u,
+                                     double *y) {
+    double s[PAIRS_MOST] = {0};
+    y[0] = lead;
+    for (size_t a = 1; a < PAIRS_MOST; a++)
+        y[a] = 0;
+    double weight = weigh_even(f, u, y, s);
+    if (weight > 0)
+        weight *= weigh_odd(f, u + UNIFORMS / 2, s);
+    return weight * LEAD_MOST * exp(-lead * lead / 2) * 0.39894228040143268;
+}
+
 /* --- sums over a lattice --- */
 
-/* A lattice rule: point n is at the fractions of n times these steps, beside 1 of the curvature.
- * They are chosen component by component (Sloan & Reztsov 2002) for smooth periodic functions;
- * folding makes the ends of others meet. Independent shifts tell the error: 2e-4 of the density of
- * nine-point summits, 1e-6 of others. */
+/* A lattice rule: point n is at the fractional parts of n times these steps, and 1 for the
+ * curvature. The steps are chosen component by component (Sloan & Reztsov 2002) for smooth periodic
+ * functions; folding makes other functions periodic. Independent shifts estimate the error: 2e-4 of
+ * the density of nine-point summits, 1e-6 of others. */
 enum { SHIFTS_MOST = 8, LATTICE_SEED = 1, LATTICE_POINTS = 16381, PROFILE_POINTS = 2039 };
 static const unsigned STEPS[UNIFORMS] = {3711, 5711, 3321, 7766, 7145, 6041};
 static size_t shift_count(size_t pairs) {
@@ -30,8 +267,8 @@ struct lattice_sums {
     double *joint;                       /* owned, HEIGHT_CELLS of each bin of t1; NULL */
 };
 
-/* Adds a weight that is evenly spread over an interval of t1 to the bins under it: to counts[b], or
- * to heights with this mean in the cells of bin b. */
+/* Adds a weight that is evenly distributed over an interval of t1 to the bins under it: to
+ * counts[b], or to heights with this mean in the cells of bin b. */
 static void add_t1(const struct bins *bins, double low, double high, double weight, double *counts,
                    double *joint, double mean) {
     double width = bins_width(bins), from = (low - bins->low) / width;
@@ -54,7 +291,8 @@ static const double HERMITE_WEIGHTS[HERMITE] = {0.011257411327720689, 0.22207592
                                                 0.53333333333333333, 0.22207592200561266,
                                                 0.011257411327720689};
 
-/* How much height goes with a curvature that is not known from the even vector. */
+/* Returns the regression of height on the part of the curvature that is independent of the even
+ * vector. */
 static double height_by_curvature(const struct summit_integrand *f) {
     return f->curvature.variance > 0 ? f->common / f->curvature.variance : 0;
 }
@@ -92,8 +330,8 @@ static void add_point(const struct summit_integrand *f, const struct bins *t1, c
                        sums);
 }
 
-/* Curvatures by differences rise in equal steps, so that each bin of t1 sees as many points as
- * the next; the other coordinates are those of a lattice, folded so that its ends meet. */
+/* Curvatures by differences rise in equal steps, so that each bin of t1 gets as many points as the
+ * next. The other coordinates are those of a lattice, folded to make the integrand periodic. */
 static void integrate(const struct summit_integrand *f, const struct bins *t1,
                       struct lattice_sums *sums) {
     const size_t points = point_count(f->pairs);
@@ -105,8 +343,8 @@ static void integrate(const struct summit_integrand *f, const struct bins *t1,
                        random);
         for (size_t n = 0; n < points; n++) {
             for (size_t a = 0; a < UNIFORMS; a++) {
-                double place = (double)n * STEPS[a] / (double)points + random[a];
-                u[a] = fmin(fmax(fabs(2 * (place - floor(place)) - 1), 1e-15), 1 - 1e-15);
+                double position = (double)n * STEPS[a] / (double)points + random[a];
+                u[a] = fmin(fmax(fabs(2 * (position - floor(position)) - 1), 1e-15), 1 - 1e-15);
             }
             double lead = interval * ((double)n + random[UNIFORMS]);
             double weight = summit_integrand_weigh(f, lead, u, y);
@@ -117,7 +355,7 @@ static void integrate(const struct summit_integrand *f, const struct bins *t1,
     }
 }
 
-/* --- what comes out --- */
+/* --- results --- */
 
 static double relative_error(const struct lattice_sums *sums, size_t shifts) {
     double n = (double)shifts, mean = sums->weight / n, squares = 0;
@@ -126,7 +364,7 @@ static double relative_error(const struct lattice_sums *sums, size_t shifts) {
     return sqrt(squares / (n * (n - 1))) / mean;
 }
 
-/* Heights are their means, with these moments, plus a normal rest. */
+/* Heights are their means, with these moments, plus an independent normal variable. */
 static void moments_take(const struct lattice_sums *sums, double rest,
                          struct sampled_summits *out) {
     double m[4];
@@ -142,7 +380,7 @@ static void moments_take(const struct lattice_sums *sums, double rest,
     out->height_kurtosis = (fourth + 6 * rest * second + 3 * rest * rest) / (variance * variance);
 }
 
-/* Below this share of all summits in a bin their curvature is not told. */
+/* With less than this share of all summits, a bin reports no mean curvature. */
 static const double SHARE_LEAST = 1e-14;
 
 static int heights_take(const struct summit_integrand *f, const struct lattice_sums *sums,

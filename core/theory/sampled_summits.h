@@ -1,15 +1,16 @@
-/* Summits of Gaussian surfaces as a grid shows them (FORMULAS.md, F8.4): what Nayak's theory is for
- * surfaces without a grid, this is for the points that are above their 8, 4 or (profiles) 2
- * neighbours, for any spectrum, isotropic or not.
+/* Summits of Gaussian surfaces on a grid (FORMULAS.md, F8.4). Nayak's theory is for surfaces
+ * without a grid; this is for the points that are above their 8, 4 or (profiles) 2 neighbours, for
+ * any spectrum, isotropic or not.
  *
- * The expectations are integrals over the Gaussian vector of a point and its neighbours, done by
- * lattice rules; the error of the density is told, those of the rest are like it. Random amplitudes
- * make surfaces exactly Gaussian; fixed ones do up to about one over the number of modes. */
+ * The expectations are integrals over the Gaussian vector of a point and its neighbours, by lattice
+ * rules. The error of the density is estimated; those of the other results are similar. Surfaces of
+ * random amplitudes are exactly Gaussian; those of fixed ones differ by about one over the number
+ * of modes. */
 #ifndef RUGO_CORE_THEORY_SAMPLED_SUMMITS_H
 #define RUGO_CORE_THEORY_SAMPLED_SUMMITS_H
 
-#include "core/statistics/histogram.h"
-#include "core/statistics/summits.h"
+#include "core/statistics/heights/histogram.h"
+#include "core/statistics/summits/summits.h"
 #include "core/surface/spectrum.h"
 
 struct sampled_surface {
@@ -26,8 +27,8 @@ struct sampled_summits {
     double curvature; /* mean of kappa_m/sqrt(m4); profiles -z''/sqrt(m4) */
 };
 
-/* Averages over bins as in bin_averages.h, NaN where hardly any summit is; NULL: not wanted. The
- * joint density is joint[height bin * t1->count + t1 bin]. Arrays are the caller's. */
+/* Averages over bins as in bin_averages.h, NaN where there is hardly any summit; NULL: not wanted.
+ * The joint density is joint[height bin * t1->count + t1 bin]. The caller owns the arrays. */
 struct sampled_bins {
     const struct bins *height, *t1;
     double *pdf, *cdf, *curvature; /* of summits by height */
@@ -35,8 +36,8 @@ struct sampled_bins {
     double *joint;
 };
 
-/* ERROR_INPUT for refined summits, which theory without a grid is for; ERROR_MEMORY. Nothing is
- * written on failure. bins may be NULL. */
+/* ERROR_INPUT for refined summits, which the theory without a grid describes; ERROR_MEMORY. Nothing
+ * is written on failure. bins may be NULL. */
 int sampled_summits(const struct sampled_surface *surface, struct sampled_summits *out,
                     const struct sampled_bins *bins, struct error *err);
 

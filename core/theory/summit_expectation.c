@@ -14,7 +14,7 @@ static double surface_moment(double n) {
     return front * (half_moment(n + 2, 0.25) - 2 * half_moment(n, 0.25) + 2 * half_moment(n, 0.75));
 }
 
-/* Of peaks s is Rayleigh distributed. */
+/* The s of peaks is Rayleigh distributed. */
 static double profile_moment(double n) {
     return half_moment(n + 1, 0.5);
 }
@@ -25,7 +25,7 @@ static void heights_fill(double (*moment)(double), double rise, double rest,
     double second = m2 - m1 * m1, third = m3 - 3 * m1 * m2 + 2 * m1 * m1 * m1;
     double fourth = m4 - 4 * m1 * m3 + 6 * m1 * m1 * m2 - 3 * m1 * m1 * m1 * m1;
     if (!(rest > 0))
-        return; /* out of the domain */
+        return; /* outside the domain */
     double square = rise * rise, variance = square * second + rest;
     out->height_skewness = square * rise * third / (variance * sqrt(variance));
     out->height_kurtosis =

@@ -1,23 +1,21 @@
-/* The kind "contact": rough elastic blocks pressed on a rigid flat, a scene over models (model.h).
- */
+/* The kind "contact": rough elastic blocks pressed on a rigid flat, by one or several models
+ * (model.h). */
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_curves.h"
-#include "jobs/contact/contact_like.h"
 #include "jobs/contact/contact_loads.h"
-#include "jobs/contact/contact_pairs.h"
-#include "jobs/contact/contact_press.h"
+#include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
-#include "jobs/contact/contact_target.h"
-#include "jobs/contact/contact_view.h"
+#include "jobs/contact/target/contact_target.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
+#include "schema/result/view.h"
 #include <math.h>
 #include <stdlib.h>
 
-static int read_case(void *one_case, const cJSON *parameters, struct fault_list *faults,
-                     struct error *err) {
-    return contact_case_read(one_case, parameters, faults, err);
+static int read_case(void *one_case, const cJSON *parameters, double memory_limit,
+                     struct fault_list *faults, struct error *err) {
+    return contact_case_read(one_case, parameters, memory_limit, faults, err);
 }
 
 static void clear_case(void *one_case) {
@@ -59,7 +57,8 @@ static void workspace_clear(void *workspace) {
     contact_scene_destroy(&work->scene);
 }
 
-/* Whether to stop is asked between and within loads, which may take minutes. */
+/* Measures a realisation. It may be stopped between loads and within them, as a load may take
+ * minutes. */
 static int realise(void *workspace, const struct realisation *realisation, void *tally,
                    double *scalars, struct error *err) {
     struct contact_workspace *work = workspace;
@@ -104,7 +103,7 @@ static bool adds_up(const void *tally) {
     return contact_tally_adds_up(tally);
 }
 
-/* Scalars, tally and notes of a block must tell of the same realisations. */
+/* Returns whether scalars, tally and notes of a block agree on its realisations. */
 static bool belongs(const void *tally, const struct block_result *result) {
     const struct contact_tally *contact = tally;
     const struct contact_case *one_case = contact->one_case;
@@ -123,7 +122,7 @@ static bool belongs(const void *tally, const struct block_result *result) {
     return contact->realisations == result->count && scalars == tallied && within;
 }
 
-/* --- what comes out --- */
+/* --- results --- */
 
 static int result(const void *one_case, const struct surface_basis *basis, const void *tally,
                   const struct realisations *realisations, struct case_result *out,
@@ -133,22 +132,122 @@ static int result(const void *one_case, const struct surface_basis *basis, const
     if (status == 0)
         status = contact_curves(one_case, basis->modes, &basis->moments, contact, out, err);
     if (status == 0)
-        status = contact_like_curves(contact, out, err);
+        status = companions_curves(contact, out, err);
     return status != 0 ? status : notes_result(&contact->notes, out, err);
 }
 
-static bool point_values(const void *tally, const struct curve *curve, size_t at,
+/* --- values of single realisations, for differences of cases by pairs --- */
+
+/* Finds the measure whose mean a curve is. */
+static bool measure_of(const struct curve *curve, enum contact_measure *measure) {
+    for (*measure = 0; *measure < MEASURE_OWN; ++*measure)
+        if (same_text(MEASURES[*measure].quantity, curve->quantity) &&
+            same_text(MEASURES[*measure].series, curve->series))
+            return true;
+    return false;
+}
+
+static bool point_values(const void *of, const struct curve *curve, size_t at,
                          struct point_values *out) {
-    return contact_point_values(tally, curve, at, out);
+    const struct contact_tally *tally = of;
+    const struct contact_case *one_case = tally->one_case;
+    enum contact_measure measure;
+    size_t column, model = 0;
+    while (model < one_case->model_count &&
+           !same_text(contact_model_name(one_case->models[model]), curve->model))
+        model++;
+    if (model == one_case->model_count || at >= one_case->load_count ||
+        !same_number(curve->level, contact_case_finest(one_case)->points) ||
+        !measure_of(curve, &measure) || !contact_rows_column(one_case, model, measure, &column))
+        return false;
+    *out = (struct point_values){tally->rows.values + column + at, tally->rows.width};
+    return true;
 }
 
-static int scalar_values(const void *tally, const struct realisations *realisations, size_t scalar,
+/* Computes the fit of the first model over its first n loads, n > 0, for every realisation. */
+static int fit_rows(const struct contact_tally *tally, enum contact_measure fit, size_t n,
+                    double *values, struct error *err) {
+    const struct contact_case *one_case = tally->one_case;
+    const struct contact_rows *rows = &tally->rows;
+    double *fits = array_create(3 * n, sizeof *fits);
+    size_t column = 0;
+    if (fits == NULL)
+        return error_memory(err, 3 * n * sizeof *fits, "fits");
+    contact_rows_column(one_case, 0, MEASURE_EDGES, &column);
+    for (size_t r = 0; r < rows->count; r++) {
+        contact_measure_fits(n, one_case->loads, rows->values + r * rows->width + column, fits,
+                             fits + n, fits + 2 * n);
+        values[r] = fits[(size_t)(fit - MEASURE_KAPPA) * n + n - 1];
+    }
+    free(fits);
+    return 0;
+}
+
+static int scalar_values(const void *of, const struct realisations *realisations, size_t scalar,
                          double *values, double *weights, struct error *err) {
+    const struct contact_tally *tally = of;
+    enum contact_measure fit;
+    size_t loads;
     (void)weights;
-    return contact_scalar_values(tally, realisations, scalar, values, err);
+    if (!contact_scalar_fit(tally, scalar, &fit, &loads)) {
+        realisations_column(realisations, scalar, values);
+        return 0;
+    }
+    for (size_t r = 0; r < tally->rows.count; r++)
+        values[r] = NAN;
+    return loads > 0 ? fit_rows(tally, fit, loads, values, err) : 0;
 }
 
-/* Nothing is told of a map on which no answer is found. */
+/* --- one surface --- */
+
+/* Returns the block of the first linear model; a half-space without one. */
+static struct block block_of(const struct contact_case *one_case) {
+    for (size_t m = 0; m < one_case->model_count; m++)
+        if (one_case->models[m]->write_mesh == NULL)
+            return one_case->blocks[m];
+    return (struct block){.model = MODEL_HALFSPACE, .height = INFINITY};
+}
+
+static void copy_fields(const struct grid *grid, const struct contact_state *state, double slope,
+                        double *gap, double *pressure) {
+    for (size_t i = 0; i < grid_points(grid); i++) {
+        gap[i] = state->gap[i];
+        pressure[i] = state->p[i] / slope;
+    }
+}
+
+/* Presses a surface once, on the block of the first linear model, or on a half-space if there is
+ * none. */
+static int press(const struct realisation *realisation, double load, double *gap, double *pressure,
+                 struct error *err) {
+    const struct contact_case *contact_case = realisation->study;
+    const struct grid *grid = &contact_case->surface.grid;
+    const struct block block = block_of(contact_case);
+    struct contact_options options = CONTACT_DEFAULTS;
+    struct compliance *compliance = NULL;
+    struct contact *contact = NULL;
+    struct contact_state state;
+    struct moments moments = {0};
+    options.without_tangent = true;
+    int status = spectrum_moments(&contact_case->surface.spectrum, grid, &moments, err);
+    if (status == 0)
+        status = compliance_create(&compliance, grid, &block, err);
+    if (status == 0)
+        status = contact_create(&contact, compliance, &options, err);
+    if (status == 0) {
+        contact_set_stop(contact, realisation->stop, realisation->stop_context);
+        status = contact_begin(contact, realisation->z, err);
+    }
+    if (status == 0)
+        status = contact_press(contact, load * moments.rms_slope, &state, err);
+    if (status == 0)
+        copy_fields(grid, &state, moments.rms_slope, gap, pressure);
+    contact_destroy(&contact);
+    compliance_destroy(&compliance);
+    return status;
+}
+
+/* Adds the contact of a measured map to `like`, unless no solution is found for it. */
 static int measure_like(const void *one_case, const double *z, cJSON *like, struct error *err) {
     const struct contact_case *contact = one_case;
     size_t n = contact->load_count;
@@ -157,7 +256,7 @@ static int measure_like(const void *one_case, const double *z, cJSON *like, stru
     double *areas = array_create(2 * n, sizeof *areas);
     if (areas == NULL)
         return error_memory(err, 2 * n * sizeof *areas, "contact of a map");
-    int status = contact_like_measure(contact, z, areas, areas + n, err);
+    int status = companion_like_measure(contact, z, areas, areas + n, err);
     bool all = status == 0, put = true;
     for (size_t k = 0; k < 2 * n && all; k++)
         all = isfinite(areas[k]);
@@ -171,7 +270,7 @@ static int measure_like(const void *one_case, const double *z, cJSON *like, stru
     return put ? status : error_memory(err, 2 * n * sizeof *areas, "contact of a map");
 }
 
-/* The first model that has a mesh writes it. */
+/* Writes the mesh of the first model that has one. */
 static int write_mesh(const char *path, const void *one_case, const double *z, double pressure,
                       struct error *err) {
     const struct contact_case *contact = one_case;
@@ -186,6 +285,28 @@ static int write_mesh(const char *path, const void *one_case, const double *z, d
                                                : "a model with a mesh");
 }
 
+/* --- how results are shown: the contact area over the load --- */
+
+static const char *const SCALARS[] = {"kappa", "erf_kappa", NULL};
+static const char *const LEFT_OUT[] = {"persson_light_load", "bgt_light_load", NULL};
+static const struct logarithmic_picture LOGARITHMIC[] = {{"contact_area", "light"}, {NULL, NULL}};
+static const struct quantity_table TABLE = {
+    .quantity = "contact_area",
+    .title = "contact area",
+    .value = "area",
+    .x = "load",
+    .error_words = {[ERROR_DISCRETISATION] = "mesh"},
+    .legend =
+        "load: p/(E* h'_rms); area: A/A0, +- one standard error; errors (reported - true) in "
+        "percent "
+        "of it: mesh, from the limit of the levels; cell, from a very long one; block, from an "
+        "infinitely high one; model, from the limit of the most complete one; generation, from "
+        "surfaces of alternative generators",
+    .scalars = SCALARS,
+    .left_out = LEFT_OUT,
+};
+static const struct result_view VIEW = {.table = &TABLE, .logarithmic = LOGARITHMIC};
+
 const struct job_kind CONTACT_KIND = {
     .study = {.name = "contact",
               .tables = CONTACT_TABLES,
@@ -194,7 +315,7 @@ const struct job_kind CONTACT_KIND = {
               .fill = contact_loads_fill,
               .expand = contact_target_expand},
     .scalar = contact_scalar_name,
-    .view = &CONTACT_VIEW,
+    .view = &VIEW,
     .case_size = sizeof(struct contact_case),
     .read = read_case,
     .clear = clear_case,
@@ -213,7 +334,7 @@ const struct job_kind CONTACT_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x434f, /* "CO" */
-    .format_version = 13,
+    .format_version = 14,
     .put = put,
     .get = get,
     .adds_up = adds_up,
@@ -222,7 +343,7 @@ const struct job_kind CONTACT_KIND = {
     .answer = contact_target_answer,
     .point_values = point_values,
     .scalar_values = scalar_values,
-    .press = contact_press_once,
+    .press = press,
     .write_mesh = write_mesh,
     .measure_like = measure_like,
 };

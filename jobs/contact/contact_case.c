@@ -1,12 +1,12 @@
 #include "jobs/contact/contact_case.h"
-#include "jobs/like_parameters.h"
-#include "jobs/surface_parameters.h"
-#include "jobs/target.h"
+#include "core/cost.h"
 #include <math.h>
 #include <stdlib.h>
 
-const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
-                                                        &LIKE_PARAMETERS, &TARGET_PARAMETERS, NULL};
+const struct choice KINEMATICS_CHOICES[] = {{"hencky", KINEMATICS_HENCKY},
+                                            {"st_venant_kirchhoff", KINEMATICS_ST_VENANT},
+                                            {"small", KINEMATICS_SMALL},
+                                            {0}};
 
 bool contact_case_has_scale(const struct contact_case *one_case) {
     enum spectrum_scale scale = one_case->surface.spectrum.scale;
@@ -34,7 +34,8 @@ bool contact_case_stretches(const struct contact_case *one_case, size_t model) {
 
 double contact_case_block_bound(const struct contact_case *one_case, size_t model) {
     static const double SAFETY = 10;
-    /* 1 - (cosh 2x - 1)/(sinh 2x + 2x) (compliance.h), without what overflows and cancels. */
+    /* 1 - (cosh 2x - 1)/(sinh 2x + 2x) (compliance.h), in a form without overflow and
+     * cancellation. */
     double longest = surface_case_longest(&one_case->surface);
     double x = 2 * M_PI * one_case->blocks[model].height / longest;
     double falling = exp(-2 * x);
@@ -52,20 +53,22 @@ void contact_case_clear(struct contact_case *one_case) {
     *one_case = (struct contact_case){0};
 }
 
-size_t contact_case_control(const struct contact_case *one_case) {
-    size_t found = one_case->model_count;
-    for (size_t m = 0; m < one_case->model_count; m++)
-        if (!one_case->models[m]->may_fail &&
-            (found == one_case->model_count ||
-             one_case->models[m]->rank < one_case->models[found]->rank))
-            found = m;
-    return found;
-}
-
 size_t contact_case_complete(const struct contact_case *one_case) {
     size_t complete = 0;
     for (size_t m = 1; m < one_case->model_count; m++)
         if (one_case->models[m]->rank > one_case->models[complete]->rank)
             complete = m;
     return complete;
+}
+
+double contact_case_least_seconds(const struct contact_case *one_case) {
+    const struct surface_case *surface = &one_case->surface;
+    double seconds =
+        1e-9 * cost_generation(&surface->options, NULL) * (double)grid_points(&surface->grid);
+    for (size_t l = 0; l < one_case->level_count; l++)
+        for (size_t m = 0; m < one_case->model_count; m++)
+            seconds += fmax(1, one_case->models[m]->times_linear) *
+                       cost_linear_contact(&one_case->levels[l].grid, one_case->tolerance,
+                                           one_case->load_count);
+    return seconds;
 }

@@ -1,76 +1,55 @@
 #include "jobs/contact/contact_case_read.h"
 #include "core/full/mesh.h"
-#include "jobs/contact/contact_cell.h"
-#include "jobs/contact/contact_generation.h"
+#include "jobs/contact/companion/companion.h"
 #include "jobs/contact/contact_loads.h"
-#include "jobs/contact/contact_probe.h"
+#include "jobs/like/like_parameters.h"
+#include "jobs/surface/surface_parameters.h"
+#include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
 
-static const double ROUNDING = 1e-9; /* relative: numbers that are meant to be equal */
+const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
+                                                        &LIKE_PARAMETERS, &TARGET_PARAMETERS, NULL};
+
+static const double ROUNDING = 1e-9; /* relative: of numbers that should be equal */
 enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
 
-/* Reads the height of the block in lambda_s: INFINITY, or NaN where it is not given. */
-static int read_height(const struct contact_case *one_case, struct values *values, double *out,
-                       struct error *err) {
-    int unit;
-    *out = values_measure(values, "/contact/block_height", &unit);
-    if (!isfinite(*out) || one_case->surface.grid.nx == 0)
-        return 0;
-    if (unit == HEIGHT_LENGTHS) {
-        *out *= surface_case_longest(&one_case->surface);
-        return 0;
-    }
-    double rms_height, rms_slope;
-    int status = contact_case_scale(one_case, &rms_height, &rms_slope, err);
-    *out *= rms_height;
-    if (status == 0 && isnan(rms_height))
-        values_fault(values, "/contact/block_height",
-                     "rms_heights need the scale of the surface: give rms_slope or rms_height");
-    return status;
-}
+/* What a study asks of the contact, read without its surface. Levels and block without faults
+ * become those of the case when the surface has none either. */
+struct asked {
+    size_t level_count; /* 0: at fault */
+    double levels[CONTACT_LEVELS_MOST];
+    bool block;    /* has no fault */
+    double height; /* in height_unit; INFINITY; NaN: that of each model */
+    int height_unit;
+};
 
-/* Checks what each model alone asks of the case. */
-static int check_models(struct contact_case *out, struct values *values, struct error *err) {
-    int status = 0;
-    for (size_t m = 0; m < out->model_count && status == 0; m++)
-        if (out->models[m]->check != NULL)
-            status = out->models[m]->check(out, m, values, err);
-    return status;
-}
-
-static int read_blocks(struct contact_case *out, struct values *values, struct error *err) {
+static void read_block(struct contact_case *out, struct asked *asked, struct values *values) {
     int models[CONTACT_MODELS_MOST];
-    double height, poisson = values_number(values, "/contact/poisson");
-    double growth = values_number(values, "/contact/layer_growth");
+    size_t before = values_fault_count(values);
+    struct block block = {.poisson = values_number(values, "/contact/poisson"),
+                          .layer_growth = values_number(values, "/contact/layer_growth"),
+                          .weighting =
+                              (enum gap_weighting)values_choice(values, "/contact/gap_weighting")};
     bool elements = false;
     out->model_count = values_choices(values, "/contact/model", models);
     out->kinematics = (enum kinematics)values_choice(values, "/contact/kinematics");
     out->transition_depth = values_number(values, "/contact/transition_depth");
-    enum gap_weighting weighting =
-        (enum gap_weighting)values_choice(values, "/contact/gap_weighting");
-    int status = read_height(out, values, &height, err);
-    if (status != 0)
-        return status;
+    asked->height = values_measure(values, "/contact/block_height", &asked->height_unit);
     for (size_t m = 0; m < out->model_count; m++) {
-        const struct contact_model *model = out->models[m] = CONTACT_MODELS[models[m]];
-        elements = elements || model->elements;
-        out->blocks[m] = (struct block){
-            .model = model->block,
-            .poisson = poisson,
-            .height = !isnan(height) ? height
-                                     : model->default_height * surface_case_longest(&out->surface),
-            .layer_growth = growth,
-            .weighting = weighting};
+        out->models[m] = CONTACT_MODELS[models[m]];
+        out->blocks[m] = block;
+        out->blocks[m].model = out->models[m]->block;
+        elements = elements || out->models[m]->elements;
     }
-    if (elements && isinf(height))
+    if (elements && isinf(asked->height))
         values_fault(
             values, "/contact/block_height",
             "only a halfspace can be infinite, and a block of finite elements is asked for");
-    if (!elements && out->model_count > 0 && weighting == GAP_DUAL)
+    if (!elements && out->model_count > 0 && block.weighting == GAP_DUAL)
         values_fault(values, "/contact/gap_weighting",
                      "\"dual\" belongs to finite elements, and no such model is asked for");
-    return check_models(out, values, err);
+    asked->block = values_fault_count(values) == before;
 }
 
 static void check_rising(struct values *values, const char *path, size_t n, const double *numbers) {
@@ -82,6 +61,7 @@ static void check_rising(struct values *values, const char *path, size_t n, cons
     }
 }
 
+/* Reads the loads; there are none where they are at fault. */
 static int read_loads(struct contact_case *out, struct values *values, struct error *err) {
     static const char path[] = "/contact/pressures/values";
     double to = values_number(values, "/contact/pressures/to");
@@ -90,13 +70,16 @@ static int read_loads(struct contact_case *out, struct values *values, struct er
     if (status != 0)
         return status;
     if (out->loads != NULL) {
+        size_t before = values_fault_count(values);
         bool swept = isnan(steps) && to == out->loads[out->load_count - 1]; /* contact_loads.h */
         if (!swept && (!isnan(to) || !isnan(steps)))
             values_fault(values, path, "give the values, or to and steps, not both");
         check_rising(values, path, out->load_count, out->loads);
+        if (values_fault_count(values) > before)
+            out->load_count = 0;
         return 0;
     }
-    /* A case of a store whose program did not yet write out the loads: they stay as they were. */
+    /* A case of a store whose program did not yet write out the loads: they keep their values. */
     to = isnan(to) ? CONTACT_LOAD_HIGHEST : to;
     size_t count = isnan(steps) ? CONTACT_LOADS : (size_t)steps;
     out->loads = array_create(count, sizeof *out->loads);
@@ -115,100 +98,33 @@ static void read_estimators(struct contact_case *out, struct values *values) {
     bool all = n == 0, wanted[AREA_ESTIMATORS] = {false};
     for (size_t a = 0; a < n; a++)
         wanted[chosen[a]] = true;
-    if (wanted[AREA_PERIMETER] && out->surface.dimension == 1)
+    bool profile = surface_case_dimension(values) == 1;
+    if (wanted[AREA_PERIMETER] && profile)
         values_fault(values, path, "\"perimeter\" is for surfaces, and this is a profile");
     out->nodes = all || wanted[AREA_NODES];
     out->edges = all || wanted[AREA_EDGES];
-    out->perimeter = wanted[AREA_PERIMETER] || (all && out->surface.dimension == 2);
+    out->perimeter = wanted[AREA_PERIMETER] || (all && !profile);
 }
 
-/* The mesh of `points` a shortest wave; false, and a fault, where it cannot be sampled exactly. A
- * grid of two points a shortest wave holds that wave at its Nyquist frequency, as half of itself,
- * so that it cannot be resampled; but it can be part of a finer one. */
-static bool level_make(struct contact_level *out, const struct contact_case *one_case,
-                       double points, const char *path, struct values *values) {
-    const struct grid *own = &one_case->surface.grid;
-    struct grid grid;
-    if (!surface_case_grid(&one_case->surface, points, path, values, &grid))
-        return false;
-    bool part = own->nx % grid.nx == 0 && own->ny % grid.ny == 0;
-    *out = (struct contact_level){
-        .points = points, .grid = grid, .stride = part ? own->nx / grid.nx : 0};
-    if (part || surface_band_fits(one_case->band, &grid))
-        return true;
-    values_fault(
-        values, path,
-        "%g points a shortest wave, %zu in all, neither hold the %zu waves of the surface nor "
-        "divide its own %zu points (points_per_wavelength)",
-        points, grid.nx, one_case->band.x, own->nx);
-    return false;
-}
-
-/* Rectangles may be rounded up so far that the finer of two levels has fewer points. */
-static bool is_finer(const struct contact_level *level, const struct contact_level *before) {
-    bool rectangle = level->grid.nx != level->grid.ny && !grid_is_profile(&level->grid);
-    return rectangle ? level->grid.nx > before->grid.nx : level->grid.nx != before->grid.nx;
-}
-
-static int read_levels(struct contact_case *out, struct values *values, struct error *err) {
+static int read_levels(struct asked *out, struct values *values, struct error *err) {
     static const char path[] = "/contact/levels";
     double *points;
-    size_t n;
+    size_t n, before = values_fault_count(values);
     int status = values_numbers(values, path, &points, &n, err);
-    if (status != 0 || out->surface.grid.nx == 0) { /* at fault already */
-        free(points);
+    if (status != 0)
         return status;
-    }
     check_rising(values, path, n, points);
-    double own = values_number(values, "/surface/points_per_wavelength");
-    for (size_t l = 0; l < (n > 0 ? n : 1); l++) {
-        struct contact_level *level = &out->levels[out->level_count];
-        if (level_make(level, out, n > 0 ? points[l] : own, path, values))
-            out->level_count++;
-    }
-    for (size_t l = 1; l < out->level_count; l++)
-        if (!is_finer(&out->levels[l], &out->levels[l - 1])) {
-            values_fault(values, path, "%g and %g give the same grid of %zu points a side",
-                         out->levels[l - 1].points, out->levels[l].points, out->levels[l].grid.nx);
-            break;
-        }
+    for (size_t l = 0; l < n; l++)
+        out->levels[l] = points[l];
+    if (n == 0)
+        out->levels[0] = values_number(values, "/surface/points_per_wavelength");
+    if (values_fault_count(values) == before)
+        out->level_count = n > 0 ? n : 1;
     free(points);
     return 0;
 }
 
-/* Checks the layers that a block takes on one grid, and where a model meshes them (write_mesh) the
- * nodes; false after a fault. */
-static bool check_mesh(const struct contact_level *level, const struct block *block,
-                       const struct contact_model *model, struct values *values) {
-    double thickness[LAYERS_MOST];
-    if (!isfinite(block->height) || !isfinite(block->layer_growth))
-        return true; /* at fault already, or no mesh */
-    size_t layers = block_layers(&level->grid, block, thickness);
-    double nodes = model->write_mesh != NULL ? mesh_nodes_bound(&level->grid, layers) : 0;
-    if (layers == 0)
-        values_fault(values, "/contact/block_height",
-                     "the block takes more than %d layers at %g points a shortest wave; take "
-                     "a lower block, or a larger layer_growth",
-                     LAYERS_MOST, level->points);
-    else if (nodes > MESH_NODES_MOST)
-        values_fault(
-            values, "/contact/model",
-            "%s: %zu layers under %zu by %zu points would have up to %.2g nodes; the model "
-            "can mesh %.2g. Take fewer points_per_wavelength (levels), or a smaller cell",
-            contact_model_name(model), layers, level->grid.nx, level->grid.ny, nodes,
-            MESH_NODES_MOST);
-    return layers != 0 && nodes <= MESH_NODES_MOST;
-}
-
-static void check_meshes(const struct contact_case *one_case, struct values *values) {
-    bool good = true;
-    for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t l = 0; good && one_case->models[m]->elements && l < one_case->level_count; l++)
-            good =
-                check_mesh(&one_case->levels[l], &one_case->blocks[m], one_case->models[m], values);
-}
-
-/* Returns the position of a load among the study's; load_count where it is none of them. */
+/* Returns the position of a load among the study's; load_count if it is none of them. */
 static size_t load_find(const struct contact_case *one_case, double load) {
     size_t k = 0;
     while (k < one_case->load_count && !(fabs(one_case->loads[k] - load) <= ROUNDING * load))
@@ -246,26 +162,200 @@ static int read_pdf(struct contact_case *out, struct values *values, struct erro
     return 0;
 }
 
-static int read_contact(struct contact_case *out, struct values *values, struct error *err) {
-    const struct surface_case *surface = &out->surface;
+/* Reads all that needs no surface. */
+static int read_alone(struct contact_case *out, struct asked *asked, struct values *values,
+                      struct error *err) {
     out->tolerance = values_number(values, "/contact/tolerance");
     out->stiffness = values_choice(values, "/contact/stiffness") != STIFFNESS_OMITTED;
-    if (surface->grid.nx > 0)
-        out->band = surface_case_own_band(surface);
     read_estimators(out, values);
-    int status = read_blocks(out, values, err);
+    read_block(out, asked, values);
+    int status = read_loads(out, values, err);
     if (status == 0)
-        status = read_loads(out, values, err);
-    if (status == 0)
-        status = read_levels(out, values, err);
-    if (status == 0)
-        status = read_pdf(out, values, err);
-    if (status == 0)
+        status = read_levels(asked, values, err);
+    return status == 0 ? read_pdf(out, values, err) : status;
+}
+
+/* --- on the surface --- */
+
+/* Checks the memory of the surface, before what takes as much memory and time is computed of it. */
+static bool fits_memory(const struct surface_case *surface, double limit, struct values *values) {
+    double bytes = surface_case_bytes(surface);
+    if (!(limit > 0) || bytes <= limit)
+        return true;
+    values_fault(values, "/surface/points_per_wavelength",
+                 "a surface of %zu by %zu points takes %.3g GiB; allowed: %.3g GiB on this machine",
+                 surface->grid.nx, surface->grid.ny, bytes / 0x1p30, limit / 0x1p30);
+    return false;
+}
+
+/* Finds the height in lambda_s of the block that is asked for. */
+static int block_height(const struct contact_case *one_case, const struct asked *asked,
+                        struct values *values, double *out, struct error *err) {
+    *out = asked->height;
+    if (!isfinite(asked->height))
+        return 0;
+    if (asked->height_unit == HEIGHT_LENGTHS) {
+        *out *= surface_case_longest(&one_case->surface);
+        return 0;
+    }
+    double rms_height, rms_slope;
+    int status = contact_case_scale(one_case, &rms_height, &rms_slope, err);
+    *out *= rms_height;
+    if (status == 0 && isnan(rms_height))
+        values_fault(values, "/contact/block_height",
+                     "rms_heights need the scale of the surface: give rms_slope or rms_height");
+    return status;
+}
+
+/* The scale of a surface sums over all of its waves, some seconds for as many points. */
+#define SCALE_POINTS_MOST 134217728.0
+
+/* Returns whether the scale can be computed where it is needed: for blocks in RMS heights, and by
+ * models whose own check needs it. */
+static bool scale_fits(const struct contact_case *one_case, const struct asked *asked,
+                       struct values *values) {
+    const struct grid *grid = &one_case->surface.grid;
+    bool needed = isfinite(asked->height) && asked->height_unit != HEIGHT_LENGTHS;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        needed = needed || one_case->models[m]->check != NULL;
+    if (!needed || !contact_case_has_scale(one_case) ||
+        (double)grid_points(grid) <= SCALE_POINTS_MOST)
+        return true;
+    values_fault(
+        values, "/surface/points_per_wavelength",
+        "%zu by %zu points: blocks in rms_heights, and the model full, need the RMS height "
+        "and slope of the surface, which are computed of %.0f points at most. Give "
+        "block_height in lengths, or take fewer points",
+        grid->nx, grid->ny, SCALE_POINTS_MOST);
+    return false;
+}
+
+/* Sets the block of each model, and checks whether the model can have it. */
+static int set_blocks(struct contact_case *out, const struct asked *asked, struct values *values,
+                      struct error *err) {
+    double height, longest = surface_case_longest(&out->surface);
+    size_t before = values_fault_count(values);
+    int status = block_height(out, asked, values, &height, err);
+    bool whole = values_fault_count(values) == before;
+    for (size_t m = 0; m < out->model_count && whole && status == 0; m++) {
+        const struct contact_model *model = out->models[m];
+        out->blocks[m].height = !isnan(height) ? height : model->default_height * longest;
+        if (model->check != NULL)
+            status = model->check(out, m, values, err);
+    }
+    return status;
+}
+
+/* Makes the mesh of `points` a shortest wave; false, and a fault, where it cannot be sampled
+ * exactly. A grid of two points a shortest wave has that wave at its Nyquist frequency, where half
+ * of it is lost: it cannot be resampled, but it may be every n-th point of a finer one. */
+static bool level_make(struct contact_level *out, const struct contact_case *one_case,
+                       double points, const char *path, struct values *values) {
+    const struct grid *own = &one_case->surface.grid;
+    struct grid grid;
+    if (!surface_case_grid(&one_case->surface, points, path, values, &grid))
+        return false;
+    bool part = own->nx % grid.nx == 0 && own->ny % grid.ny == 0;
+    *out = (struct contact_level){
+        .points = points, .grid = grid, .stride = part ? own->nx / grid.nx : 0};
+    if (part || surface_band_fits(one_case->band, &grid))
+        return true;
+    values_fault(
+        values, path,
+        "%g points a shortest wave, %zu in all, neither hold the %zu waves of the surface nor "
+        "divide its own %zu points (points_per_wavelength)",
+        points, grid.nx, one_case->band.x, own->nx);
+    return false;
+}
+
+/* Returns whether a level is finer. Rectangles may be rounded up so far that the finer of two
+ * levels has fewer points. */
+static bool is_finer(const struct contact_level *level, const struct contact_level *before) {
+    bool rectangle = level->grid.nx != level->grid.ny && !grid_is_profile(&level->grid);
+    return rectangle ? level->grid.nx > before->grid.nx : level->grid.nx != before->grid.nx;
+}
+
+/* Makes the meshes of the levels; those that cannot be made are faults. */
+static void set_levels(struct contact_case *out, const struct asked *asked, struct values *values) {
+    static const char path[] = "/contact/levels";
+    for (size_t l = 0; l < asked->level_count; l++) {
+        struct contact_level *level = &out->levels[out->level_count];
+        if (level_make(level, out, asked->levels[l], path, values))
+            out->level_count++;
+    }
+    for (size_t l = 1; l < out->level_count; l++)
+        if (!is_finer(&out->levels[l], &out->levels[l - 1])) {
+            values_fault(values, path, "%g and %g give the same grid of %zu points a side",
+                         out->levels[l - 1].points, out->levels[l].points, out->levels[l].grid.nx);
+            return;
+        }
+}
+
+/* Checks the layers of a block on one grid, and for a model that meshes them (write_mesh) the
+ * nodes; false after a fault. */
+static bool check_mesh(const struct contact_level *level, const struct block *block,
+                       const struct contact_model *model, struct values *values) {
+    double thickness[LAYERS_MOST];
+    size_t layers = block_layers(&level->grid, block, thickness);
+    double nodes = model->write_mesh != NULL ? mesh_nodes_bound(&level->grid, layers) : 0;
+    if (layers == 0)
+        values_fault(values, "/contact/block_height",
+                     "the block takes more than %d layers at %g points a shortest wave; take "
+                     "a lower block, or a larger layer_growth",
+                     LAYERS_MOST, level->points);
+    else if (nodes > MESH_NODES_MOST)
+        values_fault(
+            values, "/contact/model",
+            "%s: %zu layers under %zu by %zu points would have up to %.2g nodes; the model "
+            "can mesh %.2g. Take fewer points_per_wavelength (levels), or a smaller cell",
+            contact_model_name(model), layers, level->grid.nx, level->grid.ny, nodes,
+            MESH_NODES_MOST);
+    return layers != 0 && nodes <= MESH_NODES_MOST;
+}
+
+static void check_meshes(const struct contact_case *one_case, struct values *values) {
+    bool good = true;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        for (size_t l = 0; good && one_case->models[m]->elements && l < one_case->level_count; l++)
+            good =
+                check_mesh(&one_case->levels[l], &one_case->blocks[m], one_case->models[m], values);
+}
+
+/* Checks the nodes of the face alone, as a block has a layer of elements at least. This comes
+ * before the scale of the surface is computed, which sums over all of its waves. */
+static bool faces_fit(const struct contact_case *one_case, struct values *values) {
+    for (size_t m = 0; m < one_case->model_count; m++)
+        for (size_t l = 0; one_case->models[m]->write_mesh != NULL && l < one_case->level_count;
+             l++) {
+            const struct grid *grid = &one_case->levels[l].grid;
+            if (mesh_nodes_bound(grid, 1) <= MESH_NODES_MOST)
+                continue;
+            values_fault(values, "/contact/model",
+                         "%s: the face alone, %zu by %zu points, has more nodes than the %.2g that "
+                         "the model can mesh. Take fewer points_per_wavelength (levels), or a "
+                         "smaller cell",
+                         contact_model_name(one_case->models[m]), grid->nx, grid->ny,
+                         MESH_NODES_MOST);
+            return false;
+        }
+    return true;
+}
+
+/* Sets levels and blocks on the surface of the case, which has no fault. */
+static int set_on_surface(struct contact_case *out, const struct asked *asked,
+                          struct values *values, struct error *err) {
+    out->band = surface_case_own_band(&out->surface);
+    set_levels(out, asked, values);
+    size_t before = values_fault_count(values);
+    if (!asked->block || !faces_fit(out, values) || !scale_fits(out, asked, values))
+        return 0;
+    int status = set_blocks(out, asked, values, err);
+    if (status == 0 && values_fault_count(values) == before)
         check_meshes(out, values);
     return status;
 }
 
-/* Whether the map was pressed to the loads of the case. */
+/* Returns whether the map was pressed to the loads of the case. */
 static bool same_loads(const struct contact_case *one_case, size_t n, const double *loads,
                        double scale) {
     bool same = n == one_case->load_count && scale == one_case->surface.spectrum.scale_value;
@@ -274,7 +364,7 @@ static bool same_loads(const struct contact_case *one_case, size_t n, const doub
     return same && like_case_is_cut(&one_case->like);
 }
 
-/* Reads the contact of a measured surface, where it is that of this case. */
+/* Reads the contact of a measured surface, if it is that of this case. */
 static int read_like(struct contact_case *out, struct values *values, struct error *err) {
     double scale = values_number(values, "/surface/like/contact_scale"), *loads = NULL;
     size_t n = 0, areas = 0, gaps = 0;
@@ -296,36 +386,27 @@ static int read_like(struct contact_case *out, struct values *values, struct err
     return status;
 }
 
-/* What low blocks, the length of the cell and the way to the surface change is told on a mesh as
- * coarse as will do. */
-static void choose_probes(struct contact_case *out, struct values *values) {
-    for (size_t m = 0; m < out->model_count; m++)
-        out->low_blocks = out->low_blocks || contact_case_block_bound(out, m) > CONTACT_BLOCK_LOW;
-    if (out->low_blocks)
-        out->probe = contact_probe_level(out);
-    if (values_choice(values, "/contact/cell_error") == CELL_ERROR_PROBED)
-        contact_cell_choose(out);
-    if (values_choice(values, "/contact/generation_error") == GENERATION_ERROR_PROBED)
-        contact_generation_choose(out);
-}
-
-int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,
-                      struct error *err) {
+int contact_case_read(struct contact_case *out, const cJSON *parameters, double memory_limit,
+                      struct fault_list *faults, struct error *err) {
     struct values *values = NULL;
+    struct asked asked = {0};
+    const struct surface_case *surface;
     *out = (struct contact_case){0};
     int status = values_create(&values, parameters, CONTACT_TABLES, faults, err);
     if (status == 0)
-        status = surface_case_fill(&out->surface, values, err);
+        status = surface_case_fill(&out->surface, values, &surface, err);
     if (status == 0)
-        status = like_case_fill(&out->like, values, &out->surface, err);
+        status = like_case_fill(&out->like, values, surface, err);
     if (status == 0)
-        status = read_contact(out, values, err);
+        status = read_alone(out, &asked, values, err);
+    if (status == 0 && surface != NULL && fits_memory(surface, memory_limit, values))
+        status = set_on_surface(out, &asked, values, err);
     if (status == 0)
         status = read_like(out, values, err);
     if (status == 0)
         status = values_status(values, err);
     if (status == 0)
-        choose_probes(out, values);
+        companions_plan(out, values);
     else
         contact_case_clear(out);
     values_destroy(&values);

@@ -4,8 +4,8 @@
 
 #include "jobs/contact/contact_case.h"
 
-/* Reads a case as surface_case_read does. */
-int contact_case_read(struct contact_case *out, const cJSON *parameters, struct fault_list *faults,
-                      struct error *err);
+/* Reads a case as surface_case_read does. memory_limit: as of struct job_kind. */
+int contact_case_read(struct contact_case *out, const cJSON *parameters, double memory_limit,
+                      struct fault_list *faults, struct error *err);
 
 #endif

@@ -1,52 +1,146 @@
 #include "jobs/contact/contact_curves.h"
+#include "core/theory/bin_averages.h"
+#include "core/theory/contact.h"
 #include "jobs/contact/contact_errors.h"
-#include "jobs/contact/contact_generation_errors.h"
-#include "jobs/contact/contact_mean.h"
-#include "jobs/contact/contact_theory.h"
+#include "jobs/contact/contact_measure.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* All curves of a case are made from this. */
+/* --- theories --- */
+
+/* Values at the loads of the case, in a result's arena. Fractions above 1, which light-load
+ * theories reach, are NaN. */
+struct theories {
+    size_t count[THEORIES_KINDS];
+    struct theory of[THEORIES_KINDS][THEORIES_MOST];
+};
+
+/* Returns whether a spectrum is one wave and its conjugate (or, at the Nyquist frequency,
+ * itself). */
+static bool is_one_wave(const struct contact_case *one_case, const struct modes *modes) {
+    return one_case->surface.dimension == 1 && modes->count <= 2;
+}
+
+/* Returns whether theories of Gaussian isotropic asperities apply. */
+static bool has_asperities(const struct contact_case *one_case, const struct moments *moments) {
+    return one_case->surface.dimension == 2 && moments->nayak_alpha > 1.5 &&
+           one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN &&
+           one_case->surface.spectrum.type != SPECTRUM_EXPONENTIAL_ACF && /* no finite moments */
+           moments_isotropic(moments);
+}
+
+/* Returns p/p* of the wave sqrt(2 m0) cos: its RMS slope is pi sqrt(2) amplitude/wavelength, and p*
+ * = pi E* amplitude/wavelength. */
+static double westergaard_ratio(double load) {
+    return fmin(sqrt(2) * load, 1);
+}
+
+/* A list of theories, with room for THEORIES_MOST of them. */
+struct theory_list {
+    const struct contact_case *one_case;
+    struct theories *out;
+    double *values;
+};
+
+static void put(struct theory_list *list, enum measure_theories of, const char *name) {
+    list->out->of[of][list->out->count[of]++] = (struct theory){name, list->values};
+    list->values += list->one_case->load_count;
+}
+
+/* Adds fractions of contact; those above 1 become NaN. */
+static void put_area(struct theory_list *list, const char *name,
+                     double (*area)(double load, double alpha), double alpha) {
+    size_t n = list->one_case->load_count;
+    for (size_t k = 0; k < n; k++) {
+        double fraction = area(list->one_case->loads[k], alpha);
+        list->values[k] = fraction <= 1 ? fraction : NAN;
+    }
+    put(list, THEORIES_AREA, name);
+}
+
+static double persson_at(double load, double alpha) {
+    (void)alpha;
+    return persson_area(load);
+}
+
+static double line_at(double load, double kappa) {
+    return kappa * load;
+}
+
+static double westergaard_at(double load, double alpha) {
+    (void)alpha;
+    return westergaard_area(westergaard_ratio(load));
+}
+
+static void put_wave(struct theory_list *list) {
+    const struct contact_case *one_case = list->one_case;
+    put_area(list, "westergaard", westergaard_at, 0);
+    for (size_t k = 0; k < one_case->load_count; k++) /* the amplitude is sqrt(2 m0) */
+        list->values[k] = sqrt(2) * westergaard_gap(westergaard_ratio(one_case->loads[k]));
+    put(list, THEORIES_GAP, "westergaard");
+}
+
+static void put_rough(struct theory_list *list, const struct moments *moments) {
+    put_area(list, "persson", persson_at, 0);
+    put_area(list, "persson_light_load", line_at, persson_light_load());
+    if (list->one_case->surface.dimension == 2)
+        put_area(list, "bgt_light_load", line_at, bgt_light_load());
+    if (has_asperities(list->one_case, moments)) {
+        put_area(list, "gw_mccool", gw_mccool_area, moments->nayak_alpha);
+        put_area(list, "bgt", bgt_area, moments->nayak_alpha);
+    }
+}
+
+/* Makes the theories. modes, moments: of the prescribed spectrum. A profile of one wave has
+ * Westergaard's solution; all others have Persson's theory and those of asperities that apply. */
+static int theories_make(struct theories *out, const struct contact_case *one_case,
+                         const struct modes *modes, const struct moments *moments,
+                         struct case_result *result, struct error *err) {
+    *out = (struct theories){0};
+    struct theory_list list = {one_case, out,
+                               result_numbers(result, THEORIES_MOST * one_case->load_count)};
+    if (list.values == NULL)
+        return error_memory(err, THEORIES_MOST * one_case->load_count * sizeof(double), "theories");
+    /* No theory here has the mean of a wave of random amplitude. */
+    if (is_one_wave(one_case, modes) && surface_case_exact(&one_case->surface))
+        put_wave(&list);
+    else if (!is_one_wave(one_case, modes))
+        put_rough(&list, moments);
+    return 0;
+}
+
+/* Computes the mean density of the pressures in each bin; false without a theory. */
+static bool theory_pressures(const struct contact_case *one_case, const struct modes *modes,
+                             double load, double *pdf) {
+    if (is_one_wave(one_case, modes))
+        return false;
+    bin_averages_persson(load, &one_case->pressure, pdf);
+    return true;
+}
+
+/* --- curves --- */
+
+/* What all curves of a case are made from. */
 struct contact_curve_maker {
     const struct contact_case *one_case;
     const struct modes *modes;
     const struct contact_tally *tally;
-    struct contact_theories theories;
+    struct theories theories;
     struct case_result *result;   /* its arena owns all arrays */
-    struct contact_error *errors; /* scratch: one a load */
+    struct contact_error *errors; /* scratch: one for each load */
 };
 
 static int no_room(struct error *err) {
     return error_set(err, ERROR_MEMORY, "no memory left for curves");
 }
 
-/* A curve over the loads is made from this. */
+/* A curve over the loads. */
 struct row {
     const char *quantity, *series, *y_label;
     enum contact_measure measure;
-    double factor; /* y is so many times the measure */
+    double factor; /* y is the measure times this */
 };
-
-static void add_theories(const struct contact_curve_maker *maker, const struct row *row,
-                         struct curve *curve) {
-    const struct contact_theories *theories = &maker->theories;
-    switch (row->measure) {
-    case MEASURE_NODES:
-    case MEASURE_NODES_LOWER:
-    case MEASURE_NODES_UPPER:
-    case MEASURE_EDGES:
-    case MEASURE_PERIMETER:
-        curve->theory_count = theories->area_count;
-        memcpy(curve->theories, theories->area, sizeof theories->area);
-        break;
-    case MEASURE_GAP:
-        curve->theory_count = theories->gap_count;
-        memcpy(curve->theories, theories->gap, sizeof theories->gap);
-        break;
-    default:
-        break;
-    }
-}
 
 /* Returns the kinematics of strain; NULL where there is nothing to choose. */
 static const char *kinematics_of(const struct contact_case *one_case, size_t model) {
@@ -65,7 +159,7 @@ static struct curve curve_of(const struct contact_case *one_case, size_t model, 
     return curve;
 }
 
-/* The mean of the orders that the levels show; NaN where they show none. */
+/* Returns the mean of the orders observed on the levels; NaN without any. */
 static double mean_order(size_t n, const struct contact_error *errors) {
     double sum = 0, count = 0;
     for (size_t k = 0; k < n; k++)
@@ -76,7 +170,7 @@ static double mean_order(size_t n, const struct contact_error *errors) {
     return sum / count;
 }
 
-/* Of one source, `factor` times that of the measure. */
+/* Adds the error of one source, `factor` times that of the measure. */
 static int put_errors(struct contact_curve_maker *maker, double factor,
                       const struct contact_error *errors, struct curve_error *out,
                       struct error *err) {
@@ -100,7 +194,7 @@ static int put_errors(struct contact_curve_maker *maker, double factor,
     return 0;
 }
 
-/* All sources that bear on a measure; those of the finest level are known. */
+/* Adds all sources that bear on a measure; their errors are known on the finest level. */
 static int add_errors(struct contact_curve_maker *maker, const struct row *row, size_t model,
                       size_t level, struct curve *curve, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
@@ -118,6 +212,8 @@ static int add_errors(struct contact_curve_maker *maker, const struct row *row, 
 static int append(struct contact_curve_maker *maker, const struct row *row, size_t model,
                   size_t level, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
+    const struct theories *theories = &maker->theories;
+    const struct measure *of = &MEASURES[row->measure];
     struct curve curve =
         curve_of(one_case, model, level, row->quantity, "p/(E* h'_rms)", row->y_label);
     size_t n = one_case->load_count;
@@ -125,7 +221,7 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
     if (x == NULL)
         return no_room(err);
     double *y = x + n, *standard_error = y + n, *valueless = standard_error + n;
-    if (row->measure == MEASURE_WORK)
+    if (of->cell == CELL_POINT)
         factor *= curve.points;
     for (size_t k = 0; k < n; k++) {
         size_t cell = contact_case_cell(one_case, model, level, k);
@@ -135,11 +231,12 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
         standard_error[k] = factor * mean.standard_error;
         valueless[k] = (double)contact_tally_valueless(maker->tally, row->measure, cell);
     }
-    curve.series = row->series != NULL ? row->series : "";
+    curve.series = row->series;
     curve_set_points(&curve, n, x, y, standard_error);
-    if (row->measure == MEASURE_STIFFNESS || one_case->models[model]->may_fail)
+    if (of->values == VALUES_REPORTED || one_case->models[model]->may_fail)
         curve.valueless = valueless;
-    add_theories(maker, row, &curve);
+    curve.theory_count = theories->count[of->theories];
+    memcpy(curve.theories, theories->of[of->theories], sizeof curve.theories);
     int status = add_errors(maker, row, model, level, &curve, err);
     return status != 0 ? status : result_add_curve(maker->result, &curve, err);
 }
@@ -153,52 +250,32 @@ static int append_model(struct contact_curve_maker *maker, const struct row *row
     return status;
 }
 
-static int append_rows(struct contact_curve_maker *maker, size_t count, const struct row *rows,
-                       struct error *err) {
+/* Appends the curves of all models that show the measure. */
+static int append_row(struct contact_curve_maker *maker, const struct row *row, struct error *err) {
+    const struct contact_case *one_case = maker->one_case;
     int status = 0;
-    for (size_t a = 0; a < count && status == 0; a++)
-        for (size_t m = 0; m < maker->one_case->model_count && status == 0 &&
-                           (rows[a].measure != MEASURE_STIFFNESS || maker->one_case->stiffness);
-             m++)
-            status = append_model(maker, &rows[a], m, err);
+    for (size_t m = 0; m < one_case->model_count && status == 0; m++)
+        if (MEASURES[row->measure].shown(one_case, m))
+            status = append_model(maker, row, m, err);
     return status;
 }
 
-static int append_areas(struct contact_curve_maker *maker, struct error *err) {
-    static const struct row EDGES = {"contact_area", "edges", "A/A0", MEASURE_EDGES, 1};
-    static const struct row NODES[] = {
-        {"contact_area", "nodes", "A/A0", MEASURE_NODES, 1},
-        {"contact_area", "nodes_lower", "A/A0", MEASURE_NODES_LOWER, 1},
-        {"contact_area", "nodes_upper", "A/A0", MEASURE_NODES_UPPER, 1}};
-    static const struct row STRETCHED = {"contact_area", "edges_stretched", "A/A0",
-                                         MEASURE_EDGES_STRETCHED, 1};
-    static const struct row PERIMETER = {"contact_area", "perimeter", "A/A0", MEASURE_PERIMETER, 1};
-    const struct contact_case *one_case = maker->one_case;
-    int status = append_rows(maker, one_case->edges ? 1 : 0, &EDGES, err);
-    for (size_t m = 0; m < one_case->model_count && status == 0; m++)
-        if (one_case->edges && contact_case_has_scale(one_case) &&
-            !contact_case_stretches(one_case, m))
-            status = append_model(maker, &STRETCHED, m, err);
-    if (status == 0)
-        status = append_rows(maker, one_case->nodes ? sizeof NODES / sizeof *NODES : 0, NODES, err);
-    return status != 0 ? status : append_rows(maker, one_case->perimeter ? 1 : 0, &PERIMETER, err);
-}
-
-static int append_others(struct contact_curve_maker *maker, struct error *err) {
-    const struct surface_case *own = &maker->one_case->surface;
-    bool surface = own->dimension == 2;
-    double waves = pow(surface_case_mean_side(own), own->dimension);
-    const struct row rows[] = {
-        {"mean_gap", NULL, "mean gap/sqrt(m0)", MEASURE_GAP, 1},
-        {"stiffness", NULL, "K sqrt(m0)/(E* h'_rms)", MEASURE_STIFFNESS, 1},
-        {"patch_count", "cell", "patches in the cell", MEASURE_PATCHES, 1},
-        {"patch_count", "wave", surface ? "patches per lambda_l^2" : "patches per lambda_l",
-         MEASURE_PATCHES, 1 / waves},
-        {"patch_mean_area", NULL, "mean patch/cell", MEASURE_PATCH_MEAN, 1},
-        {"patch_largest_area", NULL, "largest patch/cell", MEASURE_PATCH_LARGEST, 1},
-        {"iterations", NULL, "iterations", MEASURE_ITERATIONS, 1},
-        {"work", NULL, "points x transforms", MEASURE_WORK, 1}};
-    return append_rows(maker, sizeof rows / sizeof *rows, rows, err);
+/* A measure that grows with the cell is reported for the cell, and for a longest wave. */
+static int append_measure(struct contact_curve_maker *maker, enum contact_measure measure,
+                          struct error *err) {
+    const struct surface_case *surface = &maker->one_case->surface;
+    const struct measure *of = &MEASURES[measure];
+    if (of->quantity == NULL)
+        return 0;
+    const char *in_cell = measure_label(of, UNIT_CELL, surface->dimension, maker->result);
+    const struct row cell = {of->quantity, of->series, in_cell, measure, 1};
+    int status = in_cell != NULL ? append_row(maker, &cell, err) : no_room(err);
+    if (status != 0 || of->cell != CELL_GROWS)
+        return status;
+    const char *of_wave = measure_label(of, UNIT_WAVE, surface->dimension, maker->result);
+    const struct row wave = {of->quantity, "wave", of_wave, measure,
+                             measure_factor(of->cell, surface_case_waves(surface))};
+    return of_wave != NULL ? append_row(maker, &wave, err) : no_room(err);
 }
 
 /* Appends the curves that a model alone has. */
@@ -208,21 +285,21 @@ static int append_own(struct contact_curve_maker *maker, size_t m, struct error 
     for (size_t a = 0; a < model->curve_count && status == 0; a++) {
         const struct model_curve *own = &model->curves[a];
         enum contact_measure measure = (enum contact_measure)(MEASURE_OWN + own->measure);
-        const struct row row = {own->quantity, NULL, own->y_label, measure, 1};
+        const struct row row = {own->quantity, "", own->y_label, measure, 1};
         status = append_model(maker, &row, m, err);
     }
     return status;
 }
 
-/* What the density of pressures, x and y of the curve, owes to its surfaces. */
+/* Adds the error of generation to the density of pressures, which is x and y of the curve. */
 static int put_generation(struct contact_curve_maker *maker, size_t model, size_t at,
                           struct curve *curve, struct error *err) {
     size_t n = curve->n;
     double *none = result_numbers(maker->result, 3 * n);
     if (none == NULL)
         return no_room(err);
-    if (contact_generation_pressures(maker->tally, model, at, curve->x, curve->y, maker->errors,
-                                     none + n, none + 2 * n))
+    if (contact_errors_generation(maker->tally, model, at, curve->x, curve->y, maker->errors,
+                                  none + n, none + 2 * n))
         curve->errors[ERROR_GENERATION] = (struct curve_error){.applies = true,
                                                                .value = none,
                                                                .bound = none + n,
@@ -231,8 +308,8 @@ static int put_generation(struct contact_curve_maker *maker, size_t model, size_
     return 0;
 }
 
-/* Density over the nominal area: its integral is the fraction in contact by edges, its first moment
- * the load. Under- and overflow in undeformed areas of nodes. */
+/* Appends the density over the nominal area. Its integral is the fraction in contact by edges, its
+ * first moment the load. Under- and overflow are in undeformed areas of nodes. */
 static int append_pressures(struct contact_curve_maker *maker, size_t model, size_t at,
                             struct error *err) {
     const struct contact_case *one_case = maker->one_case;
@@ -267,7 +344,7 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
             .applies = true, .value = none, .bound = bound, .standard_error = chance, .order = NAN};
     }
     curve_set_points(&curve, n, x, y, standard_error);
-    if (contact_theory_pressures(one_case, maker->modes, load, pdf))
+    if (theory_pressures(one_case, maker->modes, load, pdf))
         curve.theories[curve.theory_count++] = (struct theory){"persson", pdf};
     if (one_case->models[model]->may_fail)
         curve.valueless = valueless;
@@ -286,11 +363,9 @@ int contact_curves(const struct contact_case *one_case, const struct modes *mode
     maker.errors = result_room(out, one_case->load_count, sizeof *maker.errors);
     if (maker.errors == NULL)
         return no_room(err);
-    int status = contact_theories_make(&maker.theories, one_case, modes, moments, out, err);
-    if (status == 0)
-        status = append_areas(&maker, err);
-    if (status == 0)
-        status = append_others(&maker, err);
+    int status = theories_make(&maker.theories, one_case, modes, moments, out, err);
+    for (size_t a = 0; a < MEASURE_OWN && status == 0; a++)
+        status = append_measure(&maker, MEASURE_CURVES[a], err);
     for (size_t m = 0; m < one_case->model_count && status == 0; m++)
         status = append_own(&maker, m, err);
     for (size_t m = 0; m < one_case->model_count; m++)

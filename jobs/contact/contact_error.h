@@ -1,12 +1,30 @@
-/* What a value owes to one source of error: what is told less what is true lies within value +-
- * bound. */
+/* The error of a value from one source. */
 #ifndef RUGO_JOBS_CONTACT_CONTACT_ERROR_H
 #define RUGO_JOBS_CONTACT_CONTACT_ERROR_H
 
+#include "jobs/contact/contact_tally.h"
+#include <math.h>
+
 struct contact_error {
-    double value; /* NaN: not known at this load */
+    double value; /* (reported - true) lies within value +- bound; NaN: not known at this load */
     double bound, standard_error;
-    double order;        /* of the mesh, where the levels show it; else NaN */
-    double bound_chance; /* how far chance may bring the bound, one standard error; 0: not told */
+    double order;                /* of the mesh, if observed on the levels; else NaN */
+    double bound_standard_error; /* of the bound; 0: not known */
 };
+
+/* Returns the largest error that is left over the change to a cell `length` times as long, longer
+ * or shorter. Doubling the length leaves at most the share `left` of the error (1/2: as 1/L). */
+static inline double contact_error_left(double length, double left) {
+    return fabs(1 / (1 - pow(left, log2(length))));
+}
+
+/* Returns whether two loads are within a factor of two. As a change vanishes at a load where its
+ * sign changes, loads so near each other share the largest of their changes. */
+static inline bool contact_error_near(const struct contact_case *one_case, size_t load,
+                                      size_t other) {
+    static const double ROUNDING = 1e-9; /* of ratios that should be round numbers */
+    double ratio = one_case->loads[load] / one_case->loads[other];
+    return fmax(ratio, 1 / ratio) <= 2 * (1 + ROUNDING);
+}
+
 #endif

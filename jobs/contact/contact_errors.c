@@ -1,17 +1,11 @@
 #include "jobs/contact/contact_errors.h"
-#include "core/statistics/richardson.h"
-#include "jobs/contact/contact_cell_errors.h"
-#include "jobs/contact/contact_generation_errors.h"
-#include "jobs/contact/contact_mean.h"
+#include "core/statistics/uncertainty/richardson.h"
+#include "jobs/contact/companion/companion.h"
 #include <math.h>
 
-/* The block's share of a value is that of a half-space on a coarse mesh; for other models and
- * meshes it holds within this part of itself. */
-static const double BLOCK_MARGIN = 0.25;
-/* An answer is within so many times the solver's tolerance of the exact one: what varies smoothly
- * with the forces, and what counts points, one of which may fall on either side. Measured by
+/* A solution is within so many times the solver's tolerance of the exact one. Measured by
  * tests/validation/jobs/test_contact_errors.c. */
-static const double SMOOTH_TOLERANCES = 100, COUNTED_TOLERANCES = 1000;
+static const double TOLERANCES[] = {[SOLVER_SMOOTH] = 100, [SOLVER_COUNTED] = 1000};
 
 static const struct contact_error UNKNOWN = {NAN, NAN, NAN, NAN, NAN};
 
@@ -26,28 +20,12 @@ static struct estimate finest_mean(const struct contact_tally *tally, enum conta
 
 /* --- the mesh --- */
 
-/* The order in which a measure converges on rough profiles and surfaces. */
-static double known_order(enum contact_measure measure) {
-    switch (measure) {
-    case MEASURE_EDGES:
-    case MEASURE_EDGES_STRETCHED:
-    case MEASURE_KAPPA:
-    case MEASURE_POWER_LAW_A:
-    case MEASURE_POWER_LAW_B:
-    case MEASURE_GAP:
-    case MEASURE_STIFFNESS:
-        return 2;
-    default:
-        return 1;
-    }
-}
-
-/* Returns h of a level over that of the next finer one. */
+/* Returns the spacing of a level over that of the next finer one. */
 static double refinement(const struct contact_case *one_case, size_t level) {
     return (double)one_case->levels[level + 1].grid.nx / (double)one_case->levels[level].grid.nx;
 }
 
-/* Changes of a value whose change between a level and the next coarser one is `change`. */
+/* Changes of a value between levels; `change` gives that from a level to the next coarser one. */
 struct level_changes {
     struct mesh_changes of;
     double standard_error; /* of the finest change */
@@ -77,8 +55,8 @@ static double size_of(const struct contact_error *error, double value) {
     return (fabs(error->value) + error->bound) / fabs(value);
 }
 
-/* A change between levels may vanish by chance at a load where the error changes sign: where no
- * order is seen, the bound is at least that of the neighbouring loads, relative to the values. */
+/* A change between levels vanishes at a load where the error changes sign. Where no order is
+ * observed, the bound is at least that of the neighbouring loads, relative to the values. */
 static void spread_bounds(const struct contact_tally *tally, enum contact_measure measure,
                           size_t model, struct contact_error *out) {
     size_t n = tally->one_case->load_count;
@@ -95,17 +73,18 @@ static void spread_bounds(const struct contact_tally *tally, enum contact_measur
     }
 }
 
-/* What the finest level errs by, from its change and the one before, at every load. */
+/* Estimates the error of the finest level, from its change and the one before, at every load. */
 static void limit_errors(const struct contact_tally *tally, enum contact_measure measure,
                          size_t model, change_at *change, struct contact_error *out) {
     for (size_t k = 0; k < tally->one_case->load_count; k++) {
         struct level_changes changes = changes_of(tally, measure, model, k, change);
-        struct mesh_error error = mesh_error(&changes.of, known_order(measure));
-        out[k] = (struct contact_error){.value = isnan(error.bound) ? (double)NAN : error.error,
-                                        .bound = error.bound,
-                                        .standard_error = error.weight * changes.standard_error,
-                                        .bound_chance = error.weight * changes.standard_error,
-                                        .order = error.order};
+        struct mesh_error error = mesh_error(&changes.of, MEASURES[measure].order);
+        out[k] =
+            (struct contact_error){.value = isnan(error.bound) ? (double)NAN : error.error,
+                                   .bound = error.bound,
+                                   .standard_error = error.weight * changes.standard_error,
+                                   .bound_standard_error = error.weight * changes.standard_error,
+                                   .order = error.order};
     }
     spread_bounds(tally, measure, model, out);
 }
@@ -114,12 +93,13 @@ static double mesh_floor(const struct contact_case *one_case, enum contact_measu
                          size_t model) {
     const struct contact_model *of = one_case->models[model];
     return of->mesh_floor != NULL
-               ? of->mesh_floor(one_case->surface.dimension, measure, one_case->transition_depth)
+               ? of->mesh_floor(one_case->surface.dimension, MEASURES[measure].field,
+                                one_case->transition_depth)
                : 0;
 }
 
-/* Adds to bounds what no finer level takes off the meshes of a model, or of two that a difference
- * is of. */
+/* Adds to bounds the part that finer levels do not reduce, of a model, or of two for a
+ * difference. */
 static void add_floors(const struct contact_tally *tally, enum contact_measure measure,
                        size_t model, bool difference, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
@@ -145,14 +125,14 @@ static bool has_difference(const struct contact_tally *tally, size_t model) {
     return model != contact_case_complete(tally->one_case) && tally->one_case->level_count > 1;
 }
 
-/* The limit is what a difference is on the finest level less what that errs by. */
+/* The limit is the difference on the finest level less its error. */
 static void take_limit(struct estimate difference, struct contact_error *error) {
     error->value = difference.value - error->value;
     error->standard_error = hypot(difference.standard_error, error->standard_error);
 }
 
-/* The difference in the limit of the levels: it holds none of the meshes' own errors, but a bound
- * of what these leave of it. */
+/* Estimates the difference in the limit of the levels. It contains no error of the meshes, but a
+ * bound of what these leave of it. */
 static bool model_errors(const struct contact_tally *tally, enum contact_measure measure,
                          size_t model, struct contact_error *out) {
     if (!has_difference(tally, model))
@@ -175,7 +155,7 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
         for (size_t l = 1; l < one_case->level_count; l++) {
             struct estimate change = contact_tally_model_level(tally, measure, model, l, k);
             all.value += change.value;
-            all.standard_error += change.standard_error; /* they may go together */
+            all.standard_error += change.standard_error; /* they may be correlated */
         }
         take_limit(all, &out[k]);
     }
@@ -183,38 +163,12 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
     return true;
 }
 
-/* --- block, solver, missing realisations --- */
-
-static bool block_errors(const struct contact_tally *tally, enum contact_measure measure,
-                         size_t model, struct contact_error *out) {
-    const struct contact_case *one_case = tally->one_case;
-    double bound = contact_case_block_bound(one_case, model);
-    for (size_t k = 0; k < one_case->load_count; k++) {
-        double y = finest_mean(tally, measure, model, k).value;
-        if (bound <= CONTACT_BLOCK_LOW) { /* as good as infinitely high */
-            out[k] = (struct contact_error){.value = 0 * y, .bound = bound * fabs(y), .order = NAN};
-            continue;
-        }
-        struct estimate change = contact_tally_block(tally, measure, model, k);
-        double cell =
-            contact_tally_mean(tally, measure, contact_case_probe_cell(one_case, model + 1, k))
-                .value;
-        double scale = cell != 0 ? y / cell : (double)NAN;
-        out[k] = (struct contact_error){.value = scale * change.value,
-                                        .bound = BLOCK_MARGIN * fabs(scale * change.value),
-                                        .standard_error = fabs(scale) * change.standard_error,
-                                        .order = NAN};
-    }
-    return true;
-}
+/* --- solver, missing realisations --- */
 
 static bool solver_errors(const struct contact_tally *tally, enum contact_measure measure,
                           size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
-    bool smooth = measure == MEASURE_EDGES || measure == MEASURE_EDGES_STRETCHED ||
-                  measure == MEASURE_GAP || measure == MEASURE_KAPPA ||
-                  measure == MEASURE_POWER_LAW_A || measure == MEASURE_POWER_LAW_B;
-    double share = one_case->tolerance * (smooth ? SMOOTH_TOLERANCES : COUNTED_TOLERANCES);
+    double share = one_case->tolerance * TOLERANCES[MEASURES[measure].solver];
     for (size_t k = 0; k < one_case->load_count; k++) {
         double y = finest_mean(tally, measure, model, k).value;
         out[k] = (struct contact_error){.value = 0 * y, .bound = share * fabs(y), .order = NAN};
@@ -244,26 +198,8 @@ static bool missing_errors(const struct contact_tally *tally, enum contact_measu
     return any;
 }
 
-/* --- all --- */
-
-typedef bool errors_of(const struct contact_tally *tally, enum contact_measure measure,
-                       size_t model, struct contact_error *out);
-
-bool contact_errors(const struct contact_tally *tally, enum contact_measure measure, size_t model,
-                    enum error_source source, struct contact_error *out) {
-    static errors_of *const SOURCES[ERROR_SOURCES] = {
-        [ERROR_DISCRETISATION] = mesh_errors, [ERROR_CELL] = contact_cell_errors,
-        [ERROR_BLOCK] = block_errors,         [ERROR_MODEL] = model_errors,
-        [ERROR_SOLVER] = solver_errors,       [ERROR_GENERATION] = contact_generation_errors,
-        [ERROR_MISSING] = missing_errors,
-    };
-    return SOURCES[source] != NULL &&
-           contact_error_applies(tally, measure, model, finest_of(tally->one_case), source) &&
-           SOURCES[source](tally, measure, model, out);
-}
-
-/* A model that leaves out finite slopes errs by them, unless the surface has no lengths of its own:
- * then it is the limit of small slopes that is asked for, or another model that stands in the same
+/* A model that neglects finite slopes has an error by them. For a surface without a scale the limit
+ * of small slopes is asked for: the error then applies only beside a more complete model of the
  * case. */
 static bool model_applies(const struct contact_case *one_case, size_t model) {
     bool complete = true;
@@ -273,40 +209,57 @@ static bool model_applies(const struct contact_case *one_case, size_t model) {
            (!complete && contact_case_has_scale(one_case));
 }
 
-bool contact_error_applies(const struct contact_tally *tally, enum contact_measure measure,
-                           size_t model, size_t level, enum error_source source) {
+static bool missing_applies(const struct contact_tally *tally, enum contact_measure measure,
+                            size_t model, size_t level) {
     const struct contact_case *one_case = tally->one_case;
     bool missing = false;
+    for (size_t k = 0; k < one_case->load_count; k++)
+        missing = missing || contact_tally_valueless(
+                                 tally, measure, contact_case_cell(one_case, model, level, k)) > 0;
+    return missing && one_case->models[model]->may_fail;
+}
+
+/* --- all --- */
+
+typedef bool errors_of(const struct contact_tally *tally, enum contact_measure measure,
+                       size_t model, struct contact_error *out);
+
+/* Companions estimate the errors of the other sources. */
+bool contact_errors(const struct contact_tally *tally, enum contact_measure measure, size_t model,
+                    enum error_source source, struct contact_error *out) {
+    static errors_of *const OWN[ERROR_SOURCES] = {[ERROR_DISCRETISATION] = mesh_errors,
+                                                  [ERROR_MODEL] = model_errors,
+                                                  [ERROR_SOLVER] = solver_errors,
+                                                  [ERROR_MISSING] = missing_errors};
+    const struct companion *companion = companion_of(source);
+    errors_of *errors = companion != NULL ? companion->errors : OWN[source];
+    return errors != NULL &&
+           contact_error_applies(tally, measure, model, finest_of(tally->one_case), source) &&
+           errors(tally, measure, model, out);
+}
+
+bool contact_error_applies(const struct contact_tally *tally, enum contact_measure measure,
+                           size_t model, size_t level, enum error_source source) {
+    const struct companion *companion = companion_of(source);
     if (measure >= MEASURE_PAIRED)
         return false;
-    switch (source) {
-    case ERROR_BLOCK:
-        return isfinite(one_case->blocks[model].height);
-    case ERROR_MODEL:
-        return model_applies(one_case, model);
-    case ERROR_MISSING:
-        for (size_t k = 0; k < one_case->load_count; k++)
-            missing = missing ||
-                      contact_tally_valueless(tally, measure,
-                                              contact_case_cell(one_case, model, level, k)) > 0;
-        return missing && one_case->models[model]->may_fail;
-    case ERROR_GENERATION:
-        return surface_paths_apply(&one_case->surface);
-    default:
-        return true;
-    }
+    if (companion != NULL)
+        return companion->applies(tally->one_case, model);
+    if (source == ERROR_MODEL)
+        return model_applies(tally->one_case, model);
+    return source != ERROR_MISSING || missing_applies(tally, measure, model, level);
 }
 
 /* --- pressures --- */
 
-/* As nodes fall into bins by chance, the change of one between levels may vanish: the bound is that
- * of any bin so near. */
+/* Nodes fall into bins at random, so that the change of one bin between levels may vanish: the
+ * bound is that of any bin so near. */
 enum { BINS_NEAR = 2 };
 
-/* Standard error of a share of the area that whole nodes make up, each where it is by chance
- * (Poisson). */
-static double chance_of_nodes(const struct contact_tally *tally, size_t model, size_t at,
-                              double share) {
+/* Returns the standard error of a share of the area that consists of whole nodes, each in it at
+ * random (Poisson). */
+static double error_of_nodes(const struct contact_tally *tally, size_t model, size_t at,
+                             double share) {
     const struct contact_case *one_case = tally->one_case;
     size_t level = finest_of(one_case);
     size_t cell = contact_case_cell(one_case, model, level, one_case->pdf_loads[at]);
@@ -330,7 +283,7 @@ bool contact_errors_pressures(const struct contact_tally *tally, size_t model, s
                                        .fine_ratio = refinement(one_case, finest - 1)};
         changes.fine = (shares[b].value - coarse[b].value) / width;
         bound[b] = mesh_error(&changes, 1).bound + floor_share * shares[b].value / width;
-        standard_error[b] = chance_of_nodes(tally, model, at, shares[b].value) / width;
+        standard_error[b] = error_of_nodes(tally, model, at, shares[b].value) / width;
     }
     for (size_t b = 0; b < n; b++) {
         double own = bound[b];
@@ -340,6 +293,31 @@ bool contact_errors_pressures(const struct contact_tally *tally, size_t model, s
         }
         before[1] = before[0];
         before[0] = own;
+    }
+    return true;
+}
+
+/* Returns the relative change of the density at bin b over the relative stretch of pressures: from
+ * q(x) to c^2 q(c x), which keeps the load. */
+static double sensitivity(size_t n, const double *x, const double *y, size_t b) {
+    size_t left = b > 0 ? b - 1 : b, right = b + 1 < n ? b + 1 : b;
+    double slope = right > left ? (y[right] - y[left]) / (x[right] - x[left]) : 0;
+    return 2 * y[b] + fabs(x[b] * slope);
+}
+
+bool contact_errors_generation(const struct contact_tally *tally, size_t model, size_t at,
+                               const double *x, const double *y, struct contact_error *room,
+                               double *bound, double *standard_error) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t load = one_case->pdf_loads[at], n = one_case->pressure.count;
+    if (!contact_errors(tally, MEASURE_EDGES, model, ERROR_GENERATION, room) ||
+        isnan(room[load].value))
+        return false;
+    double area = contact_mean(tally, MEASURE_EDGES, model, one_case->level_count - 1, load).value;
+    for (size_t b = 0; b < n; b++) {
+        double by = sensitivity(n, x, y, b) / area;
+        bound[b] = by * room[load].bound;
+        standard_error[b] = by * room[load].standard_error;
     }
     return true;
 }

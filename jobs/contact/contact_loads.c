@@ -1,4 +1,5 @@
 #include "jobs/contact/contact_loads.h"
+#include "schema/json/field.h"
 #include "schema/json/json.h"
 #include <stdbool.h>
 #include <stdio.h>
@@ -8,8 +9,8 @@ double contact_load(double to, size_t k, size_t count) {
     char text[40];
     if (k + 1 == count)
         return to;
-    /* The quotient is within 3.4e-16 of the decimal, and decimals of 15 digits are 1e-15 apart or
-     * more, both relative: the nearest one is it. */
+    /* The quotient is within 3.4e-16 of the decimal, and decimals of 15 digits are at least 1e-15
+     * apart, both relative: so the nearest one is the decimal. */
     snprintf(text, sizeof text, "%.15g", to * (double)(k + 1) / (double)count);
     return strtod(text, NULL);
 }
@@ -17,16 +18,9 @@ double contact_load(double to, size_t k, size_t count) {
 static cJSON *list_of(double to, size_t count) {
     cJSON *list = cJSON_CreateArray();
     bool done = list != NULL;
-    for (size_t k = 0; k < count && done; k++) {
-        cJSON *load = cJSON_CreateNumber(contact_load(to, k, count));
-        done = cJSON_AddItemToArray(list, load);
-        if (!done)
-            cJSON_Delete(load);
-    }
-    if (done)
-        return list;
-    cJSON_Delete(list);
-    return NULL;
+    for (size_t k = 0; k < count && done; k++)
+        done = list_put(list, cJSON_CreateNumber(contact_load(to, k, count)));
+    return fields_finish(list, done);
 }
 
 /* Returns the object of that name, made where there is none. */
@@ -37,16 +31,14 @@ static cJSON *object_in(cJSON *parent, const char *name) {
 
 int contact_loads_fill(const cJSON *document, cJSON *parameters, struct error *err) {
     if (json_at(parameters, "/contact/pressures/values") != NULL)
-        return 0; /* beside which "to" and "steps" are a fault of the case */
+        return 0; /* with it "to" and "steps" are a fault of the case */
     double to = json_number_at(parameters, "/contact/pressures/to", CONTACT_LOAD_HIGHEST);
     double steps = json_number_at(parameters, "/contact/pressures/steps", CONTACT_LOADS);
     cJSON *contact = object_in(parameters, "contact");
     cJSON *pressures = contact != NULL ? object_in(contact, "pressures") : NULL;
     cJSON *list = pressures != NULL ? list_of(to, (size_t)steps) : NULL;
-    if (list == NULL || !cJSON_AddItemToObject(pressures, "values", list)) {
-        cJSON_Delete(list);
+    if (!field_put(pressures, "values", list))
         return error_memory(err, (size_t)steps * sizeof to, "loads");
-    }
     cJSON_DeleteItemFromObjectCaseSensitive(pressures, "steps");
     if (!cJSON_IsArray(json_at(document, "/contact/pressures/to")))
         cJSON_DeleteItemFromObjectCaseSensitive(pressures, "to");

@@ -7,7 +7,7 @@
 #include <cjson/cJSON.h>
 #include <stddef.h>
 
-/* What a study has that gives neither. */
+/* The loads of a study that gives neither. */
 #define CONTACT_LOAD_HIGHEST 0.3
 enum { CONTACT_LOADS = 30 };
 

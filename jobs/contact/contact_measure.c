@@ -1,43 +1,132 @@
 #include "jobs/contact/contact_measure.h"
 #include "core/contact/stretch.h"
+#include "jobs/contact/contact_case.h"
 #include <math.h>
+#include <stdio.h>
 
-/* Stiffness beyond this, in units of E* h'/sqrt(m0), is that of full contact but for rounding; its
- * square must fit into exact sums, as that of a fit's factor. */
+/* A stiffness beyond this, in units of E* h'/sqrt(m0), is that of full contact but for rounding.
+ * Its square must fit into exact sums, as must that of a fit's factor. */
 static const double VALUE_MOST = 1e6;
 
 static double limited(double value) {
     return fabs(value) < VALUE_MOST ? value : (double)NAN;
 }
 
-void contact_measure(const struct contact_meter *meter, const struct contact_pressed *pressed,
+/* Areas as they are under load need a surface with a scale. */
+static bool has_stretched(const struct contact_case *one_case) {
+    return one_case->edges && contact_case_has_scale(one_case);
+}
+
+/* One row a measure, in the order of their curves in a result:
+ *
+ *     name, shown, kept, value,
+ *     quantity, series, label, theories, order, solver, field, load, cell, values
+ *
+ * Words are those of measure.h without their first part. Shown is a condition on `one_case`
+ * and `model`, kept one on `one_case`; the value is made of the variables of contact_measure. Fits
+ * have theirs from all loads together. Areas by edges are kept even where they are not shown, since
+ * fits need them. */
+/* clang-format off */
+#define LIST(ROW)                                                                                  \
+    ROW(EDGES, one_case->edges, true, stretch_fraction(area.edges, open_now),                      \
+        "contact_area", "edges", "A/A0", AREA, 2, SMOOTH, PRESSURE, FALLS, SAME, ALL)              \
+    ROW(EDGES_STRETCHED, has_stretched(one_case) && !contact_case_stretches(one_case, model),      \
+        has_stretched(one_case),                                                                   \
+        context->scaled ? stretch_first_order(area.edges, pressed->open_stretch) : (double)NAN,    \
+        "contact_area", "edges_stretched", "A/A0", NONE, 2, SMOOTH, PRESSURE, FALLS, SAME, SOME)   \
+    ROW(NODES, one_case->nodes, one_case->nodes, now * area.nodes,                                 \
+        "contact_area", "nodes", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, ALL)             \
+    ROW(NODES_LOWER, one_case->nodes, false, now * area.lower,                                     \
+        "contact_area", "nodes_lower", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME)      \
+    ROW(NODES_UPPER, one_case->nodes, false, now * area.upper,                                     \
+        "contact_area", "nodes_upper", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME)      \
+    ROW(PERIMETER, one_case->perimeter, one_case->perimeter,                                       \
+        stretch_fraction(area.perimeter, open_now),                                                \
+        "contact_area", "perimeter", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME)        \
+    ROW(GAP, true, true, area.mean_gap / context->rms_height,                                      \
+        "mean_gap", "", "mean gap/sqrt(m0)", GAP, 2, SMOOTH, GAP, STAYS, SAME, ALL)                \
+    ROW(STIFFNESS, one_case->stiffness, true,                                                      \
+        limited(state->stiffness * context->rms_height / context->rms_slope),                      \
+        "stiffness", "", "K sqrt(m0)/(E* h'_rms)", NONE, 2, COUNTED, GAP, FALLS, SAME, REPORTED)   \
+    ROW(PATCHES, true, false, (double)patches.count,                                               \
+        "patch_count", "cell", "patches", NONE, 1, COUNTED, PRESSURE, STAYS, GROWS, SOME)          \
+    ROW(PATCH_MEAN, true, false, now * patches.mean / context->points,                             \
+        "patch_mean_area", "", "mean patch", NONE,                                                 \
+        1, COUNTED, PRESSURE, FALLS, SHRINKS, SOME)                                                \
+    ROW(PATCH_LARGEST, true, false, now * (double)patches.largest / context->points,               \
+        "patch_largest_area", "", "largest patch/cell", NONE,                                      \
+        1, COUNTED, PRESSURE, FALLS, UNLIMITED, SOME)                                              \
+    ROW(KAPPA, false, false, NAN,                                                                  \
+        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME)                              \
+    ROW(POWER_LAW_A, false, false, NAN,                                                            \
+        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME)                              \
+    ROW(POWER_LAW_B, false, false, NAN,                                                            \
+        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME)                              \
+    ROW(ITERATIONS, true, false, (double)state->iterations,                                        \
+        "iterations", "", "iterations", NONE, 1, COUNTED, NONE, STAYS, SAME, ALL)                  \
+    ROW(WORK, true, false, state->work / context->points,                                          \
+        "work", "", "points x transforms", NONE, 1, COUNTED, NONE, STAYS, POINT, SOME)             \
+    ROW(VIOLATION, false, false, state->violation,                                                 \
+        NULL, "", NULL, NONE, 1, COUNTED, NONE, STAYS, SAME, SOME)                                 \
+    ROW(PENETRATION, false, false, state->penetration,                                             \
+        NULL, "", NULL, NONE, 1, COUNTED, NONE, STAYS, SAME, SOME)
+#define CONDITIONS(name, shown, kept, ...)                                                         \
+    static bool shown_##name(const struct contact_case *one_case, size_t model) {                  \
+        (void)one_case, (void)model;                                                               \
+        return shown;                                                                              \
+    }                                                                                              \
+    static bool kept_##name(const struct contact_case *one_case) {                                 \
+        (void)one_case;                                                                            \
+        return kept;                                                                               \
+    }
+LIST(CONDITIONS)
+
+#define MEMBERS(name, shown, kept, value, quantity, series, label, theories, order, solver, field, \
+                load, cell, values)                                                                \
+    [MEASURE_##name] = {quantity, series, label, shown_##name, kept_##name, order,                 \
+                        THEORIES_##theories, SOLVER_##solver, FIELD_##field,                       \
+                        LOAD_##load, CELL_##cell, VALUES_##values},
+const struct measure MEASURES[MEASURE_COUNT] = {LIST(MEMBERS)};
+/* clang-format on */
+
+#define NAME(name, ...) MEASURE_##name,
+const enum contact_measure MEASURE_CURVES[MEASURE_OWN] = {LIST(NAME)};
+_Static_assert(sizeof((enum contact_measure[]){LIST(NAME)}) == sizeof MEASURE_CURVES,
+               "a measure without a row");
+
+void contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,
                      double values[MEASURE_OWN]) {
     const struct contact_state *state = &pressed->state;
     double now = pressed->stretch;
     struct contact_area area;
     struct patches patches;
-    contact_area(meter->area, state, &area);
-    patches_find(meter->finder, state->p, &patches, NULL);
-    for (size_t a = 0; a < MEASURE_OWN; a++)
-        values[a] = NAN;
+    contact_area(context->area, state, &area);
+    patches_find(context->finder, state->p, &patches, NULL);
     /* Edges lie within the cells of outer nodes in contact, near which hardly any pressure acts. */
     double open_now = area.nodes < 1 ? (1 - now * area.nodes) / (1 - area.nodes) : 1;
-    values[MEASURE_NODES] = now * area.nodes;
-    values[MEASURE_EDGES] = stretch_fraction(area.edges, open_now);
-    if (meter->scaled)
-        values[MEASURE_EDGES_STRETCHED] = stretch_fraction(area.edges, pressed->open_stretch);
-    values[MEASURE_PERIMETER] = stretch_fraction(area.perimeter, open_now);
-    values[MEASURE_GAP] = area.mean_gap / meter->rms_height;
-    values[MEASURE_NODES_LOWER] = now * area.lower;
-    values[MEASURE_NODES_UPPER] = now * area.upper;
-    values[MEASURE_STIFFNESS] = limited(state->stiffness * meter->rms_height / meter->rms_slope);
-    values[MEASURE_PATCHES] = (double)patches.count;
-    values[MEASURE_PATCH_MEAN] = now * patches.mean / meter->points;
-    values[MEASURE_PATCH_LARGEST] = now * (double)patches.largest / meter->points;
-    values[MEASURE_ITERATIONS] = (double)state->iterations;
-    values[MEASURE_WORK] = state->work / meter->points;
-    values[MEASURE_VIOLATION] = state->violation;
-    values[MEASURE_PENETRATION] = state->penetration;
+#define VALUE(name, shown, kept, value, ...) values[MEASURE_##name] = value;
+    LIST(VALUE)
+}
+
+double measure_factor(enum measure_cell cell, double cells) {
+    const double factors[CELL_KINDS] = {[CELL_SAME] = 1,
+                                        [CELL_GROWS] = 1 / cells,
+                                        [CELL_SHRINKS] = cells,
+                                        [CELL_UNLIMITED] = NAN,
+                                        [CELL_POINT] = 1};
+    return factors[cell];
+}
+
+const char *measure_label(const struct measure *measure, enum measure_unit unit, int dimension,
+                          struct case_result *result) {
+    const char *of = unit == UNIT_CELL ? "cell" : dimension == 2 ? "lambda_l^2" : "lambda_l";
+    const char *joint = unit == UNIT_CELL ? " in the " : " per ";
+    char text[96];
+    if (measure->cell != CELL_GROWS && measure->cell != CELL_SHRINKS)
+        return measure->y_label;
+    (void)snprintf(text, sizeof text, "%s%s%s", measure->y_label,
+                   measure->cell == CELL_SHRINKS ? "/" : joint, of);
+    return result_text(result, text);
 }
 
 /* Running sums of least squares. */

@@ -1,26 +1,38 @@
-/* What is measured of a solved load, whatever the model. */
+/* The measures of a solved load, whatever the model. */
 #ifndef RUGO_JOBS_CONTACT_CONTACT_MEASURE_H
 #define RUGO_JOBS_CONTACT_CONTACT_MEASURE_H
 
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
 #include "jobs/contact/measure.h"
-#include "jobs/contact/model.h"
+#include "jobs/contact/model/model.h"
+#include "schema/result/result.h"
 
-/* What measuring on one grid takes; all borrowed. */
-struct contact_meter {
+/* What measuring on one grid needs; all borrowed. */
+struct measure_context {
+    const struct contact_case *one_case; /* whose parameters measures may need */
     struct area_workspace *area;
     struct patch_finder *finder;
     double points;                /* of the grid */
     double rms_slope, rms_height; /* of the prescribed spectrum */
-    bool scaled;                  /* which gives the surface lengths of its own */
+    bool scaled;                  /* the surface has a scale */
 };
 /* Fills all measures but the fits. */
-void contact_measure(const struct contact_meter *meter, const struct contact_pressed *pressed,
+void contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,
                      double values[MEASURE_OWN]);
-/* The fits through rising loads, from the areas by edges there: at load k those over the loads up
- * to it. NaN from the first load on that has no area. FORMULAS.md, F16.1 and F16.2. */
+/* Fits through rising loads, from the areas by edges there: at load k over the loads up to it. NaN
+ * from the first load on that has no area. FORMULAS.md, F16.1 and F16.2. */
 void contact_measure_fits(size_t n, const double *loads, const double *edges, double *kappa,
                           double *power_law_a, double *power_law_b);
+
+/* What a measure that depends on the cell is reported of. */
+enum measure_unit { UNIT_CELL, UNIT_WAVE };
+/* Returns a measure of one cell over that of a cell that is `cells` of it; NaN for a measure
+ * without a limit in large cells. */
+double measure_factor(enum measure_cell cell, double cells);
+/* Returns the label of a curve with its unit, of a surface of this dimension; the result owns it.
+ * NULL: no memory, or a measure without a curve. */
+const char *measure_label(const struct measure *measure, enum measure_unit unit, int dimension,
+                          struct case_result *result);
 
 #endif

@@ -1,20 +1,14 @@
 /* The rows of /contact/.... Several have defaults that depend on others: contact_case.c. */
-#include "jobs/contact/contact_parameters.h"
 #include "core/full/material.h"
-#include "jobs/contact/model.h"
+#include "jobs/contact/contact_case.h"
+#include "jobs/contact/model/model.h"
 
-const struct choice KINEMATICS_CHOICES[] = {{"hencky", KINEMATICS_HENCKY},
-                                            {"st_venant_kirchhoff", KINEMATICS_ST_VENANT},
-                                            {"small", KINEMATICS_SMALL},
-                                            {0}};
 static const struct choice HEIGHTS[] = {{"infinite", 0}, {0}};
 static const struct choice HEIGHT_UNITS[] = {
     {"rms_heights", HEIGHT_RMS_HEIGHTS}, {"lengths", HEIGHT_LENGTHS}, {0}};
 static const struct choice WEIGHTINGS[] = {{"standard", GAP_STANDARD}, {"dual", GAP_DUAL}, {0}};
-static const struct choice CELL_ERRORS[] = {
-    {"probed", CELL_ERROR_PROBED}, {"none", CELL_ERROR_NONE}, {0}};
-static const struct choice GENERATION_ERRORS[] = {
-    {"probed", GENERATION_ERROR_PROBED}, {"none", GENERATION_ERROR_NONE}, {0}};
+static const struct choice COMPANION_CHOICES[] = {
+    {"probed", COMPANION_PROBED}, {"none", COMPANION_NONE}, {0}};
 static const struct choice ESTIMATORS[] = {
     {"nodes", AREA_NODES}, {"edges", AREA_EDGES}, {"perimeter", AREA_PERIMETER}, {0}};
 
@@ -129,15 +123,15 @@ static const struct parameter ROWS[] = {
      .example_json = "[\"nodes\", \"edges\"]",
      .help =
          "of the contact area: nodes (with its bracket), edges, and in surfaces perimeter; all of "
-         "them unless given"},
+         "them unless given; with a target edges, and those that are given"},
     {.path = "/contact/stiffness",
      .type = PARAMETER_CHOICE,
      .choices = STIFFNESSES,
      .later = true,
      .example_json = "\"omitted\"",
      .help =
-         "measured (unless given) or omitted, which spares half-spaces up to a quarter of their "
-         "work and other models none"},
+         "measured or omitted, which spares half-spaces up to a quarter of their work and other "
+         "models none; unless given measured, with a target omitted"},
     {.path = "/contact/levels",
      .type = PARAMETER_NUMBERS,
      .minimum = 2,
@@ -159,7 +153,9 @@ static const struct parameter ROWS[] = {
              "over the largest contact force"},
     {.path = "/contact/cell_error",
      .type = PARAMETER_CHOICE,
-     .choices = CELL_ERRORS,
+     .choices = COMPANION_CHOICES,
+     .target_refusal =
+         "a target bounds the error of cells whose length is left out, and of no others",
      .later = true,
      .example_json = "\"none\"",
      .help =
@@ -167,12 +163,12 @@ static const struct parameter ROWS[] = {
          "surfaces, for about a tenth of the time; or none, and it is not known"},
     {.path = "/contact/generation_error",
      .type = PARAMETER_CHOICE,
-     .choices = GENERATION_ERRORS,
+     .choices = COMPANION_CHOICES,
      .later = true,
      .example_json = "\"none\"",
-     .help = "what contact owes to the way in which surfaces with other than Gaussian heights are "
-             "found: probed (unless given) on some surfaces found in other ways, for less than a "
-             "tenth of the time; or none, and it is not known"},
+     .help = "the error of the generator of surfaces with other than Gaussian heights: probed "
+             "(unless given) on some surfaces of alternative generators, for less than a tenth of "
+             "the time; or none, and it is not known"},
     {.path = "/contact/pressure_pdf/at",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,
@@ -180,6 +176,7 @@ static const struct parameter ROWS[] = {
      .above_minimum = true,
      .items_low = 1,
      .items_high = CONTACT_LOADS_MOST,
+     .target_refusal = "a target does not answer densities of pressure",
      .unit = "E* h'",
      .example_json = "[0.1, 0.3]",
      .help = "rising loads, out of the study's, whose pressures are counted; the last one unless "
@@ -191,6 +188,7 @@ static const struct parameter ROWS[] = {
      .items_low = 3,
      .items_high = 3,
      .default_json = "[0, 4, 80]",
+     .target_refusal = "a target does not answer densities of pressure",
      .unit = "E* h'",
      .example_json = "[0, 2, 40]",
      .help = "[low, high, count] of the histograms of pressures"},

@@ -2,50 +2,40 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Areas are kept by the estimators shown; those by edges always, since fits need them. */
-static bool is_kept(const struct contact_case *one_case, enum contact_measure measure) {
-    switch (measure) {
-    case MEASURE_NODES:
-        return one_case->nodes;
-    case MEASURE_EDGES_STRETCHED:
-        return one_case->edges && contact_case_has_scale(one_case);
-    case MEASURE_PERIMETER:
-        return one_case->perimeter;
-    case MEASURE_EDGES:
-    case MEASURE_GAP:
-    case MEASURE_STIFFNESS:
-        return true;
-    default:
-        return false;
-    }
-}
-
 /* Counts the measures below one that are kept. */
 static size_t kept_below(const struct contact_case *one_case, enum contact_measure measure) {
     size_t count = 0;
     for (size_t a = 0; a < (size_t)measure; a++)
-        count += is_kept(one_case, (enum contact_measure)a);
+        count += MEASURES[a].kept(one_case);
     return count;
 }
 
 static size_t model_width(const struct contact_case *one_case) {
-    return kept_below(one_case, MEASURE_COUNT) * one_case->load_count;
+    return kept_below(one_case, MEASURE_OWN) * one_case->load_count;
 }
 
-/* Of mirrored pieces. */
-static const enum contact_measure LIKE_MEASURES[] = {MEASURE_EDGES, MEASURE_GAP};
-enum { LIKE_MEASURE_COUNT = sizeof LIKE_MEASURES / sizeof *LIKE_MEASURES };
+/* Returns the first column of the series of a companion. */
+static size_t companion_first(const struct contact_case *one_case, size_t companion,
+                              size_t series) {
+    size_t columns = one_case->companions[companion].kept_count * series;
+    for (size_t c = 0; c < companion; c++)
+        columns += one_case->companions[c].kept_count * one_case->companions[c].series;
+    return one_case->model_count * model_width(one_case) + columns * one_case->load_count;
+}
 
 size_t contact_rows_width(const struct contact_case *one_case) {
-    size_t pieces = contact_case_has_like(one_case) ? LIKE_MEASURE_COUNT * one_case->load_count : 0;
-    return one_case->model_count * model_width(one_case) + pieces;
+    const size_t last = COMPANION_COUNT - 1;
+    return companion_first(one_case, last, one_case->companions[last].series);
 }
 
-size_t contact_rows_like_column(const struct contact_case *one_case, enum contact_measure measure) {
-    size_t place = 0;
-    while (place < LIKE_MEASURE_COUNT && LIKE_MEASURES[place] != measure)
-        place++;
-    return one_case->model_count * model_width(one_case) + place * one_case->load_count;
+size_t contact_rows_companion_column(const struct contact_case *one_case,
+                                     enum companion_name companion, size_t series,
+                                     enum contact_measure measure) {
+    const struct companion_plan *plan = &one_case->companions[companion];
+    size_t at = 0;
+    while (at < plan->kept_count && plan->kept[at] != measure)
+        at++;
+    return companion_first(one_case, companion, series) + at * one_case->load_count;
 }
 
 double contact_rows_bytes(const struct contact_case *one_case) {
@@ -54,7 +44,7 @@ double contact_rows_bytes(const struct contact_case *one_case) {
 
 bool contact_rows_column(const struct contact_case *one_case, size_t model,
                          enum contact_measure measure, size_t *column) {
-    if (!is_kept(one_case, measure))
+    if (!MEASURES[measure].kept(one_case))
         return false;
     *column = model * model_width(one_case) + kept_below(one_case, measure) * one_case->load_count;
     return true;
@@ -85,23 +75,33 @@ int contact_rows_reserve(struct contact_rows *rows, size_t more, struct error *e
     return 0;
 }
 
+/* Copies the kept measures of a companion into a row. */
+static void append_companion(double *row, const struct contact_case *one_case,
+                             enum companion_name companion, const struct companion_tally *tally) {
+    const struct companion_plan *plan = &one_case->companions[companion];
+    for (size_t series = 0; series < plan->series; series++)
+        for (size_t a = 0; a < plan->kept_count; a++)
+            memcpy(row + contact_rows_companion_column(one_case, companion, series, plan->kept[a]),
+                   tally->values + companion_cell(one_case, series, plan->kept[a], 0),
+                   one_case->load_count * sizeof *row);
+}
+
 void contact_rows_append(struct contact_rows *rows, const struct contact_case *one_case,
-                         uint64_t realisation, const double *values) {
-    size_t all = contact_case_all_cells(one_case), finest = one_case->level_count - 1, column;
+                         uint64_t realisation, const double *values,
+                         const struct companion_tally *companions) {
+    size_t all = contact_case_cells(one_case), finest = one_case->level_count - 1, column;
     double *row = rows->values + rows->count * rows->width;
     for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t a = 0; a < MEASURE_COUNT; a++)
+        for (size_t a = 0; a < MEASURE_OWN; a++)
             if (contact_rows_column(one_case, m, (enum contact_measure)a, &column))
                 memcpy(row + column, values + a * all + contact_case_cell(one_case, m, finest, 0),
                        one_case->load_count * sizeof *row);
-    for (size_t a = 0; a < LIKE_MEASURE_COUNT && contact_case_has_like(one_case); a++)
-        memcpy(row + contact_rows_like_column(one_case, LIKE_MEASURES[a]),
-               values + (size_t)LIKE_MEASURES[a] * all + contact_case_like_cell(one_case, 0),
-               one_case->load_count * sizeof *row);
+    for (enum companion_name c = 0; c < COMPANION_COUNT; c++)
+        append_companion(row, one_case, c, &companions[c]);
     rows->realisation[rows->count++] = realisation;
 }
 
-/* From the last row to the first one, so that none is overwritten before it was moved. */
+/* Merges from the last row to the first, so that none is overwritten before it is moved. */
 void contact_rows_merge(struct contact_rows *into, const struct contact_rows *from) {
     size_t ours = into->count, theirs = from->count, row = into->width * sizeof *into->values;
     into->count = ours + theirs;

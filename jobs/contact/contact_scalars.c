@@ -2,47 +2,65 @@
 #include "core/statistics/fit.h"
 #include "core/theory/contact.h"
 #include "jobs/contact/contact_errors.h"
-#include "jobs/contact/contact_mean.h"
 #include "jobs/estimate.h"
 #include <math.h>
 #include <stdlib.h>
 
-static const char *const NAMES[CONTACT_SCALAR_COUNT] = {
-    [CONTACT_SCALAR_KAPPA] = "kappa",
-    [CONTACT_SCALAR_POWER_LAW_A] = "power_law_a",
-    [CONTACT_SCALAR_POWER_LAW_B] = "power_law_b",
-    [CONTACT_SCALAR_ERF_KAPPA] = "erf_kappa",
-    [CONTACT_SCALAR_AREA_LAST] = "contact_area_last",
-    [CONTACT_SCALAR_GAP_LAST] = "mean_gap_last",
-    [CONTACT_SCALAR_ITERATIONS] = "iterations",
-    [CONTACT_SCALAR_VIOLATION] = "violation",
-    [CONTACT_SCALAR_RMS_HEIGHT] = "rms_height",
-    [CONTACT_SCALAR_RMS_SLOPE] = "rms_slope",
-    [CONTACT_SCALAR_NAYAK_ALPHA] = "nayak_alpha",
-    [CONTACT_SCALAR_SKEWNESS] = "skewness",
-    [CONTACT_SCALAR_KURTOSIS] = "kurtosis",
-    [CONTACT_SCALAR_GENERATOR_ITERATIONS] = "generator_iterations",
-    [CONTACT_SCALAR_EPS_H] = "eps_h",
-    [CONTACT_SCALAR_EPS_S] = "eps_s",
-    [CONTACT_SCALAR_EPS_S0] = "eps_s0",
+/* Fractions up to these are fitted (FORMULAS.md, F16.1 and F16.2). */
+#define LIGHT_LOAD_MOST 0.1
+#define POWER_LAW_MOST 0.5
+
+const struct contact_fit CONTACT_FITS[CONTACT_FIT_COUNT] = {
+    {"kappa", MEASURE_KAPPA, LIGHT_LOAD_MOST, "kappa_loads", "kappa_highest_load"},
+    {"power_law_a", MEASURE_POWER_LAW_A, POWER_LAW_MOST, "power_law_loads",
+     "power_law_highest_load"},
+    {"power_law_b", MEASURE_POWER_LAW_B, POWER_LAW_MOST, NULL, NULL},
 };
 
-/* What a scalar is: number `at` of the model's own, or, without a model, an enum contact_scalar. */
-struct place {
+/* Scalars that the tally has at a load, with errors by source, in place of the mean of
+ * realisations: a measure at the last load, or a fit. */
+static const struct own_scalar {
+    const char *name;
+    bool tallied;
+    enum contact_measure measure;
+    const struct contact_fit *fit; /* NULL: none */
+} OWN[CONTACT_SCALAR_COUNT] = {
+    [CONTACT_SCALAR_KAPPA] = {"kappa", true, MEASURE_KAPPA, &CONTACT_FITS[0]},
+    [CONTACT_SCALAR_POWER_LAW_A] = {"power_law_a", true, MEASURE_POWER_LAW_A, &CONTACT_FITS[1]},
+    [CONTACT_SCALAR_POWER_LAW_B] = {"power_law_b", true, MEASURE_POWER_LAW_B, &CONTACT_FITS[2]},
+    [CONTACT_SCALAR_ERF_KAPPA] = {.name = "erf_kappa"},
+    [CONTACT_SCALAR_AREA_LAST] = {"contact_area_last", true, MEASURE_EDGES, NULL},
+    [CONTACT_SCALAR_GAP_LAST] = {"mean_gap_last", true, MEASURE_GAP, NULL},
+    [CONTACT_SCALAR_ITERATIONS] = {.name = "iterations"},
+    [CONTACT_SCALAR_VIOLATION] = {.name = "violation"},
+    [CONTACT_SCALAR_RMS_HEIGHT] = {.name = "rms_height"},
+    [CONTACT_SCALAR_RMS_SLOPE] = {.name = "rms_slope"},
+    [CONTACT_SCALAR_NAYAK_ALPHA] = {.name = "nayak_alpha"},
+    [CONTACT_SCALAR_SKEWNESS] = {.name = "skewness"},
+    [CONTACT_SCALAR_KURTOSIS] = {.name = "kurtosis"},
+    [CONTACT_SCALAR_GENERATOR_ITERATIONS] = {.name = "generator_iterations"},
+    [CONTACT_SCALAR_EPS_H] = {.name = "eps_h"},
+    [CONTACT_SCALAR_EPS_S] = {.name = "eps_s"},
+    [CONTACT_SCALAR_EPS_S0] = {.name = "eps_s0"},
+};
+
+/* The origin of a scalar: number `at` of the model's own, or, without a model, an enum
+ * contact_scalar. */
+struct origin {
     const struct contact_model *model;
     size_t at;
 };
 
-static struct place place_of(size_t scalar) {
+static struct origin origin_of(size_t scalar) {
     if (scalar < CONTACT_SCALARS_OF_MODELS)
-        return (struct place){NULL, scalar};
+        return (struct origin){NULL, scalar};
     for (size_t m = 0; CONTACT_MODELS[m] != NULL; m++) {
         size_t at = scalar - CONTACT_SCALARS_OF_MODELS;
         if (at < CONTACT_MODELS[m]->scalar_count)
-            return (struct place){CONTACT_MODELS[m], at};
+            return (struct origin){CONTACT_MODELS[m], at};
         scalar -= CONTACT_MODELS[m]->scalar_count;
     }
-    return (struct place){NULL, scalar};
+    return (struct origin){NULL, scalar};
 }
 
 static size_t scalar_count(void) {
@@ -55,11 +73,11 @@ static size_t scalar_count(void) {
 const char *contact_scalar_name(size_t scalar) {
     if (scalar >= scalar_count())
         return NULL;
-    struct place place = place_of(scalar);
-    return place.model != NULL ? place.model->scalars[place.at] : NAMES[place.at];
+    struct origin origin = origin_of(scalar);
+    return origin.model != NULL ? origin.model->scalars[origin.at] : OWN[origin.at].name;
 }
 
-/* Returns the position of a model in a case; model_count where it is none of its. */
+/* Returns the position of a model in a case; model_count if the case does not have it. */
 static size_t position_of(const struct contact_case *one_case, const struct contact_model *model) {
     size_t m = 0;
     while (m < one_case->model_count && one_case->models[m] != model)
@@ -75,8 +93,8 @@ static const double *finest_values(struct contact_tally *tally, enum contact_mea
            contact_case_cell(one_case, model, one_case->level_count - 1, 0);
 }
 
-/* What each model of the case tells of itself, behind the scalars that come first; NaN of others.
- */
+/* Measures the scalars of each model of the case, behind the scalars of all; NaN of other
+ * models. */
 static void measure_models(struct contact_tally *tally, double *out) {
     const struct contact_case *one_case = tally->one_case;
     double *at = out + CONTACT_SCALARS_OF_MODELS;
@@ -139,9 +157,9 @@ int contact_scalars_measure(struct contact_tally *tally, const struct roughness 
     int status = measure_fits(one_case, fraction, scalars, err);
     size_t count = scalar_count();
     for (size_t a = 0; a < count; a++) {
-        struct place place = place_of(a);
-        if (place.model == NULL)
-            out[a] = scalars[place.at];
+        struct origin origin = origin_of(a);
+        if (origin.model == NULL)
+            out[a] = scalars[origin.at];
     }
     measure_models(tally, out);
     return status;
@@ -152,7 +170,7 @@ static void theories(const struct contact_case *one_case, const struct moments *
     struct height_moments heights;
     for (size_t a = 0; a < CONTACT_SCALAR_COUNT; a++)
         theory[a] = NAN;
-    /* One wave alone has alpha = 1, and no light-load line. */
+    /* A single wave has alpha = 1, and no light-load line. */
     if (one_case->surface.dimension == 2 || moments->nayak_alpha > 1 + 1e-9)
         theory[CONTACT_SCALAR_KAPPA] = theory[CONTACT_SCALAR_ERF_KAPPA] = persson_light_load();
     theory[CONTACT_SCALAR_RMS_HEIGHT] = moments->rms_height;
@@ -167,10 +185,7 @@ static void theories(const struct contact_case *one_case, const struct moments *
 
 /* --- scalars of the tally --- */
 
-/* Fractions up to these are fitted (FORMULAS.md, F16.1 and F16.2). */
-static const double LIGHT_LOAD_MOST = 0.1, POWER_LAW_MOST = 0.5;
-
-/* Number of loads, from the lightest on, at which the mean area is at most this. */
+/* Returns the number of loads, from the lightest on, at which the mean area is at most this. */
 static size_t loads_within(const struct contact_tally *tally, double most) {
     size_t n = 0;
     while (n < tally->one_case->load_count &&
@@ -179,7 +194,8 @@ static size_t loads_within(const struct contact_tally *tally, double most) {
     return n;
 }
 
-/* A measure of the first model at the last of the first `loads` loads; none without loads. */
+/* Sets a scalar to a measure of the first model at the last of the first `loads` loads; none
+ * without loads. */
 static int put_measure(const struct contact_tally *tally, enum contact_measure measure,
                        size_t loads, struct scalar *out, struct error *err) {
     const struct contact_case *one_case = tally->one_case;
@@ -209,48 +225,33 @@ static int put_measure(const struct contact_tally *tally, enum contact_measure m
 
 bool contact_scalar_fit(const struct contact_tally *tally, size_t scalar, enum contact_measure *fit,
                         size_t *loads) {
-    switch (scalar) {
-    case CONTACT_SCALAR_KAPPA:
-        *fit = MEASURE_KAPPA;
-        *loads = loads_within(tally, LIGHT_LOAD_MOST);
-        return true;
-    case CONTACT_SCALAR_POWER_LAW_A:
-    case CONTACT_SCALAR_POWER_LAW_B:
-        *fit = scalar == CONTACT_SCALAR_POWER_LAW_A ? MEASURE_POWER_LAW_A : MEASURE_POWER_LAW_B;
-        *loads = loads_within(tally, POWER_LAW_MOST);
-        return true;
-    default:
+    if (scalar >= CONTACT_SCALARS_OF_MODELS || OWN[scalar].fit == NULL)
         return false;
-    }
+    *fit = OWN[scalar].measure;
+    *loads = loads_within(tally, OWN[scalar].fit->area_most);
+    return true;
 }
 
-/* Replaces the mean over realisations of what the tally holds at a load. */
+/* Replaces the mean over realisations of a scalar that the tally has at a load. */
 static int put_tallied(const struct contact_tally *tally, size_t scalar, struct scalar *out,
                        struct error *err) {
-    size_t all = tally->one_case->load_count, loads;
-    enum contact_measure fit;
-    if (contact_scalar_fit(tally, scalar, &fit, &loads))
-        return put_measure(tally, fit, loads, out, err);
-    switch (scalar) {
-    case CONTACT_SCALAR_AREA_LAST:
-        return put_measure(tally, MEASURE_EDGES, all, out, err);
-    case CONTACT_SCALAR_GAP_LAST:
-        return put_measure(tally, MEASURE_GAP, all, out, err);
-    default:
+    const struct own_scalar *own = &OWN[scalar];
+    if (!own->tallied)
         return 0;
-    }
+    size_t loads =
+        own->fit != NULL ? loads_within(tally, own->fit->area_most) : tally->one_case->load_count;
+    return put_measure(tally, own->measure, loads, out, err);
 }
 
-/* How many loads a fit is over, and the highest of them; none without loads. */
-static int add_range(const struct contact_tally *tally, const char *count_name,
-                     const char *load_name, double most, struct case_result *out,
-                     struct error *err) {
-    size_t n = loads_within(tally, most);
-    struct scalar count = scalar_named(count_name, (double)n, 0, NAN), load;
+int contact_scalars_put_range(const struct contact_fit *fit, const struct contact_case *one_case,
+                              size_t loads, struct case_result *out, struct error *err) {
+    if (fit->count == NULL)
+        return 0;
+    const struct scalar count = scalar_named(fit->count, (double)loads, 0, NAN);
     int status = result_add_scalar(out, &count, err);
-    if (status != 0 || n == 0)
+    if (status != 0 || loads == 0)
         return status;
-    load = scalar_named(load_name, tally->one_case->loads[n - 1], 0, NAN);
+    const struct scalar load = scalar_named(fit->highest, one_case->loads[loads - 1], 0, NAN);
     return result_add_scalar(out, &load, err);
 }
 
@@ -262,27 +263,25 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
     int status = 0;
     theories(one_case, moments, theory);
     for (size_t a = 0; a < count && status == 0; a++) {
-        struct place place = place_of(a);
-        bool own = place.model != NULL;
-        if (own && position_of(one_case, place.model) == one_case->model_count)
+        struct origin origin = origin_of(a);
+        bool own = origin.model != NULL;
+        if (own && position_of(one_case, origin.model) == one_case->model_count)
             continue;
         realisations_column(realisations, a, column);
         struct estimate mean = estimate_mean((size_t)realisations->count, column);
-        if (!own && place.at == CONTACT_SCALAR_NAYAK_ALPHA &&
+        if (!own && origin.at == CONTACT_SCALAR_NAYAK_ALPHA &&
             surface_case_exact(&one_case->surface))
             mean = (struct estimate){moments->nayak_alpha, 0};
         struct scalar scalar = scalar_named(contact_scalar_name(a), mean.value, mean.standard_error,
-                                            own ? (double)NAN : theory[place.at]);
+                                            own ? (double)NAN : theory[origin.at]);
         if (!own)
-            status = put_tallied(tally, place.at, &scalar, err);
+            status = put_tallied(tally, origin.at, &scalar, err);
         if (status == 0)
             status = result_add_scalar(out, &scalar, err);
     }
-    if (status == 0)
-        status = add_range(tally, "kappa_loads", "kappa_highest_load", LIGHT_LOAD_MOST, out, err);
-    if (status == 0)
-        status =
-            add_range(tally, "power_law_loads", "power_law_highest_load", POWER_LAW_MOST, out, err);
+    for (size_t a = 0; a < CONTACT_FIT_COUNT && status == 0; a++)
+        status = contact_scalars_put_range(
+            &CONTACT_FITS[a], one_case, loads_within(tally, CONTACT_FITS[a].area_most), out, err);
     if (status != 0)
         return status;
     /* as given, or as solved for nayak_alpha */

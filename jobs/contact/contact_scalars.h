@@ -3,7 +3,7 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_SCALARS_H
 #define RUGO_JOBS_CONTACT_CONTACT_SCALARS_H
 
-#include "core/statistics/roughness.h"
+#include "core/statistics/heights/roughness.h"
 #include "jobs/contact/contact_tally.h"
 #include "jobs/realisations.h"
 #include "schema/result/result.h"
@@ -33,18 +33,32 @@ enum contact_scalar {
  * behind the last. */
 const char *contact_scalar_name(size_t scalar);
 
-/* Of the realisation whose values the tally holds. nayak_alpha: of its own spectrum. Fails only
- * with ERROR_MEMORY; a fit that finds too few points has no value. */
+/* Measures the scalars of the realisation whose values the tally holds. nayak_alpha: of its own
+ * spectrum. Fails only with ERROR_MEMORY; a fit with too few points has no value. */
 int contact_scalars_measure(struct contact_tally *tally, const struct roughness *roughness,
                             double nayak_alpha, const struct surface_report *report, double *out,
                             struct error *err);
 
-/* Appends the scalars over the realisations to the result: of the tally what stands at a load
- * there, with its errors by source. Fits are over the loads at which the mean area is within their
- * range, the same ones for every realisation, and say how many these are. */
+/* Appends the scalars over the realisations to the result, with errors by source for those that the
+ * tally has at a load. Fits are over the loads at which the mean area is within their range, which
+ * are the same for every realisation; their number is a scalar, too. */
 int contact_scalars(const struct contact_case *one_case, const struct moments *moments,
                     const struct contact_tally *tally, const struct realisations *realisations,
                     struct case_result *out, struct error *err);
+
+/* Fits over the loads, from the lightest on, at which the mean area is at most area_most. */
+struct contact_fit {
+    const char *name; /* of the scalar */
+    enum contact_measure measure;
+    double area_most;
+    const char *count, *highest; /* names of its number of loads, and of the highest; NULL: it
+                                  * shares those of the fit before */
+};
+enum { CONTACT_FIT_COUNT = 3 };
+extern const struct contact_fit CONTACT_FITS[CONTACT_FIT_COUNT];
+/* Appends the number of loads of a fit, and the highest of them; none without loads. */
+int contact_scalars_put_range(const struct contact_fit *fit, const struct contact_case *one_case,
+                              size_t loads, struct case_result *out, struct error *err);
 
 /* Returns whether a scalar is a fit over loads, which one, and over how many loads from the
  * lightest on. */

@@ -1,10 +1,9 @@
 #include "jobs/contact/contact_scene.h"
+#include "core/contact/patches.h"
 #include "core/contact/pressures.h"
-#include "jobs/contact/contact_cell.h"
-#include "jobs/contact/contact_like.h"
+#include "core/cost.h"
 #include "jobs/contact/contact_measure.h"
-#include "jobs/contact/contact_probe.h"
-#include "jobs/contact/contact_sample.h"
+#include "jobs/publishing_cost.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,17 +11,13 @@
 struct contact_scene {
     const struct contact_case *one_case;
     double rms_slope, rms_height; /* of the prescribed spectrum */
-    bool scaled;                  /* these are the surface's, and not of an arbitrary unit */
     struct contact_solver *solvers[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct area_workspace *areas[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct pressures *pressures[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST]; /* NULL: not counted */
     double *shares;                                                        /* of pressures */
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
-    struct contact_probe *probe; /* NULL: none is needed */
-    struct contact_cell *cell;   /* likewise, as the next */
-    struct contact_generation *generation;
-    struct contact_like *like;
-    double *z; /* a level's sampling; room for the finest */
+    struct companion_bench *companions;
+    double *z; /* heights on a level; room for the finest */
 };
 
 int contact_compliances_create(struct contact_compliances *out, const struct contact_case *one_case,
@@ -80,16 +75,9 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
     scene->one_case = one_case;
     scene->rms_slope = moments->rms_slope;
     scene->rms_height = moments->rms_height;
-    scene->scaled = contact_case_has_scale(one_case);
     int status = scene_fill(scene, compliances, err);
     if (status == 0)
-        status = contact_probe_create(&scene->probe, one_case, moments, err);
-    if (status == 0)
-        status = contact_cell_create(&scene->cell, one_case, err);
-    if (status == 0)
-        status = contact_generation_create(&scene->generation, one_case, moments, err);
-    if (status == 0)
-        status = contact_like_create(&scene->like, one_case, moments, err);
+        status = companion_bench_create(&scene->companions, one_case, moments, err);
     if (status != 0)
         contact_scene_destroy(&scene);
     *out = scene;
@@ -109,44 +97,27 @@ void contact_scene_destroy(struct contact_scene **scene) {
                 s->one_case->models[m]->destroy(&s->solvers[m][l]);
         }
     }
-    contact_probe_destroy(&s->probe);
-    contact_cell_destroy(&s->cell);
-    contact_generation_destroy(&s->generation);
-    contact_like_destroy(&s->like);
+    companion_bench_destroy(&s->companions);
     free(s->z);
     free(s->shares);
     free(s);
     *scene = NULL;
 }
 
-double contact_scene_plain_bytes(const struct contact_case *one_case) {
-    double bytes = 8.0 * (double)grid_points(&contact_case_finest(one_case)->grid);
-    for (size_t l = 0; l < one_case->level_count; l++) {
-        const struct grid *grid = &one_case->levels[l].grid;
-        bytes += 16.0 * (double)grid_points(grid); /* patches */
-        for (size_t m = 0; m < one_case->model_count; m++) {
-            bytes += contact_tally_counts(one_case, l) ? pressures_bytes(grid) : 0;
-            bytes += area_workspace_bytes(grid, &one_case->blocks[m]) +
-                     one_case->models[m]->bytes(one_case, m, grid) +
-                     compliance_bytes(grid, &one_case->blocks[m]);
-        }
-    }
-    return bytes;
-}
-
 /* Puts the measures of a solved load into a cell. */
 static void measure(struct contact_scene *scene, size_t model, size_t level,
                     const struct contact_pressed *pressed, struct contact_tally *tally,
                     size_t cell) {
-    const struct contact_meter meter = {
+    const struct measure_context context = {
+        .one_case = scene->one_case,
         .area = scene->areas[model][level],
         .finder = scene->finders[level],
         .points = (double)grid_points(&scene->one_case->levels[level].grid),
         .rms_slope = scene->rms_slope,
         .rms_height = scene->rms_height,
-        .scaled = scene->scaled};
+        .scaled = contact_case_has_scale(scene->one_case)};
     double values[MEASURE_OWN];
-    contact_measure(&meter, pressed, values);
+    contact_measure(&context, pressed, values);
     for (size_t a = 0; a < MEASURE_OWN; a++)
         contact_tally_values(tally, (enum contact_measure)a)[cell] = values[a];
     for (size_t a = 0; a < MODEL_MEASURES_MOST; a++)
@@ -154,7 +125,8 @@ static void measure(struct contact_scene *scene, size_t model, size_t level,
             pressed->own[a];
 }
 
-/* Tallies areas by pressure as they are now, by edges; forces are those on the undeformed ones. */
+/* Tallies areas by pressure, by edges and as they are under load. Forces are over undeformed
+ * areas. */
 static int count_pressures(struct contact_scene *scene, size_t model, size_t level, size_t load,
                            const struct contact_state *state, struct contact_tally *tally,
                            struct error *err) {
@@ -180,7 +152,7 @@ static struct contact_pressed not_pressed(void) {
     return out;
 }
 
-/* Solves all loads of one model and level as they rise, each from the last. */
+/* Solves all loads of one model and level in rising order, each from the last. */
 static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
                        struct contact_tally *tally, const struct contact_stopper *stopper,
                        struct error *err) {
@@ -210,7 +182,7 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
     return status;
 }
 
-/* "model layered, level 6", and the kinematics behind the name of a model that has several. */
+/* Adds to an error "model layered, level 6", with the kinematics of a model that has several. */
 static void name_model(const struct contact_case *one_case, size_t m, size_t level,
                        struct error *err) {
     const struct contact_model *model = one_case->models[m];
@@ -222,7 +194,7 @@ static void name_model(const struct contact_case *one_case, size_t m, size_t lev
         error_context(err, "model %s, level %g", contact_model_name(model), points);
 }
 
-/* Where a model that may fail finds no answer, a note tells why. */
+/* Solves a model. If it may fail and finds no solution, a note gives the reason. */
 static int solve_model(struct contact_scene *scene, size_t m, size_t level,
                        struct contact_tally *tally, const struct contact_stopper *stopper,
                        struct error *err) {
@@ -247,17 +219,69 @@ int contact_scene_solve(struct contact_scene *scene, const struct contact_surfac
     const struct contact_stopper stopper = {stop, context};
     int status = 0;
     for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
-        status = contact_level_sample(one_case, &one_case->levels[l], surface->z, scene->z, err);
+        status = contact_level_sample(&one_case->levels[l], &one_case->surface.grid, one_case->band,
+                                      surface->z, scene->z, err);
         for (size_t m = 0; m < one_case->model_count && status == 0; m++)
             status = solve_model(scene, m, l, tally, &stopper, err);
     }
-    if (status == 0 && contact_probe_due(one_case, surface->key.realisation))
-        status = contact_probe_solve(scene->probe, surface->z, tally, &stopper, err);
-    if (status == 0 && scene->cell != NULL)
-        status = contact_cell_solve(scene->cell, surface->key, tally, &stopper, err);
-    if (status == 0 && scene->generation != NULL)
-        status = contact_generation_solve(scene->generation, surface, tally, &stopper, err);
-    if (status == 0 && scene->like != NULL)
-        status = contact_like_solve(scene->like, surface->z, tally, &stopper, err);
+    if (status == 0)
+        status = companion_bench_solve(scene->companions, surface, tally, &stopper, err);
     return status;
+}
+
+/* --- the cost of a case, estimated before anything ran --- */
+
+/* Bytes of the program, its libraries and tables that do not grow with the grid. */
+static const double PROCESS_BYTES = 2.1e7;
+
+/* Curves of a model and level: areas by four or five estimators, and eight other quantities. */
+enum { LEVEL_CURVES = 13 };
+
+/* A few realisations may take a second already; a worker that is lost then loses no more than
+ * these. */
+enum { RUNS_MOST = 20 };
+
+static double case_seconds(const struct contact_case *one_case) {
+    size_t solved = one_case->model_count * one_case->level_count;
+    size_t densities = one_case->model_count * one_case->pdf_count;
+    return publishing_cost(LEVEL_CURVES * solved + densities,
+                           LEVEL_CURVES * solved * one_case->load_count +
+                               densities * one_case->pressure.count);
+}
+
+/* Returns the bytes of a scene and its compliances, without the surface itself and companions. */
+static double plain_bytes(const struct contact_case *one_case) {
+    double bytes = 8.0 * (double)grid_points(&contact_case_finest(one_case)->grid);
+    for (size_t l = 0; l < one_case->level_count; l++) {
+        const struct grid *grid = &one_case->levels[l].grid;
+        bytes += 16.0 * (double)grid_points(grid); /* patches */
+        for (size_t m = 0; m < one_case->model_count; m++) {
+            bytes += contact_tally_counts(one_case, l) ? pressures_bytes(grid) : 0;
+            bytes += area_workspace_bytes(grid, &one_case->blocks[m]) +
+                     one_case->models[m]->bytes(one_case, m, grid) +
+                     compliance_bytes(grid, &one_case->blocks[m]);
+        }
+    }
+    return bytes;
+}
+
+void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
+    const struct surface_case *surface = &one_case->surface;
+    const struct grid *finest = &contact_case_finest(one_case)->grid;
+    out->nx = finest->nx;
+    out->ny = finest->ny;
+    out->memory_bytes = surface_case_bytes(surface) + plain_bytes(one_case) +
+                        companions_bytes(one_case) + contact_tally_bytes(one_case) + PROCESS_BYTES;
+    out->seconds = 1e-4 + 1e-9 * cost_generation(&surface->options, &surface->grid) *
+                              (double)grid_points(&surface->grid);
+    for (size_t l = 0; l < one_case->level_count; l++)
+        for (size_t m = 0; m < one_case->model_count; m++)
+            out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);
+    out->seconds += companions_seconds(one_case);
+    out->result_bytes = contact_rows_bytes(one_case);
+    out->runs_most = RUNS_MOST;
+    out->case_seconds = case_seconds(one_case);
+    bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
+    out->relative_error = cost_area_scatter(surface->dimension, surface_case_mean_side(surface),
+                                            affine ? surface->spectrum.hurst : NAN);
 }

@@ -1,6 +1,11 @@
-/* What is measured of each load: a value, or none (NaN), a realisation, model, level and load. */
+/* The measures of a solved load: a value, or none (NaN), for each realisation, model, level and
+ * load. A measure is a name in the enum and a row of the list in contact_measure.c; nothing else
+ * lists them. Partial results hold measures in the order of the enum. */
 #ifndef RUGO_JOBS_CONTACT_MEASURE_H
 #define RUGO_JOBS_CONTACT_MEASURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
 
 enum { MODEL_MEASURES_MOST = 5 };
 enum contact_measure {
@@ -23,8 +28,46 @@ enum contact_measure {
     MEASURE_WORK, /* transforms of the level's grid */
     MEASURE_VIOLATION,
     MEASURE_PENETRATION, /* of the weighted gap */
-    MEASURE_OWN,         /* from here on those of the model, each its own (model.h) */
+    MEASURE_OWN,         /* from here on those of the model, each its own (model/model.h) */
     MEASURE_COUNT = MEASURE_OWN + MODEL_MEASURES_MOST
 };
+
+/* The theories of its curve (contact_curves.c). */
+enum measure_theories { THEORIES_NONE, THEORIES_AREA, THEORIES_GAP, THEORIES_KINDS };
+/* How the solver's tolerance changes it: smoothly with the forces, or by counted points, one of
+ * which may fall on either side. */
+enum measure_solver { SOLVER_SMOOTH, SOLVER_COUNTED };
+/* The field of a solution that it is measured on. */
+enum measure_field { FIELD_NONE, FIELD_PRESSURE, FIELD_GAP };
+/* Whether it falls with the load where that is light. */
+enum measure_load { LOAD_STAYS, LOAD_FALLS };
+/* What it is in a cell n times as large: the same; n times it; an nth of it; without a limit in
+ * large cells; or the same for each point of the grid, and its curve is for all points. */
+enum measure_cell { CELL_SAME, CELL_GROWS, CELL_SHRINKS, CELL_UNLIMITED, CELL_POINT, CELL_KINDS };
+/* Which solved realisations have a value: some; all, or a partial result is refused; some, and its
+ * curve reports how many have none. */
+enum measure_values { VALUES_SOME, VALUES_ALL, VALUES_REPORTED };
+
+struct contact_case;
+struct measure {
+    const char *quantity, *series,
+        *y_label; /* of its curve; NULL: it has none. CELL_GROWS, CELL_SHRINKS:
+                     the label is without its unit, which is the cell
+                     or, in the series "wave", a longest wave */
+    bool (*shown)(const struct contact_case *one_case, size_t model); /* whether its curve is
+                                                                       * shown */
+    bool (*kept)(const struct contact_case *one_case); /* by realisation (contact_rows.h) */
+    double order;                                      /* of its error in the mesh */
+    enum measure_theories theories;
+    enum measure_solver solver;
+    enum measure_field field;
+    enum measure_load load;
+    enum measure_cell cell;
+    enum measure_values values;
+};
+/* Measures of the models have no rows: they are zero. */
+extern const struct measure MEASURES[MEASURE_COUNT];
+/* In the order of their curves in a result. */
+extern const enum contact_measure MEASURE_CURVES[MEASURE_OWN];
 
 #endif

@@ -1,17 +1,129 @@
 /* The kind "statistics": summit statistics, spectra and roughness of random surfaces. */
 #include "core/statistics/surface_pass.h"
+#include "jobs/kind.h"
+#include "jobs/merger.h"
+#include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_curves.h"
 #include "jobs/statistics/statistics_generation.h"
 #include "jobs/statistics/statistics_grid_theory.h"
 #include "jobs/statistics/statistics_levels.h"
-#include "jobs/statistics/statistics_pairs.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
-#include "jobs/statistics/statistics_target.h"
-#include "jobs/statistics/statistics_view.h"
+#include "jobs/target.h"
+#include "schema/result/view.h"
+#include <math.h>
+#include <stdlib.h>
 
-static int read_case(void *one_case, const cJSON *parameters, struct fault_list *faults,
-                     struct error *err) {
+/* Statistics studies that ask for an error. They have one component, the case itself, with as many
+ * surfaces as are needed. The statistical error is the only source: results are of the surfaces as
+ * they are generated. */
+
+enum { REALISATIONS_FIRST = 32 };
+/* Scatter of the summit density, and of a curve by its norm, over that of densities bin by bin,
+ * which the cost model estimates. */
+static const double DENSITY_SHARE = 0.03, CURVE_SHARE = 0.4;
+
+static int read_target(struct target *out, const cJSON *parameters, struct fault_list *faults,
+                       struct error *err) {
+    return target_read(out, parameters, STATISTICS_TABLES, TARGET_SUMMIT_DENSITY,
+                       TARGET_SUMMIT_CURVATURE_PDF, faults, err);
+}
+
+/* As study_kind has it. */
+static int statistics_target_expand(const cJSON *document, struct study_case *one,
+                                    struct fault_list *faults, struct error *err) {
+    struct target target;
+    size_t before = faults->count;
+    (void)document;
+    int status = read_target(&target, one->parameters, faults, err);
+    if (status != 0)
+        return status == ERROR_INPUT && faults->count > before ? 0 : status;
+    double share = target.quantity == TARGET_SUMMIT_DENSITY ? DENSITY_SHARE : CURVE_SHARE;
+    cJSON *parameters = cJSON_Duplicate(one->parameters, true);
+    one->components = array_create(1, sizeof *one->components);
+    if (parameters == NULL || one->components == NULL) {
+        cJSON_Delete(parameters);
+        return error_memory(err, sizeof *one->components, "a component");
+    }
+    cJSON_DeleteItemFromObjectCaseSensitive(parameters, "target");
+    one->components[0] = (struct study_case){.parameters = parameters,
+                                             .realisations = REALISATIONS_FIRST,
+                                             .role = "base",
+                                             .share = share};
+    one->component_count = 1;
+    return 0;
+}
+
+/* Returns the standard error of a scalar, or of a curve by norm, over its size. */
+static double relative_error(const struct case_result *result, enum target_quantity quantity) {
+    const char *name = target_quantity_name(quantity);
+    if (quantity == TARGET_SUMMIT_DENSITY) {
+        const struct scalar *scalar = result_scalar(result, name);
+        return scalar != NULL ? scalar->standard_error / fabs(scalar->value) : (double)NAN;
+    }
+    const struct curve *curve = result_curve(result, name);
+    double error = 0, size = 0;
+    for (size_t k = 0; curve != NULL && k < curve->n; k++) {
+        if (isnan(curve->standard_error[k]))
+            continue;
+        error += curve->standard_error[k] * curve->standard_error[k];
+        size += curve->y[k] * curve->y[k];
+    }
+    return sqrt(error / size);
+}
+
+/* As job_kind has it: the result of the case, with the scalars of the target. */
+static int statistics_target_answer(const cJSON *parameters, size_t count,
+                                    const struct target_component *components, uint64_t *wanted,
+                                    struct case_result *out, struct error *err) {
+    struct target target;
+    if (count != 1)
+        return error_set(err, ERROR_INPUT, "%zu components of a target; statistics have one",
+                         count);
+    wanted[0] = components[0].done;
+    int status = read_target(&target, parameters, NULL, err);
+    if (status != 0 || components[0].done == 0)
+        return status;
+    status = merger_result(components[0].merger, out, err);
+    if (status != 0)
+        return status;
+    double error = relative_error(out, target.quantity), standard_error;
+    double multiplier, quantile;
+    const double variance = error * error * (double)components[0].done;
+    const struct target_part part = {components[0].done, 1, components[0].seconds, &variance};
+    const struct target_plan plan = {&target, 1, &target.error, &multiplier, &quantile};
+    double reached = target_quantile(&target, 1, &part, 0, &standard_error) * standard_error;
+    target_allot(&plan, 1, &part, wanted);
+    status = target_add_scalar(out, "error_asked", target.error, err);
+    if (status == 0)
+        status = target_add_scalar(out, "error_reached", reached, err);
+    return status != 0 ? status : target_add_scalar(out, "error_chance", reached, err);
+}
+
+/* How the results of studies of statistics are shown: the summits of each case beside theory. */
+
+static const char *const HEADLINES[] = {"nayak_alpha",
+                                        "summit_density",
+                                        "summit_height_mean",
+                                        "summit_curvature_mean",
+                                        "eps_h",
+                                        "eps_s",
+                                        "generator_converged",
+                                        "percentile_skewness",
+                                        "percentile_kurtosis",
+                                        "percentile_correlation_length",
+                                        "percentile_summit_density",
+                                        "percentile_summit_curvature_mean",
+                                        NULL};
+static const struct logarithmic_picture LOGARITHMIC[] = {
+    {"psd", NULL}, {"nayak_alpha_by_ratio", NULL}, {NULL, NULL}};
+static const struct result_view STATISTICS_VIEW = {.headlines = HEADLINES,
+                                                   .logarithmic = LOGARITHMIC};
+
+/* Reads a case. The limit is not needed, as nothing large is computed. */
+static int read_case(void *one_case, const cJSON *parameters, double memory_limit,
+                     struct fault_list *faults, struct error *err) {
+    (void)memory_limit;
     return statistics_case_read(one_case, parameters, faults, err);
 }
 
@@ -38,8 +150,8 @@ struct statistics_workspace {
     struct levels_workspace *levels; /* NULL without levels */
     struct spectra spectra;
     struct statistics_generation *generation; /* NULL for Gaussian heights */
-    struct like_patch *patch;                 /* NULL: no pieces are cut */
-    struct summit_list summits[SIDES];        /* of a symmetric case the first has all of them */
+    struct like_patch *patch;                 /* NULL: no sub-maps are measured */
+    struct summit_list summits[SIDES];        /* of a symmetric case the first holds all */
 };
 
 static int workspace_create(void *workspace, const void *one_case,
@@ -49,7 +161,7 @@ static int workspace_create(void *workspace, const void *one_case,
     const struct statistics_case *statistics = one_case;
     const struct grid *grid = &statistics->surface.grid;
     const struct modes *modes = basis->modes;
-    /* else heights placed point by point */
+    /* otherwise heights are mapped point by point, and have waves up to the grid's */
     bool limited = surface_case_band_limited(&statistics->surface);
     (void)shared;
     work->one_case = statistics;
@@ -83,7 +195,8 @@ static void workspace_clear(void *workspace) {
         summit_list_clear(&work->summits[side]);
 }
 
-/* The roughness of a surface whose spectrum is exact: what the spectrum does not tell of it. */
+/* Returns the roughness of a surface whose spectrum is exact: constants, and what depends on
+ * heights. */
 static struct roughness roughness_of(const struct roughness *constants,
                                      const struct height_sums *sums) {
     struct roughness out = *constants;

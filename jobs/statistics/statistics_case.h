@@ -2,11 +2,11 @@
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_CASE_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_CASE_H
 
-#include "core/statistics/histogram.h"
-#include "core/statistics/summits.h"
+#include "core/statistics/heights/histogram.h"
+#include "core/statistics/summits/summits.h"
 #include "jobs/kind.h"
-#include "jobs/like_case.h"
-#include "jobs/surface_case.h"
+#include "jobs/like/like_case.h"
+#include "jobs/surface/surface_case.h"
 #include "schema/study/fault.h"
 
 extern const struct parameter_table STATISTICS_PARAMETERS;
@@ -18,12 +18,13 @@ enum { STATISTICS_LEVELS_MOST = 4 };
 
 struct statistics_case {
     struct surface_case surface;
-    struct like_case like; /* a measured surface that these are like */
+    struct like_case like; /* a measured surface that these resemble */
     enum summit_stencil stencil;
     enum summit_curvature curvature;
     struct bins height;     /* of z* = z/sqrt(m0) */
     struct bins equivalent; /* of t1 = -sqrt(3/m4) kappa_m; profiles z''/sqrt(m4) */
-    /* Coarser grids on which the surfaces are seen, too: every so many of their points, rising. */
+    /* Coarser grids on which the surfaces are also measured: every n-th of their points, n
+     * rising. */
     size_t level_count, strides[STATISTICS_LEVELS_MOST];
 };
 /* Reads a case as surface_case_read does. */
@@ -31,12 +32,13 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
                          struct fault_list *faults, struct error *err);
 void statistics_case_clear(struct statistics_case *one_case);
 
-/* Tells whether surfaces are as their mirror images -z in law: then pits are summits among others.
- */
+/* Returns whether surfaces have the same distribution as their mirror images -z. Then pits are
+ * counted as summits. */
 static inline bool statistics_case_symmetric(const struct statistics_case *one_case) {
     return one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN;
 }
-/* Counts the kinds of summits that are told apart: summits, and pits where those are not. */
+/* Returns how many kinds of summits are distinguished: summits, and pits where they differ from
+ * them. */
 static inline size_t statistics_case_sides(const struct statistics_case *one_case) {
     return statistics_case_symmetric(one_case) ? 1 : 2;
 }

@@ -1,13 +1,13 @@
-/* What a statistics case costs, before anything ran. */
+/* The cost of a statistics case, estimated before anything ran. */
 #include "core/cost.h"
-#include "core/surface/spectrum_estimate.h"
+#include "core/surface/spectrum.h"
 #include "jobs/publishing_cost.h"
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_generation.h"
 #include "jobs/statistics/statistics_levels.h"
 #include <math.h>
 
-/* Spectra of every second point come beside those of all. */
+/* Factor for spectra of every second point beside those of all. */
 static const double CHANGES_COST = 1.25;
 
 /* Returns the CPU seconds of one realisation. */
@@ -27,14 +27,14 @@ static double expected_seconds(const struct statistics_case *one_case) {
            statistics_generation_seconds(one_case) + like_patch_seconds(&one_case->like);
 }
 
-/* The theories of a bin of summit heights take so many CPU seconds, as in publishing_cost.h. */
+/* CPU seconds of the theories of a bin of summit heights, as in publishing_cost.h. */
 static const double PROFILE_BIN_SECONDS = 1.3e-5, SURFACE_BIN_SECONDS = 8.4e-5;
-/* Theory of the grid: of nine-point summits, of others (F8.4). */
+/* CPU seconds of the theory of the grid: for nine-point summits, for others (F8.4). */
 static const double NINE_POINT_SECONDS = 0.06, FEW_POINT_SECONDS = 0.015;
 enum { CURVES = 9, HEIGHT_CURVES = 5 };
 
-/* The joint density is taken to have as many cells as ten realisations have summits, acf and psd
- * together a point for each point of the shorter side. */
+/* Assumes that the joint density has as many cells as ten realisations have summits, and that acf
+ * and psd together have a point for each point of the shorter side. */
 static double expected_case_seconds(const struct statistics_case *one_case, double summits) {
     const struct grid *grid = &one_case->surface.grid;
     size_t side = grid_is_profile(grid) || grid->nx < grid->ny ? grid->nx : grid->ny;
@@ -64,7 +64,7 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
     bool exact = surface_case_exact(surface);
     out->nx = grid->nx;
     out->ny = grid->ny;
-    /* a list of summits doubles as it grows; spectra of height maps take a transform of the grid */
+    /* a list of summits doubles as it grows; spectra of height maps need a transform of the grid */
     out->memory_bytes =
         surface_case_bytes(surface) + statistics_generation_bytes(one_case) +
         summit_finder_bytes(grid, one_case->stencil, one_case->curvature, own.x, own.y) +

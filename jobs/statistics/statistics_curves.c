@@ -5,14 +5,14 @@
 #include <math.h>
 #include <string.h>
 
-/* All curves of a case are made from this. */
+/* What all curves of a case are made from. */
 struct statistics_curve_maker {
     const struct statistics_case *one_case;
     const struct statistics_tally *tally;
     const char *theory_name;       /* of summits; NULL: does not apply */
-    enum summit_side side;         /* of the curves under way */
+    enum summit_side side;         /* of the present curves */
     struct case_result *result;    /* its arena owns all arrays */
-    double *pdf, *cdf, *curvature; /* theories by bin, of the curves under way */
+    double *pdf, *cdf, *curvature; /* theories by bin, of the present curves */
 };
 
 static int no_room(struct error *err) {
@@ -58,7 +58,7 @@ static const char *equivalent_label(const struct statistics_curve_maker *maker) 
     return maker->one_case->surface.dimension == 2 ? "-sqrt(3/m4) kappa_m" : "z''/sqrt(m4)";
 }
 
-/* The curves of pits are told apart as a series. */
+/* Returns a curve of summits; that of pits has a series of its own. */
 static struct curve summit_curve(const struct statistics_curve_maker *maker, const char *quantity,
                                  const char *x_label, const char *y_label) {
     struct curve curve = curve_named(quantity, x_label, y_label);
@@ -70,7 +70,7 @@ static const struct summit_tally *side_tally(const struct statistics_curve_maker
     return &maker->tally->summits[maker->side];
 }
 
-/* A histogram becomes a density over its bins. */
+/* A histogram that becomes a density over its bins. */
 struct histogram {
     const char *quantity, *x_label;
     const struct bins *bins;
@@ -159,7 +159,7 @@ static int add_curvature(struct statistics_curve_maker *maker, struct error *err
 
 /* --- the joint density of summit heights and curvatures --- */
 
-/* The occupied cells of a matrix, and what summits inside of it there are. */
+/* The occupied cells of a matrix, and how many summits lie inside of it. */
 struct joint_cells {
     size_t count;
     uint32_t *cells;
@@ -203,7 +203,7 @@ static void joint_cells_fill(const struct statistics_curve_maker *maker, double 
     }
 }
 
-/* Only the cells that summits fell into; their theory is made where it is asked for. */
+/* Adds the cells that have summits; their theory is made on demand. */
 static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
     const struct bins *height = &maker->one_case->height;
     const struct bins *equivalent = &maker->one_case->equivalent;
@@ -287,7 +287,7 @@ static int add_heights(struct statistics_curve_maker *maker, struct error *err) 
     return status;
 }
 
-/* Adds a curve of each side, one beside the other as those of one quantity stand. */
+/* Adds a curve of each side, next to each other as curves of one quantity must be. */
 typedef int add_curve_function(struct statistics_curve_maker *maker, struct error *err);
 static int add_sides(struct statistics_curve_maker *maker, add_curve_function *add,
                      struct error *err) {
@@ -357,7 +357,7 @@ int statistics_curves(const struct statistics_case *one_case, const struct modes
                                            .result = out,
                                            .theory_name =
                                                applies ? statistics_theory_name(one_case) : NULL};
-    /* the first is the main curve of reports: summits are what grids and generation bear on */
+    /* the first is the main curve of reports: errors of grids and generation bear on summits */
     int status = add_summit_heights(&maker, moments->nayak_alpha, err);
     if (status == 0)
         status = add_summit_curvatures(&maker, err);

@@ -1,4 +1,4 @@
-/* From tallies to curves: densities, cumulative densities, curvature, spectra. */
+/* Makes curves of tallies: densities, cumulative densities, curvature, spectra. */
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_CURVES_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_CURVES_H
 
@@ -9,7 +9,7 @@
 int statistics_curves(const struct statistics_case *one_case, const struct modes *modes,
                       const struct moments *moments, const struct statistics_tally *tally,
                       struct case_result *out, struct error *err);
-/* Makes the theories that the curves name without holding them (the joint density's). */
+/* Makes the theories of which the curves have the name alone (that of the joint density). */
 int statistics_curves_complete(const struct statistics_case *one_case,
                                const struct surface_basis *basis, struct case_result *result,
                                struct error *err);

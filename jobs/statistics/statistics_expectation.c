@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* All that expectations of a case are made from. */
+/* What expectations of a case are made from. */
 struct expectation {
     struct statistics_case one_case; /* owned */
     struct modes *modes;             /* owned */
@@ -53,7 +53,7 @@ static int add_heights(struct expectation *e, struct error *err) {
     return status;
 }
 
-/* Theories of summits over bins; their arrays are the arena's. */
+/* Theories of summits over bins; the arena owns the arrays. */
 struct summit_curves {
     double *pdf, *cdf, *curvature, *t1_pdf, *joint; /* joint: NULL without */
 };
@@ -225,7 +225,7 @@ static int add_of_grid(struct expectation *e, bool joint, struct sampled_summits
     return status != 0 ? status : add_summit_curves(e, STATISTICS_GRID_THEORY, &curves, err);
 }
 
-/* Of summits nothing is known of other heights than Gaussian ones. */
+/* Adds summits, of which theory exists for Gaussian heights alone. */
 static int add_summits(struct expectation *e, bool joint, struct error *err) {
     struct summit_expectation without = {NAN, NAN, NAN, NAN, NAN, NAN};
     struct sampled_summits grid = {NAN, NAN, NAN, NAN, NAN, NAN, NAN};

@@ -21,7 +21,7 @@ static struct sampled_surface surface_of(const struct statistics_case *one_case,
                                     one_case->curvature};
 }
 
-/* Adds the series to the curve of a quantity, if there is one. */
+/* Adds the series to the curves of a quantity. */
 static void add_series(struct case_result *out, const char *quantity, const double *y) {
     for (size_t a = 0; a < out->curve_count; a++) {
         struct curve *curve = &out->curves[a];
@@ -81,8 +81,8 @@ static int add_scalar(struct case_result *out, const char *name, double value, d
     return result_add_scalar(out, &scalar, err);
 }
 
-/* What is known of the spectrum alone: how isotropic its moments are (1: isotropic), of an
- * exponential autocorrelation what share of it no surface can have. */
+/* Adds scalars that depend on the spectrum alone: how isotropic its moments are (1: isotropic), and
+ * the share of an exponential autocorrelation that no surface can have. */
 static int add_spectrum(const struct statistics_case *one_case, const struct surface_basis *basis,
                         struct case_result *out, struct error *err) {
     struct sampled_moments grid;
@@ -96,7 +96,7 @@ static int add_spectrum(const struct statistics_case *one_case, const struct sur
     return status;
 }
 
-/* Moments by differences are those of the spectrum whatever the heights. */
+/* Moments by differences follow from the spectrum, whatever the heights. */
 static void set_moments(const struct statistics_case *one_case, const struct modes *modes,
                         struct case_result *out) {
     struct sampled_moments moments;

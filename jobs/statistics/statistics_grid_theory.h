@@ -1,7 +1,7 @@
 /* Theory of the grid in use (F8.4, F8.5) beside theory without a grid: the series "grid" of curves
- * of summits, and `grid` of scalars, among them `isotropy` (3 m22/m40) and `spectrum_clipped`,
- * which are of the spectrum alone. Of summits it is of Gaussian heights alone; refined summits need
- * none. */
+ * of summits, and `grid` of scalars. Among these, `isotropy` (3 m22/m40) and `spectrum_clipped`
+ * depend on the spectrum alone. Theory of summits exists for Gaussian heights alone; refined
+ * summits need none. */
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_GRID_THEORY_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_GRID_THEORY_H
 
@@ -9,8 +9,8 @@
 
 extern const char STATISTICS_GRID_THEORY[]; /* "grid" */
 
-/* Adds it to the curves and scalars of a result, whose arena owns it; of the joint density its name
- * alone. */
+/* Adds the theory to the curves and scalars of a result, whose arena owns it; of the joint density
+ * its name alone. */
 int statistics_grid_theory(const struct statistics_case *one_case,
                            const struct surface_basis *basis, struct case_result *out,
                            struct error *err);

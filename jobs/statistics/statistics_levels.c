@@ -1,7 +1,86 @@
 #include "jobs/statistics/statistics_levels.h"
+#include "core/statistics/uncertainty/richardson.h"
+#include "jobs/estimate.h"
+#include "jobs/statistics/statistics_scalars.h"
+#include "jobs/statistics/summit_heights.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum shape { SHAPE_DENSITY, SHAPE_CUMULATIVE, SHAPE_CURVATURE };
+enum cells { CELLS_POINTS, CELLS_SUMMITS, CELLS_EQUIVALENT };
+
+/* The curves that are ratios of sums by groups. */
+static const struct row {
+    const char *quantity;
+    enum cells cells;
+    enum shape shape;
+} ROWS[] = {{"height_pdf", CELLS_POINTS, SHAPE_DENSITY},
+            {"height_cdf", CELLS_POINTS, SHAPE_CUMULATIVE},
+            {"summit_height_pdf", CELLS_SUMMITS, SHAPE_DENSITY},
+            {"summit_height_cdf", CELLS_SUMMITS, SHAPE_CUMULATIVE},
+            {"summit_mean_curvature", CELLS_SUMMITS, SHAPE_CURVATURE},
+            {"summit_curvature_pdf", CELLS_EQUIVALENT, SHAPE_DENSITY}};
+
+static const struct row *row_of(const struct curve *curve) {
+    for (size_t a = 0; a < sizeof ROWS / sizeof *ROWS; a++)
+        if (strcmp(ROWS[a].quantity, curve->quantity) == 0)
+            return &ROWS[a];
+    return NULL;
+}
+
+/* Returns the counts of cells first to last of a group. offset: of cell 0 in the group. */
+static double counted(const struct statistics_groups *groups, size_t g, size_t offset, size_t first,
+                      size_t last) {
+    const uint64_t *count = groups->count + g * groups->counts + offset;
+    double sum = 0;
+    for (size_t cell = first; cell <= last; cell++)
+        sum += (double)count[cell];
+    return sum;
+}
+
+/* Fills the share of things of each group in some cells, over a width. */
+static void fill_shares(const struct statistics_groups *groups, size_t offset, size_t cells,
+                        size_t first, size_t last, double width, struct point_groups *out) {
+    for (size_t g = 0; g < GROUPS; g++) {
+        double some = counted(groups, g, offset, first, last);
+        out->things[g] = counted(groups, g, offset, 0, cells - 1);
+        out->counted[g] = some / width;
+        out->informative += some > 0 && some < out->things[g];
+    }
+}
+
+static void fill_curvatures(const struct statistics_groups *groups, size_t offset, size_t sums,
+                            size_t cell, struct point_groups *out) {
+    for (size_t g = 0; g < GROUPS; g++) {
+        out->things[g] = counted(groups, g, offset, cell, cell);
+        out->counted[g] = exact_sum_value(&groups->sum[g * groups->sums + sums + cell]);
+        out->informative += out->things[g] > 0;
+    }
+}
+
+bool statistics_point_groups(const struct statistics_tally *tally, const struct curve *curve,
+                             size_t at, struct point_groups *out) {
+    const struct statistics_case *one_case = tally->one_case;
+    const struct row *row = row_of(curve);
+    struct group_offsets offset = statistics_group_offsets(one_case);
+    size_t side = strcmp(curve->series, "pits") == 0 ? SIDE_PITS : SIDE_SUMMITS;
+    if (row == NULL || side >= tally->sides)
+        return false;
+    const struct bins *bins =
+        row->cells == CELLS_EQUIVALENT ? &one_case->equivalent : &one_case->height;
+    const size_t offsets[] = {offset.height, offset.summit[side], offset.equivalent[side]};
+    size_t first = row->shape == SHAPE_CUMULATIVE ? 0 : at + 1;
+    if (at >= bins->count)
+        return false;
+    *out = (struct point_groups){.informative = 0};
+    if (row->shape == SHAPE_CURVATURE)
+        fill_curvatures(&tally->groups, offsets[row->cells], offset.curvature[side], at + 1, out);
+    else
+        fill_shares(&tally->groups, offsets[row->cells], cells_of(bins), first, at + 1,
+                    row->shape == SHAPE_DENSITY ? bins_width(bins) : 1, out);
+    return true;
+}
 
 struct statistics_case statistics_level_case(const struct statistics_case *one_case, size_t level) {
     struct statistics_case out = *one_case;
@@ -57,7 +136,7 @@ void statistics_levels_get(struct byte_reader *reader, struct statistics_levels 
         statistics_groups_get(reader, &levels->moments[l]);
 }
 
-/* Whether groups count the summits of a tally. */
+/* Returns whether groups count the summits of a tally. */
 static bool moments_fit(const struct statistics_groups *moments,
                         const struct statistics_tally *tally) {
     bool fit = statistics_groups_realisations_fit(moments, tally->points.realisations);
@@ -196,7 +275,7 @@ static void add_moments(struct statistics_groups *moments, const struct statisti
     statistics_groups_sum(moments, group, 0, LEVEL_SUMS, sums);
 }
 
-/* Measures the surface on one level, as the own grid is. */
+/* Measures the surface on one level as it is measured on its own grid. */
 static int level_add(struct level_workspace *level, const struct grid *from, uint64_t realisation,
                      const double *z, struct statistics_tally *tally,
                      struct statistics_groups *moments, struct error *err) {
@@ -235,5 +314,302 @@ int levels_workspace_add(struct levels_workspace *workspace, uint64_t realisatio
     for (size_t l = 0; l < workspace->count && status == 0; l++)
         status = level_add(&workspace->levels[l], &workspace->grid, realisation, z,
                            &levels->tallies[l], &levels->moments[l + 1], err);
+    return status;
+}
+
+/* The discretisation error of curves and scalars, from changes between levels. */
+
+/* The order of the error in the spacing, for counts and measures of summits of a grid (F8.3), and
+ * for extremes of points. */
+static const double ORDER = 2;
+
+/* Returns the spacing of a level over that of the next finer one. */
+static double spacing_ratio(const struct statistics_levels *levels, size_t level) {
+    const struct statistics_case *one_case = levels->own.one_case;
+    double finer = level > 0 ? (double)one_case->strides[level - 1] : 1;
+    return (double)one_case->strides[level] / finer;
+}
+
+static struct pair_estimate difference(const struct point_groups *fine,
+                                       const struct point_groups *coarse) {
+    const struct estimate_groups left = {fine->counted, fine->things};
+    const struct estimate_groups right = {coarse->counted, coarse->things};
+    return estimate_group_pairs(POINT_GROUPS, &left, &right);
+}
+
+/* The error of a value that is of[0] on the own grid and of[l + 1] on level l. least: its standard
+ * error, which stands in where too few groups have data. */
+struct level_error {
+    double value, bound, standard_error;
+};
+static struct level_error error_of(const struct statistics_levels *levels,
+                                   const struct point_groups of[], double least) {
+    struct pair_estimate fine = difference(&of[0], &of[1]);
+    struct mesh_changes changes = {.fine = fine.value,
+                                   .coarse = NAN,
+                                   .fine_ratio = spacing_ratio(levels, 0),
+                                   .coarse_ratio = NAN};
+    if (levels->count > 1) {
+        changes.coarse = difference(&of[1], &of[2]).value;
+        changes.coarse_ratio = spacing_ratio(levels, 1);
+    }
+    struct mesh_error mesh = mesh_error(&changes, ORDER);
+    bool rare = of[0].informative < TALLY_RARE || of[1].informative < TALLY_RARE;
+    double scatter = rare ? M_SQRT2 * least : fine.standard_error;
+    return (struct level_error){.value = isnan(mesh.bound) ? (double)NAN : mesh.error,
+                                .bound = mesh.bound,
+                                .standard_error = mesh.weight * scatter};
+}
+
+/* --- curves --- */
+
+/* Makes the arrays of an error of a curve, in the result's arena. */
+static int curve_room(struct case_result *out, struct curve *curve, double **room,
+                      struct error *err) {
+    size_t n = curve_value_count(curve);
+    *room = result_numbers(out, 3 * n);
+    if (*room == NULL)
+        return error_set(err, ERROR_MEMORY, "no memory left for errors");
+    curve->errors[ERROR_DISCRETISATION] = (struct curve_error){.applies = true,
+                                                               .value = *room,
+                                                               .bound = *room + n,
+                                                               .standard_error = *room + 2 * n,
+                                                               .order = NAN};
+    return 0;
+}
+
+/* Heights of points have no such error: their distribution does not depend on the spacing. */
+static bool is_of_heights(const struct curve *curve) {
+    return strcmp(curve->quantity, "height_pdf") == 0 || strcmp(curve->quantity, "height_cdf") == 0;
+}
+
+static bool is_of_levels(const struct statistics_levels *levels, const struct curve *curve) {
+    struct point_groups groups;
+    return levels->count > 0 && curve->columns == 0 &&
+           statistics_point_groups(&levels->own, curve, 0, &groups);
+}
+
+static int curve_errors(const struct statistics_levels *levels, struct curve *curve,
+                        struct case_result *out, struct error *err) {
+    struct point_groups of[3];
+    double *room;
+    int status = curve_room(out, curve, &room, err);
+    for (size_t a = 0; a < curve->n && status == 0; a++) {
+        for (size_t l = 0; l < 3 && l <= levels->count; l++)
+            statistics_point_groups(l == 0 ? &levels->own : &levels->tallies[l - 1], curve, a,
+                                    &of[l]);
+        struct level_error error = error_of(levels, of, curve->standard_error[a]);
+        room[a] = error.value;
+        room[curve->n + a] = error.bound;
+        room[2 * curve->n + a] = error.standard_error;
+    }
+    return status;
+}
+
+/* --- the joint density --- */
+
+/* Uses the tallies of the grids, the own one first. A coarser grid finds summits at other heights,
+ * and so in other cells: pairs would gain little, and their sums by groups would be many. The
+ * standard error is that of independent grids, which is no smaller. */
+static struct level_error joint_error(const struct statistics_levels *levels, size_t side,
+                                      size_t cell) {
+    struct estimate of[3];
+    for (size_t l = 0; l < 3 && l <= levels->count; l++) {
+        const struct statistics_tally *tally = l == 0 ? &levels->own : &levels->tallies[l - 1];
+        of[l] = tally_share(&tally->summits[side].joint, cell, &tally->summits[side].total);
+    }
+    bool three = levels->count > 1;
+    const struct mesh_changes changes = {.fine = of[0].value - of[1].value,
+                                         .coarse = three ? of[1].value - of[2].value : (double)NAN,
+                                         .fine_ratio = spacing_ratio(levels, 0),
+                                         .coarse_ratio =
+                                             three ? spacing_ratio(levels, 1) : (double)NAN};
+    struct mesh_error mesh = mesh_error(&changes, ORDER);
+    return (struct level_error){
+        .value = isnan(mesh.bound) ? (double)NAN : mesh.error,
+        .bound = mesh.bound,
+        .standard_error = mesh.weight * hypot(of[0].standard_error, of[1].standard_error)};
+}
+
+static int joint_errors(const struct statistics_levels *levels, struct curve *curve,
+                        struct case_result *out, struct error *err) {
+    const struct statistics_case *one_case = levels->own.one_case;
+    double area = bins_width(&one_case->height) * bins_width(&one_case->equivalent), *room;
+    size_t side = strcmp(curve->series, "pits") == 0 ? SIDE_PITS : SIDE_SUMMITS;
+    size_t n = curve->cell_count;
+    int status = curve_room(out, curve, &room, err);
+    for (size_t a = 0; a < n && status == 0; a++) {
+        size_t cell = summit_joint_cell(one_case, curve->cells[a]);
+        struct level_error error = joint_error(levels, side, cell);
+        room[a] = error.value / area;
+        room[n + a] = error.bound / area;
+        room[2 * n + a] = error.standard_error / area;
+    }
+    return status;
+}
+
+static int set_curve(const struct statistics_levels *levels, struct curve *curve,
+                     struct case_result *out, struct error *err) {
+    double *room;
+    curve->errors[ERROR_DISCRETISATION].applies = true;
+    if (is_of_heights(curve)) /* zeros */
+        return curve_room(out, curve, &room, err);
+    if (levels->count > 0 && curve->columns > 0)
+        return joint_errors(levels, curve, out, err);
+    return is_of_levels(levels, curve) ? curve_errors(levels, curve, out, err) : 0;
+}
+
+/* --- scalars --- */
+
+static struct scalar *scalar_at(struct case_result *out, size_t at) {
+    const char *name = statistics_scalar_name(at);
+    for (size_t s = 0; s < out->scalar_count; s++)
+        if (strcmp(out->scalars[s].name, name) == 0)
+            return &out->scalars[s];
+    return NULL;
+}
+
+/* What a scalar is the mean of: sums over summits, or over realisations. */
+enum mean {
+    MEAN_NUMBER,
+    MEAN_HEIGHT,
+    MEAN_VARIANCE,
+    MEAN_SKEWNESS,
+    MEAN_KURTOSIS,
+    MEAN_CURVATURE,
+    MEAN_LOWEST,
+    MEAN_HIGHEST
+};
+
+static double group_sum(const struct statistics_groups *moments, size_t g, size_t at) {
+    return exact_sum_value(&moments->sum[g * moments->sums + at]);
+}
+
+/* Returns powers of the heights of a side's summits in a group, about height c. */
+static struct height_powers powers_of(const struct statistics_groups *moments, size_t g,
+                                      size_t side, double c) {
+    const size_t at = side * SUMS_OF_SIDE;
+    double n = (double)moments->count[g * moments->counts + side];
+    double first = group_sum(moments, g, at + SUM_HEIGHT);
+    double second = group_sum(moments, g, at + SUM_SQUARE);
+    double third = group_sum(moments, g, at + SUM_CUBE);
+    double fourth = group_sum(moments, g, at + SUM_FOURTH);
+    return (struct height_powers){
+        .number = n,
+        .first = first - c * n,
+        .second = second - c * (2 * first - c * n),
+        .third = third - c * (3 * second - c * (3 * first - c * n)),
+        .fourth = fourth - c * (4 * third - c * (6 * second - c * (4 * first - c * n)))};
+}
+
+/* Returns the same over all groups. */
+static struct height_powers powers_of_all(const struct statistics_groups *moments, size_t side,
+                                          double c) {
+    struct height_powers all = {0};
+    for (size_t g = 0; g < GROUPS; g++) {
+        const struct height_powers some = powers_of(moments, g, side, c);
+        all.number += some.number;
+        all.first += some.first;
+        all.second += some.second;
+        all.third += some.third;
+        all.fourth += some.fourth;
+    }
+    return all;
+}
+
+static void groups_of(const struct statistics_groups *moments, size_t side, enum mean mean,
+                      struct point_groups *out) {
+    const struct height_powers heights = powers_of_all(moments, side, 0);
+    double centre = heights.first / heights.number;
+    const struct height_powers all = powers_of_all(moments, side, centre);
+    *out = (struct point_groups){.informative = 0};
+    for (size_t g = 0; g < GROUPS; g++) {
+        double n = (double)moments->count[g * moments->counts + side];
+        double realisations = (double)moments->realisations[g];
+        const struct height_powers some = powers_of(moments, g, side, centre);
+        const double counted[] = {
+            [MEAN_NUMBER] = n,
+            [MEAN_HEIGHT] = group_sum(moments, g, side * SUMS_OF_SIDE + SUM_HEIGHT),
+            [MEAN_VARIANCE] = height_moment_part(HEIGHT_VARIANCE, &all, &some),
+            [MEAN_SKEWNESS] = height_moment_part(HEIGHT_SKEWNESS, &all, &some),
+            [MEAN_KURTOSIS] = height_moment_part(HEIGHT_KURTOSIS, &all, &some),
+            [MEAN_CURVATURE] = group_sum(moments, g, side * SUMS_OF_SIDE + SUM_CURVATURE),
+            [MEAN_LOWEST] = group_sum(moments, g, SUM_LOWEST),
+            [MEAN_HIGHEST] = group_sum(moments, g, SUM_HIGHEST)};
+        bool of_summits = mean >= MEAN_HEIGHT && mean <= MEAN_CURVATURE;
+        out->counted[g] = counted[mean];
+        out->things[g] = of_summits ? n : realisations;
+        out->informative += out->things[g] > 0;
+    }
+}
+
+static double ratio_of(const struct point_groups *groups) {
+    double counted = 0, things = 0;
+    for (size_t g = 0; g < GROUPS; g++) {
+        counted += groups->counted[g];
+        things += groups->things[g];
+    }
+    return counted / things;
+}
+
+/* A number may be reported per cell, per area, or as half of summits and pits together: all are in
+ * proportion to the number in groups. */
+static void set_by_levels(const struct statistics_levels *levels, struct case_result *out,
+                          size_t at, size_t side, enum mean mean) {
+    struct scalar *scalar = scalar_at(out, at);
+    struct point_groups of[3];
+    if (scalar == NULL || isnan(scalar->value))
+        return;
+    scalar->errors[ERROR_DISCRETISATION].applies = true;
+    if (levels->count == 0)
+        return;
+    for (size_t l = 0; l < 3 && l <= levels->count; l++)
+        groups_of(&levels->moments[l], side, mean, &of[l]);
+    double unit = mean == MEAN_NUMBER ? scalar->value / ratio_of(&of[0]) : 1;
+    struct level_error error = error_of(levels, of, scalar->standard_error / unit);
+    scalar->errors[ERROR_DISCRETISATION] =
+        (struct scalar_error){.applies = true,
+                              .known = !isnan(error.value),
+                              .value = error.value * unit,
+                              .bound = error.bound * unit,
+                              .standard_error = error.standard_error * unit};
+}
+
+/* Sets the error of a constant of all surfaces of an exact spectrum: its value by differences less
+ * the prescribed one. */
+static void set_exactly(struct case_result *out, size_t at, bool exact) {
+    struct scalar *scalar = scalar_at(out, at);
+    if (scalar == NULL || isnan(scalar->value))
+        return;
+    double error = scalar->value - scalar->theory;
+    scalar->errors[ERROR_DISCRETISATION] = (struct scalar_error){
+        .applies = true, .known = exact && !isnan(error), .value = exact ? error : 0};
+}
+
+static void set_scalars(const struct statistics_levels *levels, struct case_result *out) {
+    static const enum mean OF_SIDE[SIDE_SCALARS] = {MEAN_NUMBER,   MEAN_NUMBER,   MEAN_NUMBER,
+                                                    MEAN_HEIGHT,   MEAN_VARIANCE, MEAN_SKEWNESS,
+                                                    MEAN_KURTOSIS, MEAN_CURVATURE};
+    static const size_t BY_DIFFERENCES[] = {SCALAR_RMS_SLOPE, SCALAR_RMS_CURVATURE,
+                                            SCALAR_M2_DIFFERENCE, SCALAR_M4_DIFFERENCE,
+                                            SCALAR_NAYAK_ALPHA_DIFFERENCE};
+    const struct statistics_case *one_case = levels->own.one_case;
+    for (size_t side = 0; side < levels->own.sides; side++)
+        for (size_t a = 0; a < SIDE_SCALARS; a++)
+            set_by_levels(levels, out, (side == SIDE_PITS ? SCALAR_PITS : SCALAR_SUMMITS) + a, side,
+                          OF_SIDE[a]);
+    set_by_levels(levels, out, SCALAR_LOWEST, 0, MEAN_LOWEST);
+    set_by_levels(levels, out, SCALAR_HIGHEST, 0, MEAN_HIGHEST);
+    for (size_t a = 0; a < sizeof BY_DIFFERENCES / sizeof *BY_DIFFERENCES; a++)
+        set_exactly(out, BY_DIFFERENCES[a], surface_case_exact(&one_case->surface));
+}
+
+int statistics_levels_errors(const struct statistics_levels *levels, struct case_result *out,
+                             struct error *err) {
+    int status = 0;
+    for (size_t a = 0; a < out->curve_count && status == 0; a++)
+        status = set_curve(levels, &out->curves[a], out, err);
+    if (status == 0)
+        set_scalars(levels, out);
     return status;
 }

@@ -3,7 +3,7 @@
 #include "core/theory/nayak.h"
 #include "core/theory/sampled_field.h"
 #include "jobs/estimate.h"
-#include "jobs/like_percentile.h"
+#include "jobs/like/like_percentile.h"
 #include "jobs/statistics/statistics_theory.h"
 #include "jobs/statistics/summit_heights.h"
 #include <math.h>
@@ -59,8 +59,8 @@ const char *statistics_scalar_name(size_t at) {
     return at < SCALAR_COUNT ? NAMES[at] : NULL;
 }
 
-/* Moments of heights, mean curvature, of the summits of one realisation; NaN (0/0) where
- * there is none. out: the scalars of summits, or of pits as if they were those. */
+/* Measures the moments of heights and the mean curvature of the summits of one realisation; NaN
+ * (0/0) where there is none. out: the scalars of summits, or of pits in the same order. */
 static void measure_summits(const struct statistics_case *one_case, const struct moments *moments,
                             const struct summit_list *list, double *out) {
     const struct grid *grid = &one_case->surface.grid;
@@ -146,7 +146,7 @@ void statistics_constants(const struct modes *modes, const struct moments *momen
                               .highest = NAN};
 }
 
-/* Columns of the scalars, n values each, and the estimates made of them. */
+/* Columns of the scalars, n values each. */
 struct scalar_columns {
     size_t n;
     double *values;  /* SCALAR_COUNT x n */
@@ -156,8 +156,8 @@ static const double *column(const struct scalar_columns *columns, enum statistic
     return columns->values + (size_t)scalar * columns->n;
 }
 
-/* Returns the number of the scalar that counts the summits or pits which a scalar is a mean of;
- * SCALAR_COUNT for another scalar. */
+/* Returns the scalar with the number of summits or pits that a scalar is a mean over; SCALAR_COUNT
+ * for another scalar. */
 static size_t number_behind(size_t scalar) {
     if (scalar >= SCALAR_SUMMIT_HEIGHT_MEAN && scalar <= SCALAR_SUMMIT_CURVATURE_MEAN)
         return SCALAR_SUMMITS;
@@ -166,7 +166,7 @@ static size_t number_behind(size_t scalar) {
     return SCALAR_COUNT;
 }
 
-/* Tells whether it is a moment of heights about their mean, and which. */
+/* Returns whether a scalar is a moment of heights about their mean, and which. */
 static bool is_moment(size_t scalar, enum height_moment *moment) {
     size_t first = number_behind(scalar) == SCALAR_PITS ? SCALAR_PIT_HEIGHT_VARIANCE
                                                         : SCALAR_SUMMIT_HEIGHT_VARIANCE;
@@ -176,7 +176,7 @@ static bool is_moment(size_t scalar, enum height_moment *moment) {
     return true;
 }
 
-/* Over all summits of the case; moments about the common mean. */
+/* Estimates a mean over all summits of the case; moments are about the common mean. */
 static struct estimate summit_estimate(const struct scalar_columns *columns,
                                        enum statistics_scalar scalar) {
     enum height_moment moment;
@@ -223,7 +223,7 @@ int statistics_scalar_values(const struct realisations *realisations, size_t sca
     return 0;
 }
 
-/* Fills in what theory expects of the summits, or of the pits as if they were those. */
+/* Fills in the theory of summits, or of pits in the same order. */
 static void theory_of_summits(const struct statistics_case *one_case, const struct moments *moments,
                               double *out) {
     int dimension = one_case->surface.dimension;
@@ -244,7 +244,7 @@ static void theory_of_summits(const struct statistics_case *one_case, const stru
     out[SCALAR_SUMMIT_CURVATURE_MEAN] = expected.curvature;
 }
 
-/* Fills in what theory expects of each scalar, NaN where there is none. */
+/* Fills in the theory of each scalar, NaN where there is none. */
 static void theory_of_scalars(const struct statistics_case *one_case, const struct moments *moments,
                               double out[SCALAR_COUNT]) {
     struct height_moments heights;
@@ -279,8 +279,7 @@ static int add_scalar(struct case_result *out, const char *name, struct estimate
     return result_add_scalar(out, &scalar, err);
 }
 
-/* Fills in what is the same on every surface by its making, NaN where that is a matter of chance.
- */
+/* Fills in scalars that every surface has by construction; NaN for those that are random. */
 static void constants_of_scalars(const struct statistics_case *one_case,
                                  const struct surface_basis *basis, double out[SCALAR_COUNT]) {
     const struct moments *moments = &basis->moments;
@@ -304,9 +303,9 @@ static void constants_of_scalars(const struct statistics_case *one_case,
     out[SCALAR_NAYAK_ALPHA_DIFFERENCE] = roughness.nayak_alpha;
 }
 
-/* Values that chance made the same show no scatter, but are no constants: their error is not known.
- * A share of realisations has the bound of a count not seen (F15.8). */
-static struct estimate chance_estimate(const struct scalar_columns *columns,
+/* Estimates a random scalar. Where all values happen to be equal its error is not known; for a
+ * share of realisations it has the bound of a count not seen (F15.8). */
+static struct estimate random_estimate(const struct scalar_columns *columns,
                                        enum statistics_scalar scalar) {
     struct estimate out = number_behind(scalar) < SCALAR_COUNT
                               ? summit_estimate(columns, scalar)
@@ -328,7 +327,7 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
     for (enum statistics_scalar a = 0; a < SCALAR_OWN && status == 0; a++) {
         struct estimate estimate = {constants[a], 0};
         if (isnan(constants[a]))
-            estimate = chance_estimate(columns, a);
+            estimate = random_estimate(columns, a);
         status = add_scalar(out, NAMES[a], estimate, theory[a], err);
     }
     if (status != 0)

@@ -2,16 +2,16 @@
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_SCALARS_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_SCALARS_H
 
+#include "core/statistics/heights/roughness.h"
 #include "core/statistics/patch.h"
-#include "core/statistics/roughness.h"
 #include "jobs/kind.h"
 #include "jobs/realisations.h"
 #include "jobs/statistics/statistics_tally.h"
 #include "schema/result/result.h"
 
-/* Scalars that are measured again on some realisations, of a surface that another iteration found
- * ("other_...") and of one that was iterated for longer ("longer_..."); NaN on all others
- * (statistics_generation.h): ENTRY(scalar, name). */
+/* Scalars that are measured again on some realisations: of a surface by another iteration
+ * ("other_...") and of one after longer iterations ("longer_..."); NaN on all others
+ * (statistics_generation.h). ENTRY(scalar, name). */
 #define GENERATION_SCALARS(ENTRY)                                                                  \
     ENTRY(SKEWNESS, "skewness")                                                                    \
     ENTRY(KURTOSIS, "kurtosis")                                                                    \
@@ -35,7 +35,8 @@ enum { GENERATION_SCALARS(GENERATION_NUMBER) GENERATION_COUNT };
 #define GENERATION_OTHER(scalar, name) SCALAR_OTHER_##scalar,
 #define GENERATION_LONGER(scalar, name) SCALAR_LONGER_##scalar,
 
-/* Lengths in lambda_s. Finite-difference values say so; m0 to nayak_alpha are spectral. */
+/* Lengths are in lambda_s. m0 to nayak_alpha are spectral; the names of finite-difference values
+ * say so. */
 enum statistics_scalar {
     SCALAR_RMS_HEIGHT, /* the three by finite differences (2.35) */
     SCALAR_RMS_SLOPE,
@@ -51,7 +52,7 @@ enum statistics_scalar {
     SCALAR_M2_DIFFERENCE,
     SCALAR_M4_DIFFERENCE,
     SCALAR_NAYAK_ALPHA_DIFFERENCE,
-    SCALAR_SUMMITS,                 /* how many in the cell; if Gaussian half of them and pits */
+    SCALAR_SUMMITS,                 /* in the cell; if Gaussian, half of summits and pits */
     SCALAR_SUMMIT_DENSITY,          /* per lambda_s^2, profiles per lambda_s */
     SCALAR_SUMMIT_DENSITY_PER_AREA, /* per lambda_l^2, profiles per lambda_l */
     SCALAR_SUMMIT_HEIGHT_MEAN,
@@ -74,40 +75,40 @@ enum statistics_scalar {
     SCALAR_EPS_S0,
     SCALAR_EPS_S_AMPLITUDE,
     SCALAR_EPS_S0_AMPLITUDE,
-    SCALAR_OWN, /* so many are of the surface itself */
+    SCALAR_OWN, /* number of those of the surface itself */
     SCALAR_BEFORE_OTHER = SCALAR_OWN - 1,
     GENERATION_SCALARS(GENERATION_OTHER) GENERATION_SCALARS(GENERATION_LONGER) SCALAR_PATCH,
-    SCALAR_COUNT = SCALAR_PATCH + PATCH_QUANTITY_COUNT /* of a piece as large as a measured map */
+    SCALAR_COUNT = SCALAR_PATCH + PATCH_QUANTITY_COUNT /* of a sub-map as large as a measured map */
 };
 enum { SCALAR_OTHER = SCALAR_OWN, SCALAR_LONGER = SCALAR_OTHER + GENERATION_COUNT };
-/* The scalars of pits stand behind those of summits, in the same order, by so many. */
+/* Offset from the scalars of summits to those of pits, which have the same order. */
 enum { SIDE_SCALARS = SCALAR_PITS - SCALAR_SUMMITS };
 const char *statistics_scalar_name(size_t at); /* NULL behind the last */
-/* The own scalar of each of GENERATION_SCALARS. */
+/* The own scalar that corresponds to each of GENERATION_SCALARS. */
 extern const unsigned char GENERATION_OWN[GENERATION_COUNT];
 
-/* What is known of one realisation. */
+/* Measurements of one realisation. */
 struct realisation_measures {
     const struct roughness *roughness;
     const struct moments *moments;     /* of this realisation's spectrum */
     const struct summit_list *summits; /* of each side (statistics_tally.h) */
     const struct surface_report *report;
 };
-/* Fills all that are of the surface itself, the others with NaN. moments: of the prescribed
- * spectrum, which sets the scale. NaN: none. */
+/* Fills all scalars of the surface itself, and the others with NaN. moments: of the prescribed
+ * spectrum, which sets the scale. */
 void statistics_scalars_measure(const struct statistics_case *one_case,
                                 const struct moments *moments,
                                 const struct realisation_measures *measures,
                                 double out[SCALAR_COUNT]);
 
-/* Computes what finite differences find on every surface with exactly this spectrum; the rest is
+/* Computes the finite-difference values of every surface with exactly this spectrum; the others are
  * NaN. */
 void statistics_constants(const struct modes *modes, const struct moments *moments,
                           struct roughness *out);
 
-/* Appends the scalars over the realisations to the result. Constants of the case, which all
- * surfaces of the exact spectrum share, are told as the spectrum has them, with a standard error of
- * 0: no other scalar has that. */
+/* Appends the scalars over the realisations to the result. Constants, which all surfaces of an
+ * exact spectrum share, have the value of the spectrum and a standard error of 0, which no other
+ * scalar has. */
 int statistics_scalars(const struct statistics_case *one_case, const struct surface_basis *basis,
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err);

@@ -1,9 +1,268 @@
 #include "jobs/statistics/statistics_tally.h"
+#include <stdlib.h>
 #include <string.h>
 
-struct group_place statistics_group_place(const struct statistics_case *one_case) {
+int summit_tally_create(struct summit_tally *out, const struct statistics_case *one_case,
+                        struct error *err) {
     size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
-    struct group_place out = {.counts = heights};
+    *out = (struct summit_tally){0};
+    int status = tally_create(&out->height, heights, heights, err);
+    if (status == 0)
+        status = tally_create(&out->below, heights - 1, heights - 1, err);
+    if (status == 0)
+        status = tally_create(&out->equivalent, curvatures, curvatures, err);
+    if (status == 0)
+        status = tally_create(&out->joint, heights * curvatures, curvatures, err);
+    if (status == 0)
+        status = tally_sums_create(&out->curvature, heights, err);
+    if (status != 0)
+        summit_tally_clear(out);
+    return status;
+}
+
+void summit_tally_clear(struct summit_tally *tally) {
+    tally_clear(&tally->height);
+    tally_clear(&tally->below);
+    tally_clear(&tally->equivalent);
+    tally_clear(&tally->joint);
+    tally_sums_clear(&tally->curvature);
+    *tally = (struct summit_tally){0};
+}
+
+double summit_tally_bytes(const struct statistics_case *one_case) {
+    size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
+    return tally_bytes(2 * heights + curvatures + heights * curvatures) + tally_sums_bytes(heights);
+}
+
+int summit_counts_create(struct summit_counts *out, const struct statistics_case *one_case,
+                         struct error *err) {
+    size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
+    size_t joint = heights * curvatures;
+    *out = (struct summit_counts){
+        .joint = array_create(joint, sizeof *out->joint),
+        .touched = array_create(joint, sizeof *out->touched),
+        .height = array_create(heights, sizeof *out->height),
+        .equivalent = array_create(curvatures, sizeof *out->equivalent),
+        .curvature = array_create(heights, sizeof *out->curvature),
+    };
+    if (out->joint != NULL && out->touched != NULL && out->height != NULL &&
+        out->equivalent != NULL && out->curvature != NULL)
+        return 0;
+    summit_counts_clear(out);
+    return error_memory(err, (size_t)summit_counts_bytes(one_case), "counts of summits");
+}
+
+void summit_counts_clear(struct summit_counts *counts) {
+    free(counts->joint);
+    free(counts->touched);
+    free(counts->height);
+    free(counts->equivalent);
+    free(counts->curvature);
+    *counts = (struct summit_counts){0};
+}
+
+double summit_counts_bytes(const struct statistics_case *one_case) {
+    size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
+    return 16.0 * (double)(heights * curvatures + heights) + 8.0 * (double)curvatures;
+}
+
+void summit_counts_zero(struct summit_counts *counts, const struct summit_tally *tally) {
+    memset(counts->height, 0, tally->height.size * sizeof *counts->height);
+    memset(counts->equivalent, 0, tally->equivalent.size * sizeof *counts->equivalent);
+    memset(counts->curvature, 0, tally->height.size * sizeof *counts->curvature);
+}
+
+void histogram_tally_add(struct tally *cells, struct tally *below, const uint64_t *count,
+                         uint64_t things) {
+    uint64_t sum = 0;
+    for (size_t a = 0; a < cells->size; a++) {
+        if (count[a] > 0)
+            tally_add(cells, a, count[a], things);
+        sum += count[a];
+        if (below != NULL && sum > 0 && a < below->size)
+            tally_add(below, a, sum, things);
+    }
+}
+
+void summit_tally_add(struct summit_tally *tally, const struct statistics_case *one_case,
+                      const struct summit_scales *scales, const struct summit_list *summits,
+                      struct summit_counts *counts) {
+    size_t columns = tally->equivalent.size, touched = 0;
+    double third = one_case->surface.dimension == 2 ? sqrt(3) : 1;
+    tally_total_add(&tally->total, summits->count);
+    for (size_t a = 0; a < summits->count; a++) {
+        double t1 = scales->curvature * summits->summits[a].curvature;
+        size_t zb = bins_find(&one_case->height, scales->height * summits->summits[a].height);
+        size_t cell = zb * columns + bins_find(&one_case->equivalent, t1);
+        if (counts->joint[cell]++ == 0)
+            counts->touched[touched++] = cell;
+        counts->curvature[zb] -= t1 / third;
+    }
+    /* marginal counts are sums of the joint counts */
+    for (size_t a = 0; a < touched; a++) {
+        size_t cell = counts->touched[a];
+        counts->height[cell / columns] += counts->joint[cell];
+        counts->equivalent[cell % columns] += counts->joint[cell];
+        tally_add(&tally->joint, cell, counts->joint[cell], summits->count);
+        counts->joint[cell] = 0;
+    }
+    for (size_t zb = 0; zb < tally->height.size; zb++)
+        if (counts->height[zb] > 0)
+            tally_sums_add(&tally->curvature, zb, counts->curvature[zb], counts->height[zb]);
+    histogram_tally_add(&tally->height, &tally->below, counts->height, summits->count);
+    histogram_tally_add(&tally->equivalent, NULL, counts->equivalent, summits->count);
+}
+
+void summit_tally_put(struct bytes *bytes, const struct summit_tally *tally) {
+    tally_total_put(bytes, &tally->total);
+    tally_put(bytes, &tally->height);
+    tally_put(bytes, &tally->below);
+    tally_put(bytes, &tally->equivalent);
+    tally_put(bytes, &tally->joint);
+    tally_sums_put(bytes, &tally->curvature);
+}
+
+void summit_tally_get(struct byte_reader *reader, struct summit_tally *tally) {
+    tally_total_get(reader, &tally->total);
+    tally_get(reader, &tally->height);
+    tally_get(reader, &tally->below);
+    tally_get(reader, &tally->equivalent);
+    tally_get(reader, &tally->joint);
+    tally_sums_get(reader, &tally->curvature);
+}
+
+bool histogram_tally_adds_up(const struct tally *tally, const struct tally_total *total) {
+    fixed_point sum = 0;
+    for (size_t cell = 0; cell < tally->size; cell++) {
+        sum += tally->count[cell];
+        if (tally->some[cell] > total->realisations)
+            return false;
+    }
+    return sum == total->sum;
+}
+
+bool summit_tally_adds_up(const struct summit_tally *tally) {
+    return histogram_tally_adds_up(&tally->height, &tally->total) &&
+           histogram_tally_adds_up(&tally->equivalent, &tally->total) &&
+           histogram_tally_adds_up(&tally->joint, &tally->total);
+}
+
+void summit_tally_merge(struct summit_tally *into, const struct summit_tally *from) {
+    tally_total_merge(&into->total, &from->total);
+    tally_merge(&into->height, &from->height);
+    tally_merge(&into->below, &from->below);
+    tally_merge(&into->equivalent, &from->equivalent);
+    tally_merge(&into->joint, &from->joint);
+    tally_sums_merge(&into->curvature, &from->curvature);
+}
+
+int statistics_groups_create(struct statistics_groups *out, size_t counts, size_t sums,
+                             struct error *err) {
+    *out = (struct statistics_groups){.counts = counts,
+                                      .sums = sums,
+                                      .count = array_create(GROUPS * counts, sizeof *out->count),
+                                      .sum = array_create(GROUPS * sums, sizeof *out->sum)};
+    if (out->count != NULL && out->sum != NULL)
+        return 0;
+    statistics_groups_clear(out);
+    return error_memory(err, (size_t)statistics_groups_bytes(counts, sums), "groups");
+}
+
+void statistics_groups_clear(struct statistics_groups *groups) {
+    free(groups->count);
+    free(groups->sum);
+    *groups = (struct statistics_groups){0};
+}
+
+double statistics_groups_bytes(size_t counts, size_t sums) {
+    return GROUPS * ((double)counts * sizeof(uint64_t) + (double)sums * sizeof(struct exact_sum));
+}
+
+void statistics_groups_count(struct statistics_groups *groups, size_t group, size_t at, size_t n,
+                             const uint64_t *count) {
+    uint64_t *to = groups->count + group * groups->counts + at;
+    for (size_t a = 0; a < n; a++)
+        to[a] += count[a];
+}
+
+void statistics_groups_sum(struct statistics_groups *groups, size_t group, size_t at, size_t n,
+                           const double *values) {
+    struct exact_sum *to = groups->sum + group * groups->sums + at;
+    for (size_t a = 0; a < n; a++)
+        if (values[a] != 0)
+            exact_sum_add(&to[a], values[a]);
+}
+
+void statistics_groups_merge(struct statistics_groups *into, const struct statistics_groups *from) {
+    for (size_t g = 0; g < GROUPS; g++) {
+        if (from->realisations[g] == 0)
+            continue;
+        into->realisations[g] += from->realisations[g];
+        statistics_groups_count(into, g, 0, from->counts, from->count + g * from->counts);
+        for (size_t a = g * from->sums; a < (g + 1) * from->sums; a++)
+            exact_sum_merge(&into->sum[a], &from->sum[a]);
+    }
+}
+
+/* --- bytes: of each group its realisations; where it has any, its counts and sums --- */
+
+void statistics_groups_put(struct bytes *bytes, const struct statistics_groups *groups) {
+    for (size_t g = 0; g < GROUPS; g++) {
+        bytes_put_unsigned(bytes, groups->realisations[g]);
+        if (groups->realisations[g] == 0)
+            continue;
+        bytes_put_counts(bytes, groups->counts, groups->count + g * groups->counts);
+        for (size_t a = g * groups->sums; a < (g + 1) * groups->sums; a++)
+            exact_sum_put(bytes, &groups->sum[a]);
+    }
+}
+
+void statistics_groups_get(struct byte_reader *reader, struct statistics_groups *groups) {
+    for (size_t g = 0; g < GROUPS && !reader->failed; g++) {
+        groups->realisations[g] = bytes_get_unsigned(reader);
+        if (groups->realisations[g] == 0)
+            continue;
+        bytes_get_counts(reader, groups->counts, groups->count + g * groups->counts);
+        for (size_t a = g * groups->sums; a < (g + 1) * groups->sums && !reader->failed; a++)
+            exact_sum_get(reader, &groups->sum[a]);
+    }
+}
+
+bool statistics_groups_count_fits(const struct statistics_groups *groups, size_t at, size_t n,
+                                  const uint64_t *count) {
+    for (size_t a = 0; a < n; a++) {
+        fixed_point sum = 0;
+        for (size_t g = 0; g < GROUPS; g++)
+            sum += groups->count[g * groups->counts + at + a];
+        if (sum != count[a])
+            return false;
+    }
+    return true;
+}
+
+bool statistics_groups_sum_fits(const struct statistics_groups *groups, size_t at, size_t n,
+                                const struct exact_sum *sum) {
+    for (size_t a = 0; a < n; a++) {
+        struct exact_sum all = {0};
+        for (size_t g = 0; g < GROUPS; g++)
+            exact_sum_merge(&all, &groups->sum[g * groups->sums + at + a]);
+        if (all.total != sum[a].total || all.lost != sum[a].lost)
+            return false;
+    }
+    return true;
+}
+
+bool statistics_groups_realisations_fit(const struct statistics_groups *groups,
+                                        uint64_t realisations) {
+    fixed_point sum = 0;
+    for (size_t g = 0; g < GROUPS; g++)
+        sum += groups->realisations[g];
+    return sum == realisations;
+}
+
+struct group_offsets statistics_group_offsets(const struct statistics_case *one_case) {
+    size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
+    struct group_offsets out = {.counts = heights};
     for (size_t side = 0; side < statistics_case_sides(one_case); side++) {
         out.summit[side] = out.counts;
         out.equivalent[side] = out.counts + heights;
@@ -19,7 +278,7 @@ int statistics_tally_create(struct statistics_tally *out, const struct statistic
                             struct error *err) {
     size_t heights = cells_of(&one_case->height);
     double third = one_case->surface.dimension == 2 ? sqrt(3) : 1;
-    struct group_place place = statistics_group_place(one_case);
+    struct group_offsets offset = statistics_group_offsets(one_case);
     *out = (struct statistics_tally){
         .one_case = one_case,
         .scales = {.height = 1 / sqrt(moments->m0), .curvature = -third / sqrt(moments->m4)},
@@ -42,7 +301,7 @@ int statistics_tally_create(struct statistics_tally *out, const struct statistic
         if (SPECTRA[a].size > 0)
             status = tally_sums_create(SPECTRA[a].sums, SPECTRA[a].size, err);
     if (status == 0)
-        status = statistics_groups_create(&out->groups, place.counts, place.sums, err);
+        status = statistics_groups_create(&out->groups, offset.counts, offset.sums, err);
     if (status != 0)
         statistics_tally_clear(out);
     return status;
@@ -63,30 +322,31 @@ void statistics_tally_clear(struct statistics_tally *tally) {
 }
 
 double statistics_tally_bytes(const struct statistics_case *one_case) {
-    struct group_place place = statistics_group_place(one_case);
+    struct group_offsets offset = statistics_group_offsets(one_case);
     double sides = (double)statistics_case_sides(one_case);
     return tally_bytes(2 * cells_of(&one_case->height)) + sides * summit_tally_bytes(one_case) +
-           summit_counts_bytes(one_case) + statistics_groups_bytes(place.counts, place.sums);
+           summit_counts_bytes(one_case) + statistics_groups_bytes(offset.counts, offset.sums);
 }
 
 void statistics_tally_add(struct statistics_tally *tally, uint64_t realisation, size_t n,
                           const struct summit_list summits[]) {
     const struct statistics_case *one_case = tally->one_case;
-    struct group_place place = statistics_group_place(one_case);
+    struct group_offsets offset = statistics_group_offsets(one_case);
     struct summit_counts *counts = &tally->counts;
     size_t heights = tally->height.size, group = group_of(realisation);
     tally_total_add(&tally->points, n);
     tally->groups.realisations[group]++;
     histogram_tally_add(&tally->height, &tally->height_below, counts->height, n);
-    statistics_groups_count(&tally->groups, group, place.height, heights, counts->height);
+    statistics_groups_count(&tally->groups, group, offset.height, heights, counts->height);
     memset(counts->height, 0, heights * sizeof *counts->height);
     for (size_t side = 0; side < tally->sides; side++) {
         struct summit_tally *to = &tally->summits[side];
         summit_tally_add(to, one_case, &tally->scales, &summits[side], counts);
-        statistics_groups_count(&tally->groups, group, place.summit[side], heights, counts->height);
-        statistics_groups_count(&tally->groups, group, place.equivalent[side], to->equivalent.size,
+        statistics_groups_count(&tally->groups, group, offset.summit[side], heights,
+                                counts->height);
+        statistics_groups_count(&tally->groups, group, offset.equivalent[side], to->equivalent.size,
                                 counts->equivalent);
-        statistics_groups_sum(&tally->groups, group, place.curvature[side], heights,
+        statistics_groups_sum(&tally->groups, group, offset.curvature[side], heights,
                               counts->curvature);
         summit_counts_zero(counts, to);
     }
@@ -127,16 +387,17 @@ void statistics_tally_get(struct byte_reader *reader, struct statistics_tally *t
 
 static bool groups_fit(const struct statistics_tally *tally) {
     const struct statistics_groups *groups = &tally->groups;
-    struct group_place place = statistics_group_place(tally->one_case);
+    struct group_offsets offset = statistics_group_offsets(tally->one_case);
     size_t heights = tally->height.size;
     bool fit = statistics_groups_realisations_fit(groups, tally->points.realisations) &&
-               statistics_groups_count_fits(groups, place.height, heights, tally->height.count);
+               statistics_groups_count_fits(groups, offset.height, heights, tally->height.count);
     for (size_t side = 0; side < tally->sides && fit; side++) {
         const struct summit_tally *of = &tally->summits[side];
-        fit = statistics_groups_count_fits(groups, place.summit[side], heights, of->height.count) &&
-              statistics_groups_count_fits(groups, place.equivalent[side], of->equivalent.size,
-                                           of->equivalent.count) &&
-              statistics_groups_sum_fits(groups, place.curvature[side], heights, of->curvature.sum);
+        fit =
+            statistics_groups_count_fits(groups, offset.summit[side], heights, of->height.count) &&
+            statistics_groups_count_fits(groups, offset.equivalent[side], of->equivalent.size,
+                                         of->equivalent.count) &&
+            statistics_groups_sum_fits(groups, offset.curvature[side], heights, of->curvature.sum);
     }
     return fit;
 }

@@ -4,7 +4,7 @@
 bool statistics_theory_applies(const struct statistics_case *one_case,
                                const struct moments *moments) {
     if (one_case->surface.spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
-        return false; /* m2 and m4 grow without end on finer grids */
+        return false; /* m2 and m4 grow without limit on finer grids */
     if (one_case->surface.dimension == 1)
         return moments->nayak_alpha > 1;
     return moments->nayak_alpha > 1.5 && moments_isotropic(moments);

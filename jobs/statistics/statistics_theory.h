@@ -1,4 +1,4 @@
-/* The theory beside each curve: averages over bins, since that is what a histogram estimates. */
+/* The theory of each curve, averaged over bins, as that is what a histogram estimates. */
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_THEORY_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_THEORY_H
 
@@ -12,10 +12,12 @@ bool statistics_theory_applies(const struct statistics_case *one_case,
  * 1956). */
 const char *statistics_theory_name(const struct statistics_case *one_case);
 
-/* Prescribed height distribution: mean density of each bin; cumulative at its upper edge. */
+/* Fills the prescribed height distribution: mean density of each bin; cumulative at its upper
+ * edge. */
 int statistics_theory_heights(const struct statistics_case *one_case, double *pdf, double *cdf,
                               struct error *err);
-/* Summit heights likewise, and the mean curvature kappa_m/sqrt(m4) of the summits in each bin. */
+/* Fills the same of summit heights, and the mean curvature kappa_m/sqrt(m4) of the summits in each
+ * bin. */
 void statistics_theory_summits(const struct statistics_case *one_case, double alpha, double *pdf,
                                double *cdf, double *curvature);
 /* Computes the mean density of each t1 bin. */

@@ -2,8 +2,8 @@
 #include "core/sum.h"
 #include "jobs/estimate.h"
 
-/* The derivative of a moment with respect to the share of the summits of a height: its influence
- * function (Hampel 1974), whose mean over all summits is 0 less the moment itself. */
+/* Less the moment itself this is the derivative of the moment with respect to the share of the
+ * summits of a height: its influence function (Hampel 1974), with a mean of 0 over all summits. */
 double height_moment_part(enum height_moment moment, const struct height_powers *all,
                           const struct height_powers *some) {
     double variance = all->second / all->number, deviation = sqrt(variance);
@@ -17,8 +17,8 @@ double height_moment_part(enum height_moment moment, const struct height_powers 
     return some->second;
 }
 
-/* Means over the summits of realisation r about a common mean. Heights that are all the same have
- * no skewness, but a third moment of 0. */
+/* Returns means over the summits of realisation r about a common mean. Equal heights have no
+ * skewness, but a third moment of 0. */
 static struct height_powers powers_of(const struct height_columns *of, size_t r, double common) {
     double d = of->mean[r] - common, second = of->variance[r], third = 0, fourth = 0;
     if (second > 0) {

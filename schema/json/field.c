@@ -21,6 +21,18 @@ bool field_put_count(cJSON *object, const char *key, uint64_t count) {
     return field_put(object, key, cJSON_CreateNumber((double)count));
 }
 
+bool list_put(cJSON *list, cJSON *item) {
+    if (item != NULL && cJSON_AddItemToArray(list, item))
+        return true;
+    cJSON_Delete(item);
+    return false;
+}
+
+cJSON *list_put_object(cJSON *list) {
+    cJSON *object = cJSON_CreateObject();
+    return list_put(list, object) ? object : NULL;
+}
+
 cJSON *fields_finish(cJSON *value, bool complete) {
     if (complete)
         return value;

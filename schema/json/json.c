@@ -1,4 +1,5 @@
 #include "schema/json/json.h"
+#include "schema/json/field.h"
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -10,8 +11,8 @@
 
 const struct json_limits JSON_LIMITS = {.bytes = 16u << 20, .depth = 32, .values = 1000000};
 
-/* The gate walks the text once, before cJSON sees it. Each scan_… moves `at` past what it names, or
- * notes the first fault and returns false. */
+/* The gate reads the text once, before cJSON does. Each scan_... moves `at` past what it is named
+ * for, or notes the first fault and returns false. */
 struct gate {
     const char *text, *at, *end;
     const struct json_limits *limits;
@@ -34,8 +35,8 @@ static bool next_is(const struct gate *gate, char c) {
     return gate->at < gate->end && *gate->at == c;
 }
 
-/* Counts the bytes of one UTF-8 sequence (RFC 3629: shortest form, no surrogates, up to U+10FFFF);
- * 0 where it is none. */
+/* Returns the length of a UTF-8 sequence in bytes; 0 where it is not valid (RFC 3629: shortest
+ * form, no surrogates, up to U+10FFFF). */
 static size_t utf8_length(const unsigned char *s, size_t room) {
     static const struct {
         unsigned char lead_low, lead_high, next_low, next_high, length;
@@ -57,7 +58,7 @@ static size_t utf8_length(const unsigned char *s, size_t room) {
     return 0;
 }
 
-/* Reads four hex digits behind \u and returns their value, or -1. */
+/* Reads the four hex digits behind \u; returns their value, or -1. */
 static long scan_hex(struct gate *gate) {
     long value = 0;
     for (int i = 0; i < 4; i++, gate->at++) {
@@ -91,7 +92,7 @@ static bool scan_escape(struct gate *gate) {
     return pair || refuse(gate, "half of a surrogate pair in a string");
 }
 
-/* Passes ASCII that stands for itself: most bytes by far, as results are base64. */
+/* Skips ASCII characters that need no escape. They are most bytes, because results are base64. */
 static void skip_plain(struct gate *gate) {
     const unsigned char *at = (const unsigned char *)gate->at;
     const unsigned char *end = (const unsigned char *)gate->end;
@@ -130,8 +131,8 @@ static bool scan_digits(struct gate *gate) {
     return gate->at > start || refuse(gate, "a malformed number");
 }
 
-/* Integers without point or exponent are meant exactly; a double holds them up to 2^53, and so all
- * of up to 15 digits. */
+/* An integer without point or exponent must be kept exactly. A double does so up to 2^53, and so
+ * for all integers of up to 15 digits. */
 static bool is_inexact_integer(const char *text, size_t length) {
     enum { EXACT_DIGITS = 15 };
     char digits[64];
@@ -173,8 +174,8 @@ static bool scan_number(struct gate *gate) {
         return refuse(gate,
                       "an integer beyond 2^53, which would be changed; write a larger seed as "
                       "a decimal string");
-    /* The text ends behind its last value with NUL or punctuation: strtod stops where the scan did.
-     * Of so few characters, none is beyond the range without an exponent. */
+    /* A NUL or punctuation follows the last value, so that strtod stops where the scan did. A
+     * number of so few characters without an exponent is within range. */
     if (exponent && !isfinite(strtod(start, NULL)))
         return refuse(gate, "a number beyond the range of a double");
     return true;
@@ -271,7 +272,7 @@ static int by_name(const void *a, const void *b) {
     return strcmp((*x)->string, (*y)->string);
 }
 
-/* The first name that an object has twice, or NULL; *failed when out of memory. */
+/* Returns the first name that an object has twice, or NULL; sets *failed when out of memory. */
 static const char *duplicate_name(const cJSON *object, bool *failed) {
     size_t count = (size_t)cJSON_GetArraySize(object), n = 0;
     if (count < 2)
@@ -315,7 +316,7 @@ int json_parse(const char *text, size_t size, const struct json_limits *limits, 
     if (size > limits->bytes)
         return error_set(err, ERROR_INPUT, "%zu bytes of JSON; allowed: up to %zu", size,
                          limits->bytes);
-    char *copy = malloc(size + 1); /* ends with NUL, as strtod and cJSON want it */
+    char *copy = malloc(size + 1); /* ends with NUL, which strtod and cJSON need */
     if (copy == NULL)
         return error_memory(err, size + 1, "a JSON text");
     memcpy(copy, text, size);
@@ -340,7 +341,7 @@ int json_parse(const char *text, size_t size, const struct json_limits *limits, 
     return 0;
 }
 
-/* One reference token of a pointer, unescaped; false when it is longer than any name of ours. */
+/* Reads one reference token of a pointer, unescaped; false when it does not fit. */
 static bool pointer_token(const char **at, char *token, size_t room) {
     size_t n = 0;
     for ((*at)++; **at != '\0' && **at != '/'; (*at)++) {
@@ -386,10 +387,8 @@ cJSON *json_number(double value) {
 
 cJSON *json_numbers(const double *values, size_t n) {
     cJSON *array = cJSON_CreateArray();
-    for (size_t i = 0; array != NULL && i < n; i++)
-        if (!cJSON_AddItemToArray(array, json_number(values[i]))) {
-            cJSON_Delete(array);
-            array = NULL;
-        }
-    return array;
+    bool complete = array != NULL;
+    for (size_t i = 0; complete && i < n; i++)
+        complete = list_put(array, json_number(values[i]));
+    return fields_finish(array, complete);
 }

@@ -1,5 +1,5 @@
-/* A strict gate in front of cJSON, which alone takes duplicate keys, bad UTF-8, 01, 1e999, a BOM
- * and text after the end. */
+/* A strict check before cJSON, which alone accepts duplicate keys, bad UTF-8, 01, 1e999, a BOM and
+ * text after the end. */
 #ifndef RUGO_SCHEMA_JSON_JSON_H
 #define RUGO_SCHEMA_JSON_JSON_H
 
@@ -20,10 +20,11 @@ extern const struct json_limits JSON_LIMITS; /* 16 MiB, 32, 1 000 000 */
  * JSON_LIMITS. *out is the caller's to delete. */
 int json_parse(const char *text, size_t size, const struct json_limits *limits, cJSON **out,
                struct error *err);
-/* Compact text, numbers so that they read back to the same double, NaN and infinities as null;
- * caller frees. NULL when out of memory. */
+/* Prints compact text in which numbers read back to the same double, NaN and infinities as null.
+ * The caller frees it; NULL when out of memory. */
 char *json_print(const cJSON *value);
-/* The same for people: a line a value, indented by two spaces a level, and a newline at the end. */
+/* Prints for people: one value a line, indented by two spaces a level, with a newline at the
+ * end. */
 char *json_print_pretty(const cJSON *value);
 /* The fewest digits that read back to the same double; null for NaN and infinities. */
 void json_print_number(FILE *file, double number);

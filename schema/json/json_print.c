@@ -1,5 +1,5 @@
-/* Printing numbers that read back: cJSON settles for 15 digits where those come within a relative
- * 2^-52, which is another double. */
+/* Prints numbers that read back to the same double. cJSON is content with 15 digits that come
+ * within a relative 2^-52, which may be another double. */
 #include "schema/json/json.h"
 
 #include "core/memory_file.h"
@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Counts and numbers of jobs: 15 digits or fewer, which need no search. */
+/* Counts and numbers of jobs have 15 digits or fewer, which need no search. */
 static bool is_short_integer(double number) {
     return fabs(number) < 1e15 && number == trunc(number) && !(number == 0 && signbit(number));
 }
@@ -23,7 +23,7 @@ void json_print_number(FILE *file, double number) {
         fprintf(file, "%lld", (long long)number);
         return;
     }
-    bool large = fabs(number) > 0x1p53; /* no integer to be read exactly: give it an exponent */
+    bool large = fabs(number) > 0x1p53; /* not kept exactly by every reader: gets an exponent */
     for (int digits = 15; digits <= 17; digits++) {
         snprintf(text, sizeof text, large ? "%.*e" : "%.*g", digits - large, number);
         if (strtod(text, NULL) == number)
@@ -32,7 +32,7 @@ void json_print_number(FILE *file, double number) {
     fputs(text, file);
 }
 
-/* Tells whether the text stands in quotes as it is. */
+/* Returns whether the text can be printed in quotes without escapes. */
 static bool is_plain(const char *text) {
     const unsigned char *at = (const unsigned char *)text;
     while (*at >= 0x20 && *at != '"' && *at != '\\')
@@ -49,7 +49,8 @@ static bool put_by_cjson(FILE *file, const cJSON *value) {
     return text != NULL;
 }
 
-/* Most are names, which would take longer through cJSON than all else of a document. */
+/* Most strings are names. Printing them through cJSON would take longer than the rest of a
+ * document. */
 bool json_print_text(FILE *file, const char *text) {
     if (text != NULL && is_plain(text)) {
         fputc('"', file);
@@ -72,7 +73,8 @@ static bool put_plain(FILE *file, const cJSON *value) {
 /* This stands for the indentation of a text on one line. */
 enum { COMPACT = -1 };
 
-/* Starts a line of `depth` steps of two spaces; nothing in a text on one line. */
+/* Starts a line that is indented by `depth` times two spaces; prints nothing in a text on one
+ * line. */
 static void put_line(FILE *file, int depth) {
     if (depth != COMPACT)
         fprintf(file, "\n%*s", 2 * depth, "");

@@ -1,4 +1,4 @@
-/* What came out of one block of realisations, from the runner that made it to the store. */
+/* The result of one block of realisations, on its path from the runner to the store. */
 #ifndef RUGO_SCHEMA_RESULT_BLOCK_RESULT_H
 #define RUGO_SCHEMA_RESULT_BLOCK_RESULT_H
 
@@ -7,8 +7,8 @@
 
 struct block_text; /* schema/store/store.h */
 
-/* Its arrays belong to whoever made it: a runner and the reader of a message hand them over, to be
- * freed by block_result_clear; the store lends those that it reads. */
+/* The arrays belong to whoever made the struct. A runner or the reader of a message passes them on,
+ * to be freed by block_result_clear; the store lends those that it reads. */
 struct block_result {
     uint64_t first, count;         /* realisations first .. first + count - 1 of the case */
     size_t scalar_count;           /* as many as the kind's scalars */

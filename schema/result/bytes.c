@@ -53,11 +53,11 @@ void bytes_put_double(struct bytes *bytes, double value) {
     put_word(bytes, bits);
 }
 
-void bytes_seal(struct bytes *bytes) {
+void bytes_put_checksum(struct bytes *bytes) {
     put_word(bytes, hash_bytes(HASH_START, bytes->size, bytes->data));
 }
 
-/* Counts the entries from `from` on that are all zero, or all not. */
+/* Counts the entries from `from` on that are all zero (zero != 0), or all not zero. */
 static size_t run_length(size_t n, const uint64_t *counts, size_t from, int zero) {
     size_t a = from;
     while (a < n && (counts[a] == 0) == zero)
@@ -65,7 +65,8 @@ static size_t run_length(size_t n, const uint64_t *counts, size_t from, int zero
     return a - from;
 }
 
-/* Puts how many zeros come; how many others, and each of them; and so on until n. */
+/* Puts the number of zeros, then the number of other entries and these entries, and so on up to
+ * n. */
 void bytes_put_counts(struct bytes *bytes, size_t n, const uint64_t *counts) {
     for (size_t a = 0; a < n;) {
         size_t zeros = run_length(n, counts, a, 1);
@@ -86,7 +87,8 @@ static unsigned get_byte(struct byte_reader *reader) {
     return *reader->at++;
 }
 
-/* Reads up to `bits` bits of 64 or more: the first 63 of them in a word, which is most values. */
+/* Reads a number of up to `bits` bits, 64 or more. Most values fit into 63 bits, which are read in
+ * one word. */
 static wide get_wide(struct byte_reader *reader, unsigned bits) {
     uint64_t low = 0;
     for (unsigned shift = 0; shift < 63; shift += 7) {
@@ -142,8 +144,8 @@ struct byte_reader bytes_open(const unsigned char *data, size_t size) {
     if (data == NULL || size < 8)
         return (struct byte_reader){.failed = true};
     const unsigned char *end = data + size - 8;
-    struct byte_reader seal = {end, end + 8, false, false};
-    int damaged = get_word(&seal) != hash_bytes(HASH_START, size - 8, data);
+    struct byte_reader checksum = {end, end + 8, false, false};
+    int damaged = get_word(&checksum) != hash_bytes(HASH_START, size - 8, data);
     return (struct byte_reader){data, end, damaged, false};
 }
 

@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Theories of any of the curves printed get a column each, and so does what differences have. Names
- * are borrowed. */
+/* The columns of theories of all curves printed, and of differences. Names are borrowed. */
 struct columns {
     size_t count;       /* of theories */
     const char **names; /* owned: room for every theory of every curve */
@@ -47,7 +46,7 @@ static void print_field(FILE *file, double number) {
         json_print_number(file, number);
 }
 
-/* The parameter of a case in a column of what is swept; empty where the case has none. */
+/* Prints the parameter of a case in a column of swept values; empty where the case has none. */
 static void print_parameter(FILE *file, const struct result_parameter *value) {
     print_field(file, value != NULL && value->text == NULL ? value->number : (double)NAN);
     if (value != NULL && value->text != NULL)
@@ -78,7 +77,7 @@ static double theory_at(const struct curve *curve, const char *name, size_t at) 
     return NAN;
 }
 
-/* What a difference has beside it; empty where a curve is none. */
+/* Prints the columns of a difference; empty where a curve is none. */
 static void print_difference(FILE *file, const struct case_result *one, const struct curve *curve,
                              size_t n) {
     bool difference = curve->minuend != NULL;

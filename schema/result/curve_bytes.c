@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Marks of what follows: lists of named parts end with PART_END, so that a row more in a table of
- * attributes or sources leaves older bytes readable. */
+/* Marks of the parts of a curve. Lists of named parts end with PART_END, so that older bytes stay
+ * readable when a table of attributes or sources gets another row. */
 enum { FORMAT_CURVE = 0x4355, FORMAT_VERSION = 1, TEXT_MOST = 4096 };
 enum part {
     PART_END,
@@ -112,7 +112,7 @@ int curve_encode(const struct curve *curve, unsigned char **data, size_t *size, 
     put_attributes(&bytes, curve);
     put_values(&bytes, curve);
     put_parts(&bytes, curve);
-    bytes_seal(&bytes);
+    bytes_put_checksum(&bytes);
     if (bytes.failed) {
         bytes_clear(&bytes);
         return error_memory(err, bytes.capacity, "a curve");
@@ -122,9 +122,9 @@ int curve_encode(const struct curve *curve, unsigned char **data, size_t *size, 
     return 0;
 }
 
-/* --- and back --- */
+/* --- decoding --- */
 
-/* A reading that runs out of memory fails its reader, and says so. */
+/* A decoding that runs out of memory marks its reader as failed and out of memory. */
 struct decoding {
     struct byte_reader reader;
     struct case_result *result;
@@ -134,7 +134,7 @@ struct decoding {
 static void *room_for(struct decoding *decoding, size_t count, size_t size, size_t bytes_each) {
     struct byte_reader *reader = &decoding->reader;
     size_t left = (size_t)(reader->end - reader->at);
-    if (reader->failed || count > left / bytes_each) { /* more than is there */
+    if (reader->failed || count > left / bytes_each) { /* more than the bytes left can hold */
         reader->failed = true;
         return NULL;
     }
@@ -220,7 +220,8 @@ static void get_values(struct decoding *decoding, struct curve *curve) {
     curve->overflow = bytes_get_double(reader);
 }
 
-/* The error of the source named next; of one that this program does not know, *unknown. */
+/* Returns the error of the source named next; *unknown for a source that this program does not
+ * know. */
 static struct curve_error *get_source(struct decoding *decoding, struct curve *curve,
                                       struct curve_error *unknown) {
     const char *name = get_text(decoding);

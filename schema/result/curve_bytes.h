@@ -1,5 +1,5 @@
-/* A curve as the store keeps it: sealed bytes, portable, with every number as it is. Theories that
- * are made on demand (y NULL) are kept by name alone. */
+/* A curve as portable bytes with a checksum, in which the store keeps it; every number is exact. Of
+ * theories that are made on demand (y NULL) only the name is kept. */
 #ifndef RUGO_SCHEMA_RESULT_CURVE_BYTES_H
 #define RUGO_SCHEMA_RESULT_CURVE_BYTES_H
 

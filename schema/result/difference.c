@@ -1,27 +1,140 @@
 #include "schema/result/difference.h"
-#include "schema/result/difference_mesh.h"
-#include "schema/result/difference_parameters.h"
+#include "schema/result/result.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-/* Places x are the same within this part of themselves. */
+/* The bound of the mesh error of a difference of two cases. */
+
+/* Texts of the parameters in which the two cases of a difference differ. */
+
+/* The finest curve of a case, and the next coarser one of its series and model; NULL: none. */
+struct mesh_curves {
+    const struct curve *fine, *coarse;
+};
+
+static struct mesh_curves mesh_curves_of(const struct case_result *result,
+                                         const struct curve *finest) {
+    struct mesh_curves out = {finest, NULL};
+    for (size_t n = 0; n < result->curve_count; n++) {
+        const struct curve *curve = &result->curves[n];
+        if (curve_same_series(curve, finest) && same_text(curve->model, finest->model) &&
+            same_text(curve->kinematics, finest->kinematics) && curve->level < finest->level &&
+            curve->n == finest->n && (out.coarse == NULL || curve->level > out.coarse->level))
+            out.coarse = curve;
+    }
+    return out;
+}
+
+static bool lacks_values(const struct curve *curve) {
+    for (size_t k = 0; k < curve->n && curve->valueless != NULL; k++)
+        if (curve->valueless[k] > 0)
+            return true;
+    return false;
+}
+
+static bool is_comparable(const struct mesh_curves *a, const struct mesh_curves *b) {
+    return a->coarse != NULL && b->coarse != NULL && same_number(a->fine->level, b->fine->level) &&
+           same_number(a->coarse->level, b->coarse->level) && !lacks_values(a->fine) &&
+           !lacks_values(a->coarse) && !lacks_values(b->fine) && !lacks_values(b->coarse);
+}
+
+static double change_at(const struct mesh_curves *curves, size_t at) {
+    return curves->fine->y[at] - curves->coarse->y[at];
+}
+
+/* Returns whether the mesh error at a point is a bound alone. */
+static bool is_bounded(const struct mesh_curves *curves, size_t at) {
+    const struct curve_error *error = &curves->fine->errors[ERROR_DISCRETISATION];
+    return error->value != NULL && error->bound != NULL && error->value[at] == 0 &&
+           error->bound[at] > 0;
+}
+
+/* Where both cases bound the error of their mesh by a multiple of the change between levels, the
+ * same multiple of the change of the difference bounds the error of the difference. This is smaller
+ * where levels change alike in both cases. As a change may vanish by accident, the largest one of
+ * neighbouring points counts.
+ *
+ * Lowers bound[n] at the points a[n] and b[n] of the curves. Leaves it where the levels of the
+ * cases differ, some realisation lacks a value, or a case knows more than a bound. */
+static void difference_mesh_bounds(const struct mesh_curves *minuend,
+                                   const struct mesh_curves *subtrahend, size_t n, const size_t *a,
+                                   const size_t *b, double *bound) {
+    for (size_t k = 0; k < n && is_comparable(minuend, subtrahend); k++) {
+        double changes = fabs(change_at(minuend, a[k])) + fabs(change_at(subtrahend, b[k])),
+               largest = 0;
+        if (!is_bounded(minuend, a[k]) || !is_bounded(subtrahend, b[k]) || !(changes > 0))
+            continue;
+        for (size_t near = k > 0 ? k - 1 : 0; near < n && near <= k + 1; near++)
+            largest =
+                fmax(largest, fabs(change_at(minuend, a[near]) - change_at(subtrahend, b[near])));
+        bound[k] = fmin(bound[k], bound[k] / changes * largest);
+    }
+}
+
+/* Returns "A less B", or the text that both share, in the result's arena; NULL without memory, or
+ * where both are NULL. */
+static const char *difference_text(struct case_result *out, const char *a, const char *b) {
+    char text[160];
+    if (same_text(a, b))
+        return result_text(out, a);
+    snprintf(text, sizeof text, "%.64s less %.64s", a != NULL ? a : "-", b != NULL ? b : "-");
+    return result_text(out, text);
+}
+
+static void value_text(const struct result_parameter *value, char text[64]) {
+    if (value == NULL)
+        snprintf(text, 64, "-");
+    else if (value->text != NULL)
+        snprintf(text, 64, "%.63s", value->text);
+    else
+        snprintf(text, 64, "%.10g", value->number);
+}
+
+/* Fills the parameters of the result: those of the first case, as "0.8 less 0.2" where the second
+ * one has another value, and "0.8 less -" where it has none. */
+static int difference_parameters(const struct case_result *a, const struct case_result *b,
+                                 struct case_result *out, struct error *err) {
+    out->parameters = result_room(out, a->parameter_count + 1, sizeof *out->parameters);
+    if (out->parameters == NULL)
+        return error_set(err, ERROR_MEMORY, "no memory left for parameters");
+    for (size_t p = 0; p < a->parameter_count; p++) {
+        const struct result_parameter *one = &a->parameters[p];
+        const struct result_parameter *other = result_parameter(b, one->pointer);
+        struct result_parameter *to = &out->parameters[out->parameter_count++];
+        char first[64], second[64];
+        bool same = other != NULL && same_text(one->text, other->text) &&
+                    same_number(one->number, other->number);
+        value_text(one, first);
+        value_text(other, second);
+        *to = (struct result_parameter){.pointer = result_text(out, one->pointer),
+                                        .number = same ? one->number : (double)NAN,
+                                        .list = same && one->list};
+        if (!same || one->text != NULL)
+            to->text = same ? result_text(out, one->text) : difference_text(out, first, second);
+        if (to->pointer == NULL || (to->text == NULL && isnan(to->number)))
+            return error_set(err, ERROR_MEMORY, "no memory left for parameters");
+    }
+    return 0;
+}
+
+/* Two points are the same where their x differ by less than this part of x. */
 static const double SAME_X = 1e-9;
 enum { REMARK_SIZE = 1024 };
 
-/* Differences are made from this. */
+/* What a difference is made from and into. */
 struct maker {
     const struct case_result *minuend, *subtrahend;
     const struct difference_pairs *pairs; /* or NULL */
     struct case_result *out;
     char remark[REMARK_SIZE];
 };
-/* Of one curve. */
+/* Two curves, and the points that both have. */
 struct curve_pair {
     const struct curve *minuend, *subtrahend;
-    size_t n;      /* places that both have */
-    size_t *a, *b; /* these, in either */
+    size_t n;      /* points in both */
+    size_t *a, *b; /* their indices in either */
 };
 
 static int no_room(struct error *err) {
@@ -86,8 +199,8 @@ static bool same_x(double a, double b) {
     return fabs(a - b) <= SAME_X * fmax(fabs(a), fabs(b));
 }
 
-/* Finds the places that both curves have; x rises in both. */
-static int find_places(struct maker *maker, struct curve_pair *pair, struct error *err) {
+/* Finds the points that both curves have; x rises in both. */
+static int find_points(struct maker *maker, struct curve_pair *pair, struct error *err) {
     const struct curve *one = pair->minuend, *other = pair->subtrahend;
     size_t most = one->n < other->n ? one->n : other->n;
     pair->a = result_room(maker->out, 2 * most + 1, sizeof *pair->a);
@@ -113,7 +226,8 @@ static double at_or_zero(const double *numbers, size_t at) {
     return numbers != NULL ? numbers[at] : 0;
 }
 
-/* A source that does not bear on a case adds nothing to the difference. */
+/* Combines the errors of a source. A source that does not bear on a case adds nothing to the
+ * difference. */
 static int combine_error(struct maker *maker, const struct curve_pair *pair,
                          enum error_source source, struct curve *out, struct error *err) {
     const struct curve_error *a = &pair->minuend->errors[source];
@@ -147,7 +261,8 @@ static int combine_error(struct maker *maker, const struct curve_pair *pair,
 
 /* --- curves --- */
 
-/* The mean over pairs less that over all realisations, where some lack one of their values. */
+/* The mean over pairs less that over all realisations, of which some lack a value: its bound, and
+ * how many lack one, by point. */
 struct missing {
     double *bound, *lacking;
     bool any;
@@ -165,7 +280,8 @@ static void put_pair(const struct paired_value *value, size_t k, double *y, doub
     missing->any = missing->any || value->lacking > 0;
 }
 
-/* Of pairs where all places are known by them, else of the two curves. */
+/* Takes the values from pairs of realisations where these give every point, else from the
+ * curves. */
 static bool fill_values(const struct maker *maker, const struct curve_pair *pair, double *y,
                         double *standard_error, struct missing *missing) {
     const struct curve *a = pair->minuend, *b = pair->subtrahend;
@@ -262,13 +378,13 @@ static int add_curve(struct maker *maker, const struct curve *minuend, struct er
                minuend->columns > 0 ? "a matrix" : "of the first case alone");
         return 0;
     }
-    int status = find_places(maker, &pair, err);
+    int status = find_points(maker, &pair, err);
     if (status == 0 && pair.n == 0)
         remark(maker, "%s has no %s in common", minuend->quantity, minuend->x_label);
     if (status != 0 || pair.n == 0)
         return status;
     if (pair.n < minuend->n || pair.n < pair.subtrahend->n)
-        remark(maker, "%s has %zu places in common of %zu and %zu", minuend->quantity, pair.n,
+        remark(maker, "%s has %zu points in common of %zu and %zu", minuend->quantity, pair.n,
                minuend->n, pair.subtrahend->n);
     status = set_names(maker, &pair, &out, err);
     if (status == 0)
@@ -298,7 +414,7 @@ static struct scalar_error combine_scalar_error(const struct scalar_error *a,
     return out;
 }
 
-/* A scalar without a standard error in either case is known as it is. */
+/* A scalar without a standard error in either case is exact. */
 static void set_scalar(const struct maker *maker, const struct scalar *a, const struct scalar *b,
                        struct scalar *out) {
     struct paired_value value;

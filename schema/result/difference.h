@@ -1,22 +1,23 @@
 /* One case less another one of its study: curves and scalars, with the errors of their difference.
  *
- * Cases of the same random numbers (study.h) go together, realisation by realisation, so that the
- * mean difference over pairs is known far better than the cases. Other errors are combined: the
- * value of a source is the difference of the two values, its bound the sum of the two bounds; that
- * of the mesh is less where the changes between levels go together (difference_mesh.h). */
+ * Cases of the same random numbers (study.h) are compared realisation by realisation: the mean
+ * difference of pairs has a much smaller statistical error than the means. Other errors are
+ * combined: the value of a source is the difference of the two values, its bound the sum of the two
+ * bounds. The bound of the mesh is smaller where levels change alike in both cases
+ * (difference.c). */
 #ifndef RUGO_SCHEMA_RESULT_DIFFERENCE_H
 #define RUGO_SCHEMA_RESULT_DIFFERENCE_H
 
 #include "schema/result/result.h"
 
-/* Pairs of realisations tell this. */
+/* The mean difference over pairs of realisations. */
 struct paired_value {
     double value, standard_error; /* NaN: none */
-    double deviation;             /* of the difference of a pair */
+    double deviation;             /* standard deviation of the difference of a pair */
     uint64_t pairs, lacking;      /* realisations of both cases: with both values, or without */
 };
-/* How differences are found pair by pair. These return false for what is not kept by realisation.
- */
+/* Functions that compute differences pair by pair. They return false for what is not kept by
+ * realisation. */
 struct difference_pairs {
     void *context;
     /* Of point `a` of the minuend's curve and point b of the subtrahend's. */
@@ -25,10 +26,10 @@ struct difference_pairs {
     bool (*scalar)(void *context, const char *name, struct paired_value *out);
 };
 
-/* Fills an empty result: of each curve the finest level, at the places x that both have. Where a
- * case has one model alone, it is compared with whichever the other has. pairs: NULL where
- * realisations of the two are no pairs. Curves that cannot be compared are named in the remark. On
- * failure it is cleared. */
+/* Fills an empty result with the differences of the finest levels of each curve, at the points x
+ * that both have. A case with one model alone is compared with whichever model the other has.
+ * pairs: NULL where realisations of the two are no pairs. Curves that cannot be compared are named
+ * in the remark. On failure the result is cleared. */
 int difference_make(const struct case_result *minuend, const struct case_result *subtrahend,
                     const struct difference_pairs *pairs, struct case_result *out,
                     struct error *err);

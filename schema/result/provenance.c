@@ -7,7 +7,7 @@ static void put_known(FILE *file, const char *before, const cJSON *object, const
     if (text == NULL)
         return;
     fputs(before, file);
-    text_print_plain(file, text); /* on one line, whatever is in it */
+    text_print_plain(file, text); /* control characters are replaced, so that it stays one line */
 }
 
 static void put_run(FILE *file, const cJSON *run) {
@@ -19,20 +19,20 @@ static void put_run(FILE *file, const cJSON *run) {
     fputc('\n', file);
 }
 
-/* The measured surface that those of the study are like. */
+/* Prints the measured surface that the surfaces of the study resemble. */
 static void put_measured(FILE *file, const struct study_result *study) {
-    static const char *const TOLD[][2] = {{"# like: ", "/surface/like/file"},
-                                          {", SHA-256 ", "/surface/like/sha256"},
-                                          {", prepared by ", "/surface/like/prepared"}};
+    static const char *const ITEMS[][2] = {{"# like: ", "/surface/like/file"},
+                                           {", SHA-256 ", "/surface/like/sha256"},
+                                           {", prepared by ", "/surface/like/prepared"}};
     const struct case_result *first = study->case_count > 0 ? &study->cases[0] : NULL;
-    if (first == NULL || result_parameter(first, TOLD[0][1]) == NULL)
+    if (first == NULL || result_parameter(first, ITEMS[0][1]) == NULL)
         return;
-    for (size_t t = 0; t < sizeof TOLD / sizeof *TOLD; t++) {
-        const struct result_parameter *told = result_parameter(first, TOLD[t][1]);
-        if (told == NULL || told->text == NULL || *told->text == '\0')
+    for (size_t t = 0; t < sizeof ITEMS / sizeof *ITEMS; t++) {
+        const struct result_parameter *value = result_parameter(first, ITEMS[t][1]);
+        if (value == NULL || value->text == NULL || *value->text == '\0')
             continue;
-        fputs(TOLD[t][0], file);
-        text_print_plain(file, told->text);
+        fputs(ITEMS[t][0], file);
+        text_print_plain(file, value->text);
     }
     fputc('\n', file);
 }

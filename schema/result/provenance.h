@@ -1,12 +1,12 @@
-/* How the results of a study came about, beside them in every document, table and picture: the one
- * part of it that differs between two runs of the same study.
+/* The provenance of the results of a study, which stands beside them in every document, table and
+ * picture. Nothing else differs between two runs of the same study.
  *
  *     {"seed": "1", "program", "created", "finished",
  *      "runs": [{"host", "program", "jobs", "first", "last"}]}
  *
- * seed: a decimal text of 64 bits; created and finished: UTC; program: VERSION+COMMIT, of the whole
- * that which queued the study, of a run that which computed so many of its jobs on this host,
- * between the first claim and the last result. What is not known is null. */
+ * seed: a decimal text of 64 bits; created and finished: UTC; program: VERSION+COMMIT. That of the
+ * whole queued the study. That of a run computed so many of its jobs on this host, between the
+ * first claim and the last result. What is not known is null. */
 #ifndef RUGO_SCHEMA_RESULT_PROVENANCE_H
 #define RUGO_SCHEMA_RESULT_PROVENANCE_H
 

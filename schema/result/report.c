@@ -22,10 +22,20 @@ void study_report_clear(struct study_report *report) {
     *report = (struct study_report){0};
 }
 
+void study_report_take_head(struct study_report *report, const struct study_result *head) {
+    report->id = head->id;
+    report->name = head->name;
+    report->kind = head->kind;
+    report->state = head->state;
+    report->random = head->random;
+    report->swept = head->swept;
+    report->provenance = head->provenance;
+}
+
 /* --- sizes --- */
 
-/* |above - minus|/|below| over the points where all are known; minus NULL: 0. NaN where nothing is
- * known. */
+/* Returns |above - minus|/|below| over the points where all are known; minus NULL: 0. NaN where
+ * nothing is known. */
 static double relative_size(size_t n, const double *above, const double *minus,
                             const double *below) {
     double squares = 0, reference = 0;
@@ -45,8 +55,8 @@ static double statistical_error(const struct curve *curve) {
 
 /* --- which curve belongs to which --- */
 
-/* The curve of the same series and model that has errors of a source at its points, as only that of
- * the finest level has; NULL without one. */
+/* Returns the curve of the same series and model that has errors of a source at its points, which
+ * only that of the finest level has; NULL without one. */
 static const struct curve *finest_with(const struct case_result *result, const struct curve *curve,
                                        enum error_source source) {
     for (size_t a = 0; a < result->curve_count; a++) {
@@ -60,8 +70,8 @@ static const struct curve *finest_with(const struct case_result *result, const s
 
 /* --- errors by source --- */
 
-/* Of every level from the limit, which is the finest level less its own error; within the bound of
- * that. */
+/* Computes the distance of every level from the limit, plus the bound of the limit. The limit is
+ * the finest level less its own error. */
 static void discretisation_sizes(const struct curve *finest, const struct curve *curve,
                                  double *limit, double *size) {
     const struct curve_error *error = &finest->errors[ERROR_DISCRETISATION];
@@ -71,9 +81,8 @@ static void discretisation_sizes(const struct curve *finest, const struct curve 
     }
 }
 
-/* The size of what a curve owes to a source; NaN where it is not known at every point that has a
- * value. scratch has room for twice
- * the longest curve. */
+/* Returns the relative size of the error of a source; NaN where it is unknown at a point that has a
+ * value. scratch has room for twice the longest curve. */
 static double source_error(const struct case_result *result, const struct curve *curve,
                            enum error_source source, double *scratch) {
     const struct curve *finest = finest_with(result, curve, source);
@@ -96,7 +105,7 @@ static double source_error(const struct case_result *result, const struct curve 
 
 /* --- cost --- */
 
-/* Points x transforms of all loads, times log2 of the points: what fast transforms cost. */
+/* Cost of fast transforms: points times transforms of all loads, times log2 of the points. */
 static double cost_of(const struct curve *work) {
     double sum = 0;
     for (size_t a = 0; a < work->n; a++)
@@ -104,8 +113,9 @@ static double cost_of(const struct curve *work) {
     return isnan(work->points) ? sum : sum * log2(fmax(work->points, 2));
 }
 
-/* Share of the case's time that went into the solves behind a curve, by the curves "work" of all
- * models and levels. All estimators read the same solves. 1 where the case has no such parts. */
+/* Returns the share of the case's time that its solves for a curve took, by the curves "work" of
+ * all models and levels. All estimators use the same solves. 1 where the case has no such
+ * curves. */
 static double share_of(const struct case_result *result, const struct curve *curve) {
     double own = 0, all = 0;
     for (size_t a = 0; a < result->curve_count; a++) {
@@ -122,7 +132,8 @@ static double share_of(const struct case_result *result, const struct curve *cur
 
 /* --- together --- */
 
-/* Errors that are the same in every realisation add up, and stand beside the statistical one. */
+/* Errors that are the same in every realisation add up; the statistical one is added in
+ * quadrature. */
 static double total_of(const struct curve_report *report) {
     double systematic = 0;
     for (size_t s = 0; s < ERROR_SOURCES; s++)
@@ -137,8 +148,9 @@ static double most_valueless(const struct curve *curve) {
     return curve_is_partial(curve) ? most : (double)NAN;
 }
 
-/* Copies what tells the curve apart. */
-static int place_of(struct case_result *about, const struct curve *curve, struct curve *out) {
+/* Copies the quantity and the attributes of a curve. */
+static int copy_attributes(struct case_result *about, const struct curve *curve,
+                           struct curve *out) {
     *out = (struct curve){.quantity = result_text(about, curve->quantity)};
     bool done = out->quantity != NULL;
     for (size_t a = 0; a < CURVE_ATTRIBUTE_COUNT && done; a++) {
@@ -152,7 +164,7 @@ static int place_of(struct case_result *about, const struct curve *curve, struct
 
 static int curve_report_make(struct case_report *report, const struct case_result *result,
                              const struct curve *curve, double *scratch, struct curve_report *out) {
-    int status = place_of(&report->about, curve, &out->place);
+    int status = copy_attributes(&report->about, curve, &out->place);
     out->seconds = out->cpu_seconds = share_of(result, curve);
     out->statistical = statistical_error(curve);
     for (size_t s = 0; s < ERROR_SOURCES; s++) {

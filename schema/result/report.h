@@ -1,12 +1,11 @@
-/* Speed against error: what each case cost, and the errors that this bought.
+/* Cost and errors of the cases of a study.
  *
- * The errors of a curve are sizes over all its points: the statistical one is |standard error|/|y|,
- * the deviation from a theory |y - theory|/|theory|, |.| being the root of the sum of squares over
- * the points where both are known. That of a source is of |value| + bound. The discretisation error
- * is that of every mesh level from the limit, the others are those of the finest level. A case's
- * errors are those of its main curve: the first one that has a statistical error and a theory
- * beside it, or else the first one with an error.
- */
+ * The errors of a curve are sizes over all its points. The statistical one is |standard error|/|y|,
+ * the deviation from a theory |y - theory|/|theory|, where |.| is the root of the sum of squares
+ * over the points where both are known. That of a source is of |value| + bound. The discretisation
+ * error is the distance of every mesh level from the limit; the others are those of the finest
+ * level. A case's errors are those of its main curve: the first one that has a statistical error
+ * and a theory, or else the first one with an error. */
 #ifndef RUGO_SCHEMA_RESULT_REPORT_H
 #define RUGO_SCHEMA_RESULT_REPORT_H
 
@@ -20,9 +19,9 @@ struct curve_report {
     double seconds, cpu_seconds; /* of the solves behind the curve: shares of the case's time */
     double statistical, errors[ERROR_SOURCES];
     bool applies[ERROR_SOURCES]; /* the source bears on the curve */
-    double total;     /* the statistical one and the sum of the others, root of the sum of squares;
-                         NaN where one that bears on the curve is not known */
-    double valueless; /* realisations without a value, at the point with most; NaN: not told */
+    double total;     /* statistical error and sum of the others, in quadrature; NaN where one that
+                       * bears on the curve is not known */
+    double valueless; /* most realisations without a value at a point; NaN: not reported */
     size_t theory_count;
     struct {
         const char *name;
@@ -54,15 +53,17 @@ struct study_report {
 };
 void case_report_clear(struct case_report *report);
 void study_report_clear(struct study_report *report);
+/* Moves what a study's result and its report have in common; the cases of the result stay. */
+void study_report_take_head(struct study_report *report, const struct study_result *head);
 
 /* Measures the curves and scalars of a result as if its case had taken one second; copies
- * parameters, notes and error too. Realisations in all, jobs and attempts are the caller's to fill
- * in. */
+ * parameters, notes and error too. The caller fills in the realisations in all, jobs and
+ * attempts. */
 int case_report_make(struct case_report *out, const struct case_result *result, struct error *err);
-/* Tells what the case took: of a report that was made so, or read from one. */
+/* Sets the time of a case, and multiplies the shares of its curves by it. */
 void case_report_spend(struct case_report *report, const struct work_time *time);
-/* Statistical errors fall with the square root of the realisations: half the error costs three
- * times the processor time that was spent. NaN without a main curve. */
+/* Returns the processor time to halve the error. Statistical errors fall with the square root of
+ * the realisations, so that it is three times what was spent. NaN without a main curve. */
 double case_report_seconds_to_halve(const struct case_report *report);
 
 /* These print the document of `rugo report` as study_print_head and result_print do theirs. */

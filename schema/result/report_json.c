@@ -185,7 +185,8 @@ static int read_scalar(struct case_result *about, const cJSON *object, struct sc
     return out->name != NULL ? 0 : no_memory(err);
 }
 
-/* Its place among the curves, by quantity and attributes; those that reports leave out are none. */
+/* Returns the main curve by its quantity and attributes. An attribute that the document leaves out
+ * is absent. */
 static const struct curve_report *find_main(const struct case_report *report,
                                             const cJSON *document) {
     const char *quantity = cJSON_GetStringValue(field_at(document, "main_curve"));
@@ -262,13 +263,7 @@ int study_report_read(const cJSON *document, struct study_report *out, struct er
         status = case_report_read(item, &report.cases[report.case_count], err);
         report.case_count += status == 0;
     }
-    report.id = head.id;
-    report.name = head.name;
-    report.kind = head.kind;
-    report.state = head.state;
-    report.random = head.random;
-    report.swept = head.swept;
-    report.provenance = head.provenance;
+    study_report_take_head(&report, &head);
     if (status != 0) {
         study_report_clear(&report);
         return status;

@@ -89,7 +89,7 @@ void curve_set_attribute(struct curve *curve, const struct curve_attribute *row,
 
 /* --- memory --- */
 
-/* Rooms are cut from chunks; what is larger than a chunk has one of its own. */
+/* Arrays are cut from chunks; one that is larger than a chunk has a chunk of its own. */
 enum { CHUNK_BYTES = 16384, ALIGNMENT = 16 };
 struct chunk {
     struct chunk *next;
@@ -172,7 +172,7 @@ void study_result_clear(struct study_result *study) {
 
 /* --- filling --- */
 
-/* Room for one more entry in a list that doubles at each power of two from 16 on. */
+/* Returns the list with room for one more entry. It doubles at each power of two from 16 on. */
 static void *list_grow(void *list, size_t count, size_t size) {
     if (count != 0 && (count < 16 || (count & (count - 1)) != 0))
         return list;

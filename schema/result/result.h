@@ -1,9 +1,10 @@
-/* What came out of a case: curves, scalars and notes, each number with its errors by source.
+/* The results of a case: curves, scalars and notes, each number with its errors by source.
  *
- * Everything above the job kinds takes these structs: merging fills them, tables, pictures, reports
- * and exports read them, and each format (JSON, CSV, the store's bytes and rows) has one writer and
- * one reader beside this file. What tells curves apart is a row of CURVE_ATTRIBUTES, a source of
- * error a row of ERROR_SOURCES: one more of either is one row more, and no file above changes.
+ * Everything above the job kinds takes these structs. Merging fills them; tables, pictures, reports
+ * and exports read them. Each format (JSON, CSV, the store's bytes and rows) has one writer and one
+ * reader in this folder or the store. An attribute by which curves are distinguished is a row of
+ * CURVE_ATTRIBUTES, a source of error a row of ERROR_SOURCES; a new one is one row more, and
+ * changes no file above.
  *
  * A case_result owns all that it points to in one arena: texts and arrays are made by result_text
  * and result_numbers, live until result_clear, and are never freed one by one. */
@@ -16,15 +17,15 @@
 
 /* --- errors by source --- */
 
-/* The statistical error stands beside each value as its standard error; these are the others. */
+/* The sources of systematic error; the statistical error is the standard error of each value. */
 enum error_source {
     ERROR_DISCRETISATION, /* this mesh less the limit of the levels */
     ERROR_CELL,           /* this cell less one of very many long waves */
     ERROR_BLOCK,          /* this block less an infinitely high one */
     ERROR_MODEL,          /* this model less the most complete one */
     ERROR_SOLVER,         /* an answer to a tolerance less the exact one */
-    ERROR_GENERATION, /* surfaces of these heights found in this way less those found in others */
-    ERROR_MISSING,    /* a mean over the realisations that have a value less one over all */
+    ERROR_GENERATION,     /* surfaces of this generator less those of an alternative one */
+    ERROR_MISSING,        /* a mean over the realisations that have a value less one over all */
     ERROR_SOURCES
 };
 struct error_source_row {
@@ -37,21 +38,21 @@ struct error_source_row {
 };
 extern const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES];
 
-/* What a curve owes to one source, in the units of y and as long as it (of a matrix, of its
- * occupied cells): what is told less what is true lies within value +- bound, where value has the
- * standard error. A bound alone has values of 0. */
+/* The error of a curve from one source, in the units of y and as long as it (of a matrix, as its
+ * occupied cells): (reported - true) lies within value +- bound, where value has the standard
+ * error. A bound alone has values of 0. */
 struct curve_error {
     bool applies;        /* the source bears on the curve; where it does not, the rest is empty */
     const double *value; /* NULL: not known */
-    const double *bound; /* NULL: none is told */
+    const double *bound; /* NULL: not known */
     const double *standard_error;
     double order;        /* of convergence; NaN: none */
     bool order_observed; /* on three levels; else assumed */
 };
-/* Realisations without a value are taken to differ from the others by so many deviations. */
+/* Realisations without a value are assumed to differ from the others by so many deviations. */
 #define MISSING_DEVIATIONS 2.0
 
-/* A single number owes this to one source. */
+/* The error of a single number from one source. */
 struct scalar_error {
     bool applies, known;
     double value, bound, standard_error;
@@ -65,11 +66,12 @@ struct theory {
 };
 enum { THEORIES_MOST = 8 };
 
-/* How a curve is kept: points over x, or, where columns > 0, a matrix over x and x2 of which only
- * the occupied cells are kept. NaN stands for a number that cannot be had. */
+/* A curve: points over x, or, where columns > 0, a matrix over x and x2 of which only the occupied
+ * cells are kept. NaN stands for an unknown number. */
 struct curve {
     const char *quantity, *x_label, *y_label;
-    /* What tells curves of one quantity apart (CURVE_ATTRIBUTES); NULL or NaN: without it. */
+    /* The attributes that distinguish curves of one quantity (CURVE_ATTRIBUTES); NULL or NaN:
+     * none. */
     const char *series; /* "" without */
     const char *model;
     const char *kinematics; /* of strain, in a model that has several */
@@ -90,13 +92,13 @@ struct curve {
     size_t theory_count;
     struct theory theories[THEORIES_MOST]; /* of a matrix: dense, n x columns */
     struct curve_error errors[ERROR_SOURCES];
-    const double
-        *valueless; /* realisations without a value, or a thing in the bin; NULL: not told */
+    const double *valueless; /* realisations without a value, or without a thing in the bin; NULL:
+                              * not known */
     /* Of a difference of two cases: their values, n each; NULL: none. */
     const double *minuend, *subtrahend;
-    bool paired;  /* of a difference: its standard error is that of pairs */
-    bool counted; /* from a histogram, or over its bins: with what fell outside of them */
-    double underflow, overflow; /* counts */
+    bool paired;                /* of a difference: its standard error is that of pairs */
+    bool counted;               /* from a histogram, or over its bins, with the counts outside */
+    double underflow, overflow; /* counts below and above the bins */
 };
 
 /* Makes a curve without points, attributes and errors. */
@@ -110,8 +112,8 @@ static inline size_t curve_value_count(const struct curve *curve) {
     return curve->columns > 0 ? curve->cell_count : curve->n;
 }
 
-/* Tells whether some realisations may be left out where all are meant: a bin without things is none
- * of them. */
+/* Returns whether some of the realisations that a value is the mean of may have none. An empty bin
+ * of a histogram is no missing value. */
 bool curve_is_partial(const struct curve *curve);
 
 enum attribute_type { ATTRIBUTE_TEXT, ATTRIBUTE_NUMBER };
@@ -119,18 +121,19 @@ struct curve_attribute {
     const char *key; /* in JSON, CSV and views */
     size_t offset;   /* in struct curve */
     enum attribute_type type;
-    bool separates_series; /* of one estimator at one pressure: other than by model and mesh */
-    size_t column;         /* of CSV, reports and views, counted from 1; 0: in none of them */
+    bool separates_series; /* estimators, pressures and the like, not model and mesh */
+    size_t column;         /* of CSV, reports and views, counted from 1; 0: none */
 };
 enum { CURVE_ATTRIBUTE_COUNT = 6 };
 extern const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT];
-/* Those that have a column, in the order of the columns, n from 0; NULL behind the last one. */
+/* Returns attribute n, from 0, of those with a column, in the order of the columns; NULL behind the
+ * last. */
 const struct curve_attribute *curve_column(size_t n);
-/* Returns the attribute: NULL for the text of a number, NaN for the number of a text. */
+/* Return the value of an attribute: NULL for the text of a number, NaN for the number of a text. */
 const char *curve_attribute_text(const struct curve *curve, const struct curve_attribute *row);
 double curve_attribute_number(const struct curve *curve, const struct curve_attribute *row);
 
-/* Sets the text or the number, whichever the row is of. */
+/* Sets the text or the number, whichever the attribute is. */
 void curve_set_attribute(struct curve *curve, const struct curve_attribute *row, const char *text,
                          double number);
 
@@ -140,12 +143,12 @@ struct scalar {
     const char *name;
     double value, standard_error; /* NaN: none */
     double theory;                /* NaN: none */
-    double grid;             /* theory of the same on the grid that it was measured on; NaN: none */
-    bool difference, paired; /* as of curves */
+    double grid;                /* theory of the same for the grid of the measurement; NaN: none */
+    bool difference, paired;    /* as of curves */
     double minuend, subtrahend; /* of a difference */
     struct scalar_error errors[ERROR_SOURCES];
 };
-/* A scalar on which no source of error bears, without theory of a grid. */
+/* Returns a scalar without sources of error and without a theory of the grid. */
 struct scalar scalar_named(const char *name, double value, double standard_error, double theory);
 
 struct result_note {
@@ -153,7 +156,7 @@ struct result_note {
     const char *text;
 };
 
-/* People filter cases by such parameters: "/surface/hurst". */
+/* A parameter by which cases can be selected: "/surface/hurst". */
 struct result_parameter {
     const char *pointer;
     const char *text; /* NULL: a number */
@@ -173,15 +176,15 @@ struct case_result {
     uint64_t notes_all; /* kept or not */
     bool difference;    /* of case_number less the case `less` (difference.h) */
     uint64_t less;
-    const char *remark; /* of a difference: what is not in it; NULL: nothing */
+    const char *remark; /* of a difference: curves that it lacks; NULL: none */
     const char *error;  /* why there are no results though there are realisations; NULL: none */
     struct arena *arena;
 };
-/* Of a whole study, or of those of its cases that were asked for. Owns its texts and cases. */
+/* Results of a study, of all cases or some. Owns its texts and cases. */
 struct study_result {
     char *id, *name, *kind, *state;
-    char *random; /* "common": cases share random numbers, their errors go together; or NULL */
-    struct cJSON *swept; /* pointers of what the study sweeps, an array; owned; NULL: not known */
+    char *random;             /* "common": cases share random numbers, errors are correlated */
+    struct cJSON *swept;      /* the swept pointers, an array; owned; NULL: not known */
     struct cJSON *provenance; /* provenance.h; owned; NULL: not known */
     size_t case_count;
     struct case_result *cases;
@@ -199,22 +202,21 @@ const char *result_text(struct case_result *result, const char *text); /* NULL f
  * lists of curves and scalars may move. */
 int result_add_curve(struct case_result *result, const struct curve *curve, struct error *err);
 int result_add_scalar(struct case_result *result, const struct scalar *scalar, struct error *err);
-/* Leaves the curves of a quantity (NULL: of all), or no curves at all. */
+/* Keeps the curves of a quantity (NULL: of all), or no curves at all. */
 void result_keep(struct case_result *result, const char *quantity, bool scalars_only);
 
 const struct scalar *result_scalar(const struct case_result *result,
                                    const char *name); /* or NULL */
-/* The first curve of a quantity, or NULL; those behind it of the same quantity follow it. */
+/* Returns the first curve of a quantity, or NULL; the others of the quantity follow it. */
 const struct curve *result_curve(const struct case_result *result, const char *quantity);
 /* Returns the parameter at that pointer, or NULL. */
 const struct result_parameter *result_parameter(const struct case_result *result,
                                                 const char *pointer);
 
-/* Two are the same also where both are NULL, or both NaN. */
+/* Return true also where both are NULL, or both NaN. */
 bool same_text(const char *a, const char *b);
 bool same_number(double a, double b);
-/* Returns whether two curves are of the same quantity and of the same series (attributes that tell
- * it). */
+/* Returns whether two curves have the same quantity and the same attributes but model and mesh. */
 bool curve_same_series(const struct curve *a, const struct curve *b);
 
 #endif

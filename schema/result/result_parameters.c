@@ -48,7 +48,7 @@ bool result_add_parameter(struct case_result *result, const char *pointer, const
     return one->pointer != NULL && (cJSON_IsNumber(value) || one->text != NULL);
 }
 
-/* pointer says where `object` is; it is extended in place for its members. */
+/* pointer names `object`, and is extended in place for its members. */
 static int flatten(struct case_result *result, const cJSON *object, char pointer[POINTER_MOST],
                    struct error *err) {
     size_t length = strlen(pointer);

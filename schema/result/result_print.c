@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Prints "key": with a comma in front of all but an object's first member. */
+/* Prints "key": with a comma before it, but for the first member of an object. */
 static bool put_key(FILE *file, bool *first, const char *key) {
     if (!*first)
         fputc(',', file);
@@ -73,7 +73,7 @@ static bool put_values(FILE *file, bool *first, const char *key, const struct cu
 
 /* --- a curve --- */
 
-/* Walks through all attributes, or those that have a column; NULL behind the last one. */
+/* Returns attribute n of all, or of those that have a column; NULL behind the last one. */
 static const struct curve_attribute *attribute_at(size_t n, bool all) {
     if (!all)
         return curve_column(n);

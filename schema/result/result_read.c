@@ -1,9 +1,10 @@
 #include "schema/json/field.h"
 #include "schema/result/result_json.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* Readers pass on where the result goes, and the error. */
+/* What all readers need: the result to fill, and the error. */
 struct reading {
     struct case_result *result;
     struct error *err;
@@ -64,7 +65,7 @@ static int read_dense(const struct reading *reading, const cJSON *object, const 
     return 0;
 }
 
-/* Keeps the cells that hold something: all are empty where nothing is known (the first is NaN). */
+/* Keeps the cells that are not empty. Where the first cell is NaN, empty cells are NaN, else 0. */
 static int read_matrix(const struct reading *reading, const cJSON *object, struct curve *curve) {
     double *y = NULL, *standard_error = NULL;
     int status = read_dense(reading, object, "y", curve, &y);
@@ -113,7 +114,7 @@ int curve_read_attributes(struct case_result *result, const cJSON *object, struc
     return curve->series != NULL ? 0 : fault(&reading, "series", "a string");
 }
 
-/* Reads a number of each value: of all points, or of the occupied cells of a matrix. */
+/* Reads a number for each value: for all points, or for the occupied cells of a matrix. */
 static int read_values(const struct reading *reading, const cJSON *object, const char *key,
                        const struct curve *curve, const double **out) {
     double *dense = NULL;
@@ -344,5 +345,62 @@ int result_read(const cJSON *document, struct case_result *out, struct error *er
         return status;
     }
     *out = result;
+    return 0;
+}
+
+/* Reads documents of results of studies; result_read.c reads their cases. */
+
+static int read_cases(const cJSON *cases, struct study_result *study, struct error *err) {
+    size_t count = (size_t)cJSON_GetArraySize(cases);
+    study->cases = array_create(count, sizeof *study->cases);
+    if (study->cases == NULL)
+        return error_memory(err, count * sizeof *study->cases, "the results of a study");
+    int status = 0;
+    for (const cJSON *item = cases != NULL ? cases->child : NULL; item != NULL && status == 0;
+         item = item->next) {
+        status = result_read(item, &study->cases[study->case_count], err);
+        study->case_count += status == 0;
+    }
+    return status;
+}
+
+int study_head_read(const cJSON *document, struct study_result *out, struct error *err) {
+    const struct {
+        const char *key;
+        char **text;
+    } texts[] = {{"study", &out->id},
+                 {"name", &out->name},
+                 {"kind", &out->kind},
+                 {"state", &out->state},
+                 {"random", &out->random}};
+    for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
+        const char *text = cJSON_GetStringValue(field_at(document, texts[t].key));
+        if (texts[t].text == &out->random && field_at(document, "random") == NULL)
+            continue; /* of an older program */
+        if (text == NULL)
+            return error_set(err, ERROR_INPUT, "\"%s\" of a result must be a string", texts[t].key);
+        *texts[t].text = strdup(text);
+        if (*texts[t].text == NULL)
+            return error_memory(err, strlen(text) + 1, "a text of a study");
+    }
+    const cJSON *swept = field_at(document, "swept");
+    const cJSON *provenance = field_at(document, "provenance"); /* neither is of older programs */
+    if (cJSON_IsArray(swept) && (out->swept = cJSON_Duplicate(swept, true)) == NULL)
+        return error_memory(err, 0, "the swept parameters of a study");
+    if (cJSON_IsObject(provenance) && (out->provenance = cJSON_Duplicate(provenance, true)) == NULL)
+        return error_memory(err, 0, "the provenance of a study");
+    return 0;
+}
+
+int study_result_read(const cJSON *document, struct study_result *out, struct error *err) {
+    struct study_result study = {0};
+    int status = study_head_read(document, &study, err);
+    if (status == 0)
+        status = read_cases(field_at(document, "cases"), &study, err);
+    if (status != 0) {
+        study_result_clear(&study);
+        return status;
+    }
+    *out = study;
     return 0;
 }

@@ -14,7 +14,7 @@ const char *swept_pointer(const struct study_result *study, size_t n) {
 }
 
 static const char *last_word(const char *pointer) {
-    return strrchr(pointer, '/') + 1; /* pointers begin with one */
+    return strrchr(pointer, '/') + 1; /* every pointer begins with a slash */
 }
 
 const char *swept_name(const struct study_result *study, size_t n) {

@@ -7,8 +7,8 @@
 size_t swept_count(const struct study_result *study); /* 0 where it is not known */
 /* Returns the pointer of number n; NULL behind the last. Borrowed from the study. */
 const char *swept_pointer(const struct study_result *study, size_t n);
-/* Returns what a column is called: the last word of the pointer, or all of it without the first
- * slash where another one ends in the same word. */
+/* Returns the title of a column: the last word of the pointer, or the whole pointer without its
+ * first slash where another one ends in the same word. */
 const char *swept_name(const struct study_result *study, size_t n);
 
 #endif

@@ -1,5 +1,5 @@
-/* How the results of a kind are shown. Each kind describes it once; tables and pictures read the
- * description, so that they know no kind, quantity or scalar by name. Everything is static. */
+/* How the results of a kind are shown. Each kind describes it once, and tables and pictures follow
+ * the description: they know no kind, quantity or scalar by name. Everything is static. */
 #ifndef RUGO_SCHEMA_RESULT_VIEW_H
 #define RUGO_SCHEMA_RESULT_VIEW_H
 
@@ -8,18 +8,18 @@
 /* A picture whose axes are both logarithmic. */
 struct logarithmic_picture {
     const char *quantity;
-    const char *suffix; /* of one more picture's name, "light"; NULL: the quantity's only picture */
+    const char *suffix; /* of the picture's name, "light"; NULL: the only picture of the quantity */
 };
 
-/* The quantity that is tabulated over its x: a table a case, or, of many cases, a row each. */
+/* A quantity that is tabulated over its x: a table for a case, or a row for each of many cases. */
 struct quantity_table {
     const char *quantity;
     const char *title;                      /* "contact area" */
-    const char *value, *x;                  /* the words of its columns: "area", "load" */
+    const char *value, *x;                  /* titles of its columns: "area", "load" */
     const char *error_words[ERROR_SOURCES]; /* headings of its errors; NULL: the source's name */
     const char *legend;                     /* the line below: what the columns are */
-    const char *const *scalars;             /* told with it; NULL-terminated */
-    const char *const *left_out; /* theories that hold for a part of x alone; NULL-terminated */
+    const char *const *scalars;             /* printed with it; NULL-terminated */
+    const char *const *left_out; /* theories that hold for a part of x only; NULL-terminated */
 };
 
 struct result_view {

@@ -6,7 +6,8 @@ static int compare(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Raises the lowest loads to one level that takes in the bulk; they rise afterwards, too. */
+/* Raises the lowest loads to one level, so that they take in the bulk. Loads are then in rising
+ * order. */
 static void share_out(double *loads, size_t n, double bulk) {
     size_t low = 1; /* loads below the level */
     double level, sum;

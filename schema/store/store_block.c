@@ -1,17 +1,18 @@
-/* Blocks: what a claim cuts off the front of a span, how large it is, and how it is counted. */
+/* Blocks: the part of a span that a claim leases, its size, and its counting. */
 #include "schema/hex.h"
 #include "schema/store/store_internal.h"
 #include "schema/store/store_seal.h"
 #include "schema/study/study_reader.h"
 
-/* What waits in front of a study. */
+/* The first span of a study that may be claimed. */
 struct span {
     int64_t id, count, blocks, attempts, losses;
     struct cut cut;
     double seconds; /* of a realisation, by the clock */
 };
 
-/* Fills the job with what the case tells; its count is still that of the whole span. */
+/* Reads a span, and fills the job with what is known of its case; the job's count is still that of
+ * the whole span. */
 static int read_span(struct store *store, const struct found_study *study, struct span *span,
                      struct claimed_job *job, struct error *err) {
     sqlite3_stmt *row = NULL;
@@ -66,8 +67,8 @@ int count_elsewhere(struct store *store, int64_t study, int64_t enough, int64_t 
                          "ii", study, enough < STUDIES_MOST ? enough : (int64_t)STUDIES_MOST);
 }
 
-/* Where fewer jobs wait than threads that may ask for them, each of these gets a share of the
- * realisations, but for those that other studies have jobs for. */
+/* Where fewer jobs wait than threads that may ask for them, each thread gets a share of the
+ * realisations. Threads that other studies have jobs for are not counted. */
 static int choose_block(struct store *store, struct claiming *claiming,
                         const struct found_study *study, const struct span *span, uint64_t *block,
                         struct error *err) {
@@ -84,7 +85,7 @@ static int choose_block(struct store *store, struct claiming *claiming,
     return status;
 }
 
-/* Leases the whole of what waits. */
+/* Leases the whole span. */
 static int lease_whole(struct store *store, const struct claim *claim, const struct span *span,
                        struct claimed_job *job, const unsigned char *digest, struct error *err) {
     job->id = span->id;
@@ -97,7 +98,7 @@ static int lease_whole(struct store *store, const struct claim *claim, const str
         claim->program, store_now(store), store->options.lease_ms, store_time(store), span->id);
 }
 
-/* Leases the front of what waits: the rest keeps its number, and is cut into `blocks`. */
+/* Leases the front of a span: the rest keeps its number, and counts as `blocks` jobs. */
 static int lease_front(struct store *store, const struct claim *claim, int64_t study,
                        const struct span *span, int64_t blocks, struct claimed_job *job,
                        const unsigned char *digest, struct error *err) {
@@ -119,8 +120,8 @@ static int lease_front(struct store *store, const struct claim *claim, int64_t s
     return status;
 }
 
-/* Moves the clock of the study's owner on. Jobs that take no time count a little, so that owners of
- * such take turns, too. */
+/* Moves the clock of the study's owner on. Jobs that take no time count a little, so that their
+ * owners take turns, too. */
 static int count_share(struct store *store, const struct found_study *study, double seconds,
                        struct error *err) {
     static const double LEAST = 1e-3;
@@ -131,8 +132,8 @@ static int count_share(struct store *store, const struct found_study *study, dou
                      "dt", seconds > LEAST ? seconds : LEAST, study->owner);
 }
 
-/* The counters change with every claim; the state only with the first, as it is indexed. blocks:
- * how many jobs of those that waited wait no more. */
+/* Counts a claim. The state changes with the first claim alone, as it is indexed. blocks: number of
+ * queued jobs that were cut short. */
 static int count_claim(struct store *store, const struct found_study *study,
                        const struct claimed_job *job, int64_t blocks, struct error *err) {
     int status = store_run(store, err,
@@ -148,7 +149,7 @@ static int count_claim(struct store *store, const struct found_study *study,
                : case_add_jobs(store, study->id, (int64_t)job->case_number, 1 - blocks, err);
 }
 
-/* What a damaged case has waiting fails as one job, so that it does not stand before others. */
+/* Fails what waits of a damaged case as one job, so that it does not block others. */
 static int fail_damaged(struct store *store, const struct claimed_job *job,
                         const struct error *damage, struct error *err) {
     struct job_row row;
@@ -190,4 +191,86 @@ int block_lease(struct store *store, struct claiming *claiming, const struct fou
         return fail_damaged(store, job, &damage, err);
     claiming->seconds += span.cut.seconds * (double)job->count;
     return status != 0 ? status : count_share(store, study, span.seconds * (double)job->count, err);
+}
+
+/* Spans: realisations of a case that wait as one row, until claims cut blocks off them. */
+
+struct cut column_cut(sqlite3_stmt *row, int seconds, int most) {
+    static const struct study_cost ANY = {0};
+    struct cut cut = {sqlite3_column_double(row, seconds), study_block_most(&ANY)};
+    if (sqlite3_column_int64(row, most) > 0)
+        cut.most = (uint64_t)sqlite3_column_int64(row, most);
+    return cut;
+}
+
+int64_t cut_jobs(const struct cut *cut, int64_t realisations) {
+    int64_t block = (int64_t)study_block((uint64_t)realisations, cut->seconds, cut->most);
+    return (realisations + block - 1) / block;
+}
+
+int span_insert(struct store *store, const struct job_row *all, const struct cut *cut,
+                struct queued *queued, struct error *err) {
+    int64_t jobs = cut_jobs(cut, all->count);
+    if (all->count == 0)
+        return 0;
+    queued->jobs += jobs;
+    queued->realisations += all->count;
+    return store_run(store, err,
+                     "INSERT INTO job (study_id, case_number, first, count, blocks, attempts, "
+                     "losses) VALUES (?, ?, ?, ?, ?, ?, ?)",
+                     "iiiiiii", all->study, all->case_number, all->first, all->count, jobs,
+                     all->attempts, all->losses);
+}
+
+/* Finds the first realisation from `at` on that a job has, or `end`; *behind: the first one behind
+ * that job. */
+static int next_job(struct store *store, const struct job_row *all, int64_t at, int64_t end,
+                    int64_t *first, int64_t *behind, struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status = store_query(store, &row, err,
+                             "SELECT first, first + count FROM job WHERE study_id = ?1 AND "
+                             "case_number = ?2 AND first >= ?3 ORDER BY first LIMIT 1",
+                             "iii", all->study, all->case_number, at);
+    *first = *behind = end;
+    if (status == 0)
+        status = store_step(store, row, err);
+    if (status <= 0)
+        return status;
+    *first = sqlite3_column_int64(row, 0);
+    *behind = sqlite3_column_int64(row, 1);
+    sqlite3_reset(row);
+    return 0;
+}
+
+int spans_insert_missing(struct store *store, const struct job_row *all, const struct cut *cut,
+                         struct queued *queued, struct error *err) {
+    int64_t at = all->first, end = all->first + all->count, first = 0;
+    int status = 0;
+    while (status == 0 && at < end) {
+        struct job_row gap = *all;
+        gap.first = at;
+        status = next_job(store, all, at, end, &first, &at, err);
+        gap.count = (first < end ? first : end) - gap.first;
+        if (status == 0)
+            status = span_insert(store, &gap, cut, queued, err);
+    }
+    return status;
+}
+
+int study_count_queued(struct store *store, int64_t study, const struct queued *queued,
+                       struct error *err) {
+    return store_run(store, err,
+                     "UPDATE study SET jobs = jobs + ?1, jobs_waiting = jobs_waiting + ?1, "
+                     "realisations_waiting = realisations_waiting + ?2 WHERE id = ?3",
+                     "iii", queued->jobs, queued->realisations, study);
+}
+
+int case_add_jobs(struct store *store, int64_t study, int64_t case_number, int64_t jobs,
+                  struct error *err) {
+    if (jobs == 0)
+        return 0;
+    return store_run(store, err,
+                     "UPDATE study_case SET jobs = jobs + ?3, jobs_left = jobs_left + ?3 WHERE "
+                     "study_id = ?1 AND number IN (?2, " CASE_PARENT ")",
+                     "iii", study, case_number, jobs);
 }

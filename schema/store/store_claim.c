@@ -1,10 +1,10 @@
-/* Claims: jobs handed out, and taken back from those whose lease ran out. */
+/* Claims: jobs are leased, and requeued when their lease ran out. */
 #include "schema/store/store_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* One job whose lease ran out waits again, or has failed. 1 when there was one. */
+/* Requeues, or fails, one job whose lease ran out. Returns 1 when there was one. */
 static int expire_one(struct store *store, struct error *err) {
     sqlite3_stmt *row = NULL;
     int status = store_query(store, &row, err,
@@ -28,7 +28,7 @@ static int expire_one(struct store *store, struct error *err) {
     return status != 0 ? status : 1;
 }
 
-/* The kinds of a claim as " one two ", the caller's to free; *out is NULL for any. */
+/* Makes the kinds of a claim as " one two ", which the caller frees; *out is NULL for any. */
 static int kinds_text(const char *const *kinds, char **out, struct error *err) {
     size_t size = 2;
     *out = NULL;
@@ -45,15 +45,15 @@ static int kinds_text(const char *const *kinds, char **out, struct error *err) {
 
 #define FOUND_COLUMNS                                                                              \
     "id, public, kind, seed, state = 'queued', random, owner, jobs_waiting, realisations_waiting"
-/* Studies that a worker may have: ?1 those of independent cases alone, ?2 of these kinds. Not those
- * all of whose jobs wait for a while after a loss: ?4 is now. */
+/* Studies that a claim may take jobs from: ?1 those of independent cases alone, ?2 of these kinds.
+ * Left out are studies all of whose jobs pause after a loss: ?4 is now. */
 #define CLAIMABLE                                                                                  \
     "state IN ('queued', 'running') AND jobs_waiting > 0 AND (NOT ?1 OR random = 'independent' "   \
     "OR (cases = 1 AND realisations > 0)) AND (?2 IS NULL OR instr(?2, ' ' || kind || ' ') > 0) "  \
     "AND EXISTS (SELECT 1 FROM job INDEXED BY job_waiting WHERE study_id = study.id AND "          \
     "job.state = 'waiting' AND not_before <= ?4)"
-/* A study that a worker may have: of this owner the first in line, or the one that is asked for.
- * Fills job's study, kind and seed. 1, or 0 when there is none. */
+/* Finds the first study in line of this owner, or the one that is asked for. Fills the job's study,
+ * kind and seed. Returns 1, or 0 when there is none. */
 static int first_study(struct store *store, const struct claiming *claiming,
                        struct found_study *found, struct claimed_job *job, struct error *err) {
     sqlite3_stmt *row = NULL;
@@ -84,7 +84,7 @@ static int first_study(struct store *store, const struct claiming *claiming,
     return job->kind != NULL ? 1 : error_memory(err, 0, "a kind");
 }
 
-/* Asks owner after owner, whose clock is least first. */
+/* Tries owner after owner, the one whose clock is least first. */
 static int next_study(struct store *store, const struct claiming *claiming,
                       struct found_study *found, struct claimed_job *job, struct error *err) {
     sqlite3_stmt *turn = NULL;
@@ -102,8 +102,8 @@ static int next_study(struct store *store, const struct claiming *claiming,
     return status;
 }
 
-/* How many jobs the claim may have in all, when its first one comes from this study: its share of
- * what waits, where few do, and one a thread in any case. */
+/* Sets how many jobs the claim may have in all when its first one is of this study. Where few wait
+ * it is the claim's share by threads, and at least one a thread. */
 static int count_most(struct store *store, struct claiming *claiming,
                       const struct found_study *study, size_t *most, struct error *err) {
     const struct claim *claim = claiming->claim;
@@ -123,7 +123,7 @@ static int count_most(struct store *store, struct claiming *claiming,
     return status;
 }
 
-/* Claims one job: returns 1, 0 when nothing waits, or 2 where one failed in its place. *most: see
+/* Claims one job: returns 1, 0 when nothing waits, or 2 where a damaged one failed. *most: see
  * count_most; 0 before the first. */
 static int claim_one(struct store *store, struct claiming *claiming, size_t *most,
                      struct claimed_job *job, struct error *err) {
@@ -138,7 +138,7 @@ static int claim_one(struct store *store, struct claiming *claiming, size_t *mos
     return status < 0 ? status : 1 + status;
 }
 
-/* Claims until there are enough: by their number, or by the seconds that they take. */
+/* Claims until there are enough jobs, by their number or by the seconds that they take. */
 static int claim_all(struct store *store, struct claiming *claiming, struct claimed_job *jobs,
                      size_t *count, struct error *err) {
     const struct claim *claim = claiming->claim;
@@ -150,13 +150,13 @@ static int claim_all(struct store *store, struct claiming *claiming, struct clai
         status = claim_one(store, claiming, &most, &jobs[*count], err);
         if (status == 2)
             claimed_job_clear(&jobs[*count]);
-        else if (status != 0) /* also after an error: what it holds is cleared later */
+        else if (status != 0) /* an error, too: what it holds is cleared later */
             (*count)++;
     }
     return status < 0 ? status : 0;
 }
 
-/* Finds what a claim asks for, with what is known of other workers. */
+/* Looks up what a claim needs: its study, its kinds, and the threads of other workers. */
 static int open_claim(struct store *store, struct claiming *claiming, struct error *err) {
     const struct claim *claim = claiming->claim;
     int status = kinds_text(claim->kinds, &claiming->kinds, err);

@@ -1,4 +1,4 @@
-/* Completion: a result in, once. */
+/* Completion: a result is stored once. */
 #include "schema/store/store_internal.h"
 #include "schema/store/store_seal.h"
 #include <math.h>
@@ -9,7 +9,7 @@
 
 enum { NUMBER_MOST = 25 }; /* "-1.2345678901234567e-308," */
 
-/* The fewest digits that read back to the same double; null where it is none. */
+/* Writes the fewest digits that read back to the same double; null where it is not finite. */
 static char *put_number(char *at, double value) {
     int length = snprintf(at, NUMBER_MOST + 1, "null"), digits = 15;
     if (!isfinite(value))
@@ -20,8 +20,8 @@ static char *put_number(char *at, double value) {
     return at + length;
 }
 
-/* The scalars as JSON rows, by hand: through a tree it took longer than the rest of a completion.
- */
+/* Makes the scalars as JSON rows without a tree, which took longer than the rest of a
+ * completion. */
 static char *scalars_text(const struct block_result *result) {
     size_t width = result->scalar_count;
     if (width > SIZE_MAX / NUMBER_MOST - 1)
@@ -73,7 +73,7 @@ void block_text_clear(struct block_text *text) {
 
 /* --- the change --- */
 
-/* Finds or makes the row of this list of names, which most jobs share. */
+/* Finds or inserts the row of this list of names, which most jobs share. */
 static int names_row(struct store *store, const char *names, int64_t *id, struct error *err) {
     int status =
         store_integer(store, id, err, "SELECT id FROM scalar_names WHERE names = ?", "t", names);
@@ -125,7 +125,7 @@ static int read_cut(struct store *store, const struct job_row *job, struct cut *
     return 0;
 }
 
-/* A query behind each update, not RETURNING: that makes a table for its row each time. */
+/* Queries after each update, as RETURNING makes a table for its row each time. */
 static int count_completion(struct store *store, const struct job_row *job,
                             const struct block_result *result, int64_t *left, struct error *err) {
     bool without = isnan(result->cpu_seconds);
@@ -157,7 +157,7 @@ static int count_completion(struct store *store, const struct job_row *job,
     return status == 0 && undone == 0 ? study_settle(store, job->study, err) : status;
 }
 
-/* What a partial result leaves waits again, as if it had never been leased. */
+/* Queues the rest of a partial result again, as if it had never been leased. */
 static int queue_rest(struct store *store, const struct job_row *job,
                       const struct block_result *result, struct error *err) {
     struct job_row rest = *job;
@@ -193,7 +193,8 @@ static int job_complete(struct store *store, const struct job_row *job,
     return status != 0 ? status : count_completion(store, job, result, left, err);
 }
 
-/* A result may be of the first realisations of a job alone, until the job is done. */
+/* Checks that a result has the first realisations of the job; of a job that is done, all of
+ * them. */
 static int check_block(const struct job_row *job, const struct block_result *result,
                        struct error *err) {
     uint64_t count = (uint64_t)job->count;

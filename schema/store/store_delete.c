@@ -1,11 +1,11 @@
-/* Deletion: a study is gone at once, its rows and their pages follow bit by bit. */
+/* Deletion: a study disappears at once; its rows and their pages are freed in small parts. */
 #include "schema/store/store_internal.h"
 #include <time.h>
 
-/* What has less than this is made smaller as a whole, once: see shrink_whole. */
+/* A file smaller than this is rewritten as a whole, once: see shrink_whole. */
 static const int64_t WHOLE_BYTES = 268435456;
 
-/* Refuses a study that workers may be at. */
+/* Refuses a study whose jobs may run. */
 static int check_ended(struct store *store, int64_t study, const char *id, struct error *err) {
     int64_t open = 0;
     int status =
@@ -16,7 +16,7 @@ static int check_ended(struct store *store, int64_t study, const char *id, struc
     return status;
 }
 
-/* Its name and key are free from here on, and nothing of it is due. */
+/* Frees its name and key, and makes nothing of it due. */
 static int bury(struct store *store, int64_t study, struct error *err) {
     int status = store_run(store, err,
                            "INSERT INTO deleted_study (id, public, deleted) SELECT id, public, ? "
@@ -50,7 +50,7 @@ int store_delete(struct store *store, const char *id, struct error *err) {
 
 /* --- rows --- */
 
-/* Each takes a part that is deleted in some milliseconds; rows that hang on them go with them. */
+/* Each deletes a part in some milliseconds, with the rows that refer to it. */
 static const char *const PARTS[] = {
     "DELETE FROM curve WHERE id IN (SELECT id FROM curve WHERE study_id = ?1 LIMIT 8)",
     "DELETE FROM job WHERE id IN (SELECT id FROM job WHERE study_id = ?1 LIMIT 32)",
@@ -96,9 +96,8 @@ static int purge_rows(struct store *store, bool *left, struct error *err) {
 
 /* --- pages --- */
 
-/* A store of before gives no single pages back. Written anew as a whole it does, and learns to;
- * that keeps others waiting, so that a large one is left as it is: its free pages are used again.
- */
+/* A store of an older program cannot free single pages until it is rewritten as a whole. As that
+ * blocks others, a large store is left as it is: its free pages are used again. */
 static int shrink_whole(struct store *store, struct error *err) {
     int64_t pages = 0, size = 0;
     int status = store_integer(store, &pages, err, "PRAGMA page_count", "");
@@ -109,7 +108,7 @@ static int shrink_whole(struct store *store, struct error *err) {
     return store_execute(store, "VACUUM", err);
 }
 
-/* Gives some free pages back; *left: whether there are more. */
+/* Frees some pages; *left: there are more. */
 static int give_pages(struct store *store, int64_t unused, bool *left, struct error *err) {
     int64_t rest = 0;
     int status = store_execute(store, "PRAGMA incremental_vacuum(512)", err);
@@ -134,7 +133,7 @@ static int purge_pages(struct store *store, bool *left, struct error *err) {
 
 int store_purge(struct store *store, bool (*stop)(void *context), void *context,
                 struct error *err) {
-    const struct timespec pause = {0, 2000000}; /* others wait for a fraction of that */
+    const struct timespec pause = {0, 2000000}; /* others wait for a part of that */
     for (bool left = true; left;) {
         if (stop != NULL && stop(context))
             return error_set(err, ERROR_STOPPED, "stopped");

@@ -1,17 +1,17 @@
-/* What is due: cases of which nothing is left to run and whose results are neither published nor
- * marked as impossible to publish. The condition of the index case_due, word for word. */
+/* What is due: cases whose jobs have ended and whose results are neither published nor marked as
+ * impossible to publish. The condition is that of the index case_due, word for word. */
 #include "schema/store/store_internal.h"
 #include <stdio.h>
 
 #define DUE "jobs_left = 0 AND revision > settled"
 
-/* find_due moves this along: its position, and the case that is due there. */
+/* The position of find_due, and the case that is due there. */
 struct cursor {
     int64_t study;
     struct due_case due;
 };
 
-/* The next case due behind the cursor. 1, or 0 for none. */
+/* Finds the next case due behind the cursor. Returns 1, or 0 for none. */
 static int find_due(struct store *store, struct cursor *cursor, struct error *err) {
     sqlite3_stmt *row = NULL;
     int status =
@@ -57,8 +57,8 @@ static int mark(struct store *store, int64_t study, const struct due_case *due, 
     return status != 0 ? status : study_settle(store, study, err);
 }
 
-/* Marks a case that cannot be published: it is due no more, and its study fails once it ends. Does
- * nothing where the case is not due at this revision. */
+/* Marks a case that cannot be published: it is no longer due, and its study fails once it ends.
+ * Does nothing where the case is not due at this revision. */
 static int fail_publication(struct store *store, const struct due_case *due, const char *reason,
                             struct error *err) {
     int64_t study = 0;
@@ -71,7 +71,7 @@ static int fail_publication(struct store *store, const struct due_case *due, con
     return change_end(store, status, err);
 }
 
-/* Says whether trying again is of no use. */
+/* Returns whether another try would fail, too. */
 static bool is_final(int status) {
     return status == ERROR_INPUT || status == ERROR_NUMERIC;
 }
@@ -127,22 +127,11 @@ int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t
             "UPDATE study SET cases_failed = cases_failed - 1, state = CASE WHEN state = 'failed' "
             "THEN 'running' ELSE state END WHERE id = ?",
             "i", study);
-    int64_t ends = 0; /* nothing is left to run: this may have been what the study waited for */
+    int64_t ends = 0; /* nothing is left to run: the study may end with this */
     if (status == 0)
         status = store_integer(store, &ends, err,
                                "SELECT state = 'running' AND jobs_waiting + jobs_running = 0 FROM "
                                "study WHERE id = ?",
                                "i", study);
     return status == 0 && (marked != 0 || ends != 0) ? study_settle(store, study, err) : status;
-}
-
-int marks_clear(struct store *store, int64_t study, struct error *err) {
-    int status = store_run(store, err,
-                           "UPDATE study_case SET settled = 0, publish_error = NULL WHERE "
-                           "study_id = ? AND publish_error IS NOT NULL",
-                           "i", study);
-    if (status == 0)
-        status =
-            store_run(store, err, "UPDATE study SET cases_failed = 0 WHERE id = ?", "i", study);
-    return status;
 }

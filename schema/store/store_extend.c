@@ -1,4 +1,4 @@
-/* Extension: the realisations that a study lacks, behind those that it has. */
+/* Extension: adds the realisations that a study lacks behind those that it has. */
 #include "schema/store/store_internal.h"
 #include <stdlib.h>
 
@@ -9,7 +9,7 @@ struct longer_case {
     struct cut cut;
 };
 
-/* *out has room for all cases of the study. */
+/* out has room for `count` cases, which are all cases of the study. */
 static int read_cases(struct store *store, int64_t study, struct longer_case *out, size_t count,
                       struct error *err) {
     sqlite3_stmt *row = NULL;
@@ -40,7 +40,7 @@ static int extend_case(struct store *store, int64_t study, const struct longer_c
                        : case_add_jobs(store, study, one->number, queued->jobs - before, err);
 }
 
-/* had: the realisations that each case was to have. */
+/* had: the realisations that were asked for of each case before. */
 static int extend_cases(struct store *store, int64_t study, int64_t had, int64_t wanted,
                         struct queued *queued, struct error *err) {
     int64_t count = 0;
@@ -82,8 +82,8 @@ static int extend(struct store *store, int64_t study, int64_t had, int64_t wante
     return status != 0 ? status : study_count_work(store, study, err);
 }
 
-/* Fails where the results that are there are of another edition, or tell none, as those of older
- * programs: results of both could not be merged, and what was published would be lost. */
+/* Fails where the stored results are of another version of the program, or of one that did not
+ * record it. Results of both cannot be merged, and what was published would be lost. */
 static int check_edition(struct store *store, int64_t study, const char *id, uint64_t edition,
                          struct error *err) {
     int64_t other = 0;
@@ -140,7 +140,8 @@ int store_extend(struct store *store, const char *id, uint64_t realisations, uin
 
 /* --- blocks of another study --- */
 
-/* Both have the same cases, parameter by parameter: a digest alone may be that of two studies. */
+/* Joins studies with the same cases, parameter by parameter: two different studies may have one
+ * digest. */
 #define SAME_STUDY                                                                                 \
     "FROM study a JOIN study b ON b.digest = a.digest AND b.edition = a.edition AND b.kind = "     \
     "a.kind AND b.seed = a.seed "                                                                  \

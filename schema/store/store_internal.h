@@ -1,4 +1,4 @@
-/* What the files of the store share; nobody else includes this. */
+/* What the files of the store share; no other file includes it. */
 #ifndef RUGO_SCHEMA_STORE_STORE_INTERNAL_H
 #define RUGO_SCHEMA_STORE_STORE_INTERNAL_H
 
@@ -22,10 +22,10 @@ struct store {
     bool shrinks;            /* a study was purged, and its pages are not given back yet */
     int batch;               /* inside store_begin .. store_commit */
     struct due_case damaged; /* store_found_damage; study "": none */
-    /* Workers that asked for jobs of late and their threads, as counted at seen_ms; 0: not yet. */
+    /* Workers that asked for jobs lately and their threads, as counted at seen_ms; 0: not yet. */
     int64_t workers_seen, threads_seen, seen_ms;
-    /* Workers that this handle noted, by a hash of their names, and until when it need not again.
-     */
+    /* Workers that this handle noted, by a hash of their names, and when they need not be noted
+     * again. */
     struct {
         uint64_t worker;
         int64_t from_ms, until_ms;
@@ -38,29 +38,31 @@ struct store {
     size_t statement_count;
 };
 
-/* The prepared statement of a literal, reset, its parameters bound by format: i int64_t, d double,
- * t text or NULL (copied), b blob (const void *, size_t; copied). */
+/* Returns the prepared statement of a literal, reset, with its parameters bound by format: i
+ * int64_t, d double, t text or NULL (copied), b blob (const void *, size_t; copied). */
 int store_query(struct store *store, sqlite3_stmt **out, struct error *err, const char *sql,
                 const char *format, ...);
+/* Steps a statement of any database: SQLITE_ROW with each text of the row in memory, so that none
+ * is read as NULL for want of it, SQLITE_DONE, or the code of an error. */
+int row_step(sqlite3_stmt *row);
 /* Returns 1 for a row, 0 at the end (the statement is reset), or an error. */
 int store_step(struct store *store, sqlite3_stmt *statement, struct error *err);
-/* Runs a statement that gives no rows. Neither this nor store_integer copies what is bound. */
+/* Runs a statement that returns no rows. Neither this nor store_integer copies what is bound. */
 int store_run(struct store *store, struct error *err, const char *sql, const char *format, ...);
-/* Runs and gives the first column of the first row; ERROR_ABSENT when there is none (err
- * untouched). */
+/* Runs a statement and returns the first column of the first row; ERROR_ABSENT when there is none
+ * (err untouched). */
 int store_integer(struct store *store, int64_t *out, struct error *err, const char *sql,
                   const char *format, ...);
-/* Runs statements that are not kept, several if the text has several. */
+/* Runs one or more statements that are not kept prepared. */
 int store_execute(struct store *store, const char *sql, struct error *err);
-/* A change: all of it or nothing. End it with its status, which is returned, or the commit's. */
+/* Begin and end a change, which happens completely or not at all. change_end takes its status, and
+ * returns it, or that of the commit. */
 int change_begin(struct store *store, struct error *err);
 int change_end(struct store *store, int status, struct error *err);
-/* Between the two the handle sees the store of one moment. */
+/* Between the two the handle reads the store of one moment. */
 int read_begin(struct store *store, struct error *err);
 void read_end(struct store *store);
 
-/* Refuses what is no store, or one of a newer program; brings an older one up to date. */
-int version_bring_up(struct store *store, struct error *err);
 /* Compares tables, indices and views with those of a new store: *fault is a sentence about the
  * first that differs, or "". SQLite keeps them as text without a checksum, of which a bit may
  * change. */
@@ -68,52 +70,50 @@ int version_check_layout(struct store *store, char *fault, size_t size, struct e
 
 int store_error(struct store *store, struct error *err); /* from SQLite's last error */
 int64_t store_now(const struct store *store);
-/* Returns the time for people: UTC, ISO 8601; it is good until the next call. */
+/* Returns the time in UTC, ISO 8601; valid until the next call. */
 const char *store_time(struct store *store);
 char *column_copy(sqlite3_stmt *statement, int column); /* "" for NULL; NULL out of memory */
-/* Reads how the study of this row draws its random numbers. */
+/* Reads whether the cases of the study share their random numbers. */
 enum study_random column_random(sqlite3_stmt *row, int column);
-/* Reads a JSON text that this program stored, whatever its size; caller deletes *out. */
+/* Reads a JSON text that this program stored, whatever its size; the caller deletes *out. */
 int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 
-/* What the queries of studies leave out. */
+/* The studies that queries leave out. */
 #define DELETED_STUDIES "(SELECT id FROM deleted_study WHERE purged = 0)"
 /* Finds the row of a study; ERROR_ABSENT with a sentence when there is none. */
 int study_row(struct store *store, const char *id, int64_t *row, struct error *err);
-/* Counts the work of a study anew, when it has got jobs. */
+/* Counts the work of a study again, after jobs were added. */
 int study_count_work(struct store *store, int64_t study, struct error *err);
-/* Tells the place of a study with jobs that wait among those that are queued, from 1 on, and in how
- * many seconds the next of its jobs starts: NaN where nobody works. */
+/* Sets the position in the queue of a study with jobs that wait, from 1 on, and the seconds until
+ * the next of its jobs starts: NaN where no worker is at work. */
 int study_line(struct store *store, int64_t study, uint64_t *place, double *starts_in,
                struct error *err);
-/* Queues what failed or was cancelled again: *jobs of them. Within a change. */
+/* Requeues what failed or was cancelled: *jobs of them. Within a change. */
 int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error *err);
-/* Ends the study when nothing of it waits or runs; raises its revision. */
+/* Ends the study when none of its jobs waits or runs; raises its revision. */
 int study_settle(struct store *store, int64_t study, struct error *err);
 
-/* What is left of a study of which something waits or runs. */
+/* The work left of a study with jobs that wait or run. */
 struct work_left {
     double work;    /* seconds of one worker */
-    double share;   /* of all work, done or not, that is done: 0 to 1 */
-    double seconds; /* by the clock, until the workers are through; NaN without a worker */
+    double share;   /* of all its work, that is done: 0 to 1 */
+    double seconds; /* by the clock, until it is done; NaN without a worker */
 };
-/* workers: those that work on it, where these are more than those that do now. realisations: of
- * each case; 0 where each has its own. */
+/* workers: those that will work on it, if more than those at work on it now. realisations: of each
+ * case; 0 where each has its own. */
 int study_left(struct store *store, int64_t study, uint64_t realisations, size_t workers,
                struct work_left *out, struct error *err);
 
-/* Says that the parameters of a case are damaged; returns ERROR_INPUT. */
+/* Sets the error that the parameters of a case are damaged; returns ERROR_INPUT. */
 int case_damaged(const char *study, uint64_t case_number, struct error *err);
-/* The results of this revision are published: takes the mark off that they cannot be. */
+/* Clears the mark that a case cannot be published, when its results of this revision are. */
 int case_settle(struct store *store, int64_t study, int64_t case_number, int64_t revision,
                 struct error *err);
-/* Takes the marks off all cases of a study that cannot be published: they are due again. */
-int marks_clear(struct store *store, int64_t study, struct error *err);
 
-/* The case that component ?2 of study ?1 belongs to; NULL for a case that is none. */
+/* The case that component ?2 of study ?1 belongs to; NULL for a case that is no component. */
 #define CASE_PARENT "(SELECT parent FROM study_case WHERE study_id = ?1 AND number = ?2)"
 
-/* A change of a job needs to know this of it. */
+/* The columns of a job that changes of it need. */
 struct job_row {
     int64_t id, study, case_number, first, count;
     int64_t attempts; /* with the one that runs */
@@ -121,74 +121,75 @@ struct job_row {
     bool running, done, cancelled;
     bool owned; /* the token given is that of its last lease */
 };
-/* How realisations of a case are cut into jobs. */
+/* How the realisations of a case are cut into jobs. */
 struct cut {
-    double seconds; /* of a realisation: processor time as measured or, before, estimated */
-    uint64_t most;  /* realisations of a job */
+    double seconds; /* of a realisation: processor time as measured, or estimated before */
+    uint64_t most;  /* most realisations of a job */
 };
 struct cut column_cut(sqlite3_stmt *row, int seconds, int most);
 /* The seconds of a cut, as a column of the case c. */
 #define CUT_SECONDS                                                                                \
     "CASE WHEN c.cpu_seconds > 0 AND c.realisations_done > 0 THEN c.cpu_seconds / "                \
     "c.realisations_done ELSE c.estimate END"
-/* Returns the jobs that so many realisations are cut into. */
+/* Returns the number of jobs that so many realisations are cut into. */
 int64_t cut_jobs(const struct cut *cut, int64_t realisations);
-/* What was queued. */
+/* The jobs that were queued, and their realisations. */
 struct queued {
     int64_t jobs, realisations;
 };
-/* Queues realisations of a case as one span; of all: study, case_number, first, count. Adds to
- * *queued, and counts nothing in the store. */
+/* Queues realisations of a case as one span; of `all`: study, case_number, first, count. Adds to
+ * *queued, but changes no counter of the store. */
 int span_insert(struct store *store, const struct job_row *all, const struct cut *cut,
                 struct queued *queued, struct error *err);
-/* The same of those realisations that no job has. */
+/* Queues likewise those of these realisations that no job has. */
 int spans_insert_missing(struct store *store, const struct job_row *all, const struct cut *cut,
                          struct queued *queued, struct error *err);
-/* Counts in a study what was queued, beside what its cases count. */
+/* Adds what was queued to the counters of a study, not to those of its cases. */
 int study_count_queued(struct store *store, int64_t study, const struct queued *queued,
                        struct error *err);
-/* Gives a study whose cases have no jobs yet the blocks of another that is the same but for its
- * name and has fewer realisations, the one that has most of them done; their number is *taken. */
+/* Copies blocks to a study whose cases have no jobs yet; *taken is their number. They are from a
+ * study that is the same but for its name and has fewer realisations, the one with most of them
+ * done. */
 int study_take_blocks(struct store *store, int64_t study, int64_t *taken, struct error *err);
-/* Adds to the jobs of a case, and of the one that it is a component of, and to those left. */
+/* Adds jobs to the counters of a case, and of the case that it is a component of. */
 int case_add_jobs(struct store *store, int64_t study, int64_t case_number, int64_t jobs,
                   struct error *err);
-/* Ends a job that runs for good. */
+/* Fails a job that runs for good. */
 int job_fail(struct store *store, const struct job_row *job, const char *reason, struct error *err);
 int job_read(struct store *store, int64_t id, const char *token, struct job_row *job,
              struct error *err);
 /* Fails with ERROR_STATE unless the job runs under this token. */
 int job_check_lease(const struct job_row *job, struct error *err);
-/* Ends an attempt whose lease ran out on this worker: the job waits for longer each time, or has
- * failed (*failed). */
+/* Counts a loss of a job whose lease ran out on this worker: the job is requeued after a longer
+ * pause each time, or has failed (*failed). */
 int job_lose(struct store *store, const struct job_row *job, const char *worker, bool *failed,
              struct error *err);
 
-/* Notes that a worker asks for jobs, and tells how many threads of workers did of late; at least 1.
- */
+/* Notes that a worker asks for jobs; *threads: of workers that asked lately, at least 1. */
 int seen_note(struct store *store, const struct claim *claim, int64_t *threads, struct error *err);
 
-/* A study that jobs are claimed of. */
+/* A study that jobs are claimed from. */
 struct found_study {
     int64_t id, jobs_waiting, realisations_waiting;
     bool queued;
     enum study_random random;
     char owner[OWNER_SIZE];
 };
-/* What a claim takes. */
+/* The state of a claim. */
 struct claiming {
     const struct claim *claim;
     int64_t only;      /* of this study; 0: of any */
     char *kinds;       /* as " one two ", owned; NULL: of any */
-    int64_t threads;   /* of workers that asked of late */
+    int64_t threads;   /* of workers that asked lately */
     int64_t elsewhere; /* jobs that wait in other studies than the first; -1: not counted */
     double seconds;    /* of the jobs taken so far */
 };
-/* Leases a block off the front of the study's first span that may be taken, counts it, and fills
- * the job but for study, kind and seed. 1 where the case is damaged, and its span has failed. */
+/* Leases a block off the front of the study's first span that may be taken, and counts it. Fills
+ * the job but for study, kind and seed. Returns 1 where the case is damaged, and its span has
+ * failed. */
 int block_lease(struct store *store, struct claiming *claiming, const struct found_study *study,
                 struct claimed_job *job, struct error *err);
-/* Counts the jobs that wait in other open studies, up to about as many as asked for. */
+/* Counts the jobs that wait in other open studies, up to about `enough`. */
 int count_elsewhere(struct store *store, int64_t study, int64_t enough, int64_t *jobs,
                     struct error *err);
 

@@ -1,15 +1,15 @@
-/* Time left: what realisations took so far, by case, and how the rest falls to the workers.
+/* Time left: estimates what the rest of a study takes, and how it is divided among the workers.
  *
- * A case of which jobs or parts of them are done goes on as they did; one that has not begun takes
- * its estimate, corrected by how the estimates did on all that is done. */
+ * A case with jobs or parts of jobs done goes on at their rate. A case that has not begun takes its
+ * estimate, corrected by how the estimates compare with the time of all that is done. */
 #include "schema/store/schedule.h"
 #include "schema/store/store_internal.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum { LAST_JOBS = 256 }; /* those whose order decides on the end; all before them are shared out */
+enum { LAST_JOBS = 256 }; /* their order decides on the end; those before are divided evenly */
 
-/* A job that runs, beside what is done of its case. Times in seconds. */
+/* A job that runs, and what is done of its case. Times are in seconds. */
 struct running_job {
     int64_t case_number, wanted, done; /* realisations of the case, and of its completed jobs */
     double estimate, seconds;          /* of a realisation; of the completed jobs of the case */
@@ -26,7 +26,7 @@ struct reading {
     struct running_job *jobs;    /* owned, by cases */
     size_t job_count, room;
     double completed;        /* seconds of completed jobs */
-    double spent, estimated; /* seconds of these and of what is reported, and by the estimates */
+    double spent, estimated; /* seconds of these and of what is reported, measured and estimated */
 };
 
 static int add_job(struct reading *reading, sqlite3_stmt *row, struct error *err) {
@@ -96,13 +96,14 @@ static int read_totals(struct reading *reading, struct error *err) {
     return 0;
 }
 
-/* How the estimates did so far. */
+/* Returns the measured over the estimated time so far. */
 static double correction(const struct reading *reading) {
     return reading->spent > 0 && reading->estimated > 0 ? reading->spent / reading->estimated : 1;
 }
 
-/* Seconds of a realisation of the case whose first job that runs is jobs[first]. The first reports
- * of a case are few and rounded: what other cases tell counts as PRIOR realisations beside them. */
+/* Returns the seconds of a realisation of the case whose first job that runs is jobs[first]. As the
+ * first reports of a case are few and rounded, the corrected estimate counts as PRIOR realisations
+ * beside them. */
 static double case_rate(const struct reading *reading, size_t first) {
     const struct running_job *lead = &reading->jobs[first];
     double expected = lead->estimate * correction(reading);
@@ -116,7 +117,7 @@ static double case_rate(const struct reading *reading, size_t first) {
     return done > 0 ? seconds / done : expected;
 }
 
-/* Of the case with this number; fallback where none of its jobs runs. */
+/* Returns the seconds of a realisation of a case; fallback where none of its jobs runs. */
 static double rate_of(const struct reading *reading, int64_t case_number, double fallback) {
     for (size_t j = 0; j < reading->job_count; j++)
         if (reading->jobs[j].leads && reading->jobs[j].case_number == case_number)
@@ -124,7 +125,7 @@ static double rate_of(const struct reading *reading, int64_t case_number, double
     return fallback;
 }
 
-/* Loads of the workers, and in *done what their jobs have done so far. */
+/* Sets the loads of the workers, and *done to the seconds that their jobs took so far. */
 static void load_workers(const struct reading *reading, double *loads, double *done) {
     double rate = 0;
     for (size_t j = 0; j < reading->job_count; j++) {
@@ -139,7 +140,7 @@ static void load_workers(const struct reading *reading, double *loads, double *d
     }
 }
 
-/* What waits, in seconds of one worker. */
+/* Reads the seconds of one worker that wait. */
 static int read_waiting(const struct reading *reading, double *waiting, struct error *err) {
     sqlite3_stmt *row = NULL;
     int status = store_query(
@@ -168,7 +169,7 @@ static int read_waiting(const struct reading *reading, double *waiting, struct e
     return 0;
 }
 
-/* The last jobs that wait, in their order, as seconds: spans cut as they are counted. */
+/* Reads the seconds of the last jobs that wait, in their order, as the spans will be cut. */
 static int read_last(const struct reading *reading, double last[LAST_JOBS], size_t *count,
                      struct error *err) {
     sqlite3_stmt *row = NULL;
@@ -198,7 +199,8 @@ static int read_last(const struct reading *reading, double last[LAST_JOBS], size
     return status;
 }
 
-/* Puts together what was read; loads has room for n workers, of whom some have jobs. */
+/* Computes what is left from what was read. loads has room for n workers, of whom some have
+ * jobs. */
 static int make_left(const struct reading *reading, double *loads, size_t n, struct work_left *out,
                      struct error *err) {
     double last[LAST_JOBS], waiting = 0, done = reading->completed;

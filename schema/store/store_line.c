@@ -1,7 +1,7 @@
-/* The line of studies that wait: whose turn it is, and when that of a study comes.
+/* The queue of studies: which one is next, and when a study starts.
  *
  * Each owner has a clock, which a claim moves on by the seconds that the job takes, over the
- * owner's weight; the one whose clock is behind all others is next. Who had nothing to run does not
+ * owner's weight. The owner whose clock is least is next. An owner with nothing to run does not
  * save up turns: its clock counts from where the last claim began (schema/README.md). */
 #include "schema/store/store_internal.h"
 #include <math.h>
@@ -15,31 +15,31 @@ int study_count_work(struct store *store, int64_t study, struct error *err) {
                      "i", study);
 }
 
-/* Owners and where their clocks stand. */
+/* Owners, and the times of their clocks. */
 #define TURN                                                                                       \
     "turn AS (SELECT owner, weight, begun, max(served, (SELECT max(begun) FROM share)) AS start "  \
     "FROM share), "
-/* Of each study with jobs that wait: their seconds, as measured where any job was done. */
+/* The seconds of each study with jobs that wait, as measured where any job was done. */
 #define WAITING                                                                                    \
     "waiting AS (SELECT id, owner, priority, state, CASE WHEN realisations_done > 0 THEN seconds " \
     "/ realisations_done * realisations_waiting ELSE work / jobs * jobs_waiting END AS left FROM " \
     "study INDEXED BY study_line "                                                                 \
     "WHERE state IN ('queued', 'running') AND jobs_waiting > 0), "
-/* When, on the clock of its owner, its first job begins. */
+/* When the first job of each begins, on the clock of its owner. */
 #define LINE                                                                                       \
     "line AS (SELECT w.id, w.owner, w.state, w.left, t.begun, t.start, t.weight, t.start + "       \
     "total(w.left) OVER (PARTITION BY w.owner ORDER BY w.priority DESC, w.id ROWS BETWEEN "        \
     "UNBOUNDED PRECEDING AND 1 PRECEDING) / t.weight AS begins FROM waiting w JOIN turn t ON "     \
     "t.owner = w.owner), mine AS (SELECT begins, begun, id FROM line WHERE id = ?1) "
-/* What is left of the jobs that run, as seconds; ?2 is now. */
+/* The seconds left of the jobs that run; ?2 is now. */
 #define RUNNING                                                                                    \
     ", running AS (SELECT count(*) AS n, min(rest) AS soonest, total(rest) AS rests FROM (SELECT " \
     "max(0, j.count * CASE WHEN c.realisations_done > 0 THEN c.seconds / c.realisations_done "     \
     "ELSE c.estimate END - (?2 - coalesce(j.claimed_ms, ?2)) / 1000.0) AS rest FROM job j JOIN "   \
     "study_case c ON c.study_id = j.study_id AND c.number = j.case_number WHERE j.state = "        \
     "'running')) "
-/* Its place; the seconds of what waits and begins before; and when a worker is free, and all are.
- */
+/* Its position; the seconds of jobs that begin before it; the number of jobs that run; and the
+ * seconds until the first of them ends, and of all. */
 #define LINE_QUERY                                                                                 \
     "WITH " TURN WAITING LINE RUNNING                                                              \
     "SELECT 1 + (SELECT count(*) FROM line l JOIN mine m ON (l.begins, l.begun, l.id) < "          \

@@ -14,7 +14,7 @@
 
 /* --- opening --- */
 
-/* Others hold the lock for a fraction of a millisecond: short random sleeps starve nobody. */
+/* Others hold the lock for a fraction of a millisecond: short random sleeps starve no process. */
 static int wait_politely(void *context, int tries) {
     (void)context;
     unsigned nanoseconds;
@@ -58,7 +58,7 @@ static void set_limits(sqlite3 *db) {
     sqlite3_busy_handler(db, wait_politely, NULL);
 }
 
-/* After a reboot the clock of the leases began anew: those given before run out at once. */
+/* The clock of leases restarts at a reboot: leases of before run out at once. */
 static int void_old_leases(struct store *store, struct error *err) {
     int64_t known = 0;
     int status = store_integer(store, &known, err, "SELECT count(*) FROM boot WHERE id = ?", "t",
@@ -73,7 +73,7 @@ static int void_old_leases(struct store *store, struct error *err) {
                        "UPDATE job SET lease_until = 0 WHERE state = 'running' AND NOT EXISTS "
                        "(SELECT 1 FROM boot WHERE id = ?)",
                        "t", store->boot);
-    /* so are pauses, and when workers were seen */
+    /* pauses and notes of workers are void, too */
     if (status == 0)
         status = store_run(store, err,
                            "UPDATE job SET not_before = 0 WHERE state = 'waiting' AND not_before > "
@@ -90,10 +90,217 @@ static int void_old_leases(struct store *store, struct error *err) {
     return change_end(store, status, err);
 }
 
+/* --- versions: whose file it is, and how an older one is migrated --- */
+
+enum { APPLICATION_ID = 0x5255474f /* "RUGO" */ };
+
+/* All files of schema/store/migrations in the order of their names, each ended by a NUL. That of
+ * index n makes version n + 1 of version n. Files are added and never edited, as stores of their
+ * version exist. */
+extern const char _binary_migrations_sql_start[];
+extern const char _binary_migrations_sql_end[];
+
+/* Returns a migration, or NULL behind the last. */
+static const char *migration_at(int64_t version) {
+    const char *text = _binary_migrations_sql_start;
+    for (int64_t v = 0; v < version && text < _binary_migrations_sql_end; v++)
+        text += strlen(text) + 1;
+    return text < _binary_migrations_sql_end ? text : NULL;
+}
+
+static int64_t version_newest(void) {
+    int64_t version = 0;
+    while (migration_at(version) != NULL)
+        version++;
+    return version;
+}
+
+static int pragma_integer(struct store *store, const char *sql, int64_t *out, struct error *err) {
+    sqlite3_stmt *statement = NULL;
+    if (sqlite3_prepare_v2(store->db, sql, -1, &statement, NULL) != 0 ||
+        sqlite3_step(statement) != SQLITE_ROW) {
+        sqlite3_finalize(statement);
+        return store_error(store, err);
+    }
+    *out = sqlite3_column_int64(statement, 0);
+    sqlite3_finalize(statement);
+    return 0;
+}
+
+static int table_has(struct store *store, const char *table, const char *column, int64_t *out,
+                     struct error *err) {
+    char sql[160];
+    snprintf(sql, sizeof sql, "SELECT count(*) FROM pragma_table_info('%s') WHERE name = '%s'",
+             table, column);
+    return pragma_integer(store, sql, out, err);
+}
+
+/* 001.sql was edited in place before it was frozen. Stores of version 1 may lack columns of
+ * published curves, which are added here; those of its first layout are refused. */
+static int complete_first_version(struct store *store, struct error *err) {
+    static const struct {
+        const char *table, *column, *type;
+    } LATER[] = {{"curve", "pressure", "REAL"},
+                 {"curve", "kinematics", "TEXT"},
+                 {"point", "discretisation_error", "REAL"},
+                 {"point", "model_error", "REAL"},
+                 {"point", "valueless", "INTEGER"}};
+    int64_t found = 0;
+    int status = table_has(store, "study_source", "source", &found, err);
+    if (status == 0 && found == 0)
+        return error_set(err, ERROR_INPUT,
+                         "database %s has the first layout that a store ever had, which this "
+                         "program cannot read; its studies are texts in the column source of its "
+                         "table study: submit them again to a new database",
+                         store->path);
+    for (size_t c = 0; status == 0 && c < sizeof LATER / sizeof *LATER; c++) {
+        char sql[160];
+        status = table_has(store, LATER[c].table, LATER[c].column, &found, err);
+        snprintf(sql, sizeof sql, "ALTER TABLE %s ADD COLUMN %s %s", LATER[c].table,
+                 LATER[c].column, LATER[c].type);
+        if (status == 0 && found == 0)
+            status = store_execute(store, sql, err);
+    }
+    return status;
+}
+
+/* Older stores kept tokens as they are; lease_digest(text) makes digests of them. */
+static void lease_digest(sqlite3_context *context, int count, sqlite3_value **values) {
+    unsigned char digest[DIGEST_SIZE];
+    (void)count;
+    const char *text = (const char *)sqlite3_value_text(values[0]);
+    if (text == NULL)
+        return; /* NULL */
+    digest_text(text, digest);
+    sqlite3_result_blob(context, digest, sizeof digest, SQLITE_TRANSIENT);
+}
+
+static int migrate(struct store *store, int64_t version, struct error *err) {
+    int status = version == 1 ? complete_first_version(store, err) : 0;
+    if (status == 0 && sqlite3_create_function(store->db, "lease_digest", 1, SQLITE_UTF8, NULL,
+                                               lease_digest, NULL, NULL) != 0)
+        status = store_error(store, err);
+    for (const char *sql; status == 0 && (sql = migration_at(version)) != NULL; version++) {
+        char pragma[96];
+        snprintf(pragma, sizeof pragma, "PRAGMA application_id = %d; PRAGMA user_version = %d",
+                 APPLICATION_ID, (int)version + 1);
+        status = store_execute(store, sql, err);
+        if (status == 0)
+            status = store_execute(store, pragma, err);
+    }
+    return status;
+}
+
+static int read_version(struct store *store, int64_t *version, struct error *err) {
+    int64_t application = 0, tables = 0, newest = version_newest();
+    int status = pragma_integer(store, "PRAGMA application_id", &application, err);
+    if (status == 0)
+        status = pragma_integer(store, "PRAGMA user_version", version, err);
+    if (status == 0)
+        status = pragma_integer(store, "SELECT count(*) FROM sqlite_schema", &tables, err);
+    if (status != 0)
+        return status;
+    if (application != APPLICATION_ID && (application != 0 || tables != 0))
+        return error_set(err, ERROR_INPUT, "%s is a database of another program", store->path);
+    if (*version > newest)
+        return error_set(err, ERROR_INPUT,
+                         "database %s has schema version %lld; this program knows up to %lld: use "
+                         "a newer rugo",
+                         store->path, (long long)*version, (long long)newest);
+    return 0;
+}
+
+/* Has the file migrated for a handle that only reads, by one that may write. */
+static int upgrade_for_reader(struct store *store, struct error *err) {
+    struct store_options options = {.existing = true};
+    struct store *writer = NULL;
+    int status = store_open(&writer, store->path, &options, err);
+    store_close(&writer);
+    return status != 0 ? error_context(err, "bringing an older database up to date") : 0;
+}
+
+/* Migrates an older store; refuses a file that is no store, or one of a newer program. */
+static int version_bring_up(struct store *store, struct error *err) {
+    int64_t version = 0;
+    int status = read_version(store, &version, err);
+    if (status != 0 || migration_at(version) == NULL)
+        return status;
+    if (store->options.read_only)
+        return upgrade_for_reader(store, err);
+    status = change_begin(store, err);
+    if (status != 0)
+        return status;
+    status = read_version(store, &version, err); /* another process may have come first */
+    if (status == 0)
+        status = migrate(store, version, err);
+    return change_end(store, status, err);
+}
+
+/* --- the layout --- */
+
+/* One row for each table, index and view: its name and its definition, whichever migrations made
+ * it. A table is defined by its columns, keys and indices, in the order of their names. */
+static const char LAYOUT[] =
+    "SELECT type || ' ' || name, CASE type WHEN 'table' THEN (SELECT group_concat(one, ', ') FROM "
+    "(SELECT name || ' ' || type || ' ' || \"notnull\" || ' ' || coalesce(dflt_value, '') || ' ' "
+    "|| "
+    "pk || ' ' || hidden AS one FROM pragma_table_xinfo(s.name) UNION ALL SELECT 'refers ' || "
+    "\"from\" || ' ' || \"table\" || ' ' || coalesce(\"to\", '') || ' ' || on_delete FROM "
+    "pragma_foreign_key_list(s.name) UNION ALL SELECT 'index ' || l.name || ' ' || \"unique\" || ' "
+    "' "
+    "|| (SELECT group_concat(coalesce(x.name, ''), ' ') FROM pragma_index_xinfo(l.name) x) FROM "
+    "pragma_index_list(s.name) l UNION ALL SELECT 'table ' || wr || ' ' || strict FROM "
+    "pragma_table_list WHERE schema = 'main' AND name = s.name ORDER BY one)) ELSE sql END FROM "
+    "sqlite_schema s WHERE name NOT LIKE 'sqlite_stat%' ORDER BY 1";
+
+static bool column_is_same(sqlite3_stmt *one, sqlite3_stmt *other, int column) {
+    const char *a = (const char *)sqlite3_column_text(one, column);
+    const char *b = (const char *)sqlite3_column_text(other, column);
+    return a == b || (a != NULL && b != NULL && strcmp(a, b) == 0);
+}
+
+/* Finds the first row that differs. Rows of both are in the order of their names. */
+static int compare_layouts(struct store *store, sqlite3_stmt *has, struct store *fresh,
+                           sqlite3_stmt *wants, char *fault, size_t size, struct error *err) {
+    int found, wanted;
+    do {
+        found = store_step(store, has, err);
+        wanted = found >= 0 ? store_step(fresh, wants, err) : 0;
+    } while (found > 0 && wanted > 0 && column_is_same(has, wants, 0) &&
+             column_is_same(has, wants, 1));
+    if (found < 0 || wanted < 0)
+        return found < 0 ? found : wanted;
+    if (found > 0 || wanted > 0)
+        snprintf(fault, size, "the layout of %s is not that of a store of this program",
+                 (const char *)sqlite3_column_text(wanted > 0 ? wants : has, 0));
+    return 0;
+}
+
+int version_check_layout(struct store *store, char *fault, size_t size, struct error *err) {
+    struct store fresh = {.path = "a new store"};
+    sqlite3_stmt *has = NULL, *wants = NULL;
+    int status = 0;
+    *fault = '\0';
+    if (sqlite3_open(":memory:", &fresh.db) != SQLITE_OK)
+        status = store_error(&fresh, err);
+    if (status == 0)
+        status = migrate(&fresh, 0, err);
+    if (status == 0 && sqlite3_prepare_v2(fresh.db, LAYOUT, -1, &wants, NULL) != SQLITE_OK)
+        status = store_error(&fresh, err);
+    if (status == 0 && sqlite3_prepare_v2(store->db, LAYOUT, -1, &has, NULL) != SQLITE_OK)
+        status = store_error(store, err);
+    if (status == 0)
+        status = compare_layouts(store, has, &fresh, wants, fault, size, err);
+    sqlite3_finalize(has);
+    sqlite3_finalize(wants);
+    sqlite3_close(fresh.db);
+    return status;
+}
+
 static int configure(struct store *store, struct error *err) {
     set_limits(store->db);
-    /* Of a file without tables yet, which then gives single pages back; of others when written
-     * anew. */
+    /* A file without tables yet frees single pages from now on; other files when they are
+     * rewritten. */
     int status = seal_functions(store, err);
     if (status == 0 && !store->options.read_only)
         status = store_execute(store, "PRAGMA auto_vacuum = INCREMENTAL", err);

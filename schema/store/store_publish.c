@@ -1,4 +1,5 @@
-/* Publication: a case's result as rows for the views, its curves as bytes, its report as JSON. */
+/* Publication: writes a case's result as rows for the views, its curves as bytes, its report as
+ * JSON. */
 #include "core/memory_file.h"
 #include "schema/result/curve_bytes.h"
 #include "schema/result/result_json.h"
@@ -14,7 +15,7 @@ struct target {
     const struct point_texts *points; /* NULL: none */
 };
 
-/* Runs a prepared statement with what was bound. */
+/* Runs a prepared statement with its bound values. */
 static int run_bound(struct store *store, sqlite3_stmt *statement, struct error *err) {
     int status = store_step(store, statement, err);
     if (status > 0)
@@ -43,7 +44,7 @@ static int insert_scalar(const struct target *target, const struct scalar *scala
     return status;
 }
 
-/* NaN becomes NULL, as SQLite has it. x2 is NaN but in a matrix. */
+/* Inserts a point. SQLite turns NaN into NULL; x2 is NaN but for a matrix. */
 static int insert_point(struct store *store, int64_t curve, size_t number, double x, double x2,
                         const struct curve *from, struct error *err) {
     sqlite3_stmt *statement = NULL;
@@ -69,7 +70,7 @@ static int insert_error(struct store *store, int64_t curve, size_t number, const
     return status != 0 ? status : run_bound(store, statement, err);
 }
 
-/* Of a matrix only the occupied cells become points. */
+/* Inserts the points of a curve; of a matrix only the occupied cells. */
 static int insert_points(struct store *store, int64_t row, const struct curve *curve,
                          struct error *err) {
     int status = 0;
@@ -85,7 +86,7 @@ static int insert_points(struct store *store, int64_t row, const struct curve *c
     return status;
 }
 
-/* What realisations have at the points, where that is kept; of no matrix. */
+/* Inserts the values of realisations at the points, where these are kept; none of a matrix. */
 static int insert_realisations(const struct target *target, int64_t row, const struct curve *curve,
                                struct error *err) {
     const struct point_texts *points = target->points;
@@ -141,15 +142,15 @@ static int clear_case(const struct target *target, struct error *err) {
     return status;
 }
 
-/* These texts of a case are published. */
+/* The texts of a case that are published. */
 struct case_texts {
     uint64_t revision;
     const struct case_result *result;
     char *document, *report; /* owned */
 };
 
-/* The result without its curves; and its report as if the case had taken one second: seconds are
- * multiplied where it is read, since they change when a case goes on. */
+/* Prints the result without its curves, and its report as if the case had taken one second. The
+ * reader multiplies these seconds, since they change when a case goes on. */
 static int case_texts_print(struct case_texts *out, struct error *err) {
     struct case_result head = *out->result;
     struct case_report report;

@@ -1,11 +1,12 @@
-/* What is published of a case, read back. */
+/* Reads what is published of a case. */
 #include "schema/result/curve_bytes.h"
 #include "schema/result/result_json.h"
 #include "schema/store/store_seal.h"
 #include <stdio.h>
 #include <string.h>
 
-/* Curves of the case, all or those of a quantity, in the order in which they were published. */
+/* Reads the curves of a case, all or those of a quantity, in the order in which they were
+ * published. */
 static int read_curves(struct store *store, int64_t study, uint64_t case_number,
                        const char *quantity, struct case_result *result, struct error *err) {
     sqlite3_stmt *row = NULL;
@@ -40,8 +41,8 @@ static int read_document(sqlite3_stmt *row, uint64_t case_number, struct case_re
 /* The columns of what is published of a case. */
 enum { DOCUMENT, REPORT, INTACT, CURVES_INTACT };
 
-/* The row of a case published at this revision: its document, its report or NULL, and whether they
- * and, where these are asked for, the list of curves are what was stored. */
+/* Finds the row of a case published at this revision: its document, its report or NULL, and whether
+ * they match their checksum. With `curves` the list of curves is checked, too. */
 static int find_row(struct store *store, const struct due_case *of, bool curves, int64_t *id,
                     sqlite3_stmt **row, struct error *err) {
     int status = study_row(store, of->study, id, err);
@@ -56,7 +57,8 @@ static int find_row(struct store *store, const struct due_case *of, bool curves,
     return status != 0 ? status : store_step(store, *row, err);
 }
 
-/* What cannot be read, for other reasons than memory or the disk, is damaged: it is merged anew. */
+/* A case that cannot be read, but not for lack of memory or a fault of the disk, is damaged: it is
+ * noted and counts as not found. */
 static int settle_damage(struct store *store, const struct due_case *of, int status, bool *found) {
     if (status != ERROR_INPUT)
         return status;

@@ -1,8 +1,9 @@
-/* The queue: what is done under a lease, and the ends of attempts that gave no result.
+/* The queue: changes of a job under its lease, and the end of attempts without a result.
  * schema/README.md draws the states. */
 #include "schema/store/store_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 void claimed_job_clear(struct claimed_job *job) {
     free(job->kind);
@@ -51,17 +52,17 @@ int job_check_lease(const struct job_row *job, struct error *err) {
     return 0;
 }
 
-/* Reads the job, if the token is that of its live lease. */
+/* Reads a job, if the token is that of its live lease. */
 static int read_leased(struct store *store, int64_t id, const char *token, struct job_row *job,
                        struct error *err) {
     int status = job_read(store, id, token, job, err);
     return status != 0 ? status : job_check_lease(job, err);
 }
 
-/* --- the end of an attempt that gave no result --- */
+/* --- attempts without a result --- */
 
-/* The job waits again; its lease gave no attempt that counts, but for one that failed. pause_ms:
- * until it may be claimed again. */
+/* Requeues the job. Only a failed run counts as an attempt. pause_ms: until it may be claimed
+ * again. */
 static int job_requeue(struct store *store, const struct job_row *job, const char *reason,
                        bool failed, int64_t pause_ms, struct error *err) {
     int status =
@@ -108,7 +109,8 @@ static int job_give_up(struct store *store, const struct job_row *job, const cha
     return job_requeue(store, job, reason, true, 0, err);
 }
 
-/* A second after the first loss, twice as long after each further one, up to about a minute. */
+/* Returns a second after the first loss, twice as long after each further one, up to about a
+ * minute. */
 static int64_t pause_after(int64_t losses) {
     enum { PAUSE_MS = 1000, DOUBLINGS = 6 };
     return PAUSE_MS << (losses <= DOUBLINGS ? losses - 1 : DOUBLINGS);
@@ -219,4 +221,55 @@ int store_job(struct store *store, int64_t job, const char *token, struct claime
     if (status != 0)
         claimed_job_clear(out);
     return status;
+}
+
+/* Whether a claim would find a job, without claiming. */
+
+int store_jobs_wait(struct store *store, bool *wait, struct error *err) {
+    int64_t found = 0;
+    int status = store_integer(
+        store, &found, err,
+        "SELECT EXISTS (SELECT 1 FROM study WHERE state IN ('queued', 'running') AND jobs_waiting "
+        "> 0 AND EXISTS (SELECT 1 FROM job INDEXED BY job_waiting WHERE study_id = study.id AND "
+        "job.state = 'waiting' AND not_before <= ?1)) OR EXISTS (SELECT 1 FROM job WHERE state = "
+        "'running' AND lease_until <= ?1)",
+        "i", store_now(store));
+    if (status == 0)
+        *wait = found != 0;
+    return status;
+}
+
+int64_t store_changes(const struct store *store) {
+    return sqlite3_total_changes64(store->db);
+}
+
+/* Figures about the store itself. */
+
+static uint64_t file_bytes(const char *path, const char *suffix) {
+    char name[4096];
+    struct stat info;
+    snprintf(name, sizeof name, "%s%s", path, suffix);
+    return stat(name, &info) != 0 ? 0 : (uint64_t)info.st_size;
+}
+
+int store_metrics(struct store *store, struct store_metrics *out, struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status =
+        store_query(store, &row, err,
+                    "SELECT count(*), total(jobs_waiting), total(jobs_running), "
+                    "total(jobs_done), total(jobs_failed), total(jobs_cancelled) FROM study "
+                    "WHERE id NOT IN " DELETED_STUDIES,
+                    "");
+    if (status == 0)
+        status = store_step(store, row, err);
+    if (status < 0)
+        return status;
+    uint64_t *const counts[] = {&out->studies,   &out->jobs_waiting, &out->jobs_running,
+                                &out->jobs_done, &out->jobs_failed,  &out->jobs_cancelled};
+    for (int c = 0; c < 6; c++)
+        *counts[c] = (uint64_t)sqlite3_column_int64(row, c);
+    sqlite3_reset(row);
+    out->wal_bytes = file_bytes(store->path, "-wal");
+    out->database_bytes = file_bytes(store->path, "");
+    return 0;
 }

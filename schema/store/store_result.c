@@ -1,4 +1,4 @@
-/* What a case is and holds: its parameters, its stored blocks, its cost. */
+/* Reads the parameters, the stored blocks and the cost of a case. */
 #include "schema/store/store_internal.h"
 #include "schema/store/store_seal.h"
 #include <math.h>
@@ -92,8 +92,8 @@ static double column_number(sqlite3_stmt *row, int column) {
                                                            : sqlite3_column_double(row, column);
 }
 
-/* Compares the seal of a block with what it seals; a block of an older program has none. */
-static int check_seal(sqlite3_stmt *row, const struct block_result *result, struct error *err) {
+/* Compares the checksum of a block with its contents; a block of an older program has none. */
+static int check_checksum(sqlite3_stmt *row, const struct block_result *result, struct error *err) {
     const char *names = (const char *)sqlite3_column_text(row, 2);
     const char *scalars = (const char *)sqlite3_column_text(row, 3);
     if (sqlite3_column_type(row, 7) == SQLITE_NULL)
@@ -116,7 +116,7 @@ static int read_block(sqlite3_stmt *row, struct stored_block *block, struct bloc
                                     .size = (size_t)sqlite3_column_bytes(row, 4),
                                     .seconds = sqlite3_column_double(row, 5),
                                     .cpu_seconds = column_number(row, 6)};
-    int status = check_seal(row, result, err);
+    int status = check_checksum(row, result, err);
     if (status == 0)
         status = column_json(row, 2, &block->names, err);
     if (status == 0)
@@ -148,7 +148,7 @@ int store_results(struct store *store, const char *study, uint64_t case_number, 
         status = read_block(row, &block, &result, err);
         if (status == 0)
             status = visit(context, &result, err);
-        result.data = NULL; /* the row's */
+        result.data = NULL; /* belongs to the row */
         block_result_clear(&result);
         stored_block_clear(&block);
         if (status != 0)
@@ -196,4 +196,50 @@ int store_cost(struct store *store, const char *study, uint64_t case_number, str
                                (uint64_t)sqlite3_column_int64(row, 6)}};
     sqlite3_reset(row);
     return 0;
+}
+
+/* Cases that were computed without any value of any realisation. */
+
+/* Cases of study ?1 that have curves, and no value on any of them. */
+#define WITHOUT_VALUES                                                                             \
+    "FROM published p WHERE p.study_id = ?1 AND EXISTS (SELECT 1 FROM curve c WHERE c.study_id = " \
+    "p.study_id AND c.case_number = p.case_number) AND NOT EXISTS (SELECT 1 FROM curve c JOIN "    \
+    "point t ON t.curve_id = c.id WHERE c.study_id = p.study_id AND c.case_number = "              \
+    "p.case_number AND t.y IS NOT NULL)"
+
+/* Reads the first note of the first such case. */
+static int read_first(struct store *store, int64_t study, struct valueless *out,
+                      struct error *err) {
+    sqlite3_stmt *row = NULL;
+    int status = store_query(store, &row, err,
+                             "SELECT p.case_number, p.document ->> '$.notes.kept[0].text' "
+                             "" WITHOUT_VALUES " ORDER BY p.case_number LIMIT 1",
+                             "i", study);
+    if (status == 0)
+        status = store_step(store, row, err);
+    if (status <= 0)
+        return status;
+    out->first = (uint64_t)sqlite3_column_int64(row, 0);
+    out->note = column_copy(row, 1);
+    sqlite3_reset(row);
+    return out->note != NULL ? 0 : error_memory(err, 0, "a note");
+}
+
+int store_valueless(struct store *store, const char *id, struct valueless *out, struct error *err) {
+    struct valueless found = {0};
+    int64_t study = 0, cases = 0;
+    int status = study_row(store, id, &study, err);
+    if (status == 0)
+        status = store_integer(store, &cases, err, "SELECT count(*) " WITHOUT_VALUES, "i", study);
+    if (status == 0 && cases > 0)
+        status = read_first(store, study, &found, err);
+    found.cases = (uint64_t)cases;
+    if (status == 0)
+        *out = found;
+    return status;
+}
+
+void valueless_clear(struct valueless *valueless) {
+    free(valueless->note);
+    *valueless = (struct valueless){0};
 }

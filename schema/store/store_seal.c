@@ -13,6 +13,18 @@ static uint64_t add_bytes(uint64_t hash, char type, size_t size, const void *dat
     return hash_bytes(add_word(hash, type, size), size, data);
 }
 
+/* Whether SQLite had no memory for the text or the bytes of a value. */
+static bool is_lost(sqlite3_value *value) {
+    switch (sqlite3_value_type(value)) {
+    case SQLITE_TEXT:
+        return sqlite3_value_text(value) == NULL;
+    case SQLITE_BLOB:
+        return sqlite3_value_blob(value) == NULL && sqlite3_value_bytes(value) > 0;
+    default:
+        return false;
+    }
+}
+
 static uint64_t add_value(uint64_t hash, sqlite3_value *value) {
     double number;
     uint64_t bits;
@@ -32,28 +44,39 @@ static uint64_t add_value(uint64_t hash, sqlite3_value *value) {
     }
 }
 
-static uint64_t hash_values(int count, sqlite3_value **values) {
+/* Hashes the values of a row. False where memory is short; the statement then fails. */
+static bool hash_values(sqlite3_context *context, int count, sqlite3_value **values,
+                        uint64_t *out) {
     uint64_t hash = HASH_START;
-    for (int a = 0; a < count; a++)
+    for (int a = 0; a < count; a++) {
+        if (is_lost(values[a])) {
+            sqlite3_result_error_nomem(context);
+            return false;
+        }
         hash = add_value(hash, values[a]);
-    return hash;
+    }
+    *out = hash;
+    return true;
 }
 
 static void seal_of(sqlite3_context *context, int count, sqlite3_value **values) {
-    sqlite3_result_int64(context, (int64_t)hash_values(count, values));
+    uint64_t hash;
+    if (hash_values(context, count, values, &hash))
+        sqlite3_result_int64(context, (int64_t)hash);
 }
 
-/* The sum over rows, which comes to the same in any order. */
+/* The sum of the hashes of rows, which does not depend on their order. */
 struct row_sum {
     uint64_t hash;
 };
 
 static void add_row(sqlite3_context *context, int count, sqlite3_value **values) {
     struct row_sum *sum = sqlite3_aggregate_context(context, sizeof *sum);
+    uint64_t hash;
     if (sum == NULL)
         sqlite3_result_error_nomem(context);
-    else
-        sum->hash += hash_values(count, values);
+    else if (hash_values(context, count, values, &hash))
+        sum->hash += hash;
 }
 
 static void sum_rows(sqlite3_context *context) {

@@ -1,29 +1,30 @@
 /* Checksums of what is stored: FNV-1a of 64 bits over values with their types and lengths, against
- * damage, not against intent. A single changed bit always shows. SQL computes them by two functions
- * that every handle has: seal_of(...) of values in their order, seals_of(...) of rows in any order.
+ * damage, not against intent. They detect every change of a single bit. SQL computes them by two
+ * functions that every handle has: seal_of(...) of values in their order, seals_of(...) of rows in
+ * any order.
  *
- * Checked on reading: those of a case, a result, a published document. rows_seal is of the rows
- * that people read by the views, and checked by store_verify alone. */
+ * Readers check those of a case, a result and a published document. rows_seal is that of the rows
+ * that people read by the views, and is checked by store_verify alone. */
 #ifndef RUGO_SCHEMA_STORE_STORE_SEAL_H
 #define RUGO_SCHEMA_STORE_STORE_SEAL_H
 
 #include "schema/store/store_internal.h"
 
-/* Gives a handle the two functions. */
+/* Adds the two functions to a handle. */
 int seal_functions(struct store *store, struct error *err);
 
-/* Of a row of study_case, under that name or another, joined with study s. */
+/* The checksum of a row of study_case, under that name or another, joined with study s. */
 #define CASE_SEAL_OF(c)                                                                            \
     "seal_of(s.kind, s.seed, s.random, " c ".number, " c ".parameters, " c ".sequence, " c         \
     ".parent, " c ".role)"
 #define CASE_SEAL CASE_SEAL_OF("study_case")
-/* Of a row of result joined with its job and scalar_names; block_seal gives the same. */
+/* That of a row of result, joined with its job and scalar_names; block_seal returns the same. */
 #define RESULT_SEAL "seal_of(job.first, job.count, scalar_names.names, result.scalars, result.data)"
-/* Of a row of published. */
+/* That of a row of published. */
 #define PUBLISHED_SEAL                                                                             \
     "seal_of(published.study_id, published.case_number, published.revision, published.document, "  \
     "published.report, published.curves_seal)"
-/* Of case ?2 of study ?1. */
+/* That of the curves of case ?2 of study ?1. */
 #define CURVES_SEAL                                                                                \
     "(SELECT seals_of(quantity, id) FROM curve WHERE study_id = ?1 AND case_number = ?2)"
 #define OF_CURVE "FROM curve c JOIN "
@@ -40,9 +41,9 @@ int seal_functions(struct store *store, struct error *err);
     "(SELECT seals_of(id, quantity, series, model, kinematics, level, pressure, data) FROM "       \
     "curve WHERE study_id = ?1 AND case_number = ?2))"
 
-/* The seal of a block as it is stored; texts as block_text has them. */
+/* Returns the checksum of a block as it is stored; texts as block_text has them. */
 int64_t block_seal(const struct block_result *result, const char *names, const char *scalars);
-/* Seals the cases of a study that have no seal yet. */
+/* Sets the checksums of the cases of a study that have none. */
 int cases_seal(struct store *store, int64_t study, struct error *err);
 
 #endif

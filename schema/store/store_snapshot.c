@@ -1,8 +1,8 @@
 /* Copies of the store, by SQLite's online backup.
  *
  * One read transaction is held over all steps. Without it every change by another connection would
- * begin the copy anew, and on a busy store it would not end. Writers go on meanwhile; what they
- * write stays in the write-ahead log until the copy has ended. */
+ * restart the copy, and on a busy store it would not end. Writers go on meanwhile; what they write
+ * stays in the write-ahead log until the copy has ended. */
 #include "core/part_file.h"
 #include "schema/store/store_internal.h"
 #include <errno.h>
@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 enum {
-    STEP_PAGES = 1024, /* 4 MiB between two questions whether to stop */
-    /* of the header of a database file: its versions for writers and for readers, of which 2 asks
-     * for a write-ahead log and 1 does not */
+    STEP_PAGES = 1024, /* 4 MiB between two calls of stop */
+    /* In the header of a database file: its versions for writers and for readers. 2 requires a
+     * write-ahead log, 1 does not. */
     VERSIONS_AT = 18,
 };
 
@@ -44,8 +44,8 @@ static int copy_pages(struct store *store, sqlite3 *copy, const char *path,
     return code != SQLITE_OK ? copy_error(store, copy, path, code, err) : 0;
 }
 
-/* Of the copy nothing is kept unless it is whole, so that it needs no journal, and is brought to
- * the disk once, by whoever made its file. */
+/* Opens the copy without a journal, as an incomplete copy is not kept. Whoever made its file brings
+ * it to the disk once. */
 static int copy_open(sqlite3 **copy, const struct store *store, const char *path,
                      struct error *err) {
     int code = sqlite3_open_v2(
@@ -56,8 +56,8 @@ static int copy_open(sqlite3 **copy, const struct store *store, const char *path
     return code != SQLITE_OK ? copy_error(store, *copy, path, code, err) : 0;
 }
 
-/* So that the copy can be read where no log can be made beside it, such as by someone who may not
- * write there. */
+/* Lets the copy be read where no log can be made beside it, such as in a folder without permission
+ * to write. */
 static int ask_for_no_log(int file, const char *path, struct error *err) {
     static const unsigned char VERSIONS[] = {1, 1};
     if (pwrite(file, VERSIONS, sizeof VERSIONS, VERSIONS_AT) != (ssize_t)sizeof VERSIONS)

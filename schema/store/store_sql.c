@@ -1,4 +1,4 @@
-/* How the store speaks to SQLite: errors, statements prepared once, transactions. */
+/* Calls of SQLite: errors, statements prepared once, transactions. */
 #include "schema/store/store_internal.h"
 #include <stdarg.h>
 #include <stdint.h>
@@ -140,12 +140,21 @@ void store_set_stop(struct store *store, int (*stop)(void *context), void *conte
     sqlite3_progress_handler(store->db, stop != NULL ? OPERATIONS : 0, stop, context);
 }
 
+int row_step(sqlite3_stmt *row) {
+    int code = sqlite3_step(row);
+    for (int column = 0; code == SQLITE_ROW && column < sqlite3_data_count(row); column++)
+        if (sqlite3_column_type(row, column) == SQLITE_TEXT &&
+            sqlite3_column_text(row, column) == NULL)
+            code = SQLITE_NOMEM;
+    return code;
+}
+
 int store_step(struct store *store, sqlite3_stmt *statement, struct error *err) {
     if (store->stop != NULL && store->stop(store->stop_context) != 0) {
         sqlite3_reset(statement);
         return error_set(err, ERROR_STOPPED, "reading the database was stopped");
     }
-    int code = sqlite3_step(statement);
+    int code = row_step(statement);
     if (code == SQLITE_ROW)
         return 1;
     int status = code == SQLITE_DONE ? 0 : store_error(store, err);
@@ -194,8 +203,8 @@ int store_execute(struct store *store, const char *sql, struct error *err) {
 
 static const char ROLL_BACK[] = "ROLLBACK";
 
-/* The statement that undoes is prepared before there is anything to undo: where memory is short, a
- * change that could not be undone would keep others from writing. */
+/* Prepares the statement that rolls back before there is anything to undo. If memory were lacking
+ * for it later, a change that could not be undone would keep others from writing. */
 int change_begin(struct store *store, struct error *err) {
     sqlite3_stmt *undo;
     if (store->options.read_only)
@@ -208,9 +217,9 @@ int change_begin(struct store *store, struct error *err) {
     return store_run(store, err, store->batch != 0 ? "SAVEPOINT change" : "BEGIN IMMEDIATE", "");
 }
 
-/* What is written to a file without its name is lost, and what is written beside another file, such
- * as to its write-ahead log, harms that. */
-static int check_place(struct store *store, struct error *err) {
+/* Refuses to write to a file that lost its name, whose contents would be lost. Where another file
+ * has that name, its write-ahead log would be damaged. */
+static int check_not_moved(struct store *store, struct error *err) {
     int moved = 0;
     sqlite3_file_control(store->db, "main", SQLITE_FCNTL_HAS_MOVED, &moved);
     return moved == 0 ? 0
@@ -222,11 +231,11 @@ static int check_place(struct store *store, struct error *err) {
 
 int change_end(struct store *store, int status, struct error *err) {
     if (status == 0 && store->batch == 0)
-        status = check_place(store, err);
+        status = check_not_moved(store, err);
     if (status == 0)
         status = store_run(store, err, store->batch != 0 ? "RELEASE change" : "COMMIT", "");
-    /* After a full disk SQLite may have rolled back by itself: then there is nothing left to undo.
-     */
+    /* After a full disk SQLite may have rolled back by itself: then there is nothing left to
+     * undo. */
     if (status != 0 && sqlite3_get_autocommit(store->db) == 0) {
         if (store->batch != 0)
             store_run(store, NULL, "ROLLBACK TO change", "");
@@ -243,7 +252,7 @@ int read_begin(struct store *store, struct error *err) {
         status = store_run(store, err, ROLL_BACK, "");
     if (status == 0)
         status = store_run(store, err, "BEGIN", "");
-    /* it begins when something is read */
+    /* the transaction begins when something is read */
     if (status == 0 && (status = store_integer(store, &tables, err,
                                                "SELECT count(*) FROM sqlite_schema", "")) != 0)
         read_end(store);

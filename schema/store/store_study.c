@@ -12,7 +12,7 @@ int study_row(struct store *store, const char *id, int64_t *row, struct error *e
     return status;
 }
 
-/* Whether a case of the study is yet to be published, or to be found impossible to publish. */
+/* Whether a case of the study is neither published nor marked as impossible to publish. */
 #define STUDY_DUE                                                                                  \
     "EXISTS (SELECT 1 FROM study_case c WHERE c.study_id = study.id AND c.jobs_left = 0 AND "      \
     "c.revision > c.settled)"
@@ -99,7 +99,7 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     return 0;
 }
 
-/* Whoever works now will come to what is queued when it is its turn. */
+/* Estimates the time of a study that waits, by the workers that run jobs of any study. */
 static int queue_left(struct store *store, int64_t row, struct study_status *out,
                       struct work_left *left, struct error *err) {
     int64_t workers = 0;
@@ -115,7 +115,7 @@ static int queue_left(struct store *store, int64_t row, struct study_status *out
     return status;
 }
 
-/* What other rows tell of it: the time left, and its place in line. */
+/* Reads what depends on other rows: the time left, and the position in the queue. */
 static int read_outlook(struct store *store, int64_t row, struct study_status *out,
                         struct error *err) {
     struct work_left left = {0};
@@ -162,7 +162,7 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
     return status;
 }
 
-/* Reads the one JSON text that a query of a study gives. */
+/* Reads the one JSON text that a query of a study returns. */
 static int read_json(struct store *store, const char *id, const char *sql, cJSON **out,
                      struct error *err) {
     sqlite3_stmt *row = NULL;
@@ -200,7 +200,7 @@ static void free_list(struct study_status *list, size_t count) {
     free(list);
 }
 
-/* Where a list goes on: also behind a study that was deleted meanwhile. */
+/* Finds where a list goes on, also behind a study that was deleted meanwhile. */
 static int listed_row(struct store *store, const char *id, int64_t *row, struct error *err) {
     int status =
         store_integer(store, row, err, "SELECT id FROM deleted_study WHERE public = ?", "t", id);
@@ -285,8 +285,8 @@ int store_cancel(struct store *store, const char *id, struct error *err) {
     "state = 'done' AND study_id = ?1 AND case_number IN (SELECT number FROM study_case WHERE "    \
     "study_id = ?1 AND publish_error IS NOT NULL)"
 
-/* Gives up the results of cases that could not be published, such as those of an older program,
- * which merging again would not change: their jobs count as failed. */
+/* Discards the results of cases that could not be published, such as those of an older program, for
+ * which merging again would not help: their jobs count as failed. */
 static int discard_results(struct store *store, int64_t row, struct error *err) {
     int status = store_run(store, err,
                            "DELETE FROM result WHERE job_id IN (SELECT id FROM job WHERE "
@@ -312,6 +312,18 @@ static int discard_results(struct store *store, int64_t row, struct error *err) 
                       "0, jobs_without_cpu = 0 WHERE study_id = ? AND publish_error IS NOT "
                       "NULL",
                       "i", row);
+    return status;
+}
+
+/* Clears the marks of all cases of a study that cannot be published: they are due again. */
+static int marks_clear(struct store *store, int64_t study, struct error *err) {
+    int status = store_run(store, err,
+                           "UPDATE study_case SET settled = 0, publish_error = NULL WHERE "
+                           "study_id = ? AND publish_error IS NOT NULL",
+                           "i", study);
+    if (status == 0)
+        status =
+            store_run(store, err, "UPDATE study SET cases_failed = 0 WHERE id = ?", "i", study);
     return status;
 }
 
@@ -372,4 +384,126 @@ int store_retry(struct store *store, const char *id, uint64_t *count, struct err
     if (status == 0)
         *count = (uint64_t)jobs;
     return status;
+}
+
+/* Finds studies by an id, its first digits, or a name. */
+
+enum { CANDIDATES_SHOWN = 5 };
+
+/* Queries the studies with this name or these first digits, newest first. */
+static int query_candidates(struct store *store, const char *given, sqlite3_stmt **row,
+                            struct error *err) {
+    return store_query(store, row, err,
+                       "SELECT public, name, state, created FROM study WHERE (name = ?1 OR "
+                       "substr(public, 1, length(?1)) = ?1) AND id NOT IN " DELETED_STUDIES
+                       " ORDER BY id DESC",
+                       "t", given);
+}
+
+/* Appends "ID (name, state, since)". */
+static size_t append_candidate(char *text, size_t size, size_t used, sqlite3_stmt *row) {
+    int length = snprintf(
+        text + used, size - used, "%s%s (%.24s, %s, %s)", used > 0 ? ", " : "",
+        (const char *)sqlite3_column_text(row, 0), (const char *)sqlite3_column_text(row, 1),
+        (const char *)sqlite3_column_text(row, 2), (const char *)sqlite3_column_text(row, 3));
+    return used + (length > 0 ? (size_t)length : 0);
+}
+
+/* Reads the candidates: the newest goes into id, and into a list with the next few. */
+static int read_candidates(struct store *store, const char *given, char id[STUDY_ID_SIZE],
+                           struct error *err) {
+    sqlite3_stmt *row = NULL;
+    char list[110 * CANDIDATES_SHOWN] = "", more[32] = "";
+    size_t used = 0, count = 0;
+    int status = query_candidates(store, given, &row, err);
+    if (status != 0)
+        return status;
+    for (; (status = store_step(store, row, err)) == 1; count++) {
+        if (count == 0)
+            snprintf(id, STUDY_ID_SIZE, "%s", (const char *)sqlite3_column_text(row, 0));
+        if (count < CANDIDATES_SHOWN)
+            used = append_candidate(list, sizeof list, used, row);
+    }
+    if (status != 0 || count == 1)
+        return status;
+    if (count == 0)
+        return error_set(err, ERROR_ABSENT,
+                         "there is no study \"%.40s\"; rugo status lists those there are", given);
+    if (count > CANDIDATES_SHOWN)
+        snprintf(more, sizeof more, " and %zu more", count - CANDIDATES_SHOWN);
+    return error_set(err, ERROR_INPUT, "\"%.40s\" may be each of %zu studies; name its id: %s%s",
+                     given, count, list, more);
+}
+
+int store_find(struct store *store, const char *given, char id[STUDY_ID_SIZE], struct error *err) {
+    int64_t row;
+    struct error absent = {0};
+    if (*given == '\0')
+        return error_set(err, ERROR_INPUT, "a study has an id and a name, and neither is empty");
+    int status =
+        strlen(given) < STUDY_ID_SIZE ? study_row(store, given, &row, &absent) : ERROR_ABSENT;
+    if (status == 0)
+        snprintf(id, STUDY_ID_SIZE, "%s", given);
+    if (status != 0 && status != ERROR_ABSENT)
+        *err = absent;
+    return status == ERROR_ABSENT ? read_candidates(store, given, id, err) : status;
+}
+
+/* The failures of a study: jobs, and cases that cannot be published. */
+
+void failures_free(struct failure *failures, size_t count) {
+    for (size_t i = 0; failures != NULL && i < count; i++) {
+        free(failures[i].worker);
+        free(failures[i].reason);
+    }
+    free(failures);
+}
+
+/* Appends a failure. It is counted before it is complete, so that the list is freed with it. */
+static int append_failure(sqlite3_stmt *row, struct failure **list, size_t *number,
+                          struct error *err) {
+    size_t count = *number;
+    struct failure *larger = realloc(*list, (count + 1) * sizeof *larger);
+    if (larger == NULL)
+        return error_memory(err, (count + 1) * sizeof *larger, "failures");
+    *list = larger;
+    *number = count + 1;
+    larger[count] = (struct failure){sqlite3_column_int64(row, 0),
+                                     (uint64_t)sqlite3_column_int64(row, 1),
+                                     (uint64_t)sqlite3_column_int64(row, 2),
+                                     (uint64_t)sqlite3_column_int64(row, 3),
+                                     (uint64_t)sqlite3_column_int64(row, 4),
+                                     (uint64_t)sqlite3_column_int64(row, 7),
+                                     column_copy(row, 5),
+                                     column_copy(row, 6)};
+    if (larger[count].worker == NULL || larger[count].reason == NULL)
+        return error_memory(err, 0, "a failure's reason");
+    return 0;
+}
+
+int store_failures(struct store *store, const char *id, struct failure **out, size_t *count,
+                   struct error *err) {
+    int64_t row = 0;
+    sqlite3_stmt *statement = NULL;
+    struct failure *list = NULL;
+    size_t n = 0;
+    int status = study_row(store, id, &row, err);
+    if (status == 0)
+        status = store_query(
+            store, &statement, err,
+            "SELECT id, case_number, first, count, attempts, worker, error, losses FROM "
+            "job "
+            "WHERE study_id = ?1 AND state = 'failed' UNION ALL SELECT 0, number, 0, "
+            "realisations_done, 0, NULL, publish_error, 0 FROM study_case WHERE study_id "
+            "= ?1 AND publish_error IS NOT NULL ORDER BY 1, 2 LIMIT 1000",
+            "i", row);
+    while (status == 0 && (status = store_step(store, statement, err)) == 1)
+        status = append_failure(statement, &list, &n, err);
+    if (status < 0) {
+        failures_free(list, n);
+        return status;
+    }
+    *out = list;
+    *count = n;
+    return 0;
 }

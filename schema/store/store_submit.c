@@ -1,4 +1,4 @@
-/* Submission: a study with its cases, what these are made of, and their jobs. */
+/* Submission: inserts a study with its cases, their components and their jobs. */
 #include "schema/hex.h"
 #include "schema/program.h"
 #include "schema/result/bytes.h"
@@ -8,48 +8,49 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where a case stands in its study. */
-struct case_place {
+/* The position of a case in its study. */
+struct case_position {
     int64_t row, number; /* of the study, of the case */
     int64_t parent;      /* of a component: its case; else -1 */
     int64_t sequence;    /* of a component */
 };
 
 static int insert_component(struct store *store, const struct study_case *one,
-                            const struct case_place *place, struct error *err) {
+                            const struct case_position *position, struct error *err) {
     return store_run(store, err,
                      "UPDATE study_case SET parent = ?, role = ?, sequence = ?, realisations = ? "
                      "WHERE study_id = ? AND number = ?",
-                     "itiiii", place->parent, one->role, place->sequence,
-                     (int64_t)one->realisations, place->row, place->number);
+                     "itiiii", position->parent, one->role, position->sequence,
+                     (int64_t)one->realisations, position->row, position->number);
 }
 
 /* Inserts a case without jobs, and hashes its parameters into *digest. */
 static int insert_case(struct store *store, const struct study_case *one,
-                       const struct case_place *place, uint64_t *digest, struct error *err) {
+                       const struct case_position *position, uint64_t *digest, struct error *err) {
     char *parameters = json_print(one->parameters);
     if (parameters == NULL)
         return error_memory(err, 0, "the parameters of a case");
     int status = store_run(store, err,
                            "INSERT INTO study_case (study_id, number, parameters, estimate, jobs, "
                            "jobs_left, result_bytes, block) VALUES (?, ?, ?, ?, 0, 0, ?, ?)",
-                           "iitddi", place->row, place->number, parameters,
+                           "iitddi", position->row, position->number, parameters,
                            one->component_count > 0 ? 0 : one->cost.seconds, one->cost.result_bytes,
                            (int64_t)one->block);
     *digest = hash_bytes(*digest, strlen(parameters) + 1, parameters);
     free(parameters);
-    if (status == 0 && place->parent >= 0)
-        status = insert_component(store, one, place, err);
+    if (status == 0 && position->parent >= 0)
+        status = insert_component(store, one, position, err);
     return status;
 }
 
-/* The place of a case's component a; *next is the number that it takes. */
-static struct case_place component_place(const struct study *study, const struct case_place *of,
-                                         size_t a, int64_t *next) {
-    struct case_place place = {of->row, (*next)++, of->number, (int64_t)a};
+/* Returns the position of a case's component a; *next is the number that it takes. */
+static struct case_position component_position(const struct study *study,
+                                               const struct case_position *of, size_t a,
+                                               int64_t *next) {
+    struct case_position position = {of->row, (*next)++, of->number, (int64_t)a};
     if (study->random == RANDOM_INDEPENDENT)
-        place.sequence = place.number;
-    return place;
+        position.sequence = position.number;
+    return position;
 }
 
 /* Inserts the cases, and behind them their components. */
@@ -59,11 +60,11 @@ static int insert_cases(struct store *store, const struct study *study, int64_t 
     int64_t next = (int64_t)study->case_count;
     for (size_t c = 0; status == 0 && c < study->case_count; c++) {
         const struct study_case *one = &study->cases[c];
-        const struct case_place of = {.row = row, .number = (int64_t)c, .parent = -1};
+        const struct case_position of = {.row = row, .number = (int64_t)c, .parent = -1};
         status = insert_case(store, one, &of, digest, err);
         for (size_t a = 0; status == 0 && a < one->component_count; a++) {
-            const struct case_place place = component_place(study, &of, a, &next);
-            status = insert_case(store, &one->components[a], &place, digest, err);
+            const struct case_position position = component_position(study, &of, a, &next);
+            status = insert_case(store, &one->components[a], &position, digest, err);
         }
     }
     return status;
@@ -143,7 +144,7 @@ static int insert_study(struct store *store, const struct study *study, const ch
     return status != 0 ? status : study_count_work(store, row, err);
 }
 
-/* 1 and the id when the key was used for this very study, 0 when it was not used. */
+/* Returns 1 and the id when the key was used for this very study, 0 when it was not used. */
 static int find_key(struct store *store, const struct study *study, const char *key,
                     char id[STUDY_ID_SIZE], struct error *err) {
     if (key == NULL)

@@ -1,4 +1,4 @@
-/* Cases that ask for an error: what they are made of, and the rounds in which these grow. */
+/* Cases that ask for an error: their components, and the rounds in which these grow. */
 #include "schema/store/store_internal.h"
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@ void components_free(struct component *components, size_t count) {
     free(components);
 }
 
-/* Counts a component once it has a place in the list, complete or not. */
+/* Appends a component. It is counted before it is complete, so that the list is freed with it. */
 static int append(sqlite3_stmt *row, struct component **list, size_t *count, struct error *err) {
     struct component *larger = realloc(*list, (*count + 1) * sizeof *larger);
     if (larger == NULL)

@@ -2,27 +2,27 @@
 #include "schema/store/store_seal.h"
 #include <stdio.h>
 
-/* What is looked at of a store: rows of study, case, first, count, job, and what is wrong or NULL;
- * and whether what was looked at has a checksum, NULL where it needs none. */
+/* A check of the store: a query for rows of study, case, first, count, job, and a text of the fault
+ * or NULL. The last column is whether the row has a checksum, NULL where it needs none. */
 struct look {
     enum flaw_kind kind;
     const char *what, *sql;
 };
 
-/* Jobs that a row of job counts as. */
+/* The column with the jobs that a row of job counts as. */
 #define JOBS "blocks"
 #define ALIVE "s.id NOT IN " DELETED_STUDIES
-/* Realisations that are asked for of a case; none of one that is made of others. */
+/* The realisations that are asked for of a case; none of one with components. */
 #define WANTED                                                                                     \
     "coalesce(study_case.realisations, CASE WHEN EXISTS (SELECT 1 FROM study_case k WHERE "        \
     "k.study_id = s.id AND k.parent = study_case.number) THEN 0 ELSE s.realisations END)"
-/* A counter of a study, and what it counts. */
+/* A counter of a study, and the sum that it should be. */
 #define STUDY_COUNTER(name, sum, states)                                                           \
     "SELECT s.public, NULL, 0, 0, 0, iif(s." name " = n, NULL, 'it counts ' || s." name            \
     " || ' of " name ", and has ' || n), NULL FROM study s JOIN (SELECT s.id AS of, (SELECT "      \
     "coalesce(sum(" sum "), 0) FROM job WHERE study_id = s.id AND state IN (" states               \
     ")) AS n FROM study s) ON of = s.id WHERE " ALIVE
-/* A counter of a case: of its own jobs, and those of what it is made of. */
+/* A counter of a case: of its own jobs, and those of its components. */
 #define CASE_COUNTER(name, sum, states)                                                            \
     "SELECT s.public, c.number, 0, 0, 0, iif(c." name " = n, NULL, 'it counts ' || c." name        \
     " || ' of " name ", and has ' || n), NULL FROM study s JOIN (SELECT *, (SELECT coalesce(sum("  \
@@ -113,7 +113,7 @@ struct looking {
     uint64_t done;
 };
 
-static int tell(const struct looking *looking, const struct flaw *flaw, struct error *err) {
+static int report_flaw(const struct looking *looking, const struct flaw *flaw, struct error *err) {
     looking->counts->flaws++;
     return looking->verification->found(looking->verification->context, flaw, err);
 }
@@ -136,7 +136,7 @@ static int look_at_row(struct looking *looking, const struct look *look, sqlite3
     counts->blocks += sealed && look->kind == FLAW_BLOCK;
     counts->published += sealed && look->kind == FLAW_PUBLISHED;
     counts->unsealed += sealed && sqlite3_column_int(row, 6) == 0;
-    return flaw.text != NULL ? tell(looking, &flaw, err) : 0;
+    return flaw.text != NULL ? report_flaw(looking, &flaw, err) : 0;
 }
 
 static int report_progress(struct looking *looking, const char *what, struct error *err) {
@@ -147,53 +147,67 @@ static int report_progress(struct looking *looking, const char *what, struct err
     return error_set(err, ERROR_STOPPED, "stopped");
 }
 
-/* Where the file itself is damaged a question may fail: that is a flaw of the file. */
+/* Reports what SQLite refused to read: a damaged file is a fault of the file, and the check ends.
+ */
+static int report_refusal(struct looking *looking, struct error *err) {
+    struct error reason = {0};
+    const struct flaw flaw = {.kind = FLAW_FILE, .case_number = -1, .text = reason.text};
+    int code = sqlite3_errcode(looking->store->db) & 0xff;
+    int status = store_error(looking->store, &reason);
+    return code == SQLITE_CORRUPT || code == SQLITE_NOTADB
+               ? report_flaw(looking, &flaw, err)
+               : error_set(err, status, "%s", reason.text);
+}
+
+static int prepare(struct looking *looking, const char *sql, sqlite3_stmt **out,
+                   struct error *err) {
+    int code = sqlite3_prepare_v2(looking->store->db, sql, -1, out, NULL);
+    return code == SQLITE_OK ? 0 : report_refusal(looking, err);
+}
+
+/* Returns 1 for a row, 0 at the end of a check, or an error. */
+static int next_row(struct looking *looking, sqlite3_stmt *row, struct error *err) {
+    int code = row != NULL ? row_step(row) : SQLITE_DONE;
+    if (code == SQLITE_ROW || code == SQLITE_DONE)
+        return code == SQLITE_ROW;
+    return report_refusal(looking, err);
+}
+
 static int look_at(struct looking *looking, const struct look *look, struct error *err) {
-    struct store *store = looking->store;
     sqlite3_stmt *row = NULL;
-    int status = 0, code = sqlite3_prepare_v2(store->db, look->sql, -1, &row, NULL);
+    int status = prepare(looking, look->sql, &row, err);
     looking->done = 0;
-    while (code == SQLITE_OK && status == 0 && (code = sqlite3_step(row)) == SQLITE_ROW) {
+    while (status == 0 && (status = next_row(looking, row, err)) > 0) {
         status = look_at_row(looking, look, row, err);
         if (status == 0 && looking->done++ % 64 == 0)
             status = report_progress(looking, look->what, err);
-        code = SQLITE_OK;
-    }
-    if (status == 0 && code != SQLITE_OK && code != SQLITE_DONE) {
-        struct error reason = {0};
-        struct flaw flaw = {.kind = FLAW_FILE, .case_number = -1, .text = reason.text};
-        status = store_error(store, &reason);
-        status = (code & 0xff) == SQLITE_CORRUPT || (code & 0xff) == SQLITE_NOTADB
-                     ? tell(looking, &flaw, err)
-                     : error_set(err, status, "%s", reason.text);
     }
     sqlite3_finalize(row);
     return status;
 }
 
-/* The rows that the views show of each published case: one statement a case, as they are many. */
+/* Checks the rows that the views show of each published case: one statement a case, as they are
+ * many. */
 static int look_at_rows(struct looking *looking, struct error *err) {
     static const char SQL[] =
         "SELECT s.public, p.case_number, 0, 0, 0, iif(p.rows_seal <> (SELECT " ROWS_SEAL
         "), 'rows of it that the views show are not what was published', NULL), NULL FROM "
         "published "
         "p JOIN study s ON s.id = p.study_id WHERE p.study_id = ?1 AND p.case_number = ?2";
-    struct store *store = looking->store;
-    sqlite3_stmt *cases = NULL, *row = NULL;
-    int status = 0;
-    if (sqlite3_prepare_v2(
-            store->db,
-            "SELECT study_id, case_number FROM published WHERE revision >= 0 AND study_id NOT IN "
-            "" DELETED_STUDIES,
-            -1, &cases, NULL) != SQLITE_OK ||
-        sqlite3_prepare_v2(store->db, SQL, -1, &row, NULL) != SQLITE_OK)
-        status = store_error(store, err);
-    looking->done = 0;
+    static const char CASES[] =
+        "SELECT study_id, case_number FROM published WHERE revision >= 0 AND study_id NOT IN "
+        "" DELETED_STUDIES;
     const struct look look = {FLAW_PUBLISHED, "rows of the views", SQL};
-    while (status == 0 && sqlite3_step(cases) == SQLITE_ROW) {
+    sqlite3_stmt *cases = NULL, *row = NULL;
+    int status = prepare(looking, CASES, &cases, err);
+    if (status == 0)
+        status = prepare(looking, SQL, &row, err);
+    looking->done = 0;
+    while (status == 0 && (status = next_row(looking, cases, err)) > 0) {
         sqlite3_bind_int64(row, 1, sqlite3_column_int64(cases, 0));
         sqlite3_bind_int64(row, 2, sqlite3_column_int64(cases, 1));
-        if (sqlite3_step(row) == SQLITE_ROW)
+        status = next_row(looking, row, err);
+        if (status > 0)
             status = look_at_row(looking, &look, row, err);
         sqlite3_reset(row);
         if (status == 0 && looking->done++ % 16 == 0)
@@ -208,7 +222,7 @@ static int look_at_layout(struct looking *looking, struct error *err) {
     char text[200];
     const struct flaw flaw = {.kind = FLAW_FILE, .case_number = -1, .text = text};
     int status = version_check_layout(looking->store, text, sizeof text, err);
-    return status == 0 && text[0] != '\0' ? tell(looking, &flaw, err) : status;
+    return status == 0 && text[0] != '\0' ? report_flaw(looking, &flaw, err) : status;
 }
 
 int store_verify(struct store *store, const struct verification *verification,

@@ -36,8 +36,8 @@ static const struct parameter ROWS[] = {
      .choices = STUDY_RANDOM,
      .default_json = "\"common\"",
      .example_json = "\"independent\"",
-     .help = "whether all cases are made of the same random numbers, so that what differs between "
-             "them is no chance and their errors go together, or each case of its own"},
+     .help = "common: all cases use the same random numbers, so that only parameters differ "
+             "between them and their errors are correlated; independent: each case its own"},
     {.path = "/realisations",
      .type = PARAMETER_INTEGER,
      .minimum = 1,
@@ -64,7 +64,8 @@ struct choice *kind_choices(const struct study_kind *const *kinds) {
     return choices;
 }
 
-/* Some ask for an error in place of a number, and at another place. */
+/* Some users ask for an error where the number of realisations stands; the fault names
+ * /target/error. */
 static bool asks_for_error(const cJSON *realisations, struct fault_list *faults) {
     if (!cJSON_HasObjectItem(realisations, "target_error"))
         return false;
@@ -94,7 +95,7 @@ static int take(struct study *study, const struct parameter *row, const cJSON *v
     return 0;
 }
 
-/* Reads the value of a row where it is given and good, or its default. */
+/* Reads the value of a row where it is given and valid, else its default. */
 static int read_row(struct study *study, const struct parameter *row, const cJSON *document,
                     const struct study_kind *const *kinds, struct fault_list *faults,
                     struct error *err) {

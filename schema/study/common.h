@@ -4,15 +4,15 @@
 
 #include "schema/study/study.h"
 
-/* The choices of /kind are not in its row: kind_choices makes them. The default of /realisations is
- * the kind's. */
+/* The row of /kind has no choices: kind_choices makes them. The default of /realisations is that of
+ * the kind. */
 extern const struct parameter_table COMMON_PARAMETERS;
 
-/* Names of kinds as choices, whose values are their positions; caller frees. NULL when out of
- * memory. */
+/* Returns the names of kinds as choices, whose values are their positions. The caller frees them;
+ * NULL when out of memory. */
 struct choice *kind_choices(const struct study_kind *const *kinds);
 
-/* Reads what every study has into study; adds faults. ERROR_MEMORY. */
+/* Reads into the study what every study has, and adds faults. Fails with ERROR_MEMORY alone. */
 int common_read(struct study *study, const cJSON *document, const struct study_kind *const *kinds,
                 struct fault_list *faults, struct error *err);
 

@@ -1,4 +1,4 @@
-/* The JSON Schema of studies, from the same tables that read them. */
+/* The JSON Schema of studies, made from the tables by which studies are read. */
 #include "schema/json/field.h"
 #include "schema/study/common.h"
 #include "schema/study/value.h"
@@ -18,18 +18,11 @@ static bool put_bounds(cJSON *schema, const struct parameter *parameter) {
     return complete;
 }
 
-static cJSON *checked(cJSON *schema, bool complete) {
-    if (complete)
-        return schema;
-    cJSON_Delete(schema);
-    return NULL;
-}
-
 static cJSON *number_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
     bool integer = parameter->type == PARAMETER_INTEGER || parameter->type == PARAMETER_SEED;
-    return checked(schema, field_put_text(schema, "type", integer ? "integer" : "number") &&
-                               put_bounds(schema, parameter));
+    return fields_finish(schema, field_put_text(schema, "type", integer ? "integer" : "number") &&
+                                     put_bounds(schema, parameter));
 }
 
 static cJSON *choice_schema(const struct parameter *parameter) {
@@ -37,25 +30,18 @@ static cJSON *choice_schema(const struct parameter *parameter) {
     cJSON *names = schema != NULL ? cJSON_AddArrayToObject(schema, "enum") : NULL;
     bool complete = names != NULL;
     for (const struct choice *choice = parameter->choices; complete && choice->name != NULL;
-         choice++) {
-        cJSON *name = cJSON_CreateString(choice->name);
-        complete = name != NULL && cJSON_AddItemToArray(names, name);
-    }
-    return checked(schema, complete);
+         choice++)
+        complete = list_put(names, cJSON_CreateString(choice->name));
+    return fields_finish(schema, complete);
 }
 
-/* Makes {"anyOf": [first, second]}, which takes both. */
+/* Makes {"anyOf": [first, second]}; takes both. */
 static cJSON *either(cJSON *first, cJSON *second) {
     cJSON *schema = cJSON_CreateObject();
     cJSON *forms = schema != NULL ? cJSON_AddArrayToObject(schema, "anyOf") : NULL;
-    bool complete = forms != NULL && first != NULL && cJSON_AddItemToArray(forms, first);
-    if (!complete)
-        cJSON_Delete(first);
-    if (!complete || second == NULL || !cJSON_AddItemToArray(forms, second)) {
-        cJSON_Delete(second);
-        complete = false;
-    }
-    return checked(schema, complete);
+    bool complete = list_put(forms, first); /* takes both, whatever comes of it */
+    complete = list_put(forms, second) && complete;
+    return fields_finish(schema, complete);
 }
 
 /* Makes the schema of one choice alone, or an array of different ones. */
@@ -65,7 +51,7 @@ static cJSON *choices_schema(const struct parameter *parameter) {
                     field_put(list, "items", choice_schema(parameter)) &&
                     field_put(list, "minItems", cJSON_CreateNumber(1)) &&
                     field_put(list, "uniqueItems", cJSON_CreateTrue());
-    return either(choice_schema(parameter), checked(list, complete));
+    return either(choice_schema(parameter), fields_finish(list, complete));
 }
 
 /* Makes the schema of a choice, or an object of one number named by its unit. */
@@ -74,17 +60,17 @@ static cJSON *measure_schema(const struct parameter *parameter) {
     bool complete = units != NULL;
     for (const struct choice *unit = parameter->units; complete && unit->name != NULL; unit++)
         complete = field_put(units, unit->name, number_schema(parameter));
-    units = checked(units, complete);
+    units = fields_finish(units, complete);
     complete = field_put(object, "properties", units) && field_put_text(object, "type", "object") &&
                field_put(object, "additionalProperties", cJSON_CreateFalse()) &&
                field_put(object, "minProperties", cJSON_CreateNumber(1)) &&
                field_put(object, "maxProperties", cJSON_CreateNumber(1));
-    return either(choice_schema(parameter), checked(object, complete));
+    return either(choice_schema(parameter), fields_finish(object, complete));
 }
 
 static cJSON *numbers_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
-    return checked(
+    return fields_finish(
         schema,
         field_put_text(schema, "type", "array") &&
             field_put(schema, "items", number_schema(parameter)) &&
@@ -94,15 +80,15 @@ static cJSON *numbers_schema(const struct parameter *parameter) {
 
 static cJSON *text_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
-    return checked(schema,
-                   field_put_text(schema, "type", "string") &&
-                       field_put_text(schema, "pattern", "^[^\\u0000-\\u001f\\u007f-\\u009f]*$") &&
-                       field_put(schema, "minLength", cJSON_CreateNumber(parameter->minimum)) &&
-                       field_put(schema, "maxLength", cJSON_CreateNumber(parameter->maximum)));
+    return fields_finish(
+        schema, field_put_text(schema, "type", "string") &&
+                    field_put_text(schema, "pattern", "^[^\\u0000-\\u001f\\u007f-\\u009f]*$") &&
+                    field_put(schema, "minLength", cJSON_CreateNumber(parameter->minimum)) &&
+                    field_put(schema, "maxLength", cJSON_CreateNumber(parameter->maximum)));
 }
 
-/* The decimal numbers up to 2^64 - 1: those of fewer digits, and those which have the first digits
- * of the largest and then a smaller one. */
+/* Writes a pattern of the decimal numbers up to 2^64 - 1. It has those of fewer digits, and those
+ * that begin with digits of the largest one and then have a smaller digit. */
 static void seed_pattern(char *text, size_t size) {
     static const char LARGEST[] = "18446744073709551615";
     size_t digits = strlen(LARGEST);
@@ -115,14 +101,15 @@ static void seed_pattern(char *text, size_t size) {
         snprintf(text + used, size - (size_t)used, ")$");
 }
 
-/* Makes the schema of an integer that JSON numbers hold exactly, or any of 64 bits as a string. */
+/* Makes the schema of a seed: an integer that JSON numbers hold exactly, or any of 64 bits as a
+ * string. */
 static cJSON *seed_schema(const struct parameter *parameter) {
     char pattern[1024];
     seed_pattern(pattern, sizeof pattern);
     cJSON *string = cJSON_CreateObject();
     bool complete =
         field_put_text(string, "type", "string") && field_put_text(string, "pattern", pattern);
-    return either(number_schema(parameter), checked(string, complete));
+    return either(number_schema(parameter), fields_finish(string, complete));
 }
 
 /* Makes the schema of one value, without sweeps. */
@@ -147,7 +134,7 @@ static cJSON *value_schema(const struct parameter *parameter) {
     return NULL;
 }
 
-/* Puts what is said of a value beside its form. */
+/* Adds the help, unit, default and example of a value to its schema. */
 static bool put_remarks(cJSON *schema, const struct parameter *parameter) {
     char text[600];
     snprintf(text, sizeof text, "%s%s%s%s", parameter->help, parameter->unit != NULL ? " [" : "",
@@ -160,11 +147,7 @@ static bool put_remarks(cJSON *schema, const struct parameter *parameter) {
                           : NULL;
     if (!complete || parameter->example_json == NULL)
         return complete;
-    cJSON *example = cJSON_Parse(parameter->example_json);
-    if (examples != NULL && example != NULL && cJSON_AddItemToArray(examples, example))
-        return true;
-    cJSON_Delete(example);
-    return false;
+    return list_put(examples, cJSON_Parse(parameter->example_json));
 }
 
 /* Makes the schema of one value, or where it can be swept a list of at least one. */
@@ -172,21 +155,15 @@ static cJSON *parameter_schema(const struct parameter *parameter) {
     cJSON *schema = cJSON_CreateObject();
     bool complete = put_remarks(schema, parameter);
     cJSON *forms = complete ? cJSON_AddArrayToObject(schema, "anyOf") : NULL;
-    cJSON *value = value_schema(parameter);
-    if (forms == NULL || value == NULL || !cJSON_AddItemToArray(forms, value)) {
-        cJSON_Delete(value);
-        return checked(schema, false);
-    }
+    if (!list_put(forms, value_schema(parameter)))
+        return fields_finish(schema, false);
     if (!parameter->sweep)
         return schema;
     cJSON *list = cJSON_CreateObject();
     complete = field_put_text(list, "type", "array") &&
                field_put(list, "items", value_schema(parameter)) &&
                field_put(list, "minItems", cJSON_CreateNumber(1));
-    list = checked(list, complete);
-    if (list == NULL || !cJSON_AddItemToArray(forms, list))
-        return checked(schema, false);
-    return schema;
+    return fields_finish(schema, list_put(forms, fields_finish(list, complete)));
 }
 
 static cJSON *object_schema(void) {
@@ -195,7 +172,7 @@ static cJSON *object_schema(void) {
                     field_put(schema, "properties", cJSON_CreateObject()) &&
                     field_put(schema, "required", cJSON_CreateArray()) &&
                     field_put(schema, "additionalProperties", cJSON_CreateFalse());
-    return checked(schema, complete);
+    return fields_finish(schema, complete);
 }
 
 static bool require(cJSON *schema, const char *name) {
@@ -203,13 +180,12 @@ static bool require(cJSON *schema, const char *name) {
     for (const cJSON *known = required->child; known != NULL; known = known->next)
         if (strcmp(known->valuestring, name) == 0)
             return true;
-    cJSON *text = cJSON_CreateString(name);
-    return text != NULL && cJSON_AddItemToArray(required, text);
+    return list_put(required, cJSON_CreateString(name));
 }
 
-/* Puts a parameter where its pointer leads, with the objects on the way. What was read of a file is
- * not there without the file's digest (study_reader.c). */
-static bool place(cJSON *schema, const struct parameter *parameter) {
+/* Adds a parameter at its pointer, and the objects above it. An object of what was read from a file
+ * must have the file's digest (study_reader.c). */
+static bool put_parameter(cJSON *schema, const struct parameter *parameter) {
     char name[128];
     const char *at = parameter->path + 1;
     for (;;) {
@@ -228,7 +204,7 @@ static bool place(cJSON *schema, const struct parameter *parameter) {
     }
 }
 
-/* What every study of any kind has; other members are for the kind's own part to judge. */
+/* Makes the schema of what every study has; other members are checked by the schema of the kind. */
 static cJSON *common_schema(const struct study_kind *const *kinds) {
     cJSON *schema = object_schema();
     struct choice *choices = kind_choices(kinds);
@@ -237,12 +213,12 @@ static cJSON *common_schema(const struct study_kind *const *kinds) {
         struct parameter row = COMMON_PARAMETERS.rows[p];
         if (row.type == PARAMETER_CHOICE && row.choices == NULL)
             row.choices = choices;
-        complete = place(schema, &row);
+        complete = put_parameter(schema, &row);
     }
     free(choices);
     if (complete)
         cJSON_DeleteItemFromObjectCaseSensitive(schema, "additionalProperties");
-    return checked(schema, complete);
+    return fields_finish(schema, complete);
 }
 
 /* Makes {"properties": {"kind": {"const": name}}, "required": ["kind"]}. */
@@ -252,31 +228,32 @@ static cJSON *condition_schema(const struct study_kind *kind) {
     cJSON *named = properties != NULL ? cJSON_AddObjectToObject(properties, "kind") : NULL;
     bool complete = field_put_text(named, "const", kind->name) &&
                     field_put(schema, "required", cJSON_CreateArray()) && require(schema, "kind");
-    return checked(schema, complete);
+    return fields_finish(schema, complete);
 }
 
-/* Makes the schema of what a study of the kind has beside what all have, and nothing else. */
+/* Makes the schema of a study of the kind. It allows the names that all studies have, and no
+ * others. */
 static cJSON *kind_schema(const struct study_kind *kind) {
     cJSON *schema = object_schema();
     const struct parameter *row;
     bool complete = schema != NULL;
     for (size_t p = 0; complete && (row = parameter_row(kind->tables, p)) != NULL; p++)
-        complete = place(schema, row);
+        complete = put_parameter(schema, row);
     cJSON *properties = cJSON_GetObjectItemCaseSensitive(schema, "properties");
     for (size_t p = 0; complete && p < COMMON_PARAMETERS.count; p++)
         complete = field_put(properties, COMMON_PARAMETERS.rows[p].path + 1, cJSON_CreateObject());
     cJSON *count = cJSON_GetObjectItemCaseSensitive(properties, "realisations");
     complete = complete &&
                field_put(count, "default", cJSON_CreateNumber((double)kind->default_realisations));
-    return checked(schema, complete);
+    return fields_finish(schema, complete);
 }
 
-/* {"if": the kind is this one, "then": what it may have}: so that validators judge a study by the
- * kind that it names, and tell what is wrong with it as such. */
+/* Makes {"if": the kind is this one, "then": its schema}. A validator then reports faults of the
+ * kind that a study names, not of all kinds. */
 static cJSON *branch_schema(const struct study_kind *kind) {
     cJSON *schema = cJSON_CreateObject();
-    return checked(schema, field_put(schema, "if", condition_schema(kind)) &&
-                               field_put(schema, "then", kind_schema(kind)));
+    return fields_finish(schema, field_put(schema, "if", condition_schema(kind)) &&
+                                     field_put(schema, "then", kind_schema(kind)));
 }
 
 cJSON *study_schema(const struct study_kind *const *kinds) {
@@ -287,12 +264,10 @@ cJSON *study_schema(const struct study_kind *const *kinds) {
         field_put_text(
             schema, "description",
             "Structure, types and ranges. What no single value shows (a grid too large for memory, "
-            "parameters that exclude each other) is told by rugo check.");
+            "parameters that exclude each other) is reported by rugo check.");
     cJSON *branches = complete ? cJSON_AddArrayToObject(schema, "allOf") : NULL;
     complete = branches != NULL;
-    for (size_t k = 0; complete && kinds[k] != NULL; k++) {
-        cJSON *branch = branch_schema(kinds[k]);
-        complete = branch != NULL && cJSON_AddItemToArray(branches, branch);
-    }
-    return checked(schema, complete);
+    for (size_t k = 0; complete && kinds[k] != NULL; k++)
+        complete = list_put(branches, branch_schema(kinds[k]));
+    return fields_finish(schema, complete);
 }

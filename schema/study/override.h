@@ -4,8 +4,8 @@
 
 #include "schema/json/json.h"
 
-/* text: a pointer or dotted path, '=', JSON or a bare word. Makes the objects on the way;
- * ERROR_INPUT when the path is empty or runs through something that is no object. */
+/* text: a pointer or dotted path, '=', JSON or a bare word. Makes objects that are missing on the
+ * path. ERROR_INPUT when the path is empty or runs through something that is no object. */
 int override_apply(cJSON *document, const char *text, struct error *err);
 
 #endif

@@ -1,5 +1,5 @@
-/* Tables of parameters. One row of a table is all that is known of a parameter: from it the study
- * is read, its faults are told, and its JSON Schema, its help and its reference are written. Plain
+/* Tables of parameters. All that is known of a parameter stands in its row: from it studies are
+ * read and faults reported, and the JSON Schema, the help and the reference are written. Plain
  * data. */
 #ifndef RUGO_SCHEMA_STUDY_PARAMETER_H
 #define RUGO_SCHEMA_STUDY_PARAMETER_H
@@ -34,6 +34,10 @@ struct parameter {
     const char *example_json;     /* a value, or a list of values that makes cases */
     const struct choice *choices; /* NULL for types without them */
     const struct choice *units;   /* PARAMETER_MEASURE */
+    /* A study that asks for an error may not give this parameter, for this reason, unless its value
+     * is target_choice (NULL: no value may). NULL: such a study answers the parameter as any other
+     * study, or chooses it where it is left out. */
+    const char *target_refusal, *target_choice;
     double minimum, maximum;      /* of each number; ignored for choices */
     size_t items_low, items_high; /* PARAMETER_NUMBERS */
     enum parameter_type type;
@@ -41,8 +45,8 @@ struct parameter {
     bool below_maximum; /* maximum itself excluded */
     bool required;      /* in every study of this kind */
     bool sweep;         /* a list of values makes cases */
-    /* Added after results were stored: counts in the fingerprint of a case only where it is not at
-     * its default (jobs/fingerprint.h). */
+    /* The parameter was added after results were stored: the fingerprint of a case counts it only
+     * where it is not at its default (jobs/kind.h). */
     bool later;
 };
 
@@ -56,7 +60,7 @@ struct parameter_table {
 
 /* Returns row number `index` of all tables one after the other; NULL behind the last. */
 const struct parameter *parameter_row(const struct parameter_table *const *tables, size_t index);
-/* The row of a path, and its index where index is not NULL; NULL for an unknown path. */
+/* Returns the row of a path, and its index where index is not NULL; NULL for an unknown path. */
 const struct parameter *parameter_find(const struct parameter_table *const *tables,
                                        const char *path, size_t *index);
 size_t parameter_count(const struct parameter_table *const *tables);

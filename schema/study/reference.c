@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The writers share all kinds, and the choices that /kind has by them. */
+/* All writers need the kinds, and the choices of /kind that are made of them. */
 struct reference {
     const struct study_kind *const *kinds; /* NULL at the end */
     struct choice *names;                  /* owned */
@@ -76,7 +76,7 @@ static bool has_table(const struct study_kind *kind, const struct parameter_tabl
     return false;
 }
 
-/* Returns whether an earlier kind has the table, so that it was shown. */
+/* Returns whether an earlier kind has the table, which is then already written. */
 static bool was_shown(const struct reference *reference, size_t kind,
                       const struct parameter_table *table) {
     for (size_t k = 0; k < kind; k++)
@@ -110,7 +110,7 @@ static void write_tables(FILE *file, const struct reference *reference, const ch
                 write(file, reference, *table, path);
 }
 
-/* The row as it is listed: that of /kind with the names of the kinds as its choices. */
+/* Returns a row as it is listed: /kind with the names of the kinds as its choices. */
 static struct parameter listed_row(const struct reference *reference,
                                    const struct parameter_table *table, size_t index) {
     struct parameter row = table->rows[index];
@@ -132,11 +132,13 @@ static void print_row(FILE *file, const struct reference *reference, const struc
     describe_type(row, type, sizeof type);
     describe_range(row, range, sizeof range);
     describe_default(reference, row, usual, sizeof usual);
-    fprintf(file, "  %s\n      %s\n      %s: %s%s%s%s\n      default: %s; example: %s%s\n",
-            row->path, row->help, type, range, row->unit != NULL ? " [" : "",
-            row->unit != NULL ? row->unit : "", row->unit != NULL ? "]" : "",
-            strcmp(usual, "-") == 0 ? "none" : usual, or_dash(row->example_json),
-            row->sweep ? "; a list of values makes cases" : "");
+    fprintf(file, "  %s\n      %s\n", row->path, row->help);
+    if (row->target_refusal != NULL)
+        fprintf(file, "      (%s)\n", row->target_refusal);
+    fprintf(file, "      %s: %s%s%s%s\n      default: %s; example: %s%s\n", type, range,
+            row->unit != NULL ? " [" : "", row->unit != NULL ? row->unit : "",
+            row->unit != NULL ? "]" : "", strcmp(usual, "-") == 0 ? "none" : usual,
+            or_dash(row->example_json), row->sweep ? "; a list of values makes cases" : "");
 }
 
 static void print_table(FILE *file, const struct reference *reference,
@@ -159,7 +161,7 @@ static void print_table(FILE *file, const struct reference *reference,
 
 /* --- Markdown --- */
 
-/* Prints a cell, which '|' would end. */
+/* Prints a cell, in which '|' is escaped. */
 static void print_cell(FILE *file, const char *text, bool code) {
     fputs(code ? "| `" : "| ", file);
     for (; *text != '\0'; text++) {
@@ -183,6 +185,8 @@ static void markdown_row(FILE *file, const struct reference *reference,
     describe_default(reference, row, text, sizeof text);
     print_cell(file, text, false);
     print_cell(file, row->help, false);
+    if (row->target_refusal != NULL)
+        fprintf(file, "(%s) ", row->target_refusal);
     print_cell(file, or_dash(row->example_json), true);
     fputs("|\n", file);
 }
@@ -208,7 +212,7 @@ static const char INTRODUCTION[] =
     "<!-- Written by `rugo help study --format markdown` from the tables that read a study. -->\n\n"
     "A study is one JSON object. The parameters below are named by their path in it: "
     "`/surface/hurst` is\n`{\"surface\": {\"hurst\": 0.8}}`. Names that are not here are faults, "
-    "and so are values out of their range; `rugo check`\ntells all of them at once, with the path "
+    "and so are values out of their range; `rugo check`\nprints all of them at once, with the path "
     "and what is allowed.\n\n"
     "```json\n"
     "{\n"
@@ -235,7 +239,8 @@ static const char INTRODUCTION[] =
     "leaves out of `/contact/levels` and `/surface/points_per_wavelength`, "
     "`/surface/length_ratio`, "
     "`/contact/tolerance`\nand `/contact/block_height` is chosen, and so are the realisations, in "
-    "rounds. Of a statistics study it is by chance alone, and the\nrealisations are chosen. `rugo "
+    "rounds. Of a statistics study it is the statistical error alone, and the\nrealisations are "
+    "chosen. `rugo "
     "check` prints the plan and what it is expected to cost.\n\n"
     "**Random numbers.** All follow from the seed and the realisation: the same study gives the "
     "same results, to the bit. Realisation\nr of every case is made of the same random numbers, "
@@ -245,11 +250,11 @@ static const char INTRODUCTION[] =
     "pi/L. So cases that differ in `/contact` alone see the same surfaces, and cases that differ "
     "in "
     "`hurst`, `shape`,\nscale or `wavelength_ratio` surfaces of the same phases: what differs "
-    "between cases is no chance, and their errors go together.\nWith `\"random\": "
+    "between cases is their parameters alone, and their errors are correlated.\nWith `\"random\": "
     "\"independent\"` each case has random numbers of its own.\n\n"
-    "**Limits.** A study has at most %d cases, and these 20 million values in all, with lists; a "
-    "case %d realisations;\na surface 2^31 points; a mesh of the model full 2.7e8 nodes; and a "
-    "worker must find room for a case in nine tenths of the\nmemory of the machine that reads the "
+    "**Limits.** A study has at most %d cases, with 20 million values in all. A "
+    "case has at most %d realisations,\na surface 2^31 points, a mesh of the model full 2.7e8 "
+    "nodes. A case must fit into nine tenths of the memory of the\nmachine that reads the "
     "study. A server refuses a study whose check takes more than a second of CPU time.\n\n"
     "Lengths are in units of lambda_s, the shortest wavelength. `-` as a unit: a pure number or "
     "none; as a default: absent unless given.\n";
@@ -262,7 +267,7 @@ static int reference_open(struct reference *out, const struct study_kind *const 
     return out->names != NULL ? 0 : error_memory(err, sizeof *out->names, "kinds");
 }
 
-/* "surface.hurst" and "surface/hurst" mean "/surface/hurst". */
+/* Accepts "surface.hurst" and "surface/hurst" for "/surface/hurst". */
 static void path_read(const char *given, char *path, size_t size) {
     snprintf(path, size, "%s%s", *given == '/' ? "" : "/", given);
     for (char *at = path; *given != '/' && *at != '\0'; at++)

@@ -6,10 +6,10 @@
 #include "schema/study/study.h"
 #include <stdio.h>
 
-/* Every parameter of these kinds: path, type, range, unit, default, meaning, example. path narrows
- * it to one parameter or to those below one ("/surface/heights", also "surface.heights"); NULL for
- * all. ERROR_INPUT where there is no such path, and nothing is written then; ERROR_MEMORY. Whether
- * the text arrived is for the caller to ask of the file. */
+/* Prints every parameter of these kinds: path, type, range, unit, default, meaning, example. path
+ * selects one parameter, or those below it ("/surface/heights", also "surface.heights"); NULL
+ * selects all. ERROR_INPUT where there is no such path, before anything is written; ERROR_MEMORY.
+ * The caller checks the file for write errors. */
 int reference_print(FILE *file, const struct study_kind *const *kinds, const char *path,
                     struct error *err);
 /* Prints the same of all parameters as Markdown, with an introduction. */

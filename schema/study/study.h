@@ -1,6 +1,6 @@
-/* A study: what a researcher wrote, checked, with its sweeps opened into cases.
+/* A study: a document that was checked, with its sweeps opened into cases.
  *
- * The schema knows no kind: the caller hands over a table of them, NULL at the end. */
+ * The schema knows no kind: the caller passes a table of them, NULL at the end. */
 #ifndef RUGO_SCHEMA_STUDY_STUDY_H
 #define RUGO_SCHEMA_STUDY_STUDY_H
 
@@ -9,14 +9,14 @@
 #include "schema/study/parameter.h"
 #include <stdint.h>
 
-/* Whether the cases of a study are made of the same random numbers, so that they can be compared
- * realisation by realisation and their errors go together, or each of its own. */
+/* Whether the cases of a study share their random numbers or each has its own. Cases that share
+ * them are compared realisation by realisation, and their statistical errors are correlated. */
 enum study_random { RANDOM_COMMON, RANDOM_INDEPENDENT };
 extern const struct choice STUDY_RANDOM[];
 /* Returns the sequence of random numbers (core/random.h) that a case is made of. */
 uint64_t study_sequence(enum study_random random, uint64_t case_number);
 
-/* A case costs roughly this; estimated before anything ran. */
+/* The cost of a case, estimated before anything ran. */
 struct study_cost {
     size_t nx, ny;         /* grid of one realisation (the finest) */
     double memory_bytes;   /* peak of one worker thread; of a kind: without result_bytes */
@@ -24,25 +24,27 @@ struct study_cost {
     double case_seconds;   /* the same of a case besides: merging and publishing it */
     double result_bytes;   /* of a realisation in a job's result, where they grow with these */
     double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
-    uint64_t runs_most;    /* realisations of a job at most; 0: as many as any job may have */
+    uint64_t runs_most;    /* most realisations of a job; 0: no limit but that of all jobs */
 };
 
 struct study_case;
-/* The reader must know this of a kind of study. */
+/* What the reader must know of a kind of study. */
 struct study_kind {
     const char *name;
     const struct parameter_table *const *tables; /* of its parameters; NULL at the end */
     uint64_t default_realisations;
-    /* Adds faults that no single range shows (0 then too), and estimates the cost. */
-    int (*check)(const struct study_kind *kind, const cJSON *parameters, struct fault_list *faults,
-                 struct study_cost *cost, struct error *err);
-    /* Writes into the parameters of a case, each of which fits its row, what its values stand for
-     * in full, such as the loads of "to" and "steps": workers, results and the store then all have
-     * the same numbers. The document says what the study sweeps. ERROR_MEMORY. NULL: nothing. */
+    /* Adds faults that no single range shows (and then returns 0), and estimates the cost.
+     * memory_limit in bytes (0: none): checks that would take long are left out for a case that
+     * exceeds it. */
+    int (*check)(const struct study_kind *kind, const cJSON *parameters, double memory_limit,
+                 struct fault_list *faults, struct study_cost *cost, struct error *err);
+    /* Replaces values of a case, each of which fits its row, by what they stand for, such as the
+     * loads of "to" and "steps". Workers, results and the store then all have the same numbers. The
+     * document says what the study sweeps. ERROR_MEMORY. NULL: nothing to replace. */
     int (*fill)(const cJSON *document, cJSON *parameters, struct error *err);
     /* Makes the components of a case that asks for an error, with their parameters, roles and
-     * realisations, and takes what it chooses out of the parameters of the case. The document says
-     * what the study names. Adds faults (0 then too). NULL: a kind that takes no target. */
+     * realisations. Takes what it chooses out of the parameters of the case. The document says what
+     * the study names. Adds faults (and then returns 0). NULL: the kind takes no target. */
     int (*expand)(const cJSON *document, struct study_case *one, struct fault_list *faults,
                   struct error *err);
 };
@@ -50,14 +52,13 @@ struct study_kind {
 struct study_case {
     cJSON *parameters; /* owned: effective values, lists replaced, defaults filled in */
     struct study_cost cost;
-    uint64_t block; /* realisations of a job at most; as many as take 5 s where these are fewer */
-    uint64_t
-        realisations; /* to begin with; of a component 0: only where it turns out to be needed */
-    /* Of a case that asks for an error: cases of which its answer is made. */
+    uint64_t block;        /* most realisations of a job, fewer where these take more than 5 s */
+    uint64_t realisations; /* of the first round; of a component 0: runs only if needed */
+    /* Of a case that asks for an error: the cases that its answer is computed from. */
     size_t component_count;
     struct study_case *components; /* owned; without components of their own */
-    const char *role;              /* of a component in the answer; static; NULL: it is none */
-    double share; /* of its scatter that a component brings into the answer, about */
+    const char *role;              /* static; of a component in the answer; NULL: none */
+    double share; /* share of the scatter of a component that enters the answer, about */
 };
 struct study {
     char *name;
@@ -65,10 +66,10 @@ struct study {
     uint64_t seed;
     enum study_random random;
     uint64_t realisations; /* of each case; 0: as many as the error asked for takes */
-    /* Marks the program's results of this kind: those of different editions are not mixed. 0: of no
-     * edition, whose results are its own. */
+    /* Version of the program and of the results of this kind; results of different versions are not
+     * mixed. 0: no version, and results are shared with no other study. */
     uint64_t edition;
-    char *owner;      /* of whom it is; "" or NULL: of nobody */
+    char *owner;      /* user it belongs to; "" or NULL: nobody */
     int64_t priority; /* among the studies of its owner: higher ones first */
     size_t case_count;
     struct study_case *cases;

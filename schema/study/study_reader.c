@@ -8,14 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double JOB_SECONDS = 5; /* a job takes about so long, */
-/* and its result stays below a few MB */
+static const double JOB_SECONDS = 5; /* what a job should take */
+/* Most realisations of a job, and bytes of its result. */
 static const double JOB_REALISATIONS = 1000, JOB_BYTES = 4e6;
-static const double SHARE_SECONDS = 0.1; /* what is shorter is not divided among workers */
+static const double SHARE_SECONDS = 0.1; /* jobs as short as this are not divided among workers */
 
 /* --- names --- */
 
-/* Edits between two names: how far a misspelt one is from a known one (Levenshtein 1966). */
+/* Returns the edits between two names (Levenshtein 1966), by which a misspelt name is
+ * recognised. */
 static size_t name_distance(const char *a, const char *b) {
     size_t row[64], length = strlen(b);
     if (length >= 64)
@@ -43,24 +44,24 @@ static const char *known_path(const struct study_kind *kind, size_t index) {
     return row != NULL ? row->path : NULL;
 }
 
-enum place { PLACE_UNKNOWN, PLACE_INSIDE, PLACE_PARAMETER };
+enum pointer_kind { POINTER_UNKNOWN, POINTER_INSIDE, POINTER_PARAMETER };
 
-/* Returns whether a pointer names a parameter, an object on the way to one, or nothing. */
-static enum place pointer_place(const struct study_kind *kind, const char *pointer) {
+/* Returns whether a pointer names a parameter, an object that has parameters, or nothing. */
+static enum pointer_kind kind_of_pointer(const struct study_kind *kind, const char *pointer) {
     size_t length = strlen(pointer);
     const char *path;
     for (size_t i = 0; (path = known_path(kind, i)) != NULL; i++) {
         if (strncmp(path, pointer, length) != 0)
             continue;
         if (path[length] == 0)
-            return PLACE_PARAMETER;
+            return POINTER_PARAMETER;
         if (path[length] == '/')
-            return PLACE_INSIDE;
+            return POINTER_INSIDE;
     }
-    return PLACE_UNKNOWN;
+    return POINTER_UNKNOWN;
 }
 
-/* Writes "; did you mean ...?" where a sibling's name is near. */
+/* Writes "; did you mean ...?" where a name at the same level is similar. */
 static void suggestion(const struct study_kind *kind, const char *prefix, const char *name,
                        char *text, size_t size) {
     size_t best = strlen(name) / 3 + 1, length = strlen(prefix);
@@ -80,12 +81,12 @@ static void suggestion(const struct study_kind *kind, const char *prefix, const 
     }
 }
 
-/* Whether a member stands for a file that nobody has read: its name, or an object of it without the
- * digest. */
+/* Returns whether a member stands for a file that was not read: the file's name, or an object
+ * without its digest. */
 static bool is_unread(const struct study_kind *kind, const cJSON *member, const char *pointer) {
     char digest[POINTER_SIZE + 8];
     snprintf(digest, sizeof digest, "%s/sha256", pointer);
-    return pointer_place(kind, digest) == PLACE_PARAMETER &&
+    return kind_of_pointer(kind, digest) == POINTER_PARAMETER &&
            (cJSON_IsString(member) ||
             (cJSON_IsObject(member) && !cJSON_HasObjectItem(member, "sha256")));
 }
@@ -112,15 +113,15 @@ static void check_names(const struct study_kind *kind, const cJSON *object, cons
     for (const cJSON *member = object->child; member != NULL; member = member->next) {
         char pointer[POINTER_SIZE], hint[96];
         snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
-        /* a name with a slash would make the pointer of another one */
+        /* a slash in a name would make the pointer of another parameter */
         bool whole = strchr(member->string, '/') == NULL;
-        switch (whole ? pointer_place(kind, pointer) : PLACE_UNKNOWN) {
-        case PLACE_PARAMETER:
+        switch (whole ? kind_of_pointer(kind, pointer) : POINTER_UNKNOWN) {
+        case POINTER_PARAMETER:
             break;
-        case PLACE_INSIDE:
+        case POINTER_INSIDE:
             check_inside(kind, member, pointer, faults);
             break;
-        case PLACE_UNKNOWN:
+        case POINTER_UNKNOWN:
             suggestion(kind, prefix, member->string, hint, sizeof hint);
             fault_add(faults, pointer, "unknown name%s", hint);
         }
@@ -159,7 +160,7 @@ static void check_parameters(const struct study_kind *kind, const cJSON *documen
     }
 }
 
-/* Cases of a sweep share most of their faults: each is listed once. */
+/* Cases of a sweep share most of their faults; each is listed once. */
 static void merge_faults(struct fault_list *all, const struct fault_list *found) {
     size_t kept = found->count < FAULTS_KEPT ? found->count : FAULTS_KEPT;
     if (found->faults == NULL)
@@ -203,14 +204,14 @@ uint64_t study_share(uint64_t block, double seconds, uint64_t waiting, uint64_t 
     return most < (double)block ? (uint64_t)most : block;
 }
 
-/* Checks one case, and bounds its jobs. */
+/* Checks one case, and bounds the size of its jobs. */
 static int check_case(const struct study_kind *kind, struct study_case *one, double memory_limit,
                       const struct study_reading *reading, struct fault_list *faults,
                       struct error *err) {
     struct fault_list found = {0};
     if (reading->stop != NULL && reading->stop(reading->stop_context) != 0)
         return error_set(err, ERROR_STOPPED, "checking the study was stopped");
-    int status = kind->check(kind, one->parameters, &found, &one->cost, err);
+    int status = kind->check(kind, one->parameters, memory_limit, &found, &one->cost, err);
     one->block = study_block_most(&one->cost);
     one->cost.memory_bytes += (double)one->block * one->cost.result_bytes;
     if (status == 0 && found.count == 0 && memory_limit > 0 &&
@@ -225,8 +226,8 @@ static int check_case(const struct study_kind *kind, struct study_case *one, dou
     return status;
 }
 
-/* Checks the components of a case. One that begins later, where it is needed, and cannot be had is
- * none: the others answer without it. */
+/* Checks the components of a case. A component with faults that starts only if needed (realisations
+ * 0) is dropped: the others answer without it. */
 static int check_components(const struct study_kind *kind, struct study_case *one,
                             const struct study_reading *reading, struct fault_list *faults,
                             struct error *err) {
@@ -250,7 +251,7 @@ static int check_components(const struct study_kind *kind, struct study_case *on
     return status;
 }
 
-/* Of a case that asks for an error its components are what runs. */
+/* Of a case with components these run in its place, so that the limit of memory applies to them. */
 static int check_cases(struct study *study, const cJSON *document,
                        const struct study_reading *reading, struct fault_list *faults,
                        struct error *err) {

@@ -1,4 +1,5 @@
 #include "schema/study/sweep.h"
+#include "schema/json/field.h"
 #include "schema/study/value.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,18 +10,18 @@ struct axis {
     const struct parameter *parameter;
     const cJSON *list;
     size_t length, stride;
-    const cJSON *item; /* of the case that is made now */
+    const cJSON *item; /* the value in the case that is being made */
 };
 
-/* Where the value of a parameter comes from in every case. */
+/* The source of a parameter's value in each case. */
 struct origin {
     const char *path;
     const struct axis *axis; /* borrowed; NULL: the value below */
-    const cJSON *value;      /* borrowed from the document, or usual */
+    const cJSON *value;      /* borrowed from the document or from `usual` */
     cJSON *usual;            /* owned default */
 };
 
-/* Finds the axes of the document's lists, in its own order. */
+/* Finds the lists of the document that are swept, in the order of the document. */
 static size_t find_axes(const struct study_kind *kind, const cJSON *object, const char *prefix,
                         struct axis *axes, size_t count) {
     for (const cJSON *member = object->child; member != NULL; member = member->next) {
@@ -36,7 +37,8 @@ static size_t find_axes(const struct study_kind *kind, const cJSON *object, cons
     return count;
 }
 
-/* The last axis runs fastest; false when there would be too many cases. */
+/* Sets how many cases share a value, the last axis running fastest; false when there are too many
+ * cases. */
 static bool set_strides(struct axis *axes, size_t count, size_t *cases) {
     *cases = 1;
     for (size_t a = count; a-- > 0;) {
@@ -48,7 +50,7 @@ static bool set_strides(struct axis *axes, size_t count, size_t *cases) {
     return true;
 }
 
-/* Puts a value (taken) at a pointer below root, making objects on the way. */
+/* Puts a value (taken) at a pointer below root, and makes the objects above it. */
 static int put_at(cJSON *root, const char *pointer, cJSON *value) {
     cJSON *object = root;
     char name[POINTER_SIZE];
@@ -63,10 +65,7 @@ static int put_at(cJSON *root, const char *pointer, cJSON *value) {
         if (object == NULL)
             break;
     }
-    if (object != NULL && value != NULL && cJSON_AddItemToObject(object, name, value))
-        return 0;
-    cJSON_Delete(value);
-    return ERROR_MEMORY;
+    return field_put(object, name, value) ? 0 : ERROR_MEMORY;
 }
 
 static void origins_destroy(struct origin *origins, size_t count) {
@@ -75,7 +74,7 @@ static void origins_destroy(struct origin *origins, size_t count) {
     free(origins);
 }
 
-/* Makes an origin for every parameter that is given or has a default; *count of them. */
+/* Makes an origin for each parameter that is given or has a default; *count is their number. */
 static int origins_create(struct origin **out, size_t *count, const struct study_kind *kind,
                           const cJSON *document, const struct axis *axes, size_t axis_count,
                           struct error *err) {
@@ -104,7 +103,7 @@ static int origins_create(struct origin **out, size_t *count, const struct study
     return 0;
 }
 
-/* Moves each axis to its item in a case; cases come in order, from 0. */
+/* Moves each axis to its item in a case. Cases come in order, from 0. */
 static void axes_move(struct axis *axes, size_t count, size_t number) {
     for (size_t a = 0; number > 0 && a < count; a++)
         if (number % axes[a].stride == 0)
@@ -146,7 +145,7 @@ static int fill(struct study *study, const cJSON *document, struct axis *axes, s
     return status;
 }
 
-/* Values that all cases may have together; each is a small object in memory. */
+/* Most values of all cases together, as each is a small object in memory. */
 static const size_t VALUES_MOST = 20000000;
 
 /* Counts values, those in lists and objects too. */
@@ -157,7 +156,7 @@ static size_t count_values(const cJSON *value) {
     return count;
 }
 
-/* Returns how many values of the document each case has: of what is swept one. */
+/* Returns how many values of the document each case has; a swept list counts as one. */
 static size_t case_values(const cJSON *document, const struct axis *axes, size_t count) {
     size_t values = count_values(document);
     for (size_t a = 0; a < count; a++)
@@ -189,15 +188,8 @@ cJSON *sweep_pointers(const struct study_kind *kind, const cJSON *document) {
     cJSON *pointers = axes != NULL ? cJSON_CreateArray() : NULL;
     bool done = pointers != NULL;
     size_t count = done ? find_axes(kind, document, "", axes, 0) : 0;
-    for (size_t a = 0; a < count && done; a++) {
-        cJSON *pointer = cJSON_CreateString(axes[a].parameter->path);
-        done = cJSON_AddItemToArray(pointers, pointer);
-        if (!done)
-            cJSON_Delete(pointer);
-    }
+    for (size_t a = 0; a < count && done; a++)
+        done = list_put(pointers, cJSON_CreateString(axes[a].parameter->path));
     free(axes);
-    if (done)
-        return pointers;
-    cJSON_Delete(pointers);
-    return NULL;
+    return fields_finish(pointers, done);
 }

@@ -42,7 +42,7 @@ static bool in_range(const struct parameter *parameter, double value) {
     return above && below;
 }
 
-/* Adds the fault "TEXT is not WHAT" of the value as it was written. */
+/* Adds the fault "TEXT is not WHAT", in which TEXT is the value as written. */
 static bool is_not(const cJSON *value, const char *pointer, struct fault_list *faults,
                    const char *what) {
     char text[48];
@@ -76,7 +76,7 @@ static bool number_check(const struct parameter *parameter, const cJSON *value, 
     return range_check(parameter, value, pointer, faults);
 }
 
-/* Counts characters of UTF-8: bytes that do not continue one. */
+/* Counts the characters of a UTF-8 text: bytes that do not continue a character. */
 static size_t characters(const char *text) {
     size_t n = 0;
     for (; *text != '\0'; text++)
@@ -84,7 +84,7 @@ static size_t characters(const char *text) {
     return n;
 }
 
-/* Whether a UTF-8 text has control characters: terminals that show it would obey them. */
+/* Returns whether a UTF-8 text has control characters, which a terminal would obey. */
 static bool has_controls(const char *text) {
     for (const unsigned char *s = (const unsigned char *)text; *s != '\0'; s++)
         if (*s < ' ' || *s == 0x7f || (*s == 0xc2 && s[1] >= 0x80 && s[1] < 0xa0))
@@ -210,7 +210,7 @@ static bool numbers_check(const struct parameter *parameter, const cJSON *value,
     for (const cJSON *item = value->child; item != NULL; item = item->next, i++) {
         char at[POINTER_SIZE];
         if (number_fits(parameter, item))
-            continue; /* of thousands of numbers no pointer is wanted */
+            continue; /* saves the pointers of thousands of valid numbers */
         snprintf(at, sizeof at, "%s/%zu", pointer, i);
         good = number_check(parameter, item, at, faults) && good;
     }

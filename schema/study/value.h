@@ -1,4 +1,4 @@
-/* Values against the rows of a parameter table: what is wrong with one, in words. */
+/* Checks values against the rows of a parameter table. */
 #ifndef RUGO_SCHEMA_STUDY_VALUE_H
 #define RUGO_SCHEMA_STUDY_VALUE_H
 
@@ -9,19 +9,20 @@
 
 enum { POINTER_SIZE = 256 };
 
-/* Adds a fault at pointer unless value is one value of the parameter (no list of them); true if
- * good. */
+/* Returns whether value is one valid value of the parameter (no list of them); else adds a fault at
+ * pointer. */
 bool value_check(const struct parameter *parameter, const cJSON *value, const char *pointer,
                  struct fault_list *faults);
 /* Returns whether value is a list of values (a sweep) of the parameter. */
 bool value_is_list(const struct parameter *parameter, const cJSON *value);
-/* Writes the value as it was given, cut to fit, for messages. */
+/* Writes the value as it was given for messages, cut to fit. */
 void value_describe(const cJSON *value, char *text, size_t size);
-/* Adds the fault of a required value that is not there. */
+/* Adds the fault that a required value is missing. */
 void value_missing(const struct parameter *parameter, struct fault_list *faults);
-/* The default of a row, to be deleted by the caller; NULL where it has none, or out of memory. */
+/* Returns the default of a row, which the caller deletes; NULL where it has none, or out of
+ * memory. */
 cJSON *value_default(const struct parameter *parameter);
-/* The seed that a checked value gives; false for a string that is no decimal number of 64 bits. */
+/* Reads the seed of a checked value; false for a string that is no decimal number of 64 bits. */
 bool value_seed(const cJSON *value, uint64_t *seed);
 /* Writes the names of choices: "\"first\", \"second\"". */
 void value_choices(const struct choice *choices, char *text, size_t size);

@@ -10,8 +10,8 @@ struct values {
     const struct parameter_table *const *tables; /* borrowed */
     struct fault_list *faults;                   /* borrowed, or own */
     struct fault_list own;
-    size_t before;       /* faults there when the values were made */
-    const char *misread; /* a path that a reader asked for in vain; borrowed */
+    size_t before;       /* faults in the list when the values were made */
+    const char *misread; /* a path that a reader asked for and that is in no table; borrowed */
     size_t count;        /* of rows */
     size_t next;         /* behind the row found last */
     const cJSON **at;    /* owned array of count borrowed values; NULL: absent */
@@ -85,7 +85,8 @@ bool values_is_default(const struct values *values, size_t index) {
     return value == NULL || value == usual || (usual != NULL && cJSON_Compare(value, usual, true));
 }
 
-/* The row of a path; NULL where there is none. Readers ask in the order of the rows, mostly. */
+/* Returns the row of a path; NULL where there is none. The search begins behind the last row found,
+ * as readers ask mostly in the order of the rows. */
 static const struct parameter *row_of(struct values *values, const char *path, size_t *index) {
     for (size_t i = 0; i < values->count; i++) {
         size_t p = (values->next + i) % values->count;
@@ -99,8 +100,8 @@ static const struct parameter *row_of(struct values *values, const char *path, s
     return NULL;
 }
 
-/* The row of a path and its value; NULL, and the path remembered, where it is no row of that type.
- * Integers are numbers. */
+/* Returns the row of a path and its value. Where there is no row of that type, remembers the path
+ * and returns NULL. An integer is a number. */
 static const struct parameter *find(struct values *values, const char *path,
                                     enum parameter_type type, const cJSON **value) {
     size_t index = 0;
@@ -212,17 +213,21 @@ void values_fault(struct values *values, const char *path, const char *format, .
         values->misread = path;
 }
 
+size_t values_fault_count(const struct values *values) {
+    return values->faults->count - values->before;
+}
+
 int values_status(const struct values *values, struct error *err) {
     const struct fault_list *faults = values->faults;
     if (values->misread != NULL)
-        return error_set(err, ERROR_STATE, "the program reads %s in a way that no table has",
+        return error_set(err, ERROR_STATE, "the program reads %s as no table has it",
                          values->misread);
-    if (faults->count == values->before)
+    if (values_fault_count(values) == 0)
         return 0;
     const struct fault *fault = faults->faults != NULL && values->before < FAULTS_KEPT
                                     ? &faults->faults[values->before]
                                     : NULL;
-    if (fault == NULL || fault->pointer == NULL || fault->detail == NULL)
+    if (fault == NULL || *fault->detail == '\0')
         return error_set(err, ERROR_INPUT, "the parameters are at fault");
     return error_set(err, ERROR_INPUT, "%s: %s", fault->pointer, fault->detail);
 }

@@ -2,7 +2,7 @@
 #include "core/plain_text.h"
 #include "jobs/kind.h"
 #include "server/command/input_file.h"
-#include "server/command/like_study.h"
+#include "server/command/map/like_study.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,7 +59,7 @@ void command_warn_missing(const char *command, const struct case_result *result)
 int command_fail_faults(const char *file, const struct fault_list *faults) {
     size_t kept = faults->count < FAULTS_KEPT ? faults->count : FAULTS_KEPT;
     if (faults->faults == NULL && faults->count > 0)
-        fprintf(stderr, "%s: %zu faults, and no memory to tell them\n", input_file_name(file),
+        fprintf(stderr, "%s: %zu faults, and no memory to list them\n", input_file_name(file),
                 faults->count);
     for (size_t i = 0; faults->faults != NULL && i < kept; i++) {
         const struct fault *fault = &faults->faults[i];

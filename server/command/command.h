@@ -52,8 +52,8 @@ int command_end(const char *command, int status, const char *file, const struct 
                 const struct error *err);
 /* Prints "rugo COMMAND: no results: error" to standard error where a result has an error. */
 void command_warn_missing(const char *command, const struct case_result *result);
-/* What was printed to standard output must arrive: ERROR_SYSTEM with the reason when it did not.
- * To be called right after printing, while errno tells of it. */
+/* What was printed to standard output must arrive: ERROR_SYSTEM with the reason when it did not. To
+ * be called right after printing, while errno has it. */
 int output_flush(struct error *err);
 /* Prints a JSON document as one line; NULL: out of memory. */
 int output_document(const cJSON *document, struct error *err);

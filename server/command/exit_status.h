@@ -1,4 +1,4 @@
-/* How the program ends; what it tells the shell. */
+/* How the program ends; the status that the shell gets. */
 #ifndef RUGO_SERVER_COMMAND_EXIT_STATUS_H
 #define RUGO_SERVER_COMMAND_EXIT_STATUS_H
 

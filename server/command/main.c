@@ -1,9 +1,9 @@
 /* rugo: the one executable. Finds the subcommand, shows help, sees that output arrived. */
 #include "schema/program.h"
 #include "server/command/command.h"
-#include "server/command/help.h"
+#include "server/command/commands.h"
 #include "server/command/portable.h"
-#include "worker/client.h"
+#include "worker/link/client.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <gsl/gsl_errno.h>
@@ -77,7 +77,7 @@ static int dispatch(int argc, char **argv) {
 }
 
 /* A standard stream that is closed must not become the number of a file opened later: it is opened
- * the wrong way round, so that using it fails. */
+ * in the wrong direction, so that using it fails. */
 static void hold_standard_streams(void) {
     for (int number = STDIN_FILENO; number <= STDERR_FILENO; number++)
         if (fcntl(number, F_GETFD) < 0 && errno == EBADF)

@@ -1,4 +1,5 @@
 #include "server/command/options.h"
+#include "jobs/contact/model/model.h"
 #include "server/command/exit_status.h"
 #include <ctype.h>
 #include <errno.h>
@@ -89,6 +90,31 @@ static int refuse_number(const char *command, const struct option_row *row, cons
                        row->low, row->high);
 }
 
+/* Writes the names of the models with `between` between them, and `last` before the last one. */
+static void write_models(const char *between, const char *last, char *text, size_t size) {
+    const struct choice *models = CONTACT_MODEL_CHOICES;
+    size_t used = 0;
+    *text = '\0';
+    for (size_t m = 0; models[m].name != NULL && used < size; m++) {
+        const char *gap = models[m + 1].name != NULL ? between : last;
+        used +=
+            (size_t)snprintf(text + used, size - used, "%s%s", m > 0 ? gap : "", models[m].name);
+    }
+}
+
+void option_argument(const struct option_row *row, char *text, size_t size) {
+    if (row->type == OPTION_MODEL)
+        write_models("|", "|", text, size);
+    else
+        snprintf(text, size, "%s", row->argument != NULL ? row->argument : "");
+}
+
+static int refuse_model(const char *command, const struct option_row *row, const char *text) {
+    char names[200];
+    write_models(", ", " or ", names, sizeof names);
+    return usage_error(command, "--%s %.40s is not %s", row->name, text, names);
+}
+
 static int refuse_choice(const char *command, const struct option_row *row, const char *text) {
     char words[120];
     size_t used = 0;
@@ -123,6 +149,11 @@ static int take_value(const char *command, const struct option_row *row, void *v
     switch (row->type) {
     case OPTION_FLAG:
         *(bool *)value = true;
+        return 0;
+    case OPTION_MODEL:
+        if (choice_find(CONTACT_MODEL_CHOICES, text) == NULL)
+            return refuse_model(command, row, text);
+        *(const char **)value = text;
         return 0;
     case OPTION_TEXT:
         *(const char **)value = text;
@@ -230,7 +261,7 @@ static int unknown_option(const char *command, const struct option_row *rows, co
 
 /* Fills in getopt's own names of the table. */
 static void fill_names(const struct option_row *rows, struct option *names, char *letters) {
-    *letters++ = ':'; /* tell a missing argument from an unknown option */
+    *letters++ = ':'; /* distinguish a missing argument from an unknown option */
     for (int r = 0; rows[r].name != NULL && r < ROWS_MOST; r++) {
         int argument = rows[r].type == OPTION_FLAG ? no_argument : required_argument;
         *names++ = (struct option){rows[r].name, argument, NULL, LONG_CODE + r};

@@ -8,6 +8,7 @@
 enum option_type { /* what a value becomes; where it has no default and is not given: */
                    OPTION_FLAG,   /* bool; false */
                    OPTION_TEXT,   /* const char *, borrowed from argv or the table; NULL */
+                   OPTION_MODEL,  /* const char *, a name of CONTACT_MODEL_CHOICES; NULL */
                    OPTION_COUNT,  /* unsigned in [low, high]; 0 */
                    OPTION_INDEX,  /* int64_t, 0 or more; -1 */
                    OPTION_PAIR,   /* int64_t[2], each 0 or more, given as "1 0" or "1,0"; -1 */
@@ -27,9 +28,12 @@ struct option_row {
     const char *help;
 };
 
+/* Writes what help calls the value: "N", the names of models with | between, "" of a flag. */
+void option_argument(const struct option_row *row, char *text, size_t size);
+
 /* Defaults, then what argv gives, into *values (zeros at first). What is left of argv, at least
  * `least` and at most `most` arguments, goes into arguments[], NULL where absent. 0, or an exit
- * status after a word on standard error; options_clear is due either way. */
+ * status after a word on standard error; options_clear is due in both cases. */
 int options_parse(int argc, char **argv, const struct option_row *rows, void *values, int least,
                   int most, const char **arguments);
 void options_clear(const struct option_row *rows, void *values);

@@ -1,6 +1,6 @@
 #include "server/command/output_file.h"
 #include "server/command/rasterise.h"
-#include "server/show/map_png.h"
+#include "server/show/map/map_png.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

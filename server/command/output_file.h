@@ -2,7 +2,7 @@
 #ifndef RUGO_SERVER_COMMAND_OUTPUT_FILE_H
 #define RUGO_SERVER_COMMAND_OUTPUT_FILE_H
 
-#include "server/show/plot_map.h"
+#include "server/show/plot/plot_map.h"
 #include <stdio.h>
 
 /* ERROR_SYSTEM where the file could not be written as things are: asked before a long computation,

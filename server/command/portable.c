@@ -5,7 +5,7 @@
 #include <sys/auxv.h>
 #include <unistd.h>
 
-/* The kernel tells where it put the interpreter, which loads shared libraries: nowhere. */
+/* Address of the interpreter, which loads shared libraries, by the kernel: none. */
 static bool is_static(void) {
     return getauxval(AT_BASE) == 0;
 }

@@ -8,5 +8,7 @@
  * what it printed, which the caller frees (NULL: not wanted). ERROR_SYSTEM where there is no such
  * program or it fails: with the end of what it said. Ctrl-C does not reach it. */
 int tool_run(const char *const *arguments, char **out, struct error *err);
+/* Likewise of one that reads an open file (-1: none) and writes into another one. */
+int tool_convert(const char *const *arguments, int from, int to, struct error *err);
 
 #endif

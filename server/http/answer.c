@@ -2,7 +2,7 @@
 #include "core/plain_text.h"
 #include "schema/json/field.h"
 #include "server/http/compress.h"
-#include "server/http/http.h"
+#include "server/http/exchange.h"
 #include "worker/log.h"
 #include <stdlib.h>
 #include <string.h>
@@ -111,7 +111,7 @@ static ssize_t end_at_once(void *context, uint64_t position, char *buffer, size_
 }
 
 /* Headers alone, without a length that is not known. Of chunks the library would send the end, and
- * so it is told to send none. */
+ * so it is asked to send none. */
 static void answer_head(struct exchange *exchange, const char *type) {
     enum { PART = 1024 };
     struct MHD_Response *response =
@@ -187,8 +187,8 @@ static bool put_faults(cJSON *problem, const struct fault_list *faults) {
     bool complete = errors != NULL;
     for (size_t i = 0; complete && faults->faults != NULL && i < kept; i++) {
         const struct fault *fault = &faults->faults[i];
-        cJSON *entry = cJSON_CreateObject();
-        complete = entry != NULL && cJSON_AddItemToArray(errors, entry) &&
+        cJSON *entry = list_put_object(errors);
+        complete = entry != NULL &&
                    field_put_text(entry, "pointer", fault->pointer != NULL ? fault->pointer : "") &&
                    field_put_text(entry, "detail", fault->detail != NULL ? fault->detail : "");
     }

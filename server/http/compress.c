@@ -7,7 +7,7 @@
 
 enum {
     LEVEL = 4,       /* of 9: half the time of the usual 6 for a twentieth more bytes */
-    GZIP = 16 + 15,  /* zlib's way to ask for gzip's header and the largest window */
+    GZIP = 16 + 15,  /* asks zlib for gzip's header and the largest window */
     MEMORY = 8,      /* zlib's default */
     PART = 32 * 1024 /* bytes read at a time */
 };

@@ -1,5 +1,6 @@
 #include "server/http/http.h"
 #include "server/http/http_internal.h"
+#include "server/http/route/route.h"
 #include "worker/clock.h"
 #include "worker/log.h"
 #include <arpa/inet.h>
@@ -10,6 +11,7 @@
 #include <strings.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 enum {
@@ -64,7 +66,8 @@ static void on_connection(void *context, struct MHD_Connection *connection, void
         atomic_fetch_add(&http->service->connections, 1);
 }
 
-/* Says that connections were closed for want of room; false where none were since it was told. */
+/* Says that connections were closed for want of room; false where none were since the last such
+ * report. */
 static bool log_crowding(const struct http *http, const struct connection_counts *now,
                          struct connection_counts *told) {
     if (now->evicted == told->evicted && now->refused == told->refused)
@@ -99,29 +102,183 @@ static void *watchdog_thread(void *context) {
     return NULL;
 }
 
+/* --- one request and its answer: from its headers, over its body, to its end --- */
+
+enum {
+    BODY_MOST = 16 << 20,
+    BODY_SMALL = 64 << 10,   /* always taken: heartbeats must not wait for large bodies */
+    BODIES_MOST = 256 << 20, /* of all larger ones at a time */
+};
+
+static int64_t now_ns(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+static void count_request(struct http *http, int change) {
+    pthread_mutex_lock(&http->mutex);
+    http->requests = (unsigned)((int)http->requests + change);
+    if (http->stopping) /* else the watchdog would walk its list twice a request */
+        pthread_cond_broadcast(&http->changed);
+    pthread_mutex_unlock(&http->mutex);
+}
+
+static struct connection *peer_of(struct MHD_Connection *connection) {
+    const union MHD_ConnectionInfo *info =
+        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    return info != NULL ? info->socket_context : NULL;
+}
+
+static struct exchange *exchange_create(struct http *http, struct MHD_Connection *connection,
+                                        const char *method, const char *path) {
+    struct connection *peer = peer_of(connection);
+    struct exchange *exchange = peer != NULL ? calloc(1, sizeof *exchange) : NULL;
+    if (exchange == NULL)
+        return NULL;
+    exchange->peer = peer;
+    exchange->service = http->service;
+    exchange->http = http;
+    exchange->connection = connection;
+    exchange->method = method;
+    exchange->path = path;
+    exchange->start_ns = now_ns();
+    exchange->body_most = BODY_MOST;
+    exchange_renew(exchange);
+    count_request(http, 1);
+    return exchange;
+}
+
+/* Idle workers ask for a job again and again, and get none: nobody looks for that. */
+static bool is_idle_claim(const struct exchange *exchange) {
+    return exchange->status == 204 && strcmp(exchange->path, "/v1/jobs/claim") == 0;
+}
+
+static void log_exchange(const struct exchange *exchange, bool whole) {
+    char request[160];
+    enum log_level level = exchange->status >= 500            ? LEVEL_ERROR
+                           : whole && is_idle_claim(exchange) ? LEVEL_DEBUG
+                                                              : LEVEL_INFO;
+    snprintf(request, sizeof request, "%.16s %.120s", exchange->method, exchange->path);
+    struct log_about about = {.request = request,
+                              .status = (long)exchange->status,
+                              .seconds = 1e-9 * (double)(now_ns() - exchange->start_ns)};
+    log_line(level, &about, whole ? "answered" : "cut off");
+}
+
+/* Files are few at a time, and take no room of what workers send. */
+static size_t bytes_counted(const struct exchange *exchange) {
+    return exchange->body_room > BODY_SMALL && !exchange->has_file ? exchange->body_room : 0;
+}
+
+/* A worker that has just had an answer about jobs may hold one, until its lease runs out. */
+static void note_lease(struct exchange *exchange) {
+    if (exchange->status == 200 && strncmp(exchange->path, "/v1/jobs/", 9) == 0)
+        connection_leases(exchange->http->connections, exchange->peer,
+                          clock_ms() + exchange->service->lease_ms);
+}
+
+static void on_completed(void *context, struct MHD_Connection *connection, void **slot,
+                         enum MHD_RequestTerminationCode code) {
+    struct http *http = context;
+    struct exchange *exchange = *slot;
+    (void)connection;
+    if (exchange == NULL)
+        return;
+    unsigned hundred = exchange->status / 100;
+    if (hundred < STATUS_CLASSES)
+        atomic_fetch_add(&http->service->answers[hundred], 1);
+    log_exchange(exchange, code == MHD_REQUEST_TERMINATED_COMPLETED_OK);
+    if (exchange->response != NULL)
+        MHD_destroy_response(exchange->response);
+    atomic_fetch_sub(&http->bodies, bytes_counted(exchange));
+    characterise_leave(exchange);
+    claim_settle(exchange, code == MHD_REQUEST_TERMINATED_COMPLETED_OK);
+    note_lease(exchange);
+    connection_set(http->connections, exchange->peer, CONNECTION_IDLE);
+    free(exchange->body);
+    free(exchange);
+    *slot = NULL;
+    count_request(http, -1);
+}
+
+static enum MHD_Result send_answer(struct exchange *exchange) {
+    if (exchange->response == NULL)
+        return MHD_NO; /* out of memory for any answer: the connection is closed */
+    if (atomic_load(&exchange->service->stopping) || connection_is_reserved(exchange->peer))
+        answer_header(exchange, "Connection", "close");
+    enum MHD_Result queued =
+        MHD_queue_response(exchange->connection, exchange->status, exchange->response);
+    MHD_destroy_response(exchange->response);
+    exchange->response = NULL;
+    return queued;
+}
+
+/* Room for the body that is announced, or for the largest one where chunks come without a length.
+ */
+static void reserve_body(struct exchange *exchange) {
+    const char *length = exchange_header(exchange, "Content-Length");
+    unsigned long long room = length != NULL ? strtoull(length, NULL, 10) : 0;
+    if (length == NULL && exchange_header(exchange, "Transfer-Encoding") != NULL)
+        room = exchange->body_most;
+    if (room > exchange->body_most) {
+        char detail[64];
+        snprintf(detail, sizeof detail, "a body may have up to %zu MiB", exchange->body_most >> 20);
+        answer_problem(exchange, 413, detail, NULL);
+        return;
+    }
+    exchange->body_room = (size_t)room;
+    size_t bytes = bytes_counted(exchange); /* given back by on_completed */
+    if (atomic_fetch_add(&exchange->http->bodies, bytes) + bytes > BODIES_MOST && bytes != 0)
+        answer_problem(exchange, 503, "too many large bodies at a time", NULL);
+}
+
+static bool keep_body(struct exchange *exchange, const char *data, size_t size) {
+    if (size > exchange->body_room - exchange->body_size)
+        return false;
+    if (exchange->body == NULL && (exchange->body = malloc(exchange->body_room + 1)) == NULL)
+        return false;
+    memcpy(exchange->body + exchange->body_size, data, size);
+    exchange->body_size += size;
+    exchange->body[exchange->body_size] = 0;
+    return true;
+}
+
+static enum MHD_Result begin(struct http *http, struct MHD_Connection *connection,
+                             const char *method, const char *path, void **slot) {
+    struct exchange *exchange = exchange_create(http, connection, method, path);
+    *slot = exchange;
+    if (exchange == NULL)
+        return MHD_NO;
+    route_refuse_early(exchange);
+    if (exchange->status == 0)
+        reserve_body(exchange);
+    /* An answer before the body closes the connection: what an early refusal wants. */
+    return exchange->status != 0 ? send_answer(exchange) : MHD_YES;
+}
+
+static enum MHD_Result on_request(void *context, struct MHD_Connection *connection,
+                                  const char *path, const char *method, const char *version,
+                                  const char *data, size_t *size, void **slot) {
+    struct exchange *exchange = *slot;
+    (void)version;
+    if (exchange == NULL)
+        return begin(context, connection, method, path, slot);
+    if (*size != 0) {
+        /* A chunked body past the cap can only be cut. */
+        bool kept = keep_body(exchange, data, *size);
+        *size = 0;
+        return kept ? MHD_YES : MHD_NO;
+    }
+    int64_t start_ns = now_ns();
+    connection_set(exchange->http->connections, exchange->peer, CONNECTION_WORKS);
+    route_answer(exchange);
+    exchange_renew(exchange);
+    atomic_fetch_add(&exchange->service->nanoseconds, (uint_fast64_t)(now_ns() - start_ns));
+    return send_answer(exchange);
+}
+
 /* --- the daemon --- */
-
-/* Writes the name in a Host header without its port and brackets. */
-static void host_name(const char *host, char *name, size_t size) {
-    size_t length = *host == '[' ? strcspn(host + 1, "]") : strcspn(host, ":");
-    snprintf(name, size, "%.*s", (int)length, host + (*host == '['));
-}
-
-bool http_host_allowed(const struct http *http, const char *host) {
-    unsigned char address[sizeof(struct in6_addr)];
-    char name[256];
-    host_name(host, name, sizeof name);
-    /* An address is no name that somebody else's DNS could have pointed here. */
-    if (strcasecmp(name, "localhost") == 0 || inet_pton(AF_INET, name, address) == 1 ||
-        inet_pton(AF_INET6, name, address) == 1)
-        return true;
-    for (const char *const *allowed = http->options.hosts; allowed != NULL && *allowed != NULL;
-         allowed++)
-        if (strcasecmp(*allowed, name) == 0)
-            return true;
-    /* The server's own certificate tells its names as well. */
-    return http->options.certificate != NULL && certificate_names(http->options.certificate, name);
-}
 
 static bool socket_address(const struct http_options *options, struct sockaddr_storage *storage) {
     struct sockaddr_in *v4 = (struct sockaddr_in *)storage;
@@ -165,14 +322,13 @@ static int start_daemon(struct http *http, struct error *err) {
     if (tls)
         flags |= MHD_USE_TLS;
     http->daemon = MHD_start_daemon(
-        flags, http->options.port, NULL, NULL, exchange_on_request, http,
-        MHD_OPTION_EXTERNAL_LOGGER, no_library_log, NULL, MHD_OPTION_SOCK_ADDR,
-        (struct sockaddr *)&address, MHD_OPTION_CONNECTION_LIMIT,
-        http->options.connections + RESERVE + CLOSING_MOST, MHD_OPTION_THREAD_STACK_SIZE,
-        (size_t)STACK, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADERS_MOST,
-        MHD_OPTION_NOTIFY_CONNECTION, on_connection, http, MHD_OPTION_NOTIFY_COMPLETED,
-        exchange_on_completed, http, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_UNESCAPE_CALLBACK,
-        unescape, NULL, MHD_OPTION_LISTEN_BACKLOG_SIZE, 1024u,
+        flags, http->options.port, NULL, NULL, on_request, http, MHD_OPTION_EXTERNAL_LOGGER,
+        no_library_log, NULL, MHD_OPTION_SOCK_ADDR, (struct sockaddr *)&address,
+        MHD_OPTION_CONNECTION_LIMIT, http->options.connections + RESERVE + CLOSING_MOST,
+        MHD_OPTION_THREAD_STACK_SIZE, (size_t)STACK, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+        (size_t)HEADERS_MOST, MHD_OPTION_NOTIFY_CONNECTION, on_connection, http,
+        MHD_OPTION_NOTIFY_COMPLETED, on_completed, http, MHD_OPTION_STRICT_FOR_CLIENT, 1,
+        MHD_OPTION_UNESCAPE_CALLBACK, unescape, NULL, MHD_OPTION_LISTEN_BACKLOG_SIZE, 1024u,
         /* without TLS the options end here */
         tls ? MHD_OPTION_HTTPS_PRIORITIES : MHD_OPTION_END, CERTIFICATE_PRIORITIES,
         MHD_OPTION_HTTPS_CERT_CALLBACK2, certificate_retrieve, MHD_OPTION_END);

@@ -1,8 +1,8 @@
-/* What http.c, which starts and stops the daemon, and exchange.c, which it calls, share. */
+/* What http.c, which runs the daemon, and exchange.c, which asks it, share. */
 #ifndef RUGO_SERVER_HTTP_HTTP_INTERNAL_H
 #define RUGO_SERVER_HTTP_HTTP_INTERNAL_H
 
-#include "server/http/connections.h"
+#include "server/http/guard/connections.h"
 #include "server/http/http_options.h"
 #include "server/http/service.h"
 #include <microhttpd.h>
@@ -21,12 +21,5 @@ struct http {
     bool ending;
     atomic_size_t bodies; /* bytes that running requests with larger bodies may bring */
 };
-
-/* These are for the library, which calls them on the connection's thread; context is the http. */
-enum MHD_Result exchange_on_request(void *context, struct MHD_Connection *connection,
-                                    const char *path, const char *method, const char *version,
-                                    const char *data, size_t *size, void **slot);
-void exchange_on_completed(void *context, struct MHD_Connection *connection, void **slot,
-                           enum MHD_RequestTerminationCode code);
 
 #endif

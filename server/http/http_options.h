@@ -2,7 +2,7 @@
 #ifndef RUGO_SERVER_HTTP_HTTP_OPTIONS_H
 #define RUGO_SERVER_HTTP_HTTP_OPTIONS_H
 
-#include "server/http/certificate.h"
+#include "server/http/guard/certificate.h"
 #include <stdint.h>
 
 struct http_options {

@@ -1,7 +1,7 @@
 #include "server/http/service.h"
 #include "worker/clock.h"
 #include "worker/log.h"
-#include "worker/publish.h"
+#include "worker/publish/publish.h"
 #include <stdlib.h>
 
 /* Between attempts at cases whose publishing failed for a reason that may pass. */

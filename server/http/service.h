@@ -3,7 +3,7 @@
 #ifndef RUGO_SERVER_HTTP_SERVICE_H
 #define RUGO_SERVER_HTTP_SERVICE_H
 
-#include "server/http/tokens.h"
+#include "server/http/guard/tokens.h"
 #include "server/http/writer.h"
 #include <pthread.h>
 #include <stdatomic.h>
@@ -53,12 +53,10 @@ int service_reader_until(struct service *service, int (*stop)(void *context), vo
                          struct store **out, struct error *err);
 void service_give_back(struct service *service, struct store *reader);
 
-/* Writes where copies of the store are made on their way to those who asked for one. */
+/* Writes where copies of the store are made for those who asked for one. */
 enum { SNAPSHOT_PATH_SIZE = 4096 };
 int service_snapshot_path(const struct service *service, char path[SNAPSHOT_PATH_SIZE],
                           struct error *err);
-/* Takes away the copies that a server left which was killed while it made them. */
-void service_remove_left(const struct service *service);
 
 /* Makes the Prometheus text; the caller frees it. */
 int service_metrics(struct service *service, char **out, struct error *err);

@@ -16,7 +16,7 @@ struct waiting_room;
 int waiting_room_create(struct waiting_room **out, const char *database, struct error *err);
 /* Accepts NULL; nobody may wait any more. */
 void waiting_room_destroy(struct waiting_room **room);
-/* Tells that the store has changed. */
+/* Notifies those who wait that the store has changed. */
 void waiting_room_wake(struct waiting_room *room);
 /* Lets all go, and nobody wait any more. */
 void waiting_room_end(struct waiting_room *room);

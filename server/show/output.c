@@ -1,8 +1,8 @@
 #include "server/show/output.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
-#include "server/show/plot.h"
-#include "server/show/plot_density.h"
+#include "server/show/plot/plot.h"
+#include "server/show/plot/plot_density.h"
 #include "server/show/view.h"
 #include <errno.h>
 #include <math.h>

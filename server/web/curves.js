@@ -7,7 +7,7 @@ const CASES_FIRST = 12; // shown before anything is chosen
 const BANDS_MOST = 24; // lines; more bands hide each other
 const MOST_DASHED = 3; // settings that differ by the dash of their lines alone
 
-/** "H = 0.8, C = 1": what tells a case from the others. */
+/** "H = 0.8, C = 1": what distinguishes a case from the others. */
 export function caseName(one) {
   const parts = Object.entries(one.swept).map(([pointer, value]) => (typeof value === "string" ? words(value)
     : `${symbol(lastName(pointer))} = ${Array.isArray(value) ? `(${value.length})` : number(value)}`));
@@ -15,7 +15,7 @@ export function caseName(one) {
 }
 
 /**
- * How cases are told apart, in their order: {colour, dash} each. Where they differ in a number, its values have colours in
+ * How cases are distinguished, in their order: {colour, dash} each. Where they differ in a number, its values have colours in
  * their order, and the rest dashes; where that are more than MOST_DASHED settings, each case has a colour.
  */
 function looks(all) {
@@ -67,7 +67,7 @@ export function showCurves(root, signal, study, contents) {
     return documents.flatMap((document) => document.cases);
   }
 
-  /** The lines of what is chosen; a dash also tells models and levels apart. */
+  /** The lines of what is chosen; a dash also distinguishes models and levels. */
   function linesOf(results) {
     const look = looks(results.map((one) => cases.get(one.case) ?? { swept: {} }));
     const groups = 1 + Math.max(0, ...look.map((one) => one.dash));

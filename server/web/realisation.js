@@ -4,7 +4,7 @@ import { request } from "/web/session.js";
 import { caseName } from "/web/curves.js";
 import { chart } from "/web/chart.js";
 
-// Stops of the colour map inferno, dark to light, as in server/show/map_png.c.
+// Stops of the colour map inferno, dark to light, as in server/show/map/map_png.c.
 const STOPS = [[0, 0, 4], [40, 11, 84], [101, 21, 110], [159, 42, 99], [212, 72, 66], [245, 125, 21], [250, 193, 39], [252, 255, 164]];
 const SIDE = 512; // pixels of a map
 

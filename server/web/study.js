@@ -79,7 +79,7 @@ export async function showStudy(root, signal, id, part = "curves") {
       live ? null : make("button", { class: "danger", onclick: asks(root, `Delete ${called} and its results for ever?`, remove, refresh) }, "Delete …"),
       make("a", { class: "button", href: `#/new/${encodeURIComponent(id)}` }, "Copy as a new study"),
       make("span", { class: "actions-message", role: "alert" }));
-    const facts = [["State", make("span", { class: study.state }, study.state)], ["Place in line", line(study)], ["Kind", study.kind], ["Owner", study.owner], ["Priority", study.priority || null], ["Seed", study.seed], ["Cases", study.cases],
+    const facts = [["State", make("span", { class: study.state }, study.state)], ["Position in line", line(study)], ["Kind", study.kind], ["Owner", study.owner], ["Priority", study.priority || null], ["Seed", study.seed], ["Cases", study.cases],
       ["Realisations", `${done} / ${total}${failed ? `, ${failed} failed` : ""}`], ["CPU time", duration(study.cpu_seconds)], ["Workers", live ? study.workers : null],
       ["Time left", live ? duration(study.seconds_left) : null], ["Cases without values", study.cases_valueless || null], ["Error reached", study.error_reached ? `${(100 * study.error_reached).toPrecision(3)} %` : null],
       ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Program", study.program], ["Id", make("code", {}, study.id)]];

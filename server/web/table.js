@@ -18,9 +18,9 @@ export function showTable(root, signal, study, contents) {
 
   function cell(table, row, at) {
     const value = row.values[at], error = row.standard_errors[at], theory = row.theory?.[at], other = row.errors?.[at];
-    const told = [theory !== null && theory !== undefined ? `theory ${number(theory)}` : "", other ? `errors beside chance up to ${number(other, 2)}` : ""].filter(Boolean).join("; ");
+    const notes = [theory !== null && theory !== undefined ? `theory ${number(theory)}` : "", other ? `errors other than statistical up to ${number(other, 2)}` : ""].filter(Boolean).join("; ");
     if (value === null || value === undefined) return make("td", { class: "number" }, "–");
-    return make("td", { class: typeof value === "number" ? "number" : null, title: told || null }, Array.isArray(value) ? value.join(", ") : typeof value === "number" ? measured(value, error) : words(String(value)));
+    return make("td", { class: typeof value === "number" ? "number" : null, title: notes || null }, Array.isArray(value) ? value.join(", ") : typeof value === "number" ? measured(value, error) : words(String(value)));
   }
 
   const heading = (column) => (column.type === "parameter" ? symbol(column.name) : words(column.name));

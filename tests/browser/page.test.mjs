@@ -237,7 +237,7 @@ test("workers are listed with what they run", async (t) => {
   await says(page, "jobs wait");
 });
 
-test("a token is asked for once, a wrong one told, and a lesser one refused in words", async (t) => {
+test("a token is asked for once, a wrong one reported, and a lesser one refused in words", async (t) => {
   const page = await tab(t, [401, 403]);
   await page.goto(closed);
   await says(page, "This server asks for a token.");
@@ -315,7 +315,7 @@ test("sixty cases with thirty loads are there within a second, and move at fifty
   const began = Date.now();
   await page.goto(`${open}/#/study/${id}`);
   await page.waitForSelector(".uplot canvas");
-  t.diagnostic(`curves after ${Date.now() - began} ms`); // told, not asserted: the machine may be busy
+  t.diagnostic(`curves after ${Date.now() - began} ms`); // reported, not asserted: the machine may be busy
   await page.evaluate(() => [...document.querySelectorAll(".cases button")].find((one) => one.textContent === "all").click());
   await page.waitForFunction(() => document.querySelectorAll(".legend li").length >= 60, { timeout: 30000 });
   await picture(page, "sixty");

@@ -1,4 +1,4 @@
-/* Surfaces to cut pieces out of, which then no longer repeat. Include after check.h. */
+/* Surfaces to cut sub-maps out of, which then no longer repeat. Include after check.h. */
 #ifndef RUGO_TESTS_SUPPORT_CUT_H
 #define RUGO_TESTS_SUPPORT_CUT_H
 

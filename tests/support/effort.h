@@ -1,4 +1,4 @@
-/* How long tests of chance take: RUGO_EFFORT=n makes n times as many realisations, which makes
+/* How long statistical tests take: RUGO_EFFORT=n makes n times as many realisations, which makes
  * their standard errors, and with them their tolerances, smaller. `make test` takes 1. */
 #ifndef RUGO_TESTS_SUPPORT_EFFORT_H
 #define RUGO_TESTS_SUPPORT_EFFORT_H

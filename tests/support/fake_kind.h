@@ -69,9 +69,10 @@ static const struct parameter_table *const FAKE_TABLES[] = {&FAKE_PARAMETERS, NU
 
 /* Refuses width 0.5 together with 7 boxes; a worker needs a byte a box; costs /seconds. */
 static inline int fake_check(const struct study_kind *kind, const cJSON *parameters,
-                             struct fault_list *faults, struct study_cost *cost,
-                             struct error *err) {
+                             double memory_limit, struct fault_list *faults,
+                             struct study_cost *cost, struct error *err) {
     (void)kind;
+    (void)memory_limit;
     (void)err;
     double count = json_at(parameters, "/box/count")->valuedouble;
     if (json_at(parameters, "/box/width")->valuedouble == 0.5 && count == 7)

@@ -3,7 +3,7 @@
 #ifndef RUGO_TESTS_SUPPORT_HTTP_LOAD_H
 #define RUGO_TESTS_SUPPORT_HTTP_LOAD_H
 
-#include "worker/wire.h"
+#include "worker/link/wire.h"
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
 #include <stdint.h>

@@ -48,7 +48,7 @@ static inline struct bytes bytes_of_fixture(const char *name) {
     return bytes_of(room, size);
 }
 
-/* A change of a file: `with` is put so many bytes behind each place where `mark` begins. */
+/* A change of a file: `with` is put so many bytes behind each position where `mark` begins. */
 struct damage {
     const char *mark;
     size_t length; /* of the mark */

@@ -58,7 +58,7 @@ int life_next(const struct life *life, int64_t now_ms);
 int64_t life_block(const struct life_job *job);
 /* Leases so many realisations off the front of a row: the index of the job. */
 int life_lease(struct life *life, int job, int64_t count, int worker, int token, int64_t now_ms);
-/* These tell whether the store has to accept the change. token: of the lease that asks. count: of
+/* These return whether the store has to accept the change. token: of the lease that asks. count: of
  * the realisations that are done, from the first one on. */
 bool life_complete(struct life *life, int job, int token, int64_t count, bool *again);
 bool life_fail(struct life *life, int job, int token, const char *reason, bool permanent);

@@ -1,18 +1,18 @@
-/* Pieces of surfaces of known spectra, and how often the law that fits a piece says what the
- * spectrum is. Include after check.h. */
+/* Sub-maps of surfaces of known spectra, and how often the law that fits a sub-map is that of the
+ * spectrum. Include after check.h. */
 #ifndef RUGO_TESTS_SUPPORT_SPECTRUM_RECOVERY_H
 #define RUGO_TESTS_SUPPORT_SPECTRUM_RECOVERY_H
 
 #include "core/map/detrend.h"
-#include "core/statistics/spectrum_fit.h"
+#include "core/statistics/spectra/spectrum_fit.h"
 #include "core/surface/surface.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-/* Random amplitudes on a periodic whole of unit spacing, of which a piece from the origin is
- * measured; a piece as large as the whole is measured as periodic. */
+/* Random amplitudes on a periodic whole of unit spacing, of which a sub-map from the origin is
+ * measured; one as large as the whole is measured as periodic. */
 struct recovery_case {
     const char *name;
     size_t whole, nx, ny; /* points; ny 1: profiles, of which the whole is one too */

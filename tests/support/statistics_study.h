@@ -1,5 +1,5 @@
-/* Small studies of statistics, run block by block, and what they tell as the trees that people get.
- */
+/* Small studies of statistics, run block by block, and their results as the trees that people
+ * get. */
 #ifndef RUGO_TESTS_SUPPORT_STATISTICS_STUDY_H
 #define RUGO_TESTS_SUPPORT_STATISTICS_STUDY_H
 

@@ -1,4 +1,4 @@
-/* What a store tells whoever queries its file. */
+/* What queries of a store's file return. */
 #ifndef RUGO_TESTS_SUPPORT_STORE_TEXT_H
 #define RUGO_TESTS_SUPPORT_STORE_TEXT_H
 

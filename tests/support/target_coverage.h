@@ -3,8 +3,8 @@
  * that fine meshes have over its mesh, on shorter cells; and for the model full less the share that
  * pairs of both models on fine meshes differ by in the limit of these. Areas of some Weibull
  * profiles still change by 1 % from cells of 128 to 512 longest waves: on such cells fine meshes,
- * and means of full, would take hours. Chance in references is independent of that in the studies.
- */
+ * and means of full, would take hours. Statistical errors of references are independent of those of
+ * the studies. */
 #ifndef RUGO_TESTS_SUPPORT_TARGET_COVERAGE_H
 #define RUGO_TESTS_SUPPORT_TARGET_COVERAGE_H
 
@@ -110,8 +110,8 @@ static inline bool coverage_read_curve(sqlite3 *db, const struct coverage_choice
     return out->count > 0;
 }
 
-/* The limit of the levels over the coarsest of them. Chance of a change is told times a third or
- * more, in what is told of the mesh. */
+/* The limit of the levels over the coarsest of them. The error of the mesh includes the statistical
+ * error of a change, times a third or more. */
 static inline bool coverage_read_refinement(sqlite3 *db, const struct coverage_choice *choice,
                                             struct coverage_points *out) {
     sqlite3_stmt *rows = coverage_select_curve(
@@ -186,8 +186,8 @@ static inline bool coverage_run_and_read(const char *text, const struct coverage
     return done;
 }
 
-/* Runs a study and reads a curve of a model on its finest level, less what levels tell of the mesh
- * with a sign. False where anything fails. */
+/* Runs a study and reads a curve of a model on its finest level, less the error of the mesh that
+ * levels give with a sign. False where anything fails. */
 static inline bool coverage_run(const char *text, const char *quantity, const char *model,
                                 const char *series, struct coverage_points *out) {
     return coverage_run_and_read(text, &(struct coverage_choice){quantity, model, series},
@@ -294,7 +294,7 @@ static inline bool coverage_reference(const struct coverage_question *question,
     return true;
 }
 
-/* What the curve tells of a point: bounds, and chance at 95 %. */
+/* The error that the curve reports of a point: bounds, and the statistical error at 95 %. */
 static inline double coverage_told(const struct coverage_points *points, int load) {
     return hypot(points->bound[load], COVERAGE_QUANTILE * points->standard_error[load]);
 }

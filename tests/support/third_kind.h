@@ -20,8 +20,9 @@ static const struct parameter NEEDLE_ROWS[] = {{.path = "/needle/throws",
 static const struct parameter_table NEEDLE_TABLE = {"needle", NEEDLE_ROWS, 1};
 static const struct parameter_table *const NEEDLE_TABLES[] = {&NEEDLE_TABLE, NULL};
 /* A case is its throws, a double. */
-static int needle_read(void *study, const cJSON *parameters, struct fault_list *faults,
-                       struct error *err) {
+static int needle_read(void *study, const cJSON *parameters, double memory_limit,
+                       struct fault_list *faults, struct error *err) {
+    (void)memory_limit;
     struct values *values = NULL;
     int status = values_create(&values, parameters, NEEDLE_TABLES, faults, err);
     if (status == 0)

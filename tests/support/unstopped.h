@@ -1,4 +1,4 @@
-/* Work that is never told to stop, and must succeed. */
+/* Work that is never asked to stop, and must succeed. */
 #ifndef RUGO_TESTS_SUPPORT_UNSTOPPED_H
 #define RUGO_TESTS_SUPPORT_UNSTOPPED_H
 

@@ -1,6 +1,6 @@
 # Draws a meshed profile as an SVG, pressed if the file has a step: awk -f mesh.awk block.vtu > mesh.svg
 #
-# Reads what `rugo generate --mesh` writes: arrays of text, a node or an element a line. Colours tell
+# Reads what `rugo generate --mesh` writes: arrays of text, a node or an element a line. Colours show
 # the vertical stress, from none (cream) to that of the most compressed hundredth (blue).
 
 /<DataArray/ { match($0, /Name="[^"]*"/); name = substr($0, RSTART + 6, RLENGTH - 7); row = 0; next }

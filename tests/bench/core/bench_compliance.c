@@ -1,6 +1,7 @@
 /* Compliance of layered blocks 1.5 cells high, layers that grow by 1.1, nu = 0.3: time of one core
- * (CPU, median of 3), and compliance over that of the half-space, along x, at the longest wave (the
- * block's depth is in it) and at 32, 16 and 8 points a wave (what the mesh costs). */
+ * (CPU, median of 3), and compliance over that of the half-space, along x. The latter is at the
+ * longest wave (with the effect of the block's depth) and at 32, 16 and 8 points a wave (with that
+ * of the mesh). */
 #include "core/contact/compliance.h"
 #include <math.h>
 #include <stdio.h>

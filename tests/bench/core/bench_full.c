@@ -132,7 +132,7 @@ static int run_all(struct error *err) {
     for (int k = 0; !status && k < 3; k++) {
         printf("profiles of 512 points by slope, %s\n", KINEMATICS[k]);
         options.kinematics = (enum kinematics)k;
-        size_t slopes = k == KINEMATICS_ST_VENANT ? 3 : 4; /* beyond, it gives way in compression */
+        size_t slopes = k == KINEMATICS_ST_VENANT ? 3 : 4; /* steeper ones fail in compression */
         for (size_t s = 0; !status && s < slopes; s++)
             status = profile(512, SLOPES[s], options, err);
     }

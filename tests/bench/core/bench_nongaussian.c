@@ -7,7 +7,7 @@
  *                                plain iterations, in pairs
  *   bench_nongaussian drift [n]  n (16) surfaces: C = 1, H = 0.8, ratio 4, more iterations, against
  *                                6000 plain ones */
-#include "core/statistics/summits.h"
+#include "core/statistics/summits/summits.h"
 #include "core/surface/rank.h"
 #include "core/surface/surface.h"
 #include <math.h>
@@ -142,7 +142,7 @@ static int time_rank(struct error *err) {
     }
     for (int r = 0; !status && r < REPEATS; r++) {
         double start = cpu_ms();
-        status = rank_place(ranker, bench.z, sorted, placed, err);
+        status = rank_order(ranker, bench.z, sorted, placed, err);
         times[r] = cpu_ms() - start;
     }
     if (status == 0) {

@@ -1,5 +1,6 @@
-/* Non-Gaussian surfaces found in several ways, pressed on a half-space: what the area in contact
- * (edges) owes to the way, in percent of that of the default's surfaces, in pairs.
+/* Generation error of the area in contact (edges): non-Gaussian surfaces of several generators are
+ * pressed on a half-space. Differences are of pairs, in percent of the area of the default's
+ * surfaces.
  *
  *   bench_nongaussian_contact [n [points]]
  *
@@ -8,7 +9,8 @@
  * profiles alone.
  *
  * "other" is momentum down to the error of the default, "longer" the default down to half of it;
- * "told" is what studies make of the two (FORMULAS.md, F15.14). "plain" is 1500 plain iterations.
+ * "bound" is the one that studies form from the two (FORMULAS.md, F15.14). "plain" is 1500 plain
+ * iterations.
  */
 #include "core/contact/area.h"
 #include "core/contact/contact.h"
@@ -127,7 +129,7 @@ static int run(struct bench *bench, enum path path, uint64_t realisation,
     return status != 0 ? status : press(bench, area, err);
 }
 
-/* Chance does not go on to half of eps_h. */
+/* The bound of F15.14: only what exceeds the standard error is extrapolated to half of eps_h. */
 static void print_rows(struct change changes[PATHS][LOADS], double halvings, double n) {
     double factor = halvings / n > 0.25 ? n / halvings : 4;
     for (size_t k = 0; k < LOADS; k++) {
@@ -139,7 +141,7 @@ static void print_rows(struct change changes[PATHS][LOADS], double halvings, dou
         for (enum path path = PATH_OTHER; path < PATHS; path++)
             printf(" %+6.2f (%.2f)", changes[path][k].sum / n,
                    standard_error(&changes[path][k], n));
-        printf("; told %.2f (%.2f)\n", fabs(changes[PATH_OTHER][k].sum / n) + fmax(seen, beyond),
+        printf("; bound %.2f (%.2f)\n", fabs(changes[PATH_OTHER][k].sum / n) + fmax(seen, beyond),
                hypot(other, beyond > seen ? factor * longer : longer));
     }
     fflush(stdout);

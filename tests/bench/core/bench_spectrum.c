@@ -1,5 +1,5 @@
 /* The fit of a spectrum: how often its 95 % intervals hold the truth, how wide they are, and its
- * CPU time. 100 pieces each; RUGO_EFFORT=n: n times as many. */
+ * CPU time. 100 sub-maps each; RUGO_EFFORT=n: n times as many. */
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
 #include "tests/support/spectrum_recovery.h"

@@ -1,6 +1,6 @@
 /* Summit stencils: CPU time beside error, on 256 to 2048 points a side. 200 Gaussian surfaces (H
  * 0.8, ratio 8, L/lambda_l 8) at each sampling, 50 at the finest. */
-#include "core/statistics/summits.h"
+#include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 #include "core/theory/nayak.h"
 #include <math.h>

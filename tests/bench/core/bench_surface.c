@@ -2,7 +2,7 @@
  * generation and summits alone stands the one pass that a study makes: histogram, powers of
  * heights, summits and pits. Then the error of the RMS height and what the surface costs in memory.
  */
-#include "core/statistics/roughness.h"
+#include "core/statistics/heights/roughness.h"
 #include "core/statistics/surface_pass.h"
 #include "core/surface/surface.h"
 #include <math.h>

@@ -1,8 +1,8 @@
 /* A realisation of a study of statistics, 1024 x 1024, with all that it measures, beside generation
- * with nine-point summits alone: CPU time, one core, medians, taken in turn so that other work on
- * the machine is the same for all. Weibull surfaces are those without pairs for the error
+ * with nine-point summits alone. Printed: CPU time, one core, medians, taken in turn so that other
+ * work on the machine is the same for all. Weibull surfaces are those without pairs for the error
  * `generation`, which one in 64 has. */
-#include "core/statistics/summits.h"
+#include "core/statistics/summits/summits.h"
 #include "jobs/runner.h"
 #include <math.h>
 #include <stdio.h>

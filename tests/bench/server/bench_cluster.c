@@ -1,7 +1,7 @@
 /* A cluster: 1000 workers, each with its connection, at one server, with jobs of about 5 s; they
  * claim, send heartbeats and hand in real results, but compute nothing. All are simulated by one
  * thread, whose own delays count as the server's. Printed: the processor time of the server, how
- * long claims take, and heartbeats whose answer comes a second late or tells of a lost lease. */
+ * long claims take, and heartbeats whose answer comes a second late or reports a lost lease. */
 #include "tests/support/http_load.h"
 #include "tests/support/queue_load.h"
 #include <errno.h>

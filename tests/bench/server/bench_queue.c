@@ -1,6 +1,6 @@
 /* The queue: claim and complete with a result of 4 KB, in a queue of 100 000 jobs, at 8 keep-alive
- * connections over HTTP, job by job and many at once as workers do, beside a bare writer thread
- * with group commit and a probe of the disk's fdatasync, all in one run.
+ * connections over HTTP, job by job and many at once as workers do. In the same run, for
+ * comparison: a bare writer thread with group commit, and a probe of the disk's fdatasync.
  *
  * The results are real ones (the server checks what it takes): one tiny profile's block is computed
  * once and handed in for every job. The clients send texts made beforehand and look for three

@@ -1,6 +1,6 @@
 /* The queue against its length and its users: a claim among 10 000, 100 000 and a million waiting
- * jobs takes as long, and 16 processes on one file, as of `work --db`, neither see it busy nor wait
- * long. */
+ * jobs takes equally long. 16 processes on one file, as of `work --db`, neither see it busy nor
+ * wait long. */
 #include "tests/support/queue_load.h"
 #include <math.h>
 #include <sys/mman.h>

@@ -1,7 +1,7 @@
 /* Studies that ask for an error: how many of their points are within it, and within the error that
- * they tell, against references of long cells and fine meshes; and what a study of the model full
- * at 1 % and 0.2 % takes against plain sampling of it, without the error generation, which no
- * sampling lessens.
+ * they report, against references of long cells and fine meshes; and what a study of the model full
+ * at 1 % and 0.2 % takes against plain sampling of it, without the error generation, which sampling
+ * cannot reduce.
  *
  * bench_target [FIRST [COUNT [SEEDS]]]: some of the questions, numbered from 1. */
 #include "tests/support/target_coverage.h"
@@ -68,9 +68,9 @@ enum { REALISATIONS_LEAST = 24 };
     "\"heights\":{" heights "}},\"contact\":{\"model\":\"full\",\"generation_error\":\"none\","    \
     "\"pressures\":{\"to\":0.3,\"steps\":10}}}"
 
-/* Points, and those within what was asked, within the larger of that and what the study reached,
- * and within what the curve tells of each, which may be as little as what the reference does: the
- * two are then off by the root of the sum of their squares. */
+/* Points, and those within the error asked for, within the larger of that and the error reached,
+ * and within the error that the curve reports of each. The latter may be as small as that of the
+ * reference; then the root of the sum of their squares is allowed. */
 struct counts {
     int points, asked, reached, told;
     double cpu_seconds;
@@ -81,7 +81,7 @@ static void print_head(void) {
     puts("   asked  reached reference  points  asked  reached  told  worst  work/plain    CPU");
 }
 
-/* Adds a study to the counts, and the largest of its errors over what it tells to worst. */
+/* Adds a study to the counts, and the largest of its errors over the reported ones to worst. */
 static void count(const struct coverage_question *question, const struct coverage_points *answer,
                   const struct coverage_points *reference, struct counts *counts, double *worst) {
     for (int k = 0; k < answer->count; k++) {

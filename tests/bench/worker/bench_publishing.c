@@ -2,9 +2,9 @@
  * costs (study_cost.case_seconds), by bins, loads, models and levels. Medians of 9 cases. */
 #include "jobs/kind.h"
 #include "jobs/runner.h"
-#include "worker/aggregate.h"
-#include "worker/publish.h"
-#include "worker/source.h"
+#include "worker/link/source.h"
+#include "worker/publish/aggregate.h"
+#include "worker/publish/publish.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

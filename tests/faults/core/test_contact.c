@@ -131,7 +131,7 @@ static void full_model(void **state) {
     struct solid_case cases[] = {
         {LINE, SOLVER_ITERATED}, {LINE, SOLVER_FACTORED}, {{4, 4, 1, 1}, SOLVER_ITERATED}};
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
-        /* The factorisation has more than one way to order the unknowns. */
+        /* The factorisation has more than one ordering of the unknowns. */
         each_allocation(&(struct failing_call){.name = "full",
                                                press_solid,
                                                &cases[c],

@@ -2,13 +2,13 @@
  * allocation fails; nothing leaks, and the next attempt gives the same. */
 #include "tests/support/check.h"
 
-#include "core/statistics/areal.h"
-#include "core/statistics/local_wave.h"
-#include "core/statistics/open_summits.h"
-#include "core/statistics/roughness.h"
-#include "core/statistics/seam.h"
-#include "core/statistics/spectrum_fit.h"
-#include "core/statistics/windowed_psd.h"
+#include "core/statistics/heights/areal.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/spectra/spectrum_fit.h"
+#include "core/statistics/spectra/windowed_psd.h"
+#include "core/statistics/summits/local_wave.h"
+#include "core/statistics/summits/open_summits.h"
+#include "core/statistics/uncertainty/seam.h"
 #include "tests/support/failing/each_allocation.h"
 
 enum { SIDE = 24, POINTS = SIDE * SIDE };

@@ -3,8 +3,8 @@
 #include "tests/support/check.h"
 
 #include "core/map/height_map_file.h"
-#include "core/statistics/roughness.h"
-#include "core/statistics/summits.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 #include "tests/support/failing/each_allocation.h"
 #include <gsl/gsl_errno.h>

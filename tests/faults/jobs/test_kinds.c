@@ -41,7 +41,7 @@ static int check_case(void *context, struct error *err) {
     struct study_cost cost = {0};
     cJSON *parameters = cJSON_Parse(work->text);
     int status = parameters != NULL
-                     ? kind_check(&kind_find(work->kind)->study, parameters, &faults, &cost, err)
+                     ? kind_check(&kind_find(work->kind)->study, parameters, 0, &faults, &cost, err)
                      : error_memory(err, strlen(work->text), "parameters");
     assert_int_equal(faults.count, 0);
     if (status == 0)

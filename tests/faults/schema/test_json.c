@@ -110,12 +110,17 @@ static void studies(void **state) {
     static char wrong[] = "{\"name\":3,\"kind\":\"boxes\",\"box\":{\"width\":7,\"many\":1}}";
     static char together[] =
         "{\"name\":\"b\",\"kind\":\"boxes\",\"box\":{\"width\":0.5,\"count\":7}}";
+    static char each_case[] =
+        "{\"name\":\"b\",\"kind\":\"boxes\",\"box\":{\"width\":0.5,\"count\":7,"
+        "\"colour\":[\"red\",\"green\"]},\"depth\":[{\"metres\":1},{\"feet\":2}]}";
     /* What a fault would say is made beforehand, and may be missing where there is none. */
     each_allocation(&(struct failing_call){.name = "study", read_study, NULL, .may_succeed = 1});
     each_allocation(
         &(struct failing_call){.name = "faults", refuse_study, wrong, .may_succeed = 1});
     each_allocation(&(struct failing_call){
         .name = "fault of values", refuse_study, together, .may_succeed = 1});
+    each_allocation(&(struct failing_call){
+        .name = "fault of each case", refuse_study, each_case, .may_succeed = 1});
     each_allocation(&(struct failing_call){.name = "schema", make_schema, NULL});
 }
 

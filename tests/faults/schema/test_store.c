@@ -3,9 +3,11 @@
 #include "tests/support/check.h"
 
 #include "schema/store/store.h"
+#include "schema/store/store_verify.h"
 #include "schema/study/study_reader.h"
 #include "tests/support/failing/each_allocation.h"
 #include "tests/support/fake_kind.h"
+#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -127,7 +129,7 @@ static int live(void *context, struct error *err) {
     return status == 0 ? look(life, id, err) : status;
 }
 
-/* The other ways of a job and a study. */
+/* The other transitions of a job and a study. */
 static int give_up(void *context, struct error *err) {
     struct store_life *life = context;
     char id[STUDY_ID_SIZE];
@@ -231,11 +233,56 @@ static void other_ways(void **state) {
     each_allocation(&(struct failing_call){.name = "snapshot", snapshot, &life, .may_succeed = 1});
 }
 
+static int pass_over(void *context, const struct flaw *flaw, struct error *err) {
+    (void)context, (void)flaw, (void)err;
+    return 0;
+}
+
+struct damage {
+    struct store *store;
+    uint64_t flaws; /* 0: not counted yet */
+};
+
+/* A verification that ends well has found each flaw. */
+static int verify(void *context, struct error *err) {
+    struct damage *damage = context;
+    const struct verification verification = {.found = pass_over};
+    struct verify_counts counts = {0};
+    int status = store_verify(damage->store, &verification, &counts, err);
+    if (damage->flaws == 0)
+        damage->flaws = counts.flaws;
+    if (status == 0)
+        assert_int_equal(counts.flaws, damage->flaws);
+    return status;
+}
+
+static void verification_of_damage(void **state) {
+    struct error err = {0};
+    struct damage damage = {0};
+    sqlite3 *db;
+    (void)state;
+    assert_int_equal(sqlite3_open("life.db", &db), SQLITE_OK);
+    assert_int_equal(
+        sqlite3_exec(db,
+                     "UPDATE study_case SET seal = seal + 1 WHERE study_id IN (SELECT min(id) FROM "
+                     "study);"
+                     "UPDATE published SET rows_seal = 1 WHERE study_id IN (SELECT min(study_id) "
+                     "FROM published)",
+                     NULL, NULL, NULL),
+        SQLITE_OK);
+    sqlite3_close(db);
+    assert_int_equal(store_open(&damage.store, "life.db", &(struct store_options){0}, &err), 0);
+    each_allocation(&(struct failing_call){.name = "verify", verify, &damage, .may_succeed = 1});
+    assert_int_equal(damage.flaws, 2);
+    store_close(&damage.store);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(opening),
         cmocka_unit_test(a_study),
         cmocka_unit_test(other_ways),
+        cmocka_unit_test(verification_of_damage),
     };
     return cmocka_run_group_tests(tests, open_life, close_life);
 }

@@ -81,7 +81,7 @@ static void fail_at(const struct program *program, uint64_t n, uint64_t most,
         fail_msg("%s, %s: status %d, \"%s\"", program->name, when, status, text);
     free(text);
     snprintf(name, sizeof name, "%s.out", program->name);
-    /* A table that there is no memory for is told in its place. */
+    /* A table that there is no memory for is reported by a sentence instead. */
     if (status == 0 && !contains(name, "(no memory for a table)"))
         check_told(program, expected, when);
     if (program->store == NULL)

@@ -7,8 +7,8 @@
 #include "schema/result/csv.h"
 #include "tests/support/failing/each_allocation.h"
 #include "tests/unit/worker/small_study.h"
-#include "worker/aggregate.h"
-#include "worker/comparison.h"
+#include "worker/publish/aggregate.h"
+#include "worker/publish/comparison.h"
 #include "worker/worker.h"
 
 static struct fixture fixture;

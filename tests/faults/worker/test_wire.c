@@ -3,7 +3,7 @@
 #include "tests/support/check.h"
 
 #include "tests/support/failing/each_allocation.h"
-#include "worker/wire.h"
+#include "worker/link/wire.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

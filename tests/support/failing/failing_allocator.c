@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 /* The allocator behind the hook: the sanitizer's, where there is one. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef RUGO_SANITIZED
 #define BEHIND(name) __interceptor_##name
 #else
 #define BEHIND(name) __libc_##name

@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* Each question has no row in a sound store; a row tells what is wrong. */
+/* Each question has no row in a sound store; a row says what is wrong. */
 static const char *const QUESTIONS[] = {
     "SELECT integrity_check FROM pragma_integrity_check WHERE integrity_check <> 'ok'",
     "SELECT \"table\" || ' refers to what is not there' FROM pragma_foreign_key_check",

@@ -1,7 +1,7 @@
 /* A service under faults: a server, workers, and those who submit studies and take snapshots, all
  * real processes over one store, in the empty folder of a test. Processes that end are started
  * again; meanwhile a program strikes them, or what they stand on. In the end what was acknowledged
- * is held against what is there, and a line tells of it.
+ * is compared with what is there, and a line reports it.
  *
  * RUGO_SECONDS is how long the faults go on, RUGO_SEED repeats a row of them. */
 #ifndef RUGO_TESTS_SUPPORT_FAULTS_WORLD_H

@@ -1,5 +1,6 @@
-/* Protects: networks that are cut, cut one way, so that answers or requests alone are lost, or
- * slow, between the server and its workers and submitters, lose nothing and count nothing twice. */
+/* Protects: networks that are cut, cut in one direction, so that answers or requests alone are
+ * lost, or slow, between the server and its workers and submitters, lose nothing and count nothing
+ * twice. */
 #include "tests/support/check.h"
 #include "tests/support/faults/namespace.h"
 #include "tests/support/faults/world.h"
@@ -59,7 +60,7 @@ static bool far_open(struct link *link, pid_t *keeper) {
     return link->far >= 0;
 }
 
-/* Addresses are told beforehand, so that none has to be asked for. */
+/* Addresses are set beforehand, so that none has to be asked for. */
 static bool link_open(struct link *link) {
     pid_t keeper = 0;
     if (!namespace_enter(CLONE_NEWNET))
@@ -96,7 +97,8 @@ static void cut_requests(const struct link *link, bool cut) {
                   : "ip neigh replace " NEAR " lladdr " NEAR_MAC " dev v1 nud permanent"));
 }
 
-/* Both ways, by a bucket of tokens; without the module of the kernel links are cut alone. */
+/* In both directions, by a bucket of tokens; without the module of the kernel links are cut
+ * alone. */
 static void slow_down(const struct link *link, unsigned kilobits) {
     char line[160];
     snprintf(line, sizeof line, "tc qdisc replace dev v1 root tbf rate %ukbit burst 3kb latency 2s",

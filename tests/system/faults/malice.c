@@ -5,7 +5,7 @@
 #include "tests/support/check.h"
 #include "tests/support/faults/world.h"
 #include "tests/support/seed.h"
-#include "worker/wire.h"
+#include "worker/link/wire.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

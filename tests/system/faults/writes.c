@@ -1,6 +1,6 @@
-/* Protects: writes and synchronisations of the store and of its copies that fail, now and then or
- * all for a while, by a bad disk, a full one or one that was mounted read-only, lose nothing that
- * was acknowledged. */
+/* Protects: writes and synchronisations of the store and of its copies that fail lose nothing that
+ * was acknowledged. They fail now and then or all for a while, by a bad disk, a full one or one
+ * that was mounted read-only. */
 #include "tests/support/check.h"
 #include "tests/support/failing/failing_writes.h"
 #include "tests/support/faults/world.h"

@@ -1,6 +1,6 @@
-/* Protects: what a broken study or request is told. Each gets its status, a problem (RFC 9457) with
- * the same status, the pointer to the fault and a text that says what is wrong and what is allowed;
- * nothing is queued. */
+/* Protects: the answers to a broken study or request. Each gets its status, a problem (RFC 9457)
+ * with the same status, the pointer to the fault and a text that says what is wrong and what is
+ * allowed; nothing is queued. */
 #include "schema/json/json.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
@@ -159,6 +159,12 @@ static void broken_studies_are_told_what_is_wrong(void **state) {
          "20]"},
         {SURFACE("\"heights\":{\"distribution\":\"weibull_max\",\"shape\":0}"), 422,
          "/surface/heights/shape", "0 is not in [0.01, 20]"},
+        {"{\"name\":\"x\",\"kind\":\"contact\",\"surface\":{\"hurst\":0.8,\"wavelength_ratio\":8,"
+         "\"spectrum\":{\"type\":\"table\"}}}",
+         422, "/surface/spectrum/density",
+         "a table needs wave_number and density, as many of each"},
+        {SURFACE("\"spectrum\":{\"type\":\"table\"}"), 422, "/surface/spectrum/density",
+         "a table needs wave_number and density, as many of each"},
         {SURFACE("\"spectrum\":{\"type\":\"white\"}"), 422, "/surface/spectrum/type",
          "\"white\" is not one of \"self_affine\", \"exponential_acf\", \"table\""},
         {BESIDE("\"seed\":-1"), 422, "/seed", "-1 is not an integer of 0 or more"},

@@ -1,5 +1,5 @@
 /* Protects: a file that is sent to a service is characterised as the command does it, and drawn;
- * what is wrong with it, or with the query, is told as a problem; no file, however it is made,
+ * what is wrong with it, or with the query, is reported as a problem; no file, however it is made,
  * harms the service; and a client that goes ends the work. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
@@ -210,7 +210,7 @@ static size_t children_of(pid_t parent) {
     return count;
 }
 
-/* Two are looked at, the third is told to come again; and none is when their clients have gone. */
+/* Two are looked at, the third is asked to come again; and none is when their clients have gone. */
 static void clients_that_go_end_the_work(void **state) {
     (void)state;
     enum { SIDE = 360 };
@@ -222,7 +222,7 @@ static void clients_that_go_end_the_work(void **state) {
                           "POST /v1/characterise?name=a.csv HTTP/1.1\r\nHost: localhost\r\n"
                           "%sExpect: 100-continue\r\nContent-Length: %zu\r\n\r\n",
                           BYTES, size);
-    for (size_t n = 0; n < 2; n++) { /* they have entered when they are told to go on */
+    for (size_t n = 0; n < 2; n++) { /* they have entered when they are asked to go on */
         char told[64] = "";
         sockets[n] = http_connect(port);
         assert_int_equal(send(sockets[n], request, (size_t)length, MSG_NOSIGNAL), length);

@@ -1,5 +1,5 @@
-/* Protects: the command line: exit statuses, what wrong usage and input are told, and that a run
- * goes on where it was stopped, however it was stopped. */
+/* Protects: the command line: exit statuses, messages on wrong usage and input, and that a run goes
+ * on where it was stopped, however it was stopped. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"

@@ -1,7 +1,8 @@
-/* Protects: workers, probes and a reader get in however many connections are held, and headers that
- * two readers could read differently are refused. */
+/* Protects: workers, probes and a reader get in however many connections are held, headers that two
+ * readers could read differently are refused, and nothing is computed for peers that have left. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
+#include "tests/support/small_studies.h"
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +11,7 @@
 #include <unistd.h>
 
 #define JSON "Content-Type: application/json\r\n"
-enum { MOST = 4, FLOOD = 200 };
+enum { MOST = 4, FLOOD = 200, MAPS_MS = 20000 };
 
 static struct process server;
 static unsigned port;
@@ -186,8 +187,43 @@ static void strange_headers_are_refused(void **state) {
     }
 }
 
+/* Heights that are iterated for hours occupy a map's slot no longer than someone waits for them. */
+static void maps_end_with_their_peers(void **state) {
+    (void)state;
+    static const char ENDLESS[] =
+        "{\"name\":\"endless\",\"kind\":\"statistics\",\"realisations\":1,\"surface\":{\"hurst\":"
+        "0.8,\"wavelength_ratio\":16,\"length_ratio\":8,\"points_per_wavelength\":8,\"heights\":{"
+        "\"distribution\":\"weibull_max\",\"shape\":1,\"tolerance\":0,\"stall_gain\":0,"
+        "\"stall_iterations\":1000000,\"max_iterations\":1000000}}}";
+    static const char PATH[] = "/v1/studies/one/cases/0/realisations/0/map";
+    static const char MAP[] = "GET /v1/studies/endless/cases/0/realisations/0/map HTTP/1.1\r\n"
+                              "Host: localhost\r\n\r\n";
+    int connections[2], status = 0, waited = 0;
+    struct process own; /* which lets nobody go for want of room */
+    unsigned other = port;
+    port = serve_start(&own, (const char *[]){"--db", "maps.db", NULL});
+    assert_int_equal(status_of("POST", "/v1/studies", ENDLESS), 201);
+    assert_int_equal(status_of("POST", "/v1/studies", ONE_CASE), 201);
+    for (size_t n = 0; n < 2; n++) {
+        connections[n] = http_connect(port);
+        assert_true(send(connections[n], MAP, strlen(MAP), MSG_NOSIGNAL) == (ssize_t)strlen(MAP));
+    }
+    while ((status = status_of("GET", PATH, NULL)) == 200 && (waited += 20) < MAPS_MS)
+        sleep_ms(20);
+    assert_int_equal(status, 503); /* both are being made */
+    for (size_t n = 0; n < 2; n++)
+        close(connections[n]);
+    while ((status = status_of("GET", PATH, NULL)) == 503 && (waited += 20) < MAPS_MS)
+        sleep_ms(20);
+    assert_int_equal(status, 200);
+    process_kill(&own, SIGTERM);
+    assert_int_equal(process_wait(&own, 15), 0);
+    port = other;
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(maps_end_with_their_peers),
         cmocka_unit_test(silence_shuts_nobody_out),
         cmocka_unit_test(leases_shut_nobody_out),
         cmocka_unit_test(strange_headers_are_refused),

@@ -1,4 +1,4 @@
-/* Protects: a contact study is told of by every command: tables of area against load with their
+/* Protects: a contact study is shown by every command: tables of area against load with their
  * errors, the report of what models, levels and estimators cost, pictures, tables, views. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"

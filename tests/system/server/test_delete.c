@@ -1,5 +1,5 @@
-/* Protects: who deletes a study, near or over HTTP, finds it gone and the file smaller, and is told
- * where it has not ended. */
+/* Protects: who deletes a study, near or over HTTP, finds it gone and the file smaller, and is
+ * refused where it has not ended. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"

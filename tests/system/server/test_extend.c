@@ -149,7 +149,7 @@ static void what_cannot_be_extended_is_told(void **state) {
     assert_true(contains("extend.err", "submit it anew with a smaller error"));
 }
 
-/* Cancelled on the way, extended over HTTP, and worked on to the end. */
+/* Cancelled while it runs, extended over HTTP, and worked on to the end. */
 static void extended_over_http(void **state) {
     (void)state;
     struct process server;

@@ -115,7 +115,7 @@ static void owners_take_turns_and_keep_their_own(void **state) {
                      403);
 }
 
-/* The commands tell of it, and read the same file of tokens. */
+/* The commands show it, and read the same file of tokens. */
 static void commands_tell_the_line(void **state) {
     (void)state;
     char url[64];
@@ -129,7 +129,7 @@ static void commands_tell_the_line(void **state) {
     assert_int_equal(run_rugo("status", (const char *[]){"status", "--server", url, "--token-file",
                                                          "mine", "queued", NULL}),
                      0);
-    assert_true(contains("status.out", "place 1 in line, "));
+    assert_true(contains("status.out", "position 1 in line, "));
     assert_int_equal(run_rugo("status", (const char *[]){"status", "--server", url, "--token-file",
                                                          "mine", NULL}),
                      0);

@@ -330,7 +330,7 @@ static void descriptions_and_page(void **state) {
     free(answer);
 }
 
-/* Every path of the description has just the methods that it describes: 405 tells them. */
+/* Every path of the description has just the methods that it describes: 405 lists them. */
 static void description_and_routes_agree(void **state) {
     (void)state;
     char *text, *allowed, *rest = NULL, path[80] = "", methods[80] = "";

@@ -47,7 +47,7 @@ static void work(void) {
                      0);
 }
 
-/* Asks by what is given, near and far: both end with `status` and tell `text`. */
+/* Asks by what is given, near and far: both end with `status` and print `text`. */
 static void check_both(const char *command, const char *given, int status, const char *text) {
     const char *const places[2][2] = {{"--db", "rugo.db"}, {"--server", url}};
     for (int p = 0; p < 2; p++) {

@@ -57,7 +57,8 @@ static void near_and_over_http(void **state) {
     assert_true(contains("near.json", "\"percentile_skewness\":{"));
     static const char *const SHOWN[][2] = {
         {"curves --db near.db alike --format csv", "# like: patch.npy, SHA-256 "},
-        {"curves --db near.db alike --format table", "the measured surface patch.npy among pieces"},
+        {"curves --db near.db alike --format table",
+         "the measured surface patch.npy among sub-maps"},
         {"table --db near.db alike --columns percentile_kurtosis,measured_kurtosis",
          "measured_kurtosis"},
         {"plot --db near.db alike --quantity psd -o near.svg && cat near.svg",
@@ -71,17 +72,17 @@ static void near_and_over_http(void **state) {
     }
 }
 
-/* Pieces that do not fit into the cell are told, not left out in silence. */
+/* Sub-maps that do not fit into the cell are reported, not left out in silence. */
 static void too_small_a_cell(void **state) {
     (void)state;
     assert_int_equal(run_shell("$RUGO run --db small.db data/alike.json --set "
                                "surface/length_ratio=2 --set name=small --set realisations=2"),
                      0);
-    assert_true(contains("shell.out", "patch.npy is not placed among random ones"));
+    assert_true(contains("shell.out", "patch.npy is not ranked among random ones"));
     assert_false(contains("shell.out", "percentile"));
 }
 
-/* The map and a piece of each surface are pressed in one way; other loads leave it out. */
+/* The map and a sub-map of each surface are pressed alike; other loads leave it out. */
 static void contact(void **state) {
     (void)state;
     spit("data/pressed.json",
@@ -154,6 +155,21 @@ static void faults_are_named(void **state) {
     }
 }
 
+/* What is printed as a study is one: heights that differ by rounding alone, so far from 0, are in
+ * none, and nothing is printed. */
+static void what_no_study_takes_is_refused(void **state) {
+    (void)state;
+    spit("data/far.awk", "BEGIN { for (j = 0; j < 24; j++) for (i = 0; i < 24; i++)\n"
+                         "printf \"%.17g%s\", 5e15 + int(3 * sin(i + j * j)), i < 23 ? \",\" : "
+                         "\"\\n\" }\n");
+    assert_int_equal(run_shell("awk -f data/far.awk > data/far.csv"), 0);
+    assert_int_equal(run_shell("$RUGO characterise data/far.csv --format study"), 0);
+    assert_int_equal(run_shell("$RUGO characterise data/far.csv --detrend none --format study"), 2);
+    assert_true(
+        contains("shell.err", "no study can be made of the map: /surface/heights/quantile"));
+    assert_false(contains("shell.out", "{"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(near_and_over_http),
@@ -162,6 +178,7 @@ int main(void) {
         cmocka_unit_test(a_file_alone_is_refused_over_http),
         cmocka_unit_test(check_shows_what_was_fitted),
         cmocka_unit_test(faults_are_named),
+        cmocka_unit_test(what_no_study_takes_is_refused),
     };
     return cmocka_run_group_tests(tests, make_files, NULL);
 }

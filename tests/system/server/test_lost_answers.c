@@ -42,7 +42,7 @@ static size_t count_studies(void) {
     return count;
 }
 
-/* --- a way to the server that loses answers --- */
+/* --- a connection to the server that loses answers --- */
 
 enum { MESSAGE_MOST = 1 << 16 };
 
@@ -159,7 +159,7 @@ static void a_late_answer_doubles_nothing(void **state) {
                      2);
 }
 
-/* Nothing was sent to a server that is not there: that is told at once. */
+/* Nothing was sent to a server that is not there: that is reported at once. */
 static void a_server_that_is_away_is_told_at_once(void **state) {
     (void)state;
     time_t begin = time(NULL);

@@ -1,5 +1,5 @@
 /* Protects: a study of ten thousand cases that wait is shown within seconds, near and over HTTP,
- * and a server that sends such a document ends when it is told to. Merging what has not begun took
+ * and a server that sends such a document ends when it is asked to. Merging what has not begun took
  * a minute. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"

@@ -90,8 +90,8 @@ static void a_measured_map_does_not_repeat(void **state) {
     assert_true(contains("shell.err", "warning: map0.csv: contact takes the map as periodic"));
 }
 
-/* Lengths of a map with units are told as people read them, in JSON in metres; without units they
- * are bare. A window makes the map periodic, for contact too, and tells its power. */
+/* Lengths of a map with units are printed as people read them, in JSON in metres; without units
+ * they are bare. A window makes the map periodic, for contact too, and reports its power. */
 static void lengths_have_units(void **state) {
     (void)state;
     assert_int_equal(
@@ -126,7 +126,7 @@ static void lengths_have_units(void **state) {
 }
 
 /* What is prepared and written is what is read again, with its units in text; what was done is
- * told, and a conversion without options changes nothing. */
+ * reported, and a conversion without options changes nothing. */
 static void a_map_is_converted(void **state) {
     (void)state;
     assert_int_equal(
@@ -210,7 +210,7 @@ static void a_measured_map_is_pressed_in_units(void **state) {
     free(text);
     assert_int_equal(run_shell("$RUGO press sphere.csv --model layered"), 2);
     assert_true(contains("shell.err", "sphere.csv: the map does not repeat, and --model layered"));
-    /* Files that could not be written are told before anything is computed. */
+    /* Files that could not be written are refused before anything is computed. */
     assert_int_equal(run_shell("$RUGO press sphere.csv --loads 0.1 -o p.pdf > told"), 2);
     assert_true(contains("shell.err", "file p.pdf: its name ends in none of .npy, .csv, .xyz"));
     assert_int_equal(run_shell("$RUGO press sphere.csv --loads 0.1 --vtu no/such.vtu >> told"), 1);

@@ -1,6 +1,6 @@
 /* Protects: the commands of server/operate.md do what the page says, health and prune too; and a
- * store that is put back while workers go on, as the page tells it, ends with the curves of a run
- * that nothing happened to. */
+ * store that is put back while workers go on, as the page describes it, ends with the curves of a
+ * run that nothing happened to. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/sql.h"
@@ -12,9 +12,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+/* So many jobs that some are left when the snapshot is made. */
 static const char STUDY[] =
     "{\"name\":\"kept\",\"kind\":\"statistics\",\"seed\":1,\"realisations\":100,\"surface\":{"
-    "\"hurst\":[0.2,0.5,0.8],\"wavelength_ratio\":8,\"length_ratio\":8,\"points_per_wavelength\":8}"
+    "\"hurst\":[0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9],\"wavelength_ratio\":8,\"length_ratio\":8,"
+    "\"points_per_wavelength\":8}"
     "}";
 
 static const char SMALL[] =

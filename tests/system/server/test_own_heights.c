@@ -1,5 +1,5 @@
 /* Protects: a study with heights of one's own gives the same curves near and over HTTP, with theory
- * of these heights beside them; their faults are told with a pointer; and the heights of a map
+ * of these heights beside them; their faults are reported with a pointer; and the heights of a map
  * become those of a study. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"

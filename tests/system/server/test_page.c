@@ -54,7 +54,7 @@ static void contents_name_cases_curves_and_scalars(void **state) {
     const cJSON *cases = cJSON_GetObjectItem(document, "cases");
     assert_int_equal(cJSON_GetArraySize(cases), 2);
     const cJSON *swept = cJSON_GetObjectItem(cJSON_GetArrayItem(cases, 1), "swept");
-    assert_int_equal(cJSON_GetArraySize(swept), 1); /* what all cases share is not told */
+    assert_int_equal(cJSON_GetArraySize(swept), 1); /* what all cases share is not listed */
     assert_true(cJSON_GetObjectItem(swept, "/surface/hurst")->valuedouble == 0.7);
     const cJSON *area = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "curves"), 0);
     assert_string_equal(cJSON_GetObjectItem(area, "quantity")->valuestring, "contact_area");
@@ -217,7 +217,7 @@ static void maps_that_nobody_waits_for_are_given_up(void **state) {
     count = ask_long(at, sockets);
     process_kill(&other, SIGTERM);
     assert_int_equal(process_wait(&other, 5), 0);
-    for (size_t n = 0; n < count; n++) { /* who can be told in time is */
+    for (size_t n = 0; n < count; n++) { /* those who can be reached in time are */
         ssize_t got = recv(sockets[n], answer, sizeof answer - 1, MSG_WAITALL);
         answer[got > 0 ? got : 0] = '\0';
         assert_true(got <= 0 || strstr(answer, "HTTP/1.1 503") != NULL);

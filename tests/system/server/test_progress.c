@@ -1,5 +1,5 @@
-/* Protects: on a terminal the bar of a run moves each second, to its end; a queued study is never
- * told to have no time left; events tell of work that goes on while no job ends. */
+/* Protects: on a terminal the bar of a run moves each second, to its end; a queued study never has
+ * no time left; events report work that goes on while no job ends. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include <pty.h>
@@ -62,7 +62,7 @@ static void the_bar_moves(void **state) {
         snprintf(last, sizeof last, "%s", bar);
         moves++;
     }
-    /* the time that passed is told in seconds; set-up, and the table, take some without a bar */
+    /* the time that passed is printed in seconds; set-up, and the table, take some without a bar */
     if (!(moves >= seconds - 3 && moves >= 2))
         fail_msg("%g moves in %g s", moves, seconds);
     free(text);

@@ -1,6 +1,6 @@
 /* Protects: publishing that ends. Whatever becomes of a study under a server (cancelled within a
- * case, a block failed for good, results that no program can merge), every other case is published,
- * what cannot be says why and hides no other case, and a server with nothing to do uses no
+ * case, a block failed for good, results that no program can merge), every other case is published.
+ * What cannot be says why and hides no other case. A server with nothing to do uses no
  * processor. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
@@ -243,7 +243,7 @@ static char *spoil_one_case(const char *database) {
 
 /* The document has both cases: the first one with its fault alone, the second one with results. */
 static void check_told(unsigned port, const char *study, const char *what) {
-    char request[120]; /* of HTTP/1.0: the body comes in one piece */
+    char request[120]; /* of HTTP/1.0: the body comes as a whole */
     int size = snprintf(request, sizeof request,
                         "GET /v1/studies/%s/%s HTTP/1.0\r\nHost: localhost\r\n\r\n", study, what);
     char *text = http_raw(port, request, (size_t)size);
@@ -276,8 +276,8 @@ static void check_told_in_csv(unsigned port, const char *study) {
     free(answer);
 }
 
-/* One case that cannot be merged hides no other: curves and report tell of both, over HTTP and on
- * the command line, which says so where people see it. */
+/* One case that cannot be merged hides no other: curves and report name both, over HTTP and on the
+ * command line, which says so where people see it. */
 static void the_other_cases_are_answered(void **state) {
     (void)state;
     struct process server;

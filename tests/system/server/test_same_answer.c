@@ -1,6 +1,6 @@
 /* Protects: one study and one seed give the same curves, byte for byte, with any number of workers,
- * near or over HTTP, whoever is killed when; and nothing runs in vain but what a killed worker had
- * under way. */
+ * near or over HTTP, whoever is killed when; and nothing runs in vain but the jobs of a killed
+ * worker. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/seed.h"
@@ -142,7 +142,8 @@ static void with_workers_killed(void **state) {
         sql_integer("killed.db", "SELECT sum(count) FROM job_log WHERE state = 'done'"), 24000);
 }
 
-/* A worker that is told to end hands its block back: it is no attempt, nobody waits for a lease. */
+/* A worker that is asked to end hands its block back: it is no attempt, nobody waits for a
+ * lease. */
 static void with_a_worker_told_to_end(void **state) {
     (void)state;
     struct process worker;

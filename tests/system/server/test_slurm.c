@@ -1,7 +1,7 @@
-/* Protects: `rugo slurm` against programs that stand in for Slurm's: the batch script and what
- * sbatch is told, that no option can become a line of its own, a study from submission to table
- * with nothing left, and what is told where Slurm is missing or refuses. The real Slurm is asked by
- * tests/system/slurm. */
+/* Protects: `rugo slurm` against programs that stand in for Slurm's. It checks the batch script and
+ * the options of sbatch, and that no option can become a line of its own. It checks a study from
+ * submission to table with nothing left, and the messages where Slurm is missing or refuses. The
+ * real Slurm is asked by tests/system/slurm. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
@@ -151,7 +151,7 @@ static void no_option_becomes_a_line_of_its_own(void **state) {
     check_told("relative.err", "--program rugo is not an absolute path");
 }
 
-/* Compares files of curves but for their comments, which tell hosts and times. */
+/* Compares files of curves but for their comments, which have hosts and times. */
 static void check_same_curves(const char *one, const char *other) {
     char *a = slurp(one), *b = slurp(other);
     const char *rest_a = a, *rest_b = b;

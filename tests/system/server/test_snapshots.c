@@ -1,6 +1,6 @@
 /* Protects: a snapshot that is killed at any moment, and a server that is killed while it makes
  * one, leave no file that looks whole and is not, and nothing at all after the next; a disk that is
- * full is told. */
+ * full is reported. */
 #include "tests/support/check.h"
 #include "tests/support/count_files.h"
 #include "tests/support/process.h"

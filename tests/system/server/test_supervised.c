@@ -1,5 +1,5 @@
-/* Protects: server and workers tell systemd that they are ready, that they live and that they end;
- * a server whose writer is stuck does not say that it lives. */
+/* Protects: server and workers report to systemd that they are ready, that they live and that they
+ * end; a server whose writer is stuck does not say that it lives. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include <errno.h>
@@ -107,7 +107,7 @@ static void worker_tells(void **state) {
     close(file);
 }
 
-/* Of another process, or nonsense: nobody is told, and nothing else happens. */
+/* Of another process, or nonsense: nothing is sent, and nothing else happens. */
 static void others_are_not_told(void **state) {
     struct process server;
     char text[200];

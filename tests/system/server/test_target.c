@@ -212,8 +212,8 @@ static void check_generation(const char *shape, bool reaches) {
     assert_true(contains(out, "what is left is the generation") == !reaches);
 }
 
-/* What surfaces that are not Gaussian owe to the way they are found counts in what is reached. A
- * study that it keeps from its error ends, and says so. */
+/* The generation error of surfaces that are not Gaussian counts in what is reached. A study that it
+ * keeps from its error ends, and says so. */
 static void generation_counts(void **state) {
     (void)state;
     check_generation("3.602", true);

@@ -1,7 +1,7 @@
 /* Protects: over TLS a client talks to the server it means and to no other, by authority or by
  * fingerprint; the certificate is replaced under open connections; and what is wrong with the files
- * of one is told. */
-#include "server/http/self_signed.h"
+ * of one is reported. */
+#include "server/http/guard/self_signed.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
@@ -349,7 +349,7 @@ static void faults_of_files_are_told(void **state) {
     make("expired", 0, fingerprint);
     spit("text", "no certificate\n");
     spit_secret("secret-text", "no key\n");
-    expect_refusal("absent", "good/key.pem", "absent: cannot be read");
+    expect_refusal("absent", "good/key.pem", "absent: No such file");
     expect_refusal("text", "good/key.pem", "text holds no certificate");
     expect_refusal("good/certificate.pem", "absent", "absent: No such file");
     expect_refusal("good/certificate.pem", "secret-text", "secret-text holds no private key");

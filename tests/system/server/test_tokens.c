@@ -1,7 +1,7 @@
-/* Protects: what each role of a token may do, that beyond this machine there is no service without
- * tokens, that server and clients read the same files of them, which nobody else may read, and that
+/* Protects: what each role of a token may do, and that beyond this machine there is no service
+ * without tokens. Server and clients read the same files of tokens, which nobody else may read, and
  * a token is revoked at once. */
-#include "server/http/tokens.h"
+#include "server/http/guard/tokens.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
@@ -234,7 +234,7 @@ static void tokens_are_revoked_at_once(void **state) {
     free(carl);
 }
 
-/* A server's file of digests is of no use to a client, which is told so. */
+/* A server's file of digests is of no use to a client, which is refused with that reason. */
 static void a_client_needs_the_token(void **state) {
     (void)state;
     unlink("file");

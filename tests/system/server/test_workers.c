@@ -68,7 +68,7 @@ static unsigned connections_to(unsigned port) {
 }
 
 /* Four threads at a server that takes four connections, with leases shorter than the work: nothing
- * is lost, as all goes through one connection; and told to end, they keep what they have done. */
+ * is lost, as all goes through one connection; and asked to end, they keep what they have done. */
 static void one_connection_keeps_all_leases(void **state) {
     (void)state;
     struct process server, worker;

@@ -1,7 +1,6 @@
 /* Protects: the areal parameters of waves are what they are in closed form, and hills that stand
  * out are those that a search from every maximum finds. */
-#include "core/statistics/areal.h"
-#include "core/statistics/hills.h"
+#include "core/statistics/heights/areal.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <stdlib.h>
@@ -65,7 +64,7 @@ static void a_roof(void **state) {
 
 enum { SIDE_MOST = 14, POINTS_MOST = SIDE_MOST * SIDE_MOST };
 
-/* Higher, or as high and before it: as hills.c ranks peaks of one height. */
+/* Higher, or as high and before it: as areal.c ranks peaks of one height. */
 static bool outranks(const struct measured_map *map, long a, long b) {
     return map->z[a] > map->z[b] || (map->z[a] == map->z[b] && a < b);
 }

@@ -160,8 +160,8 @@ static void layers_of_any_depth_are_exact(void **state) {
     }
 }
 
-/* S is even in kx and ky, and blind to the order of x and y; a plain sum over waves that are
- * stored by their own numbers shows it. Rounding alone may differ when x and y change places. */
+/* S is even in kx and ky, and blind to the order of x and y; a plain sum over waves that are stored
+ * by their own numbers shows it. Rounding alone may differ when x and y are exchanged. */
 static void layered_has_the_symmetries_of_the_cell(void **state) {
     (void)state;
     static const struct grid GRIDS[] = {{8, 8, 1, 1}, {7, 7, 2, 2}, {8, 6, 1, 1}, {5, 9, 3, 2},

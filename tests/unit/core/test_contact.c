@@ -651,19 +651,58 @@ static void areas_of_anything(void **state) {
     }
 }
 
+/* What areas are learnt from takes as many times the time and memory as one spacing is of the
+ * other: a grid of few points would never be pressed, or not fit. */
+static void areas_where_spacings_are_far_apart(void **state) {
+    (void)state;
+    static const struct {
+        struct grid grid;
+        int status;
+    } CASES[] = {{{6, 4, 6, 40}, 0},
+                 {{6, 4, 6, 4040}, ERROR_INPUT},
+                 {{6, 4, 6e300, 4}, ERROR_INPUT},
+                 {{6, 4, 6, 4e-300}, ERROR_INPUT},
+                 {{6, 1, 6, 4e300}, 0}}; /* a profile */
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        struct compliance *compliance = NULL;
+        struct area_workspace *workspace = NULL;
+        struct error err = {0};
+        if (CASES[c].status != 0) /* its padding would be as many rows */
+            assert_int_equal(compliance_create_open(&compliance, &CASES[c].grid, &DEEP, &err),
+                             CASES[c].status);
+        assert_int_equal(compliance_create(&compliance, &CASES[c].grid, &DEEP, &err), 0);
+        assert_int_equal(area_workspace_create(&workspace, compliance, &err), CASES[c].status);
+        if (CASES[c].status != 0)
+            assert_non_null(strstr(err.text, "apart: contact can be computed where"));
+        area_workspace_destroy(&workspace);
+        compliance_destroy(&compliance);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pressures_refused),      cmocka_unit_test(heights_refused),
-        cmocka_unit_test(tolerances_refused),     cmocka_unit_test(tangents_can_be_left_out),
-        cmocka_unit_test(too_few_iterations),     cmocka_unit_test(no_load),
-        cmocka_unit_test(flat_surface),           cmocka_unit_test(one_point),
-        cmocka_unit_test(beyond_full_contact),    cmocka_unit_test(any_path_of_loads),
-        cmocka_unit_test(surfaces_leave_nothing), cmocka_unit_test(any_unit),
-        cmocka_unit_test(what_does_not_enter),    cmocka_unit_test(any_grid),
-        cmocka_unit_test(shifted_grid),           cmocka_unit_test(weightings_agree),
-        cmocka_unit_test(patterns_of_patches),    cmocka_unit_test(patches_of_profiles),
-        cmocka_unit_test(areas_of_patterns),      cmocka_unit_test(areas_of_profiles),
+        cmocka_unit_test(pressures_refused),
+        cmocka_unit_test(heights_refused),
+        cmocka_unit_test(tolerances_refused),
+        cmocka_unit_test(tangents_can_be_left_out),
+        cmocka_unit_test(too_few_iterations),
+        cmocka_unit_test(no_load),
+        cmocka_unit_test(flat_surface),
+        cmocka_unit_test(one_point),
+        cmocka_unit_test(beyond_full_contact),
+        cmocka_unit_test(any_path_of_loads),
+        cmocka_unit_test(surfaces_leave_nothing),
+        cmocka_unit_test(any_unit),
+        cmocka_unit_test(what_does_not_enter),
+        cmocka_unit_test(any_grid),
+        cmocka_unit_test(shifted_grid),
+        cmocka_unit_test(weightings_agree),
+        cmocka_unit_test(patterns_of_patches),
+        cmocka_unit_test(patches_of_profiles),
+        cmocka_unit_test(areas_of_patterns),
+        cmocka_unit_test(areas_of_profiles),
         cmocka_unit_test(areas_of_anything),
+        cmocka_unit_test(areas_where_spacings_are_far_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 /* Protects: the autocorrelation of a map is the mean product over the pairs that are there,
  * whatever its boundary and its holes; its lengths are those of waves whose correlation is known.
  */
-#include "core/statistics/correlation.h"
+#include "core/statistics/spectra/correlation.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <stdlib.h>
@@ -99,10 +99,35 @@ static void lengths_of_waves(void **state) {
     free(z);
 }
 
+/* A direction is walked in steps that suit it, not in those of the finer axis: 1e9 times as many
+ * would not end. Tolerance as above. */
+static void lengths_where_spacings_are_far_apart(void **state) {
+    (void)state;
+    static const double RATIOS[] = {1e-9, 1e9, 1e-300, 1e300};
+    double z[64 * 64], k = 2 * M_PI / 16, shortest, longest;
+    for (size_t point = 0; point < 64 * 64; point++) {
+        const size_t i = point % 64, j = point / 64;
+        z[point] = cos(k * (double)i) * cos(k * (double)j);
+    }
+    for (size_t n = 0; n < sizeof RATIOS / sizeof *RATIOS; n++) {
+        const struct grid grid = {64, 64, 64, 64 * RATIOS[n]};
+        const struct measured_map map = {&grid, z, BOUNDARY_PERIODIC};
+        struct correlation *c = correlate(&map);
+        correlation_lengths(c, 0.2, &shortest, &longest);
+        check_relative(shortest, fmin(1, RATIOS[n]) * acos(0.2) / k, 1e-3);
+        double lag[33], mean[33];
+        assert_int_equal(correlation_rings(c), 33);
+        correlation_radial(c, lag, mean);
+        assert_true(mean[8] < 0.1 && lag[8] == 8);
+        correlation_destroy(&c);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(means_of_pairs),
         cmocka_unit_test(lengths_of_waves),
+        cmocka_unit_test(lengths_where_spacings_are_far_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,7 @@
 #include "tests/support/check.h"
 #include <stdlib.h>
 
-/* Tells the iterations that an estimate stands for by what one iteration more adds to it. */
+/* Returns the iterations that an estimate is for, by what one iteration more adds to it. */
 static double expected_iterations(const struct surface_options *options, const struct grid *grid) {
     struct surface_options few = *options;
     few.max_iterations = 1;

@@ -1,9 +1,9 @@
-/* Protects how contact edges are found below the grid: Hertz's contacts of one node, laws of
- * distances that rise, and are the same along x and y, whatever the model and the grid, and areas
- * of waves whose edges are near each other. */
+/* Protects how contact edges are found below the grid: Hertz's contacts of one node, and areas of
+ * waves whose edges are near each other. Laws of distances rise, and are the same along x and y,
+ * whatever the model and the grid. */
 #include "tests/support/check.h"
 
-#include "core/contact/edge.h"
+#include "core/contact/edge/edge.h"
 #include "core/theory/contact.h"
 #include "tests/support/contact_scene.h"
 #include <string.h>
@@ -147,8 +147,8 @@ static void laws_pass_errors_on(void **state) {
     assert_non_null(strstr(err.text, "law of contact edges: Poisson's ratio = 0.7"));
 }
 
-/* Mean over places of the area of Westergaard's wave, pressed to r of full contact, less the known
- * one and over it. */
+/* Mean over positions of the area of Westergaard's wave, pressed to r of full contact, less the
+ * known one and over it. */
 static double wave_error(size_t points, double r) {
     enum { PLACES = 32 };
     struct scene scene;

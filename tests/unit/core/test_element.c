@@ -205,8 +205,8 @@ static struct uniform sheared(int d, enum kinematics k, double mu, double lambda
 }
 
 /* The material's closed forms with the whole of lambda, from the energy and the forces of a
- * distorted element: the sum of force times place (small: place before) is the stress times the
- * volume. */
+ * distorted element: the sum of force times position (small strains: position before) is the stress
+ * times the volume. */
 static void uniform_strain_is_the_solids(void **state) {
     (void)state;
     static struct uniform (*const STRAIN[])(int, enum kinematics, double, double,

@@ -49,8 +49,8 @@ static void spread_adds_up_on_any_bins(void **state) {
         spread_is_the_sum(&BINS[a]);
 }
 
-/* The same edges, on and off the lattice: a bin is told to the last digits either way, in tails of
- * 1e-40, too. */
+/* The same edges, on and off the lattice: both give the same shares of a bin, in tails of 1e-40,
+ * too. */
 static void a_lattice_changes_nothing(void **state) {
     (void)state;
     const struct bins on = {-4, 8, 240}, off = {-4, 8.0 + 1e-8, 240};

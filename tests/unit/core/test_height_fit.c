@@ -1,7 +1,7 @@
 /* Protects: the shape of a distribution is found again from heights that have it, the right family
- * is chosen, and what too few heights cannot tell is not told. Errors and tests over surfaces:
+ * is chosen, and too few heights give no interval and no p-value. Errors and tests over surfaces:
  * tests/validation/core/test_height_statistics.c. */
-#include "core/statistics/height_fit.h"
+#include "core/statistics/heights/height_fit.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <stdlib.h>
@@ -67,7 +67,7 @@ static void shapes_found_again(void **state) {
         }
 }
 
-/* Two heights alone, or one, have no distribution that could be told. */
+/* Two heights alone, or one, determine no distribution. */
 static void few_heights(void **state) {
     (void)state;
     static double z[POINTS];

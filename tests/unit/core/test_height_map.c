@@ -1,5 +1,5 @@
 /* Height maps in files: what is written reads back bit for bit, NumPy's own headers are taken, and
- * everything else is refused with words that name the place. */
+ * everything else is refused with words that name its position. */
 #include "core/map/height_map_file.h"
 #include <math.h>
 #include <setjmp.h>
@@ -257,8 +257,8 @@ static void xyz_coordinates(void **state) {
     height_map_clear(&map);
 }
 
-/* What was not measured is NaN in every format, goes out and comes in as such, and is told to those
- * who need all heights. */
+/* What was not measured is NaN in every format, is written and read as such, and is reported to
+ * those who need all heights. */
 static void holes(void **state) {
     (void)state;
     static const struct {

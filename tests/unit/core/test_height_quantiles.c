@@ -1,6 +1,6 @@
 /* Protects: the quantiles of a map's heights, which a study takes as heights of one's own: that
- * they are those of its heights, without its holes, and as many as the map can tell. */
-#include "core/statistics/height_quantiles.h"
+ * they are those of its heights, without its holes, and as many as the map determines. */
+#include "core/statistics/heights/height_quantiles.h"
 #include "core/surface/heights.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
@@ -13,7 +13,7 @@ static void fill(double z[POINTS], const struct heights *heights) {
     assert_int_equal(heights_moments(heights, &moments, NULL), 0);
     size_t taken = 0;
     for (size_t i = 0; i < POINTS; i++) {
-        size_t place = i * 1999 % POINTS; /* 1999 is prime: every place once */
+        size_t place = i * 1999 % POINTS; /* 1999 is prime: every index once */
         z[place] = (double)NAN;
         if (place % 4 == 3)
             continue;

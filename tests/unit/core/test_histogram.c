@@ -1,6 +1,6 @@
 /* Protects: no value is lost at a bin's edge, outside the bins or as NaN; exact sums have the same
  * bits in any order. */
-#include "core/statistics/histogram.h"
+#include "core/statistics/heights/histogram.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <stdlib.h>

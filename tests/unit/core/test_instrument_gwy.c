@@ -129,7 +129,7 @@ static void put_unit(struct bytes *field, const char *name, const char *text) {
     put_object(field, "GwySIUnit", unit);
 }
 
-/* Two points a row; units NULL: none told. */
+/* Two points a row; units NULL: none given. */
 static struct bytes field_of(uint32_t rows, const char *xy_unit, const char *z_unit) {
     struct bytes field = {0};
     put_name(&field, "data", 'D');

@@ -1,7 +1,6 @@
 /* Protects: the ratio and the direction of slopes, and the sector of waves, are those of waves in
  * closed form; p-values of maps without a direction are uniform. */
-#include "core/statistics/angular_spectrum.h"
-#include "core/statistics/isotropy.h"
+#include "core/statistics/uncertainty/isotropy.h"
 #include "tests/support/check.h"
 #include "tests/support/noise.h"
 #include <stdlib.h>
@@ -36,7 +35,7 @@ static void two_waves(void **state) {
         measure(z, BOUNDARY_PERIODIC, &found);
         check_relative(found.ratio, 3, 1e-9);
         check_relative(found.anisotropy, 0.8, 1e-9);
-        /* either way round along y */
+        /* in either direction along y */
         check_close(fabs(sin(found.direction - ANGLES[n] * DEGREE)), 0, 1e-9);
         assert_true(found.p_value < 1e-6);
     }

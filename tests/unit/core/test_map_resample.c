@@ -7,8 +7,8 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* A map of nx by ny points dx and dy apart with these heights; `where` is the place of the first.
- */
+/* A map of nx by ny points dx and dy apart with these heights; `where` is the position of the
+ * first. */
 static void make(struct height_map *map, size_t nx, size_t ny, double dx, double dy,
                  double (*height)(double x, double y)) {
     *map = (struct height_map){.grid = {nx, ny, dx * (double)nx, dy * (double)ny}};

@@ -1,11 +1,11 @@
 /* Protects: the 95 % bands of spectral densities hold the mean of many surfaces 95 times in 100,
- * over rings and along lines, of periodic maps and of pieces; densities are those of roughness.h
+ * over rings and along lines, of periodic maps and of sub-maps; densities are those of roughness.h
  * and windowed_psd.h to the last bit, and along lines add up to the mean square; leakage takes
  * nothing away and adds nothing; maps of few points, and of holes, are measured or refused. */
-#include "core/statistics/map_spectrum.h"
-#include "core/statistics/roughness.h"
-#include "core/statistics/spectrum_leakage.h"
-#include "core/statistics/windowed_psd.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/spectra/map_spectrum.h"
+#include "core/statistics/spectra/spectrum_leakage.h"
+#include "core/statistics/spectra/windowed_psd.h"
 #include "tests/support/check.h"
 #include "tests/support/cut.h"
 #include <string.h>
@@ -43,7 +43,7 @@ static void bands_fill(struct bands *bands, const struct map_spectrum *spectrum)
     }
 }
 
-/* Surfaces with random amplitudes and waves of 4 points and longer, or pieces of such; waves that
+/* Surfaces with random amplitudes and waves of 4 points and longer, or sub-maps of such; waves that
  * are shorter have leakage alone, and are left out. */
 static void covers(enum boundary boundary) {
     size_t side = boundary == BOUNDARY_OPEN ? WHOLE : PIECE, inside[3] = {0}, told[3] = {0};
@@ -194,7 +194,7 @@ static void few_points(void **state) {
         }
 }
 
-/* A long profile by its pieces: the mean of their densities, which is as sure as they are many. */
+/* A long profile by its parts: the mean of their densities, whose error falls with their number. */
 static void long_profiles(void **state) {
     (void)state;
     enum { PIECES = 3, POINTS = PIECES * PROFILE_PIECE + 100 };

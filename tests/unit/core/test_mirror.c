@@ -1,5 +1,5 @@
 /* Protects: a mirrored map repeats without steps and holds the map in its first rows. */
-#include "core/map/mirror.h"
+#include "core/map/height_map.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 #include <string.h>

@@ -87,7 +87,7 @@ static void every_start_ends_at_the_same_set(void **state) {
         for (double pressure = 1e-4; pressure < 0.02; pressure *= 10)
             for (int which = 0; which < 12; which++) {
                 start(&w, which);
-                if (newton_settle(&w.newton, pressure, &end, &err) != 0)
+                if (newton_solve(&w.newton, pressure, &end, &err) != 0)
                     fail_msg("start %d, pressure %g: %s", which, pressure, err.text);
                 check_contact(&w, pressure);
                 for (size_t i = 0; i < w.mesh->face; i++) {
@@ -114,7 +114,7 @@ static void a_set_that_comes_back_is_taken_apart(void **state) {
         for (int which = 0; which < 2; which++) {
             start(&w, which);
             for (double load = which == 1 ? 0.081 : 0.003; load < 0.1; load *= 3)
-                if (newton_settle(&w.newton, load, &end, &err) != 0)
+                if (newton_solve(&w.newton, load, &end, &err) != 0)
                     fail_msg("start %d, load %g: %s", which, load, err.text);
             check_contact(&w, 0.081);
             assert_int_equal(end.cycles, which);
@@ -136,11 +136,11 @@ static void a_load_that_is_too_great_fails_clearly(void **state) {
     struct error err = {0};
     open_work(&w, (struct grid){16, 1, 1, 1}, GAP_DUAL, 0.05);
     start(&w, 1);
-    assert_int_equal(newton_settle(&w.newton, 1e6, &end, &err), ERROR_NUMERIC);
+    assert_int_equal(newton_solve(&w.newton, 1e6, &end, &err), ERROR_NUMERIC);
     assert_true(strlen(err.text) > 0);
     w.newton.max_iterations = 1;
     start(&w, 1);
-    assert_int_equal(newton_settle(&w.newton, 0.01, &end, &err), ERROR_NUMERIC);
+    assert_int_equal(newton_solve(&w.newton, 0.01, &end, &err), ERROR_NUMERIC);
     assert_non_null(strstr(err.text, "1 iterations"));
     close_work(&w);
 }

@@ -429,7 +429,8 @@ static double normal_but_for_the_middle(double p, const void *context) {
     return p == 0.5 ? NAN : log(p / (1 - p));
 }
 
-/* Heights with ties are placed; a quantile function that fails only where it is used is told. */
+/* Heights with ties are assigned; a quantile function that fails only where it is used is
+ * reported. */
 static void quantile_functions_are_used(void **state) {
     (void)state;
     struct grid grid = {63, 63, 1, 1};
@@ -474,6 +475,35 @@ static void bad_options_are_refused(void **state) {
     }
 }
 
+static int stop_at_last(void *context) {
+    size_t *left = context;
+    bool last = *left == 0;
+    *left -= last ? 0 : 1;
+    return last;
+}
+
+/* At whichever iteration, of whichever phase; ITERATION_RELAXED has 43. */
+static void runs_stop_when_told(void **state) {
+    (void)state;
+    const struct grid grid = {64, 64, 1, 1};
+    struct spectrum spectrum = self_affine(0.5, 1. / 16);
+    for (int iteration = 0; iteration < ITERATION_COUNT; iteration++)
+        for (size_t most = 0; most < 43; most += 6) {
+            struct surface_options options = weibull(HEIGHTS_WEIBULL_MAX, 1);
+            struct height_sample s;
+            struct error err = {0};
+            size_t left = most;
+            options.iteration = ITERATIONS[iteration];
+            options.tolerance = 0;
+            options.stall_gain = 0;
+            options.stall_iterations = 1000;
+            options.stop = stop_at_last;
+            options.stop_context = &left;
+            assert_int_equal(sample_create(&s, grid, &spectrum, &options, &err), ERROR_STOPPED);
+            sample_destroy(&s);
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(kept_spectrum_is_exact),
@@ -487,6 +517,7 @@ int main(void) {
         cmocka_unit_test(tolerances_are_reached),
         cmocka_unit_test(easy_heights_converge),
         cmocka_unit_test(runs_repeat),
+        cmocka_unit_test(runs_stop_when_told),
         cmocka_unit_test(quantile_functions_are_used),
         cmocka_unit_test(bad_options_are_refused),
     };

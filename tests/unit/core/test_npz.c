@@ -134,7 +134,7 @@ static void damaged_arrays(void **state) {
     }
 }
 
-/* What the archive tells wrongly, in its directory. */
+/* Wrong entries in the archive's directory. */
 static void lying_sizes(void **state) {
     (void)state;
     const struct npy npy = npy_of("<f8", "(2, 3)", 48);

@@ -1,6 +1,6 @@
-/* Protects contact in free space: displacements against potentials in closed form, solutions
+/* Protects contact in free space: displacements against potentials in closed form, and solutions
  * against dense systems of equations (with the same kernel, and with Love's uniform pressures on
- * rectangles), flat punches, what happens at the sides of the map, and what is refused. */
+ * rectangles). It tests flat punches, the sides of the map, and refusals, too. */
 #include "tests/support/check.h"
 
 #include "core/contact/free_space.h"

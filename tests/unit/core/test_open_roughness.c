@@ -1,6 +1,6 @@
 /* Protects: parameters of maps that do not repeat, or that have holes, are sums over what is there;
  * of a whole periodic map they are the usual ones. */
-#include "core/statistics/open_roughness.h"
+#include "core/statistics/heights/roughness.h"
 #include "tests/support/check.h"
 #include "tests/support/cut.h"
 #include "tests/support/seed.h"

@@ -1,9 +1,9 @@
-/* Protects: slopes, curvatures and summits of a piece that was cut out of a surface are those of
- * the surface at the same places; holes take away what is near them, and nothing else. */
-#include "core/statistics/local_wave.h"
-#include "core/statistics/open_refined.h"
-#include "core/statistics/open_summits.h"
-#include "core/statistics/refined.h"
+/* Protects: slopes, curvatures and summits of a sub-map are those of the surface at the same
+ * positions; holes take away what is near them, and nothing else. */
+#include "core/statistics/summits/local_wave.h"
+#include "core/statistics/summits/open_refined.h"
+#include "core/statistics/summits/open_summits.h"
+#include "core/statistics/summits/refined.h"
 #include "tests/support/check.h"
 #include "tests/support/cut.h"
 
@@ -91,7 +91,7 @@ static void moments_of_a_polynomial(void **state) {
     assert_true(isnan(m.rms_slope) && isnan(m.rms_curvature) && isfinite(m.rms_height));
 }
 
-/* Returns the summit of the list that is nearest to a place. */
+/* Returns the summit of the list that is nearest to a position. */
 static const struct summit *nearest(const struct summit_list *list, double x, double y) {
     const struct summit *best = NULL;
     double least = INFINITY;
@@ -105,8 +105,8 @@ static const struct summit *nearest(const struct summit_list *list, double x, do
     return best;
 }
 
-/* Refined summits of a piece, against those of the whole in the places that are searched: each is
- * found, once, at the same place, with its height and curvature. Heights are about 1, curvatures
+/* Refined summits of a sub-map, against those of the whole in the cells that are searched: each is
+ * found, once, at the same position, with its height and curvature. Heights are about 1, curvatures
  * about 6; measured: within 4e-8 and 5e-5. */
 static void refined_summits_are_those_of_the_whole(void **state) {
     (void)state;
@@ -153,7 +153,7 @@ static void refined_summits_are_those_of_the_whole(void **state) {
     }
 }
 
-/* Grid summits of a piece are those of the whole at its inner points; a hole takes the points
+/* Grid summits of a sub-map are those of the whole at its inner points; a hole takes the points
  * beside it away. */
 static void grid_summits_are_those_of_the_whole(void **state) {
     (void)state;

@@ -3,7 +3,7 @@
  * the assembled stiffness itself. And the mesh that they stand on. */
 #include "tests/support/check.h"
 
-#include "core/full/gmres.h"
+#include "core/full/linear/gmres.h"
 #include "core/random.h"
 #include <stdlib.h>
 #include <string.h>

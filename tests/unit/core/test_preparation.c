@@ -1,5 +1,5 @@
 /* Protects: what is asked for of a map's preparation in words is read as it says or refused by
- * name; each step does that and no more, in the stated order, and tells it. */
+ * name; each step does that and no more, in the stated order, and reports it. */
 #include "core/map/preparation_words.h"
 #include "tests/support/check.h"
 #include <stdio.h>
@@ -122,7 +122,7 @@ static void units_make_metres(void **state) {
     }
 }
 
-/* A file that tells its units is not told others. */
+/* A file that has units takes no others. */
 static void units_of_the_file_stand(void **state) {
     (void)state;
     static const struct {
@@ -190,7 +190,7 @@ static void a_crop_beyond_the_map_is_refused(void **state) {
     }
 }
 
-/* A filled map counts as what it was with its holes, and tells their share. */
+/* A filled map counts as what it was with its holes, and reports their share. */
 static void holes_are_filled_where_asked(void **state) {
     (void)state;
     for (int asked = 0; asked < 2; asked++) {
@@ -272,7 +272,7 @@ static void holes_are_refused_with_a_word(void **state) {
     }
 }
 
-/* A window makes the map periodic, falls to next to nothing at the sides and tells its power. */
+/* A window makes the map periodic, falls to next to nothing at the sides and reports its power. */
 static void a_window_is_told(void **state) {
     (void)state;
     for (int window = MAP_WINDOW_HANN; window <= MAP_WINDOW_TUKEY; window++) {
@@ -328,6 +328,59 @@ static void other_points_are_told(void **state) {
     }
 }
 
+/* What squares and their products leave the numbers for is refused before anything is computed; the
+ * largest float, which files have in holes, is not. */
+static void what_cannot_be_computed_with_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        struct preparation_words words;
+        double scale, first; /* of the heights, and of the first of them in their place */
+        const char *says;    /* NULL: prepared */
+    } CASES[] = {
+        {{0}, 1, 3.4028234663852886e38, NULL},
+        {{0}, 1, 1e41, "to 1e+41; allowed: at most 1e+40"},
+        {{0}, 1, -1e300, "heights from -1e+300"},
+        {{0}, 1e-39, 0, NULL},
+        {{0}, 1e-300, 0, "heights that differ by"},
+        {{0}, 0, 0, NULL},
+        {{.z_unit = "1e300m"}, 1, 0, "allowed: at most 1e+40"},
+        {{.dx = "1e29"}, 1, 0, NULL},
+        {{.dx = "1e300"}, 1, 0, "points 1e+300 by 1e+300 apart; allowed: 1e-30 to 1e+30"},
+        {{.dx = "1,1e-300"}, 1, 0, "points 1 by 1e-300 apart"},
+        {{.dx = "5e-324"}, 1, 0, "apart; allowed"},
+    };
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        struct height_map map;
+        struct preparation_record record;
+        struct error err = {0};
+        make(&map);
+        for (size_t point = 0; point < (size_t)NX * NY; point++)
+            map.z[point] *= CASES[c].scale;
+        map.z[1] = NAN;
+        map.z[0] = CASES[c].first;
+        assert_int_equal(prepare(&map, &CASES[c].words, &record, &err),
+                         CASES[c].says == NULL ? 0 : ERROR_INPUT);
+        if (CASES[c].says != NULL && strstr(err.text, CASES[c].says) == NULL)
+            fail_msg("'%s' does not say '%s'", err.text, CASES[c].says);
+        height_map_clear(&map);
+    }
+}
+
+/* More points than can be are not cut to as many as can be: of a profile these were 16 GiB. */
+static void too_many_new_points_are_refused(void **state) {
+    (void)state;
+    struct height_map map;
+    struct preparation_record record;
+    struct error err = {0};
+    make(&map);
+    map.grid = (struct grid){NX, 1, NX, NX};
+    assert_int_equal(
+        prepare(&map, &(struct preparation_words){.resample = "dx=1e-20"}, &record, &err),
+        ERROR_INPUT);
+    assert_non_null(strstr(err.text, "--resample: 3.9e+21 by 1 points; at most 2^31"));
+    height_map_clear(&map);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(words_are_read_or_refused),
@@ -340,6 +393,8 @@ int main(void) {
         cmocka_unit_test(holes_are_refused_with_a_word),
         cmocka_unit_test(a_window_is_told),
         cmocka_unit_test(other_points_are_told),
+        cmocka_unit_test(what_cannot_be_computed_with_is_refused),
+        cmocka_unit_test(too_many_new_points_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,7 +39,7 @@ static double westergaard_above(double r, double P) {
     return 2 / M_PI * asin(sqrt(fmax(0, u)));
 }
 
-/* Adds the shares of a wave in many places, and those that nodes tell. */
+/* Adds the shares of a wave at many positions, and those of the nodes. */
 static void wave_shares(size_t points, double r, const struct bins *bins, double *sums,
                         double *by_nodes) {
     struct scene scene;

@@ -134,13 +134,13 @@ static void compare(const char *name, key_function make, size_t n) {
     assert_true(key && sorted && placed && position);
     for (size_t i = 0; i < n; i++) {
         key[i] = make(i, n);
-        sorted[i] = (double)i; /* placed is then the rank itself */
+        sorted[i] = (double)i; /* the sorted height is then the rank itself */
         position[i] = i;
     }
     oracle_sort(key, position, position + n, n);
     assert_int_equal(ranker_create(&ranker, n, &err), 0);
     for (int again = 0; again < 2; again++) { /* a used workspace ranks like a new one */
-        assert_int_equal(rank_place(ranker, key, sorted, placed, &err), 0);
+        assert_int_equal(rank_order(ranker, key, sorted, placed, &err), 0);
         for (size_t p = 0; p < n; p++)
             if (placed[position[p]] != (double)p)
                 fail_msg("%s, n = %zu, seed %llu: key %zu has rank %g, not %zu", name, n,
@@ -189,7 +189,7 @@ static void values_not_finite_are_refused(void **state) {
             for (size_t i = 0; i < N; i++)
                 key[i] = sorted[i] = (double)i;
             key[at] = FAULTS[f];
-            assert_int_equal(rank_place(ranker, key, sorted, placed, &err), ERROR_NUMERIC);
+            assert_int_equal(rank_order(ranker, key, sorted, placed, &err), ERROR_NUMERIC);
             assert_non_null(strstr(err.text, "not finite"));
             assert_int_equal(rank_sort(ranker, key, &err), ERROR_NUMERIC);
         }
@@ -225,7 +225,7 @@ static void no_kind_is_quadratic(void **state) {
         for (size_t i = 0; i < n; i++)
             key[i] = CATALOGUE[kind].key(i, n);
         clock_t start = clock();
-        assert_int_equal(rank_place(ranker, key, sorted, placed, &err), 0);
+        assert_int_equal(rank_order(ranker, key, sorted, placed, &err), 0);
         double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
         if (!(seconds < 5))
             fail_msg("%s: %.1f s of CPU for a million keys", CATALOGUE[kind].name, seconds);

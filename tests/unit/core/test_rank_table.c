@@ -28,7 +28,7 @@ static void place(double low, double high, size_t block) {
         rank_table_count(table, N - i < block ? N - i : block, key + i);
     rank_table_finish(table, sorted, &lowest, &highest);
     for (size_t i = 0; i < N; i += block)
-        rank_table_place(table, N - i < block ? N - i : block, key + i, placed + i);
+        rank_table_order(table, N - i < block ? N - i : block, key + i, placed + i);
     for (size_t i = 0; i < N; i++)
         assert_true(!(key[i] < lowest || key[i] > highest));
     rank_table_destroy(&table);
@@ -45,7 +45,7 @@ static void heights_are_those_of_the_ranks(void **state) {
         double square = 0, sum = 0;
         fill(r);
         place(-20, 20, 97);
-        assert_int_equal(rank_place(ranker, key, sorted, exact, NULL), 0);
+        assert_int_equal(rank_order(ranker, key, sorted, exact, NULL), 0);
         for (size_t i = 0; i < N; i++) {
             check_close(placed[i], exact[i], exact[i] < 5 ? 0.02 : 1.5);
             square += (placed[i] - exact[i]) * (placed[i] - exact[i]) / N;

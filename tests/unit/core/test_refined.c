@@ -2,7 +2,7 @@
  * oracle takes the surface as a sum of waves, written out: its critical points by Newton's method
  * from everywhere, and on a torus maxima - saddles + minima = 0 (Morse), so that a point missing
  * from the oracle shows. Then maps whose symmetry, scale or flatness could mislead the search. */
-#include "core/statistics/refined.h"
+#include "core/statistics/summits/refined.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 
@@ -240,7 +240,7 @@ static void lattice_fill(double *z, double offset, double unit, double shift) {
                                                cos(2 * M_PI * (2 * (double)j / SIDE - shift)));
 }
 
-/* Maxima on points of the grids, half-way between them and on their lines. */
+/* Maxima on points of the grids, midway between them and on their lines. */
 static void aligned_maxima_are_found(void **state) {
     (void)state;
     static const double SHIFTS[] = {0, 1.0 / 16, 1.0 / 32, 1.0 / 64, 0.25, 1e-12, 0.2371 / 16};

@@ -1,6 +1,6 @@
-/* Protects: the error of a mesh is told with a sign only where three levels show the known order,
- * and is covered by its bound wherever it can be. */
-#include "core/statistics/richardson.h"
+/* Protects: the error of a mesh is reported with a sign only where three levels show the known
+ * order, and is covered by its bound wherever it can be. */
+#include "core/statistics/uncertainty/richardson.h"
 #include "tests/support/check.h"
 
 /* f(h) = c h^q on h = 1, coarse, coarse * fine. */

@@ -1,6 +1,6 @@
 /* Protects: parameters of height maps, by finite differences with the reference's bias, from the
  * spectrum exactly; spectra and correlations against sums written out. */
-#include "core/statistics/roughness.h"
+#include "core/statistics/heights/roughness.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"

@@ -1,5 +1,5 @@
 /* Protects: the public functions of rugo.h: that each kind of spectrum, height, rule and model is
- * the one that its name says, what is told of wrong arguments, and that outputs stay untouched
+ * the one that its name says, what is reported of wrong arguments, and that outputs stay untouched
  * then. */
 #include "core/rugo.h"
 #include "core/surface/surface.h"
@@ -72,6 +72,11 @@ static void heights_are_those_named(void **state) {
     options.heights = RUGO_WEIBULL_MAX;
     generate(&options, z, &report);
     check_close(skewness_of(z), -2, 0.3);
+    options.heights = RUGO_LOGNORMAL; /* (e^(s^2) + 2) sqrt(e^(s^2) - 1) = 0.95 for s = 0.3 */
+    options.shape = 0.3;
+    generate(&options, z, &report);
+    assert_true(report.iterations > 0);
+    check_close(skewness_of(z), 0.95, 0.15);
     options.heights = RUGO_QUANTILE;
     options.quantile = exponential_quantile;
     options.quantile_context = &scale;
@@ -148,7 +153,7 @@ static void a_map_tells_what_it_is_made_of(void **state) {
     assert_null(map.z);
 }
 
-/* Pressing without a surface is refused, and tells how to give one. */
+/* Pressing without a surface is refused with a word on how to give one. */
 static void check_nothing_begun(struct rugo_contact *contact) {
     struct rugo_contact_state now = {.area = 7};
     struct rugo_error err = {0};
@@ -287,6 +292,57 @@ static void a_ratio_is_not_sought_for_wrong_arguments(void **state) {
     }
 }
 
+/* Programs are compiled with these numbers: an entry of rugo_lists.h never gets another. */
+static void values_of_choices_stay(void **state) {
+    (void)state;
+    assert_int_equal(RUGO_SELF_AFFINE, 0);
+    assert_int_equal(RUGO_EXPONENTIAL_ACF, 1);
+    assert_int_equal(RUGO_TABLE, 2);
+    assert_int_equal(RUGO_GAUSSIAN, 0);
+    assert_int_equal(RUGO_WEIBULL_MIN, 1);
+    assert_int_equal(RUGO_WEIBULL_MAX, 2);
+    assert_int_equal(RUGO_QUANTILE, 3);
+    assert_int_equal(RUGO_LOGNORMAL, 4);
+    assert_int_equal(RUGO_NINE_POINT, 0);
+    assert_int_equal(RUGO_FIVE_POINT, 1);
+    assert_int_equal(RUGO_REFINED, 2);
+    assert_int_equal(RUGO_MEAN, 0);
+    assert_int_equal(RUGO_PLANE, 1);
+    assert_int_equal(RUGO_QUADRATIC, 2);
+    assert_int_equal(RUGO_HALFSPACE, 0);
+    assert_int_equal(RUGO_LAYERED, 1);
+    assert_int_equal(RUGO_FULL, 2);
+}
+
+/* The message of a number that no list has names the number. */
+static void unknown_choices_are_named(void **state) {
+    (void)state;
+    struct rugo_spectrum spectrum = rugo_spectrum_self_affine(0.8, 0.5, 0.125, 0.1);
+    struct rugo_surface_options options = rugo_surface_defaults();
+    struct rugo_block block = rugo_block_defaults(RUGO_HALFSPACE, &SQUARE);
+    struct rugo_generator *generator = NULL;
+    struct rugo_contact *contact = NULL;
+    struct rugo_summits summits = {0};
+    struct rugo_error err = {0};
+    static double z[POINTS];
+    options.heights = (enum rugo_heights_type)5;
+    assert_int_equal(rugo_generator_create(&generator, &spectrum, &SQUARE, &options, &err),
+                     RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "no distribution of heights of type 5"));
+    spectrum.type = (enum rugo_spectrum_type)3;
+    assert_int_equal(rugo_generator_create(&generator, &spectrum, &SQUARE, NULL, &err),
+                     RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "no spectrum of type 3"));
+    block.model = (enum rugo_model)3;
+    assert_int_equal(rugo_contact_create(&contact, &SQUARE, &block, &err), RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "no contact model 3"));
+    assert_int_equal(rugo_detrend(&SQUARE, z, (enum rugo_trend)3, &err), RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "no trend 3"));
+    assert_int_equal(rugo_summits_find(&summits, &SQUARE, z, (enum rugo_summit_rule)3, &err),
+                     RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "no rule 3"));
+}
+
 /* rugo.h promises it: a failure comes before the first height is written. */
 static void a_map_that_cannot_be_sampled_is_left_alone(void **state) {
     (void)state;
@@ -310,6 +366,8 @@ int main(void) {
         cmocka_unit_test(wrong_arguments_are_told),
         cmocka_unit_test(a_ratio_is_not_sought_for_wrong_arguments),
         cmocka_unit_test(a_map_that_cannot_be_sampled_is_left_alone),
+        cmocka_unit_test(values_of_choices_stay),
+        cmocka_unit_test(unknown_choices_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* Protects: the public functions of rugo.h for maps that do not repeat: each is the one that its
- * name says, holes are left out, and wrong arguments are told. */
+ * name says, holes are left out, and wrong arguments are reported. */
 #include "core/rugo.h"
 #include "tests/support/check.h"
 #include "tests/support/cut.h"
@@ -8,7 +8,7 @@
 enum { NX = 90, NY = 80 };
 static const struct rugo_grid OPEN = {NX, NY, 11.25, 10};
 
-/* A piece of a surface of 8 points a shortest wave, tilted. */
+/* A sub-map of a surface of 8 points a shortest wave, tilted. */
 static double *piece_create(void) {
     const struct grid whole = {256, 256, 32, 32};
     struct grid piece;
@@ -35,7 +35,7 @@ static void a_piece_is_measured(void **state) {
     check_close(level.mean, 0, 1e-12);
     assert_int_equal(rugo_open_moments(&OPEN, z, &moments, &err), 0);
     check_relative(moments.rms_slope, level.rms_slope, 0.1);
-    assert_true(moments.rms_curvature > level.rms_curvature); /* differences tell too little */
+    assert_true(moments.rms_curvature > level.rms_curvature); /* differences underestimate */
     z[40 * NX + 40] = NAN;
     struct rugo_summits all, some;
     assert_int_equal(rugo_open_summits_find(&some, &searched, &OPEN, z, RUGO_NINE_POINT, &err), 0);

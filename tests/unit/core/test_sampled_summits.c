@@ -1,6 +1,6 @@
 /* Protects: theory of summits on a grid against closed forms, its own marginals and symmetries, and
  * moments by finite differences against those of a surface. */
-#include "core/statistics/roughness.h"
+#include "core/statistics/heights/roughness.h"
 #include "core/surface/surface.h"
 #include "core/theory/nayak.h"
 #include "core/theory/sampled_field.h"

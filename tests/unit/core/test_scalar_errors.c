@@ -1,7 +1,7 @@
 /* Protects: standard errors of parameters of independent Gaussian heights are those of the
  * textbook, as means over many maps; those of scattered summits, too. Errors of surfaces whose
  * heights are alike: tests/validation/core/test_height_statistics.c. */
-#include "core/statistics/scalar_errors.h"
+#include "core/statistics/uncertainty/scalar_errors.h"
 #include "tests/support/check.h"
 #include "tests/support/noise.h"
 #include <stdlib.h>
@@ -120,7 +120,7 @@ static void scattered_summits(void **state) {
     cell_heights_destroy(&heights);
 }
 
-/* A map that was cut short tells how many points were searched in each cell. */
+/* Of a map that was cut short the number of points searched in each cell is reported. */
 static void searched_points(void **state) {
     (void)state;
     static double z[POINTS];

@@ -1,5 +1,5 @@
-/* Protects: maps that repeat are told from pieces cut out of them, by their seam. */
-#include "core/statistics/seam.h"
+/* Protects: the seam distinguishes maps that repeat from sub-maps cut out of them. */
+#include "core/statistics/uncertainty/seam.h"
 #include "tests/support/check.h"
 #include "tests/support/cut.h"
 #include "tests/support/seed.h"
@@ -10,7 +10,7 @@ static struct seam seam_of(const struct grid *grid, const double *z) {
     return seam;
 }
 
-/* A seam of a periodic map is the roughest of its places by chance alone, and by little (F18.3). */
+/* The seam of a periodic map is its roughest position at random, and by little (F18.3). */
 static void periodic_maps_have_none(void **state) {
     (void)state;
     const struct grid grids[] = {{128, 128, 128, 128}, {256, 1, 256, 1}};
@@ -25,7 +25,8 @@ static void periodic_maps_have_none(void **state) {
     }
 }
 
-/* Differences by chance small at the seam are rare even in profiles, whose seam is one place. */
+/* Differences that are small at the seam at random are rare even in profiles, whose seam is one
+ * point. */
 static void pieces_have_one(void **state) {
     (void)state;
     const struct grid grids[] = {{128, 128, 128, 128}, {256, 1, 256, 1}};
@@ -46,7 +47,7 @@ static void pieces_have_one(void **state) {
     }
 }
 
-/* Of a step the first differences tell: at the seam it is 10, inside 1. */
+/* First differences detect a step: at the seam it is 10, inside 1. */
 static void a_tilt_is_a_step(void **state) {
     (void)state;
     double z[11 * 10];

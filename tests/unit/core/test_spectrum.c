@@ -1,7 +1,6 @@
 /* Protects: discrete spectra and their moments, the Nayak parameter and its inverses, and the words
  * for input that is out of range. */
 #include "core/surface/spectrum.h"
-#include "core/surface/spectrum_exponential.h"
 #include "tests/support/check.h"
 #include <stdio.h>
 #include <string.h>
@@ -84,7 +83,7 @@ static void alpha_out_of_reach(void **state) {
     assert_non_null(strstr(err.text, "allowed: 1.5 to"));
     assert_int_equal(spectrum_ratio_discrete(1, 0.5, 1, 8, 0.5, &ratio, &reached, &err),
                      ERROR_NUMERIC);
-    double least, most; /* what is told can be had, and a little beyond cannot */
+    double least, most; /* the reported range can be had, and a little beyond cannot */
     assert_int_equal(sscanf(strstr(err.text, "allowed: "), "allowed: %lf to %lf", &least, &most),
                      2);
     assert_true(least == 1 && most > 500);
@@ -98,6 +97,16 @@ static void alpha_out_of_reach(void **state) {
     assert_int_equal(
         sscanf(strstr(err.text, "allowed: "), "allowed: %lf to about %lf", &least, &most), 2);
     assert_true(least > 1.2 && least <= 2 && most > 10000);
+    assert_int_equal(spectrum_ratio_discrete(2, 0.2, 1e5, 4, 5, &ratio, &reached, &err),
+                     ERROR_NUMERIC);
+    assert_non_null(strstr(err.text, "roll-off ratio of 100000"));
+    assert_int_equal(sscanf(strstr(err.text, "allowed: "), "allowed: below %lf", &most), 1);
+    assert_int_equal(spectrum_ratio_discrete(2, 0.2, 1.001 * most, 4, 2.5, &ratio, &reached, &err),
+                     ERROR_NUMERIC);
+    assert_null(strstr(err.text, "nan"));
+    assert_int_equal(spectrum_ratio_discrete(2, 0.2, 0.999 * most, 4, 2.5, &ratio, &reached, &err),
+                     ERROR_NUMERIC);
+    assert_null(strstr(err.text, "nan"));
     assert_int_equal(spectrum_ratio_discrete(1, 0.5, 1, 8, 1e30, &ratio, &reached, &err),
                      ERROR_NUMERIC);
 }
@@ -229,7 +238,8 @@ static void exponential_spectrum(void **state) {
     modes_destroy(&modes);
 }
 
-/* Where the cell is short, no surface has the autocorrelation: what is left out is told. */
+/* Where the cell is short, no surface has the autocorrelation: the share that is left out is
+ * reported. */
 static void short_cells_are_clipped(void **state) {
     (void)state;
     struct spectrum spectrum = {

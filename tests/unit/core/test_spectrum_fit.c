@@ -1,10 +1,10 @@
 /* Protects: the law that fits a spectrum is the one that the surface was made with; where it ends
- * is told, and why; what a map cannot tell is left open; a law that does not fit says so; ranges
- * that are asked for hold, or are refused. How often the intervals hold the truth is counted in
- * tests/validation/core/test_spectrum_recovery.c. */
+ * is reported, and why; what a map does not determine is left open; a law that does not fit says
+ * so; ranges that are asked for hold, or are refused. How often the intervals hold the truth is
+ * counted in tests/validation/core/test_spectrum_recovery.c. */
 #include "tests/support/check.h"
 
-#include "core/statistics/spectrum_fit.h"
+#include "core/statistics/spectra/spectrum_fit.h"
 #include "tests/support/spectrum_recovery.h"
 
 enum { SIDE = 128 };
@@ -50,7 +50,7 @@ static void check_inside(const struct interval *found, double truth, const char 
     fail();
 }
 
-/* Amplitudes that are not random leave no chance but that of the grid. */
+/* Amplitudes that are not random leave no scatter but that of the grid. */
 static void exact_spectra_give_their_law(void **state) {
     (void)state;
     double *z = surface(&LAW, AMPLITUDES_FIXED, &GRID, 1);
@@ -73,7 +73,7 @@ static void exact_spectra_give_their_law(void **state) {
     free(z);
 }
 
-/* The law of a fit has the RMS height that it tells, and makes surfaces of it. */
+/* The law of a fit has the RMS height that it reports, and makes surfaces of it. */
 static void laws_are_what_they_tell(void **state) {
     (void)state;
     enum { STEPS = 20000 };
@@ -101,7 +101,8 @@ static void laws_are_what_they_tell(void **state) {
     free(z);
 }
 
-/* A piece tells its law by random amplitudes, also where it is a profile or has unlike sides. */
+/* A sub-map with random amplitudes determines its law, also where it is a profile or has unlike
+ * sides. */
 static void pieces_hold_the_truth(void **state) {
     (void)state;
     static const struct recovery_case CASES[] = {
@@ -216,6 +217,8 @@ static void ranges_that_are_asked_for(void **state) {
     request = (struct spectrum_fit_request){.longest = 1};
     assert_int_equal(spectrum_fit_measure(spectrum, &request, &fit, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "no wave of the map"));
+    request.longest = 5e-324; /* the side has more such waves than there are numbers */
+    assert_int_equal(spectrum_fit_measure(spectrum, &request, &fit, &err), ERROR_INPUT);
     request = (struct spectrum_fit_request){.shortest = 1e6};
     assert_int_equal(spectrum_fit_measure(spectrum, &request, &fit, &err), ERROR_INPUT);
     map_spectrum_destroy(&spectrum);

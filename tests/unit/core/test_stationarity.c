@@ -1,8 +1,8 @@
-/* Protects: p-values of maps that are alike all over are uniform, the spread that is expected of
- * sub-areas is that of independent heights, and a rougher half, a bow and a change of skewness are
- * seen, each in its parameter. */
-#include "core/statistics/map_chance.h"
-#include "core/statistics/stationarity.h"
+/* Protects: p-values of stationary maps are uniform, and the spread that is expected of sub-areas
+ * is that of independent heights. A rougher half, a bow and a change of skewness are detected, each
+ * in its parameter. */
+#include "core/statistics/uncertainty/map_chance.h"
+#include "core/statistics/uncertainty/stationarity.h"
 #include "tests/support/check.h"
 #include "tests/support/noise.h"
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Protects the area under load that linear models tell: against the strain of each node. */
+/* Protects the area under load that linear models report: against the strain of each node. */
 #include "tests/support/check.h"
 
 #include "core/contact/stretch.h"
@@ -36,6 +36,8 @@ static void ends(void **state) {
     (void)state;
     assert_true(stretch_fraction(1, 1.03) == 1);
     assert_true(stretch_fraction(0.3, 1) == 0.3);
+    assert_true(stretch_first_order(0.3, STRETCH_MOST) == stretch_fraction(0.3, STRETCH_MOST));
+    assert_true(isnan(stretch_first_order(0.3, stretch_open(0.3, 2147483648.0))));
     check_close(stretch_open(0.5, 0.1), 1, 1e-15);
     check_close(stretch_open(0, 0.1), 1.1, 1e-15);
 }

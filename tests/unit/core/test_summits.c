@@ -1,6 +1,6 @@
 /* Protects: which points are summits, on any grid, against brute force; plateaus and ties are none;
  * refined summits are the true maxima. */
-#include "core/statistics/summits.h"
+#include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"

@@ -1,6 +1,6 @@
 /* One pass over a surface finds and counts what its parts find and count one after the other:
  * counts and summits to the bit, sums to rounding. */
-#include "core/statistics/roughness.h"
+#include "core/statistics/heights/roughness.h"
 #include "core/statistics/surface_pass.h"
 #include "core/surface/surface.h"
 #include "core/theory/sampled_field.h"
@@ -106,7 +106,7 @@ static void histograms_count_as_bins_find(void **state) {
     }
 }
 
-/* What the spectrum tells of finite differences is what they find on a surface, and powers about 0
+/* Moments by finite differences from the spectrum are those found on a surface, and powers about 0
  * are those about the mean; spectra with and without waves at the end of the grid's band. */
 static void the_spectrum_tells_the_roughness(void **state) {
     (void)state;

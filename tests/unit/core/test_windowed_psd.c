@@ -2,9 +2,9 @@
  * the window's power taken off, so that the integral is the mean square; steep spectra do not leak;
  * holes change little. And heights, slopes and curvatures by scale against what they are of one
  * wave. */
-#include "core/statistics/roughness.h"
-#include "core/statistics/scales.h"
-#include "core/statistics/windowed_psd.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/heights/scales.h"
+#include "core/statistics/spectra/windowed_psd.h"
 #include "tests/support/check.h"
 #include "tests/support/cut.h"
 #include <complex.h>
@@ -63,7 +63,7 @@ static double power_under_window(const struct grid *grid, const double *z) {
     return power / squares;
 }
 
-/* Pieces of a surface against the surface: the integral within 5 % of the mean square under the
+/* Sub-maps of a surface against the surface: the integral within 5 % of the mean square under the
  * window, for rings are no circles at long waves; the density in the middle of the band within 25
  * %, and beyond the band, where there is no wave, at most 1e-6 of that: without the window it is
  * 1e-3. */

@@ -1,6 +1,6 @@
 /* Protects: X3P files as the standard has them are read as the heights that they hold, in metres,
  * whatever their types, axes, holes and layers; files of other programs too; and what is damaged,
- * lies or attacks is refused with words that name the place. */
+ * wrong or an attack is refused with words that name its position. */
 #include "tests/support/check.h"
 
 #include "core/instrument/instrument.h"
@@ -143,7 +143,7 @@ static void listed(void **state) {
     expect(&map, 3, 2, 2e-6, 3e-6, z);
 }
 
-/* N x 1 x M: M profiles of N points; y needs no increment, and x may be told point by point. */
+/* N x 1 x M: M profiles of N points; y needs no increment, and x may be given point by point. */
 static void profiles(void **state) {
     (void)state;
     struct height_map map = {0};
@@ -171,7 +171,7 @@ static void profiles(void **state) {
     expect(&map, 3, 1, 2e-6, 2e-6, SIX);
 }
 
-/* Points of a cloud stand in any order; a place without one is a hole. */
+/* Points of a cloud stand in any order; a node without one is a hole. */
 static void clouds(void **state) {
     (void)state;
     const double z[6] = {1e-6, 2e-6, 3e-6, (double)NAN, 4e-6, 5e-6};
@@ -193,7 +193,7 @@ static void clouds(void **state) {
     assert_non_null(strstr(err.text, "lies on no regular grid"));
 }
 
-/* Positions of a matrix that are told must be regular; those of holes do not count. */
+/* Positions that a matrix gives must be regular; those of holes do not count. */
 static void told_positions(void **state) {
     (void)state;
     double data[18];
@@ -375,7 +375,7 @@ static void cut_and_changed(void **state) {
     free(file);
 }
 
-/* Sizes that an archive tells wrongly are found while it is unpacked, and bombs before. */
+/* Wrong sizes in an archive are found while it is unpacked, and bombs before. */
 static void lying_sizes(void **state) {
     (void)state;
     const struct {

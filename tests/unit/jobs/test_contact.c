@@ -1,7 +1,7 @@
 /* The kind "contact" from parameters to curves: any split into blocks and any order of merging
- * gives the same document, foreign and damaged results are refused whole, and means, errors and
- * paired differences are those that the realisations themselves give. */
-#include "core/statistics/richardson.h"
+ * gives the same document. Foreign and damaged results are refused whole. Means, errors and paired
+ * differences are those that the realisations themselves give. */
+#include "core/statistics/uncertainty/richardson.h"
 #include "jobs/kind.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
@@ -43,7 +43,7 @@ static const char STEEP[] =
     " [\"full\", \"halfspace\", \"layered\"], \"levels\": [3, 6], \"block_height\": {\"lengths\": "
     "1},"
     " \"pressures\": {\"to\": 0.5, \"steps\": 3}}}";
-/* Pieces are pressed beside a measured surface. */
+/* Sub-maps are pressed beside a measured surface. */
 static const char LIKE[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 4,"
     " \"points_per_wavelength\": 4, \"rms_slope\": 0.1, \"like\": {\"file\": \"x\", \"sha256\":"
@@ -216,8 +216,8 @@ static void merge_and_show(const struct block_result *block) {
     merger_destroy(&merger);
 }
 
-/* Changed bytes under a seal made anew: taken or refused, but never a crash, a read past the end or
- * an overflow (run under sanitizers). */
+/* Changed bytes under a checksum made anew: taken or refused, but never a crash, a read past the
+ * end or an overflow (run under sanitizers). */
 static void malicious(void **state) {
     (void)state;
     uint64_t seed = seed_of_now();
@@ -244,7 +244,7 @@ static void malicious(void **state) {
             merge_and_show(&bad);
         taken += status == 0;
     }
-    assert_true(taken > 300); /* the unchanged ones at least: the seal is made as it should be */
+    assert_true(taken > 300); /* the unchanged ones at least: their checksum is right */
     free(copy);
     block_result_clear(&good);
     merger_destroy(&merger);
@@ -462,9 +462,9 @@ static int stop_at_number(void *context, uint64_t done) {
     return (*left)-- == 0;
 }
 
-/* A load of the model full asks before each iteration of Newton's: wherever it is stopped, what
- * comes out is the first realisation alone or nothing, no failure is told of, and the same runner
- * gives the whole block afterwards. */
+/* A load of the model full asks before each iteration of Newton's whether to stop. Wherever it is
+ * stopped, the result is the first realisation alone or nothing, and no failure is reported. The
+ * same runner gives the whole block afterwards. */
 static void stopping_within_a_load(void **state) {
     (void)state;
     struct job_runner *runner = runner_of(STEEP, NULL);

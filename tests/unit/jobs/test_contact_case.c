@@ -1,6 +1,7 @@
 /* A contact case is read as it was meant: defaults, models, blocks, loads, meshes; and what does
  * not fit together is refused, with its pointer. */
 #include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/contact_scene.h"
 #include "schema/study/fault.h"
 #include <math.h>
 #include <setjmp.h>
@@ -18,7 +19,7 @@ static struct contact_case read_case(const char *text) {
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
-    if (contact_case_read(&one_case, parameters, NULL, &err) != 0)
+    if (contact_case_read(&one_case, parameters, 0, NULL, &err) != 0)
         fail_msg("%s: %s", text, err.text);
     cJSON_Delete(parameters);
     return one_case;
@@ -75,7 +76,7 @@ static void blocks(void **state) {
     contact_case_clear(&one_case);
 }
 
-/* The name that a study gives is the one that curves tell. */
+/* The name that a study gives is the one that curves have. */
 static void models_bear_their_names(void **state) {
     (void)state;
     size_t m = 0;
@@ -256,7 +257,7 @@ static void faults(void **state) {
         struct error err = {0};
         cJSON *parameters = cJSON_Parse(BAD[b].text);
         assert_non_null(parameters);
-        int status = contact_case_read(&one_case, parameters, &list, &err);
+        int status = contact_case_read(&one_case, parameters, 0, &list, &err);
         if (BAD[b].pointer == NULL) {
             assert_int_equal(status, 0);
             contact_case_clear(&one_case);
@@ -270,6 +271,86 @@ static void faults(void **state) {
     }
 }
 
+/* What is at fault is not handed on: a surface without its table, its lengths, its shape or a grid
+ * leaves no band, no block in its units and no mesh to look at; what the contact has at fault by
+ * itself is reported beside it. */
+static void faulty_surfaces_end_reading(void **state) {
+    (void)state;
+#define CELL "\"wavelength_ratio\": 8, \"length_ratio\": 2"
+    static const char *const SURFACES[] = {
+        "\"hurst\": 0.8, \"spectrum\": {\"type\": \"table\"}, " CELL,
+        "\"spectrum\": {\"type\": \"table\", \"wave_number\": [1, 2]}, " CELL,
+        "\"spectrum\": {\"type\": \"table\", \"wave_number\": [1, 2], \"density\": [0, 0]}, " CELL,
+        "\"spectrum\": {\"type\": \"exponential_acf\"}, " CELL,
+        "\"hurst\": 0.8, \"heights\": {\"distribution\": \"samples\"}, " CELL,
+        "\"hurst\": 0.8, \"heights\": {\"distribution\": \"weibull_min\"}, " CELL,
+        "\"hurst\": 0.8, \"rms_slope\": 1, \"rms_height\": 1, " CELL,
+        "\"hurst\": 0.8, \"nayak_alpha\": 5, " CELL,
+        "\"hurst\": 0.8, \"anisotropy\": 4, " CELL,
+        "\"hurst\": 0.8, \"dimension\": 1, \"length_ratio_y\": 4, " CELL,
+        "\"hurst\": 0.8, \"wavelength_ratio\": 1e5, \"length_ratio\": 1e5",
+        CELL,
+    };
+    static const char *const CONTACTS[] = {
+        "\"levels\": [4, 8], \"model\": [\"layered\", \"full\"]",
+        "\"block_height\": {\"rms_heights\": 20}, \"model\": \"layered\"",
+        "\"pressures\": {\"values\": [0.2, 0.1]}, \"pressure_pdf\": {\"at\": [0.1]}",
+    };
+#undef CELL
+    enum { SURFACE_COUNT = sizeof SURFACES / sizeof *SURFACES };
+    for (size_t s = 0; s < SURFACE_COUNT; s++)
+        for (size_t c = 0; c < sizeof CONTACTS / sizeof *CONTACTS; c++) {
+            char text[600];
+            struct fault_list list = {0};
+            struct contact_case one_case;
+            snprintf(text, sizeof text, "{\"surface\": {%s}, \"contact\": {%s}}", SURFACES[s],
+                     CONTACTS[c]);
+            cJSON *parameters = cJSON_Parse(text);
+            assert_non_null(parameters);
+            assert_int_equal(contact_case_read(&one_case, parameters, 0, &list, NULL), ERROR_INPUT);
+            size_t own = c == 2; /* loads that do not rise; where pressures are counted then is not
+                                    asked */
+            if (list.count != 1 + own || strncmp(list.faults[0].pointer, "/surface/", 9) != 0)
+                fail_msg("%s: %zu faults", text, list.count);
+            fault_list_clear(&list);
+            cJSON_Delete(parameters);
+        }
+}
+
+/* What sums over all waves of a surface is not computed of one that no machine holds, nor where the
+ * answer could not be meshed: such a study is refused at once, in the memory of its text. */
+static void surfaces_beyond_memory_are_not_summed(void **state) {
+    (void)state;
+#define LARGE "\"hurst\": 0.8, \"wavelength_ratio\": 2000, \"length_ratio\": 2, \"rms_slope\": 0.1"
+    static const struct {
+        const char *text;
+        double memory_limit;
+        const char *pointer, *words;
+    } BAD[] = {
+        {STUDY(LARGE, "\"model\": \"layered\", \"block_height\": {\"rms_heights\": 200}"), 1e9,
+         "/surface/points_per_wavelength", "GiB; allowed: 0.931 GiB"},
+        {STUDY(LARGE, "\"model\": [\"layered\", \"full\"]"), 1e9, "/surface/points_per_wavelength",
+         "a surface of 32000 by 32000 points"},
+        {STUDY(LARGE, "\"model\": [\"layered\", \"full\"]"), 0, "/contact/model", "the face alone"},
+        {STUDY(LARGE, "\"block_height\": {\"rms_heights\": 200}"), 0,
+         "/surface/points_per_wavelength", "32000 by 32000 points: blocks in rms_heights"},
+    };
+#undef LARGE
+    for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++) {
+        struct fault_list list = {0};
+        struct contact_case one_case;
+        cJSON *parameters = cJSON_Parse(BAD[b].text);
+        assert_non_null(parameters);
+        assert_int_equal(contact_case_read(&one_case, parameters, BAD[b].memory_limit, &list, NULL),
+                         ERROR_INPUT);
+        assert_int_equal(list.count, 1);
+        assert_string_equal(list.faults[0].pointer, BAD[b].pointer);
+        assert_non_null(strstr(list.faults[0].detail, BAD[b].words));
+        fault_list_clear(&list);
+        cJSON_Delete(parameters);
+    }
+}
+
 /* Faults of the surface and of the contact, all at once. */
 static void all_faults_at_once(void **state) {
     (void)state;
@@ -278,14 +359,14 @@ static void all_faults_at_once(void **state) {
     cJSON *parameters = cJSON_Parse(STUDY("\"dimension\": 1, \"hurst\": 2",
                                           "\"poisson\": 1, \"levels\": [8, 2], \"tolerance\": 1,"
                                           "\"pressures\": {\"values\": [2, 1]}"));
-    assert_int_equal(contact_case_read(&one_case, parameters, &list, NULL), ERROR_INPUT);
+    assert_int_equal(contact_case_read(&one_case, parameters, 0, &list, NULL), ERROR_INPUT);
     assert_int_equal(list.count, 3); /* that do not fit their rows */
     fault_list_clear(&list);
     cJSON_Delete(parameters);
     parameters = cJSON_Parse(STUDY("\"dimension\": 1, \"wavelength_ratio\": 4",
                                    "\"levels\": [8, 4], \"pressures\": {\"values\": [2, 1]},"
                                    "\"gap_weighting\": \"dual\""));
-    assert_int_equal(contact_case_read(&one_case, parameters, &list, NULL), ERROR_INPUT);
+    assert_int_equal(contact_case_read(&one_case, parameters, 0, &list, NULL), ERROR_INPUT);
     assert_int_equal(list.count, 4); /* that do not fit together */
     fault_list_clear(&list);
     cJSON_Delete(parameters);
@@ -345,6 +426,8 @@ int main(void) {
         cmocka_unit_test(levels),
         cmocka_unit_test(rectangles),
         cmocka_unit_test(faults),
+        cmocka_unit_test(faulty_surfaces_end_reading),
+        cmocka_unit_test(surfaces_beyond_memory_are_not_summed),
         cmocka_unit_test(all_faults_at_once),
         cmocka_unit_test(fingerprints),
         cmocka_unit_test(estimates),

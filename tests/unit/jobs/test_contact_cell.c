@@ -2,8 +2,6 @@
  * length gives for the same random numbers, solved by itself; and which cases have them, on which
  * realisations, for how much time and memory. */
 #include "jobs/contact/contact_case_read.h"
-#include "jobs/contact/contact_cell.h"
-#include "jobs/contact/contact_probe.h"
 #include "jobs/contact/contact_scene.h"
 #include "tests/support/check.h"
 #include "tests/support/unstopped.h"
@@ -21,7 +19,7 @@ static void read_case(struct contact_case *one_case, const char *text) {
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
-    must(contact_case_read(one_case, parameters, NULL, &err), &err);
+    must(contact_case_read(one_case, parameters, 0, NULL, &err), &err);
     cJSON_Delete(parameters);
 }
 
@@ -53,27 +51,27 @@ static void solve_case(const struct contact_case *one_case, struct random_key ke
 
 /* `alone` is the study of a cell of another length, `factor` times that of `text`, on the mesh of
  * the probe. */
-static void check_length(const char *text, enum contact_length length, double factor,
+static void check_length(const char *text, enum companion_name length, double factor,
                          const char *alone) {
     static const struct random_key KEYS[] = {{7, 0, 0}, {7, 3, 8}};
     struct contact_case one_case, other;
     read_case(&one_case, text);
     read_case(&other, alone);
     double cells = pow(factor, one_case.surface.dimension);
-    check_relative(one_case.lengths[length].length, factor, 0);
-    assert_true(contact_case_has_length(&one_case, length));
+    check_relative(one_case.companions[length].length, factor, 0);
+    assert_true(contact_case_has(&one_case, length));
     for (size_t r = 0; r < 2; r++) {
         struct random_key key = KEYS[r];
         struct contact_tally tally, expected_tally;
         solve_case(&one_case, key, &tally);
-        key.sequence += length == LENGTH_LONGER ? UINT64_C(1) << 63 : UINT64_C(1) << 62;
+        key.sequence += length == COMPANION_LONGER ? UINT64_C(1) << 63 : UINT64_C(1) << 62;
         solve_case(&other, key, &expected_tally);
         for (size_t a = 0; a < MEASURE_KAPPA; a++) {
-            const double *values = contact_tally_values(&tally, (enum contact_measure)a);
+            const double *values = contact_tally_series(&tally, length, 0, (enum contact_measure)a);
             const double *expected = contact_tally_values(&expected_tally, (enum contact_measure)a);
             double scale = a == MEASURE_PATCHES ? 1 / cells : a == MEASURE_PATCH_MEAN ? cells : 1;
             for (size_t k = 0; k < LOADS; k++) {
-                double value = values[contact_case_length_cell(&one_case, length, k)];
+                double value = values[k];
                 double wanted = scale * expected[contact_case_cell(&other, 0, 0, k)];
                 if (a == MEASURE_PATCH_LARGEST)
                     assert_true(isnan(value));
@@ -91,35 +89,36 @@ static void check_length(const char *text, enum contact_length length, double fa
 static void surfaces_are_those_of_other_cells(void **state) {
     (void)state;
     check_length(STUDY(PROFILE "\"length_ratio\": 4, \"points_per_wavelength\": 8", ""),
-                 LENGTH_LONGER, 2,
+                 COMPANION_LONGER, 2,
                  STUDY(PROFILE "\"length_ratio\": 8, \"points_per_wavelength\": 4", ""));
     check_length(STUDY(PROFILE "\"length_ratio\": 4, \"points_per_wavelength\": 8", ""),
-                 LENGTH_SHORTER, 0.25,
+                 COMPANION_SHORTER, 0.25,
                  STUDY(PROFILE "\"length_ratio\": 1, \"points_per_wavelength\": 4", ""));
     check_length(STUDY(SURFACE "\"length_ratio\": 2, \"points_per_wavelength\": 8",
                        ", \"model\": [\"layered\", \"halfspace\"]"),
-                 LENGTH_LONGER, 2,
+                 COMPANION_LONGER, 2,
                  STUDY(SURFACE "\"length_ratio\": 4, \"points_per_wavelength\": 4", ""));
     check_length(STUDY(SURFACE "\"length_ratio\": 2, \"points_per_wavelength\": 8", ""),
-                 LENGTH_SHORTER, 0.5,
+                 COMPANION_SHORTER, 0.5,
                  STUDY(SURFACE "\"length_ratio\": 1, \"points_per_wavelength\": 4", ""));
     /* a rectangle keeps its shape */
-    check_length(STUDY(SURFACE "\"length_ratio\": 4, \"length_ratio_y\": 2", ""), LENGTH_LONGER, 2,
+    check_length(STUDY(SURFACE "\"length_ratio\": 4, \"length_ratio_y\": 2", ""), COMPANION_LONGER,
+                 2,
                  STUDY(SURFACE "\"length_ratio\": 8, \"length_ratio_y\": 4,"
                                " \"points_per_wavelength\": 4",
                        ""));
-    check_length(STUDY(SURFACE "\"length_ratio\": 2, \"length_ratio_y\": 4", ""), LENGTH_SHORTER,
+    check_length(STUDY(SURFACE "\"length_ratio\": 2, \"length_ratio_y\": 4", ""), COMPANION_SHORTER,
                  0.5,
                  STUDY(SURFACE "\"length_ratio\": 1, \"length_ratio_y\": 2,"
                                " \"points_per_wavelength\": 4",
                        ""));
     /* other heights depend on the grid that they are made on */
     check_length(STUDY(WEIBULL PROFILE "\"length_ratio\": 2, \"points_per_wavelength\": 8", ""),
-                 LENGTH_LONGER, 2,
+                 COMPANION_LONGER, 2,
                  STUDY(WEIBULL PROFILE "\"length_ratio\": 4, \"points_per_wavelength\": 8",
                        ", \"levels\": [4]"));
     check_length(STUDY(WEIBULL PROFILE "\"length_ratio\": 4, \"points_per_wavelength\": 8", ""),
-                 LENGTH_SHORTER, 0.25,
+                 COMPANION_SHORTER, 0.25,
                  STUDY(WEIBULL PROFILE "\"length_ratio\": 1, \"points_per_wavelength\": 8",
                        ", \"levels\": [4]"));
 }
@@ -131,12 +130,12 @@ static void the_twin_stands_for_the_probe(void **state) {
     struct contact_tally tally;
     read_case(&one_case, STUDY(PROFILE "\"length_ratio\": 2, \"points_per_wavelength\": 4",
                                ", \"model\": [\"layered\", \"halfspace\"]"));
-    assert_int_equal(contact_probe_twin(&one_case), 1);
-    assert_true(contact_probe_seconds(&one_case) == 0);
+    const struct companion_plan *plan = &one_case.companions[COMPANION_PROBE];
+    assert_true(COMPANIONS[COMPANION_PROBE]->seconds(&one_case, plan) == 0);
     solve_case(&one_case, (struct random_key){7, 0, 0}, &tally);
     const double *gap = contact_tally_values(&tally, MEASURE_GAP);
     for (size_t k = 0; k < LOADS; k++)
-        assert_true(gap[contact_case_probe_cell(&one_case, 0, k)] ==
+        assert_true(contact_tally_series(&tally, COMPANION_PROBE, 0, MEASURE_GAP)[k] ==
                     gap[contact_case_cell(&one_case, 1, 0, k)]);
     contact_tally_clear(&tally);
     contact_case_clear(&one_case);
@@ -146,13 +145,22 @@ static void alpha_is_not_solved_anew(void **state) {
     (void)state;
     struct contact_case one_case;
     read_case(&one_case, STUDY("\"nayak_alpha\": 3, \"length_ratio\": 2", ""));
-    for (enum contact_length l = 0; l < CONTACT_LENGTHS; l++) {
-        const struct contact_surfaces *other = &one_case.lengths[l];
+    static const enum companion_name LENGTHS[] = {COMPANION_LONGER, COMPANION_SHORTER};
+    for (size_t l = 0; l < 2; l++) {
+        const struct companion_plan *other = &one_case.companions[LENGTHS[l]];
         assert_true(other->surface.spectrum.wavelength_long ==
                     one_case.surface.spectrum.wavelength_long);
         check_relative(other->surface.grid.lx, other->length * one_case.surface.grid.lx, 1e-15);
     }
     contact_case_clear(&one_case);
+}
+
+/* Returns the seconds of all companions but one. */
+static double companions_seconds_but(const struct contact_case *one_case,
+                                     enum companion_name companion) {
+    struct contact_case without = *one_case;
+    without.companions[companion] = (struct companion_plan){0};
+    return companions_seconds(&without);
 }
 
 /* At most 14 % of the time of a case, longer surfaces never longer in all than the case's, and some
@@ -170,16 +178,14 @@ static void they_cost_a_tenth(void **state) {
         struct contact_case one_case;
         struct study_cost cost;
         read_case(&one_case, STUDIES[s]);
-        assert_true(contact_case_has_length(&one_case, LENGTH_LONGER) &&
-                    contact_case_has_length(&one_case, LENGTH_SHORTER));
+        assert_true(contact_case_has(&one_case, COMPANION_LONGER) &&
+                    contact_case_has(&one_case, COMPANION_SHORTER));
         contact_case_estimate(&one_case, &cost);
-        double beside = contact_probe_seconds(&one_case) + contact_cell_seconds(&one_case);
+        double beside = companions_seconds_but(&one_case, COMPANION_GENERATION);
         assert_true(beside > 0 && beside <= 0.14 * (cost.seconds - beside));
-        assert_true(one_case.lengths[LENGTH_LONGER].interval >=
-                    (one_case.surface.dimension == 1 ? 2 : 4));
-        assert_true(contact_cell_due(&one_case, LENGTH_LONGER, 0) &&
-                    contact_cell_due(&one_case, LENGTH_LONGER, 8) &&
-                    !contact_cell_due(&one_case, LENGTH_LONGER, 9));
+        const struct subset *due = &one_case.companions[COMPANION_LONGER].due;
+        assert_true(due->interval >= (one_case.surface.dimension == 1 ? 2 : 4));
+        assert_true(subset_has(due, 0) && subset_has(due, 8) && !subset_has(due, 9));
         contact_case_clear(&one_case);
     }
 }
@@ -202,13 +208,13 @@ static void some_cases_have_none(void **state) {
     for (size_t s = 0; s < sizeof STUDIES / sizeof *STUDIES; s++) {
         struct contact_case one_case;
         read_case(&one_case, STUDIES[s]);
-        assert_false(contact_case_has_length(&one_case, LENGTH_LONGER) ||
-                     contact_cell_due(&one_case, LENGTH_LONGER, 0));
+        assert_false(contact_case_has(&one_case, COMPANION_LONGER) ||
+                     subset_has(&one_case.companions[COMPANION_LONGER].due, 0));
         if (s == 0) {
-            assert_false(contact_case_is_probed(&one_case) || contact_probe_due(&one_case, 0));
-            assert_int_equal(contact_case_all_cells(&one_case), contact_case_cells(&one_case));
+            for (enum companion_name c = 0; c < COMPANION_COUNT; c++)
+                assert_false(contact_case_has(&one_case, c));
         } else {
-            assert_true(contact_case_has_length(&one_case, LENGTH_SHORTER));
+            assert_true(contact_case_has(&one_case, COMPANION_SHORTER));
         }
         contact_case_clear(&one_case);
     }

@@ -1,11 +1,10 @@
 /* Errors by source, from tallies filled by hand: limits of meshes and of models come out where they
- * were put in, a finite block and missing realisations are told, and what is not known is not. */
-#include "core/statistics/richardson.h"
+ * were put in, a finite block and missing realisations have errors, and what is not known has
+ * none. */
+#include "core/statistics/uncertainty/richardson.h"
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_errors.h"
-#include "jobs/contact/contact_mean.h"
-#include "jobs/contact/contact_probe.h"
-#include "jobs/contact/contact_sum.h"
+#include "jobs/contact/target/contact_sum.h"
 #include "tests/support/check.h"
 
 #define STUDY(contact)                                                                             \
@@ -23,7 +22,7 @@ static void fixture_open(struct errors_fixture *f, const char *text) {
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
-    if (contact_case_read(&f->one_case, parameters, NULL, &err) != 0 ||
+    if (contact_case_read(&f->one_case, parameters, 0, NULL, &err) != 0 ||
         contact_tally_create(&f->tally, &f->one_case, &err) != 0)
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
@@ -65,7 +64,7 @@ static void limits_of_meshes_come_out(void **state) {
     fixture_close(&f);
 }
 
-/* At the load in the middle nothing changes from level to level, which is chance: its bound is that
+/* At the load in the middle nothing changes from level to level, which is random: its bound is that
  * of its neighbours, relative to the values. */
 static void a_change_that_vanishes_is_no_proof(void **state) {
     (void)state;
@@ -116,21 +115,23 @@ static void a_low_block_is_told(void **state) {
     struct errors_fixture f;
     struct contact_error errors[LOADS];
     fixture_open(&f, STUDY("\"model\": [\"halfspace\", \"layered\"], \"cell_error\": \"none\""));
-    assert_false(
-        contact_probe_due(&f.one_case, 0)); /* 1.5 sides of the cell are as good as infinite */
+    /* 1.5 sides of the cell are as good as infinite */
+    assert_false(contact_case_has(&f.one_case, COMPANION_PROBE));
     assert_true(contact_errors(&f.tally, MEASURE_EDGES, 1, ERROR_BLOCK, errors));
     fixture_close(&f);
     fixture_open(&f, STUDY("\"model\": \"layered\", \"block_height\": {\"lengths\": 0.25}"));
-    assert_true(contact_probe_due(&f.one_case, 3) && !contact_probe_due(&f.one_case, 17) &&
-                contact_probe_due(&f.one_case, 32));
+    const struct subset *due = &f.one_case.companions[COMPANION_PROBE].due;
+    assert_true(subset_has(due, 3) && !subset_has(due, 17) && subset_has(due, 32));
     for (int r = 0; r < 3; r++) { /* of which one is not probed */
         double *values = contact_tally_values(&f.tally, MEASURE_EDGES);
+        double *half = contact_tally_series(&f.tally, COMPANION_PROBE, 0, MEASURE_EDGES);
+        double *layer = contact_tally_series(&f.tally, COMPANION_PROBE, 1, MEASURE_EDGES);
         for (size_t k = 0; k < LOADS; k++) {
             values[contact_case_cell(&f.one_case, 0, 0, k)] = 0.4;
             if (r == 2)
                 continue;
-            values[contact_case_probe_cell(&f.one_case, 0, k)] = 0.5;
-            values[contact_case_probe_cell(&f.one_case, 1, k)] = r == 0 ? 0.45 : 0.43;
+            half[k] = 0.5;
+            layer[k] = r == 0 ? 0.45 : 0.43;
         }
         add_realisation(&f.tally);
     }
@@ -147,7 +148,7 @@ static void a_low_block_is_told(void **state) {
 
 /* One half-space on two meshes, of which the coarse one sees two of the four surfaces: its mean
  * over all is that of the fine one less their difference, which scatters less. At the load in the
- * middle the length changes little, which is chance: its bound is that of the loads around it. */
+ * middle the length changes little, which is random: its bound is that of the loads around it. */
 static void a_short_cell_is_told(void **state) {
     (void)state;
     static const double OWN[] = {0.4, 0.42, 0.44, 0.46}, OFF[] = {0.01, NAN, 0.03, NAN};
@@ -159,10 +160,12 @@ static void a_short_cell_is_told(void **state) {
     fixture_open(&f, STUDY("\"model\": \"halfspace\""));
     for (size_t r = 0; r < 4; r++) {
         double *values = contact_tally_values(&f.tally, MEASURE_EDGES);
+        double *half = contact_tally_series(&f.tally, COMPANION_PROBE, 0, MEASURE_EDGES);
+        double *longer = contact_tally_series(&f.tally, COMPANION_LONGER, 0, MEASURE_EDGES);
         for (size_t k = 0; k < LOADS; k++) {
             values[contact_case_cell(&f.one_case, 0, 0, k)] = OWN[r];
-            values[contact_case_probe_cell(&f.one_case, 0, k)] = OWN[r] - OFF[r];
-            values[contact_case_length_cell(&f.one_case, LENGTH_LONGER, k)] = LONGER[k][r];
+            half[k] = OWN[r] - OFF[r];
+            longer[k] = LONGER[k][r];
         }
         add_realisation(&f.tally);
         /* one longer surface shows no scatter */
@@ -184,9 +187,10 @@ static void a_short_cell_is_told(void **state) {
     fixture_close(&f);
 }
 
-/* A cell of four waves is known by one of a single wave, too: of what that is off doubling the
- * length twice leaves 0.49 of 0.51 at most, if it leaves 7/10 of an error each time. That is told
- * where it is less than what the longer cell says, but for what that shows beyond chance. */
+/* A cell of a single wave bounds the error of one of four waves, too. If doubling the length leaves
+ * 7/10 of an error each time, doubling it twice leaves 0.49/0.51 of the change at most. That is the
+ * bound where it is less than that of the longer cell, but not less than the longer cell's change
+ * beyond its standard error. */
 static void the_lesser_bound_is_told(void **state) {
     (void)state;
     static const char study[] =
@@ -202,11 +206,14 @@ static void the_lesser_bound_is_told(void **state) {
     fixture_open(&f, study);
     for (size_t r = 0; r < 2; r++) {
         double *values = contact_tally_values(&f.tally, MEASURE_EDGES);
+        double *half = contact_tally_series(&f.tally, COMPANION_PROBE, 0, MEASURE_EDGES);
+        double *longer = contact_tally_series(&f.tally, COMPANION_LONGER, 0, MEASURE_EDGES);
+        double *shorter = contact_tally_series(&f.tally, COMPANION_SHORTER, 0, MEASURE_EDGES);
         for (size_t k = 0; k < LOADS; k++) {
             values[contact_case_cell(&f.one_case, 0, 0, k)] = 0.4;
-            values[contact_case_probe_cell(&f.one_case, 0, k)] = 0.4;
-            values[contact_case_length_cell(&f.one_case, LENGTH_LONGER, k)] = LONGER[k][r];
-            values[contact_case_length_cell(&f.one_case, LENGTH_SHORTER, k)] = SHORTER[k];
+            half[k] = 0.4;
+            longer[k] = LONGER[k][r];
+            shorter[k] = SHORTER[k];
         }
         add_realisation(&f.tally);
     }

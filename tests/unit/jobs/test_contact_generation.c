@@ -1,13 +1,13 @@
-/* Protects: the error "generation" of contact: which surfaces are found again and how they are
- * pressed, that errors follow from the pairs and that every curve over loads, every scalar at a
- * load and the densities of pressure tell it; none of it for Gaussian heights, and that values do
- * not depend on whether it is probed. */
+/* Protects: the error "generation" of contact: which surfaces are generated again and how they are
+ * pressed, and that errors follow from the pairs. Every curve over loads, every scalar at a load
+ * and the densities of pressure have it, but not with Gaussian heights. Values do not depend on
+ * whether it is probed. */
+#include "jobs/contact/companion/companion.h"
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_errors.h"
-#include "jobs/contact/contact_generation.h"
-#include "jobs/contact/contact_sample.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
+#include "jobs/surface/surface_paths.h"
 #include "tests/support/check.h"
 #include "tests/support/unstopped.h"
 #include <stdio.h>
@@ -28,37 +28,38 @@ static void read_case(struct contact_case *one_case, const char *text) {
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
-    must(contact_case_read(one_case, parameters, NULL, &err), &err);
+    must(contact_case_read(one_case, parameters, 0, NULL, &err), &err);
     cJSON_Delete(parameters);
 }
 
 /* --- one realisation --- */
 
+/* Series: the own surface, then those of the paths (companion_plan.h). */
+enum { OWN, ALTERNATIVE };
+
 /* Areas by edges of heights on the own grid, pressed on the coarse mesh. */
 static void press(const struct contact_case *one_case, const struct moments *moments,
                   const double *z, double areas[LOADS]) {
     const struct contact_stopper stopper = {go_on, NULL};
-    const struct grid *grid = &one_case->paths.level.grid;
-    struct contact_coarse *halfspace;
-    struct contact_tally tally;
+    const struct contact_level level = coarse_level(one_case);
+    struct coarse_solver *halfspace;
     struct error err = {0};
-    double *coarse = array_create(grid_points(grid), sizeof *coarse);
+    double *coarse = array_create(grid_points(&level.grid), sizeof *coarse);
+    double series[MEASURE_PAIRED * LOADS];
     assert_non_null(coarse);
-    must(contact_tally_create(&tally, one_case, &err), &err);
-    must(contact_coarse_create(&halfspace, one_case, grid, INFINITY, moments, &err), &err);
-    must(contact_level_sample(one_case, &one_case->paths.level, z, coarse, &err), &err);
-    must(contact_coarse_solve(halfspace, coarse, 0, &tally, &stopper, &err), &err);
-    memcpy(areas, contact_tally_values(&tally, MEASURE_EDGES), LOADS * sizeof *areas);
-    contact_coarse_destroy(&halfspace);
-    contact_tally_clear(&tally);
+    must(coarse_solver_create(&halfspace, one_case, &level.grid, INFINITY, moments, &err), &err);
+    must(contact_level_sample(&level, &one_case->surface.grid, one_case->band, z, coarse, &err),
+         &err);
+    must(coarse_solver_press(halfspace, coarse, series, &stopper, &err), &err);
+    memcpy(areas, series + MEASURE_EDGES * LOADS, LOADS * sizeof *areas);
+    coarse_solver_destroy(&halfspace);
     free(coarse);
 }
 
-static void check_series(const struct contact_case *one_case, struct contact_tally *tally,
-                         size_t series, const double areas[LOADS]) {
-    const double *values = contact_tally_values(tally, MEASURE_EDGES);
+static void check_series(struct contact_tally *tally, size_t series, const double areas[LOADS]) {
+    const double *values = contact_tally_series(tally, COMPANION_GENERATION, series, MEASURE_EDGES);
     for (size_t k = 0; k < LOADS; k++)
-        check_relative(values[contact_case_path_cell(one_case, series, k)], areas[k], 1e-9);
+        check_relative(values[k], areas[k], 1e-9);
 }
 
 /* Made here once more: the surface by the other iteration, to the same error, and by more of the
@@ -67,7 +68,7 @@ static void surfaces_are_those_of_the_paths(const char *text, enum surface_itera
                                             enum surface_iteration other) {
     const struct random_key key = {5, 2, 8};
     struct contact_case one_case;
-    struct contact_generation *generation;
+    struct companion_bench *companions;
     struct contact_tally tally;
     struct generator *generator;
     struct surface_report report, again;
@@ -84,25 +85,26 @@ static void surfaces_are_those_of_the_paths(const char *text, enum surface_itera
     modes_moments(generator_modes(generator), &moments);
     must(generator_run(generator, key, z, &report, &err), &err);
     must(contact_tally_create(&tally, &one_case, &err), &err);
-    must(contact_generation_create(&generation, &one_case, &moments, &err), &err);
+    must(companion_bench_create(&companions, &one_case, &moments, &err), &err);
     const struct contact_stopper stopper = {go_on, NULL};
     const struct contact_surface whole = {key, z, &report};
-    must(contact_generation_solve(generation, &whole, &tally, &stopper, &err), &err);
+    must(companion_bench_solve(companions, &whole, &tally, &stopper, &err), &err);
     press(&one_case, &moments, z, areas);
-    check_series(&one_case, &tally, PATHS_OWN, areas);
+    check_series(&tally, OWN, areas);
     double worst = fmax(report.eps_h, fmax(report.eps_s, report.eps_s0));
     size_t most = report.iterations > 50 ? 2 * report.iterations : 100;
     generator_aim(generator, &(struct surface_aim){other, worst, most, most});
     must(generator_run(generator, key, found, &again, &err), &err);
     press(&one_case, &moments, found, changed);
-    check_series(&one_case, &tally, PATHS_FOUND + PATH_OTHER, changed);
+    check_series(&tally, ALTERNATIVE + PATH_OTHER, changed);
     assert_true(changed[0] != areas[0] && fabs(changed[0] - areas[0]) < 0.5 * areas[0]);
     generator_aim(generator, &(struct surface_aim){own, worst / 2, most, most});
     must(generator_run(generator, key, found, &again, &err), &err);
     press(&one_case, &moments, found, changed);
-    check_series(&one_case, &tally, PATHS_FOUND + PATH_LONGER, changed);
-    check_relative(tally.halvings, log2(report.eps_h / again.eps_h), 1e-9);
-    contact_generation_destroy(&generation);
+    check_series(&tally, ALTERNATIVE + PATH_LONGER, changed);
+    check_relative(tally.companions[COMPANION_GENERATION].facts[0],
+                   log2(report.eps_h / again.eps_h), 1e-9);
+    companion_bench_destroy(&companions);
     contact_tally_clear(&tally);
     generator_destroy(&generator);
     free(z);
@@ -123,21 +125,21 @@ static void choices_follow_the_case(void **state) {
     (void)state;
     struct contact_case one_case;
     read_case(&one_case, STUDY(WEIBULL, ""));
-    assert_true(contact_case_has_paths(&one_case) && one_case.paths.interval >= 8);
-    double seconds = contact_generation_seconds(&one_case);
+    const struct companion *generation = COMPANIONS[COMPANION_GENERATION];
+    const struct companion_plan *plan = &one_case.companions[COMPANION_GENERATION];
+    assert_true(contact_case_has(&one_case, COMPANION_GENERATION) && plan->due.interval >= 8);
+    double seconds = generation->seconds(&one_case, plan) / (double)plan->due.interval;
     assert_true(seconds > 0 && seconds <= 0.1 * contact_case_least_seconds(&one_case));
-    assert_true(contact_generation_bytes(&one_case) > 0);
+    assert_true(generation->bytes(&one_case, plan) > 0);
     contact_case_clear(&one_case);
     read_case(&one_case, STUDY(WEIBULL, ", \"model\": \"full\""));
-    assert_true(one_case.paths.interval < 8);
+    assert_true(plan->due.interval < 8);
     contact_case_clear(&one_case);
     static const char *const NONE[] = {STUDY("", ""),
                                        STUDY(WEIBULL, ", \"generation_error\": \"none\"")};
     for (size_t a = 0; a < 2; a++) {
         read_case(&one_case, NONE[a]);
-        assert_false(contact_case_has_paths(&one_case));
-        assert_true(contact_generation_seconds(&one_case) == 0 &&
-                    contact_generation_bytes(&one_case) == 0);
+        assert_false(contact_case_has(&one_case, COMPANION_GENERATION));
         contact_case_clear(&one_case);
     }
 }
@@ -146,8 +148,8 @@ static void choices_follow_the_case(void **state) {
 
 /* Two of three realisations are found again. The other iteration adds 0.03 and 0.05 to areas of
  * 0.4, longer ones take off 0.01 and 0.03: 0.02 +- 0.01, which is all where they halve eps_h once;
- * where they do less, the 0.01 beyond chance go on, up to four times. At the second load changes
- * are twice as large, and the third is within twice that. */
+ * where they do less, the 0.01 beyond the standard error go on, up to four times. At the second
+ * load changes are twice as large, and the third is within twice that. */
 static void errors_follow_from_the_pairs(void **state) {
     (void)state;
     static const double OTHER[] = {0.03, 0.05}, LONGER[] = {0.01, 0.03}, TIMES[LOADS] = {1, 2, 1};
@@ -167,14 +169,14 @@ static void errors_follow_from_the_pairs(void **state) {
                 if (r == 2)
                     continue;
                 double own = 0.4 + 0.1 * (double)r - 0.05;
-                values[contact_case_path_cell(&one_case, PATHS_OWN, k)] = own;
-                values[contact_case_path_cell(&one_case, PATHS_FOUND + PATH_OTHER, k)] =
-                    own + TIMES[k] * OTHER[r];
-                values[contact_case_path_cell(&one_case, PATHS_FOUND + PATH_LONGER, k)] =
-                    own - TIMES[k] * LONGER[r];
+                contact_tally_series(&tally, COMPANION_GENERATION, OWN, MEASURE_EDGES)[k] = own;
+                contact_tally_series(&tally, COMPANION_GENERATION, ALTERNATIVE + PATH_OTHER,
+                                     MEASURE_EDGES)[k] = own + TIMES[k] * OTHER[r];
+                contact_tally_series(&tally, COMPANION_GENERATION, ALTERNATIVE + PATH_LONGER,
+                                     MEASURE_EDGES)[k] = own - TIMES[k] * LONGER[r];
             }
             if (r < 2)
-                tally.halvings = HALVINGS[way];
+                tally.companions[COMPANION_GENERATION].facts[0] = HALVINGS[way];
             must(contact_tally_add(&tally, &err), &err);
             assert_true(contact_errors(&tally, MEASURE_EDGES, 0, ERROR_GENERATION, errors) ==
                         (r > 0));

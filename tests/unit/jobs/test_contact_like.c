@@ -1,9 +1,9 @@
-/* Protects: a measured surface is pressed, to the bit, as pieces of random surfaces are: one of
+/* Protects: a measured surface is pressed, to the bit, as sub-maps of random surfaces are: one of
  * them, given as the measured one, is found equal to itself at each load; its percentile is that of
  * the counts; loads that are not those of the case leave it out. */
 #include "core/map/detrend.h"
-#include "jobs/realisation_map.h"
-#include "jobs/surface_case.h"
+#include "jobs/surface/realisation_map.h"
+#include "jobs/surface/surface_case.h"
 #include "tests/support/contact_document.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static const char STUDY[] =
     " {\"values\": [0.05, 0.2]}}}";
 enum { POINTS = 90, ALL = 8, ITSELF = 3, LOADS = 2 };
 
-/* The piece of a realisation, as an instrument would give it. */
+/* The sub-map of a realisation, as an instrument would give it. */
 static double *piece_of(const cJSON *parameters, uint64_t realisation) {
     struct surface_case surface;
     struct surface_report report;
@@ -37,7 +37,7 @@ static double *piece_of(const cJSON *parameters, uint64_t realisation) {
     return piece;
 }
 
-/* The parameters with what pressing the piece of a realisation gave. */
+/* The parameters with what pressing the sub-map of a realisation gave. */
 static cJSON *measured_study(void) {
     const struct job_kind *kind = kind_find("contact");
     cJSON *parameters = cJSON_Parse(STUDY);

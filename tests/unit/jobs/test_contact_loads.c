@@ -1,5 +1,5 @@
-/* Protects: loads are the numbers that a person would write, are told whole, and those of studies
- * that an older program stored stay as they were. */
+/* Protects: loads are the numbers that a person would write, are printed with all digits, and those
+ * of studies that an older program stored stay as they were. */
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_loads.h"
 #include "schema/json/json.h"
@@ -87,7 +87,7 @@ static void check_load(const char *parameters, size_t k, double expected) {
     struct contact_case one_case;
     cJSON *object = cJSON_Parse(parameters);
     assert_non_null(object);
-    assert_int_equal(contact_case_read(&one_case, object, NULL, NULL), 0);
+    assert_int_equal(contact_case_read(&one_case, object, 0, NULL, NULL), 0);
     assert_true(k < one_case.load_count && one_case.loads[k] == expected);
     contact_case_clear(&one_case);
     cJSON_Delete(object);

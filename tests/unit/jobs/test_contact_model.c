@@ -1,11 +1,12 @@
 /* A contact model is one struct: a fourth one, springs without neighbours (Winkler's foundation),
  * stands in this file alone, and goes from parameters to curves beside a half-space. */
 #include "jobs/contact/contact_case_read.h"
+#include "jobs/maps/map_press.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"
 #include <stdlib.h>
 
-#define MODELS(MODEL) MODEL(HALFSPACE_MODEL, "halfspace") MODEL(WINKLER_MODEL, "winkler")
+#define MODELS(ENTRY) ENTRY(HALFSPACE, "halfspace", 0) ENTRY(WINKLER, "winkler", -1)
 CONTACT_MODEL_TABLES(MODELS)
 
 enum { SHORTEST_SPRING };
@@ -125,7 +126,7 @@ const struct contact_model WINKLER_MODEL = {
     " \"levels\": [4, 8], \"pressures\": {\"values\": [0.01, 0.05]}, \"pressure_pdf\": {\"bins\":" \
     " [0, 4, 4000]}}}"
 
-/* Springs carry the load, tell what they alone know, and are told against the half-space. */
+/* Springs carry the load, report what they alone know, and are compared with the half-space. */
 static void fourth_model_goes_through(void **state) {
     (void)state;
     cJSON *document = solve(STUDY("[\"halfspace\", \"winkler\"]"), 3);
@@ -151,8 +152,8 @@ static void fourth_model_goes_through(void **state) {
     cJSON_Delete(document);
 }
 
-/* Without the model nothing is told of it, with it alone the rest is there, and a model that is not
- * in the table is no choice. */
+/* Without the model nothing is reported of it, with it alone the rest is there, and a model that is
+ * not in the table is no choice. */
 static void table_is_all_that_is_known(void **state) {
     (void)state;
     cJSON *document = solve(STUDY("\"halfspace\""), 1);
@@ -168,13 +169,48 @@ static void table_is_all_that_is_known(void **state) {
     struct contact_case one_case;
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(STUDY("\"layered\""));
-    assert_int_equal(contact_case_read(&one_case, parameters, NULL, &err), ERROR_INPUT);
+    assert_int_equal(contact_case_read(&one_case, parameters, 0, NULL, &err), ERROR_INPUT);
     cJSON_Delete(parameters);
+}
+
+/* A measured map is pressed by it as by the others: mirrored, since nobody said that it presses
+ * maps that do not repeat; its own curve follows those of all models. */
+static void fourth_model_presses_a_map(void **state) {
+    (void)state;
+    struct press_block block = {
+        .model = &WINKLER_MODEL, .boundary = PRESS_MIRRORED, .poisson = 0.3};
+    struct map_press press = {0};
+    struct press_row row;
+    struct error err = {0};
+    struct case_result result = {0};
+    struct height_map map = {.grid = {24, 1, 6, 1}, .z = array_create(24, sizeof *map.z)};
+    assert_non_null(map.z);
+    for (size_t i = 0; i < 24; i++)
+        map.z[i] = 0.05 * cos(2 * M_PI * (double)i / 24);
+    if (map_press_begin(&press, &map, &block, &err) != 0 ||
+        map_press_load(&press, 0.001, &row, &err) != 0 ||
+        map_press_result(&result, &press, 1, &row, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_true(row.value[PRESS_NODES] > 0 && row.value[PRESS_NODES] < 1);
+    assert_true(isnan(press.full_contact));
+    const struct curve *spring = result_curve(&result, "shortest_spring");
+    assert_non_null(spring);
+    assert_string_equal(spring->model, "winkler");
+    assert_true(spring->y[0] > 0);
+    result_clear(&result);
+    map_press_clear(&press);
+    block.boundary = PRESS_OPEN;
+    assert_int_equal(map_press_begin(&press, &map, &block, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "--model winkler needs a block that does"));
+    assert_non_null(strstr(err.text, "or --model halfspace"));
+    map_press_clear(&press);
+    height_map_clear(&map);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fourth_model_goes_through),
+        cmocka_unit_test(fourth_model_presses_a_map),
         cmocka_unit_test(table_is_all_that_is_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

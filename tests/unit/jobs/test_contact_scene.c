@@ -1,6 +1,6 @@
-/* What the scene tells of the model full is of the block as it is pressed: areas stretched, and
- * pressures on these areas, which together carry the load; of small strains nothing is stretched.
- */
+/* What the scene reports of the model full is of the block as it is pressed: areas stretched, and
+ * pressures on these areas, which together carry the load; of small strains nothing is
+ * stretched. */
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
 #include "jobs/contact/contact_case_read.h"
@@ -10,7 +10,7 @@
 #include "tests/support/unstopped.h"
 #include <stdlib.h>
 
-/* Fine bins, so that their centres tell the mean pressure. */
+/* Fine bins, so that their centres give the mean pressure. */
 #define PRESSED(dimension, kinematics)                                                             \
     "{\"surface\": {\"dimension\": " dimension ", \"hurst\": 0.8, \"wavelength_ratio\": 2,"        \
     " \"length_ratio\": 2, \"points_per_wavelength\": 4, \"rms_slope\": 0.2}, \"contact\": {"      \
@@ -48,7 +48,7 @@ static void fixture_open(struct scene_fixture *f, const char *text) {
     cJSON *parameters = cJSON_Parse(text);
     *f = (struct scene_fixture){0};
     assert_non_null(parameters);
-    must(contact_case_read(&f->one_case, parameters, NULL, &err), &err);
+    must(contact_case_read(&f->one_case, parameters, 0, NULL, &err), &err);
     fixture_surface(f);
     must(contact_compliances_create(&f->compliances, &f->one_case, &err), &err);
     must(contact_scene_create(&f->scene, &f->one_case, &f->moments, &f->compliances, &err), &err);
@@ -67,7 +67,7 @@ static void fixture_close(struct scene_fixture *f) {
 }
 
 /* Areas of a state whose nodes in contact cover `now` times what they do on the undeformed face:
- * all that nodes tell is as many times as large. Edges lie where hardly any pressure acts: what is
+ * all areas by nodes are as many times as large. Edges lie where hardly any pressure acts: what is
  * open beyond them has grown as the open nodes have. */
 static void check_areas(struct scene_fixture *f, size_t cell, const struct compliance *compliance,
                         const struct contact_state *state, double now) {
@@ -105,8 +105,8 @@ static void check_areas(struct scene_fixture *f, size_t cell, const struct compl
     area_workspace_destroy(&workspace);
 }
 
-/* Poisson's ratio 0.3: (1 - 2 nu)/(1 - nu) = 4/7. Of full the stretched edges are those it tells
- * unless strains are small. */
+/* Poisson's ratio 0.3: (1 - 2 nu)/(1 - nu) = 4/7. Of full the stretched edges are its edges unless
+ * strains are small. */
 static void check_stretched(struct scene_fixture *f, size_t cell, size_t model,
                             const struct contact_pressed *pressed) {
     double edges = contact_tally_values(&f->tally, MEASURE_EDGES)[cell];
@@ -191,7 +191,7 @@ static void pressures_carry_the_load(void **state) {
     }
 }
 
-/* Where the model does not tell edges so anyway, and where a slope is known. */
+/* Where the model's edges are not stretched already, and where a slope is known. */
 static void stretched_edges_need_a_slope(void **state) {
     (void)state;
     static const struct {

@@ -1,6 +1,6 @@
-/* Sums of contact realisations: values at very light loads keep their digits, realisations without
- * a value are left out and counted, pressures lie on the area in contact, and the rows of single
- * realisations are the same however they were merged. */
+/* Sums of contact realisations: values at very light loads keep their digits, and realisations
+ * without a value are left out and counted. Pressures lie on the area in contact. The rows of
+ * single realisations are the same however they were merged. */
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_tally.h"
 #include "jobs/partial.h"
@@ -28,7 +28,7 @@ static void fixture_open(struct tally_fixture *fixture, const char *text) {
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
-    if (contact_case_read(&fixture->one_case, parameters, NULL, &err) != 0 ||
+    if (contact_case_read(&fixture->one_case, parameters, 0, NULL, &err) != 0 ||
         contact_tally_create(&fixture->tally, &fixture->one_case, &err) != 0)
         fail_msg("%s", err.text);
     cJSON_Delete(parameters);
@@ -92,7 +92,7 @@ static void add_pressures(struct contact_tally *tally, size_t model, double area
     contact_tally_pressures(tally, model, 0, 0, shares);
 }
 
-/* Pressures lie on the area by edges, whatever it is. A block that tells otherwise is refused. */
+/* Pressures lie on the area by edges, whatever it is. A block that has another is refused. */
 static void pressures_lie_on_the_area(void **state) {
     (void)state;
     static const struct {
@@ -132,7 +132,7 @@ static void pressures_lie_on_the_area(void **state) {
 
 /* --- rows --- */
 
-/* Tallies a realisation whose values tell its number. */
+/* Tallies a realisation whose values follow from its number. */
 static void add_row(struct contact_tally *tally, uint64_t realisation) {
     static const enum contact_measure always[] = {MEASURE_NODES, MEASURE_EDGES, MEASURE_GAP,
                                                   MEASURE_ITERATIONS};
@@ -220,7 +220,7 @@ static void rows_hold_the_values(void **state) {
     fixture_close(&f);
 }
 
-/* Rows that do not rise, are not as many as the realisations, or tell of other values than the sums
+/* Rows that do not rise, are not as many as the realisations, or have other values than the sums
  * beside them. */
 static void rows_that_cannot_be_are_refused(void **state) {
     (void)state;

@@ -1,7 +1,6 @@
 /* Protects: stored partial results stay readable. Each holds the fingerprint of its case, so that
  * fingerprints of cases that people have computed must not change, by a bit; these here were
  * written down when the first stores were made. */
-#include "jobs/fingerprint.h"
 #include "jobs/kind.h"
 #include <inttypes.h>
 #include <setjmp.h>

@@ -1,4 +1,5 @@
 /* Protects: the table of kinds, and the rows of their parameters. */
+#include "jobs/contact/companion/companion.h"
 #include "jobs/kind.h"
 #include "schema/json/json.h"
 #include "schema/study/value.h"
@@ -89,7 +90,7 @@ static void mark_read(const char *path, const char *file) {
     paths_found++;
 }
 
-/* Parameters that are told beside results alone. */
+/* Parameters that stand beside results alone. */
 static bool has_no_effect(const char *path) {
     static const char *const TOLD[] = {
         "/contact/young",         "/surface/like/bytes",    "/surface/like/format",
@@ -101,12 +102,12 @@ static bool has_no_effect(const char *path) {
     return false;
 }
 
-/* Both ways: readers ask for rows alone, and every row is read by one of them. */
+/* In both directions: readers ask for rows alone, and every row is read by one of them. */
 static void readers_and_rows_agree(void **state) {
     (void)state;
-    static const char *const READERS[] = {"jobs/surface_case.c", "jobs/contact/contact_case_read.c",
-                                          "jobs/statistics/statistics_case.c", "jobs/target.c",
-                                          "jobs/like_case.c"};
+    static const char *const READERS[] = {
+        "jobs/surface/surface_case.c", "jobs/contact/contact_case_read.c",
+        "jobs/statistics/statistics_case.c", "jobs/target.c", "jobs/like/like_case.c"};
     const char *source = getenv("RUGO_SOURCE");
     if (source == NULL) { /* it is set by tests/run-tests */
         print_message("SKIP: RUGO_SOURCE does not say where the tree is\n");
@@ -114,6 +115,9 @@ static void readers_and_rows_agree(void **state) {
     }
     for (size_t r = 0; r < sizeof READERS / sizeof *READERS; r++)
         paths_each(source, READERS[r], mark_read);
+    for (size_t c = 0; c < COMPANION_COUNT; c++)
+        if (COMPANIONS[c]->parameter != NULL)
+            mark_read(COMPANIONS[c]->parameter, "the table of companions");
     assert_true(paths_found >= 40);
     const struct parameter *row;
     size_t before = 0;

@@ -3,8 +3,8 @@
  * stands; maps that cannot be fitted are refused by name. */
 #include "core/random.h"
 #include "core/surface/surface.h"
-#include "jobs/like_case.h"
-#include "jobs/like_fit.h"
+#include "jobs/like/like_case.h"
+#include "jobs/like/like_fit.h"
 #include "jobs/statistics/statistics_case.h"
 #include "schema/json/json.h"
 #include <math.h>
@@ -112,7 +112,7 @@ static void slope_and_band_are_found_again(void **state) {
     recovers(true);
 }
 
-/* What was fitted makes a case of a study, whose pieces are as large as the map. */
+/* What was fitted makes a case of a study, whose sub-maps are as large as the map. */
 static void makes_a_case(void **state) {
     (void)state;
     struct height_map map = patch(false, 3);
@@ -247,6 +247,10 @@ static void grooves(void **state) {
     cJSON_Delete(surface);
     turn(&map);
     refused(&map, "turn the map");
+    for (size_t j = 0; j < map.grid.ny; j++) /* the same in every row: their grooves do not end */
+        for (size_t i = 0; i < map.grid.nx; i++)
+            map.z[j * map.grid.nx + i] = sin(0.8 * (double)j) + sin(0.21 * (double)(j * j));
+    refused(&map, "more than 1000 times as long");
     height_map_clear(&map);
 }
 

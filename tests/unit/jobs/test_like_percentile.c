@@ -1,10 +1,10 @@
-/* Protects: pieces of surfaces are measured as a map is, to the bit; the percentile of a surface
+/* Protects: sub-maps of surfaces are measured as a map is, to the bit; the percentile of a surface
  * that is drawn from the same ensemble is uniform; it does not depend on how realisations are cut
  * into blocks; counts below, equal and above, and their ends. */
 #include "core/map/detrend.h"
-#include "jobs/like_percentile.h"
-#include "jobs/realisation_map.h"
+#include "jobs/like/like_percentile.h"
 #include "jobs/statistics/statistics_scalars.h"
+#include "jobs/surface/realisation_map.h"
 #include "tests/support/statistics_study.h"
 #include <stdlib.h>
 
@@ -58,7 +58,7 @@ static void pieces_are_measured_as_maps(void **state) {
             if (!(own == found[a] || (isnan(own) && isnan(found[a]))))
                 fail_msg("%s: %.17g and %.17g", PATCH_NAMES[a], own, found[a]);
         }
-        assert_true(told >= PATCH_QUANTITY_COUNT - 2); /* small pieces tell no texture */
+        assert_true(told >= PATCH_QUANTITY_COUNT - 2); /* small sub-maps have no texture */
         free(z);
         free(map);
         cJSON_Delete(parameters);
@@ -84,7 +84,7 @@ static void percentiles_are_uniform(void **state) {
         double values[OTHERS], error, worst = 0;
         size_t found[STEPS] = {0}, below = 0;
         if (a == PATCH_TEXTURE || a == PATCH_CORRELATION_LENGTH)
-            continue; /* of surfaces; not each piece has one */
+            continue; /* of surfaces; not each sub-map has one */
         for (size_t d = 0; d < DRAWS; d++) {
             uint64_t first = d * STEPS;
             for (uint64_t r = 0; r < OTHERS; r++)

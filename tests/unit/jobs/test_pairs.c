@@ -187,7 +187,7 @@ static void contact_by_its_realisations(void **state) {
     side_clear(&b);
 }
 
-/* Over the same realisations a difference is that of what the cases tell, and exacter. */
+/* Over the same realisations a difference is that of the cases' values, with a smaller error. */
 static void scalars_are_those_told(void **state) {
     (void)state;
     static const struct {
@@ -223,8 +223,8 @@ static void scalars_are_those_told(void **state) {
 }
 
 /* Up to 32 realisations are groups of their own: a density's error is that of the differences of
- * what realisations tell alone, less than that of the two cases apart. Bins that fewer than ten of
- * them tell of have the latter. */
+ * single realisations, less than that of the two cases apart. Bins in which fewer than ten of them
+ * have a value have the latter. */
 static void densities_by_groups(void **state) {
     (void)state;
     enum { ALL = 30 };

@@ -101,7 +101,7 @@ struct points_seen {
 };
 
 /* No error is 0: of a mean that nothing or one realisation alone has there is none; all other
- * points have one. valueless tells how many realisations have nothing. */
+ * points have one. valueless counts the realisations that have nothing. */
 static void check_errors(const cJSON *curve, struct points_seen *seen) {
     bool ratio = strcmp(json_at(curve, "/quantity")->valuestring, "summit_mean_curvature") == 0;
     for (int b = 0; b < cJSON_GetArraySize(json_at(curve, "/x")); b++) {
@@ -150,7 +150,7 @@ static void no_error_is_zero(void **state) {
 }
 
 /* Scalars by what the spectrum fixes are exact: their error is 0, that of no other is. Pits are
- * told of surfaces that are not as their mirror images. */
+ * reported for surfaces that are not as their mirror images. */
 static void constants_and_pits(void **state) {
     (void)state;
     static const char *const constants[] = {"rms_height", "rms_slope", "rms_curvature", "m0",
@@ -239,7 +239,7 @@ static void checking(void **state) {
     struct fault_list faults = {0};
     struct study_cost estimate;
     cJSON *parameters = parse(GAUSSIAN);
-    assert_int_equal(kind_check(&statistics_kind()->study, parameters, &faults, &estimate, NULL),
+    assert_int_equal(kind_check(&statistics_kind()->study, parameters, 0, &faults, &estimate, NULL),
                      0);
     assert_true(estimate.case_seconds > 0); /* publishing costs something, whatever it is of */
     assert_int_equal(faults.count, 0);
@@ -250,7 +250,7 @@ static void checking(void **state) {
     cJSON_Delete(parameters);
     parameters = parse("{\"surface\": {\"hurst\": 0.8}, \"statistics\": {\"bins\":"
                        " {\"height\": [3, 3, 5], \"curvature\": [0, 1, 0.5]}}}");
-    assert_int_equal(kind_check(&statistics_kind()->study, parameters, &faults, &estimate, NULL),
+    assert_int_equal(kind_check(&statistics_kind()->study, parameters, 0, &faults, &estimate, NULL),
                      0);
     assert_int_equal(faults.count, 3);
     assert_string_equal(faults.faults[1].pointer, "/statistics/bins/height");

@@ -82,7 +82,7 @@ static void foreign_and_damaged(void **state) {
     runner_destroy(&other);
 }
 
-/* Changed bytes under a seal made anew, as someone might send on purpose: taken or refused, but
+/* Changed bytes under a checksum made anew, as someone might send on purpose: taken or refused, but
  * never a crash, a read past the end or an overflow (run under sanitizers). */
 static void malicious(void **state) {
     (void)state;
@@ -109,7 +109,7 @@ static void malicious(void **state) {
         assert_true(status == 0 || status == ERROR_INPUT);
         taken += status == 0;
     }
-    assert_true(taken > 1000); /* the unchanged ones at least: the seal is made as it should be */
+    assert_true(taken > 1000); /* the unchanged ones at least: their checksum is right */
     cJSON_Delete(curves_of(merger));
     free(copy);
     block_result_clear(&good);

@@ -107,7 +107,8 @@ static void bounds_follow_from_the_pairs(void **state) {
 }
 
 /* A shift of the heights by d changes a density by its slope times d, so that the bound integrates
- * to d times the way up and down, at least twice the maximum; curvatures are told in proportion. */
+ * to d times the total rise and fall, at least twice the maximum; curvatures have bounds in
+ * proportion. */
 static void curves_are_told(void **state) {
     (void)state;
     struct ran ran = run(SURFACE ", " SKEWED "}", 18);

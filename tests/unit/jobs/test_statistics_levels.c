@@ -77,7 +77,7 @@ static void check_matrix(const struct curve *fine, const struct curve *coarse) {
     assert_true(both > 50);
 }
 
-/* Of two levels the bound is 5/4 of the change, of which a study on the coarse grid tells: the
+/* Of two levels the bound is 5/4 of the change, which a study on the coarse grid gives: the
  * surfaces are the same, sampled exactly. */
 static void a_level_is_a_study_on_its_grid(void **state) {
     (void)state;
@@ -123,7 +123,7 @@ static void a_level_is_a_study_on_its_grid(void **state) {
     result_clear(&leveled);
 }
 
-/* With three levels of Gaussian surfaces the errors are those that theory of the grids tells. */
+/* With three levels of Gaussian surfaces the errors are those of theory of the grids. */
 static void three_levels_show_the_order(void **state) {
     (void)state;
     struct case_result result =

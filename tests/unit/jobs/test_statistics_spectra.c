@@ -1,6 +1,6 @@
 /* Protects: the error of discretisation of spectral density and autocorrelation: none of the waves
- * of a band; of means over rings at least what they are off the mean over circles; of heights
- * that are placed point by point what every second point changes; none of what theory expects. */
+ * of a band; of means over rings at least what they are off the mean over circles; of heights that
+ * are assigned point by point the change on every second point; none of what theory expects. */
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_expectation.h"
 #include "tests/support/statistics_study.h"

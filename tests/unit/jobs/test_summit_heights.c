@@ -94,7 +94,7 @@ static void moments_of_all_summits(void **state) {
     }
 }
 
-/* Sums over groups about any common height tell the same as realisations do. */
+/* Sums over groups about any common height give the same as realisations do. */
 static void parts_add_up(void **state) {
     (void)state;
     static struct sample sample;

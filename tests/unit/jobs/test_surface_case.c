@@ -1,6 +1,6 @@
 /* Reading the surface of a case: effective values, every fault that no single range shows with its
  * pointer and words, and the grid that follows. */
-#include "jobs/surface_case.h"
+#include "jobs/surface/surface_case.h"
 #include "schema/study/fault.h"
 #include "tests/support/check.h"
 #include <stdio.h>
@@ -69,7 +69,7 @@ static void everything_given(void **state) {
 }
 
 /* Random amplitudes leave the band as it is, and the spectrum of each surface not; heights that are
- * placed leave neither. */
+ * assigned leave neither. */
 static void what_is_exact(void **state) {
     (void)state;
     static const struct {

@@ -184,7 +184,7 @@ static void a_million_realisations(void **state) {
 }
 
 /* What all lies in one cell may lie elsewhere as rarely as a thing was never seen there: 1.841 of
- * all. One realisation has no error to tell. */
+ * all. One realisation has no known error. */
 static void certain_and_alone(void **state) {
     (void)state;
     struct tally tally;
@@ -237,7 +237,7 @@ static void rare_and_empty(void **state) {
     tally_clear(&tally);
 }
 
-/* A ratio that one realisation has is told without an error; that of two has the error of the
+/* A ratio that one realisation has is reported without an error; that of two has the error of the
  * variance of all cells: k = 1 + u with u of variance 1/3, many in cell 0. */
 static void ratios_of_few(void **state) {
     (void)state;
@@ -265,6 +265,30 @@ static void ratios_of_few(void **state) {
     tally_sums_clear(&sums);
 }
 
+/* A worker's own sums are read again, however large: of values near the bound of what is added,
+ * the squares of a few add up to more than one of them may be. */
+static void large_sums_are_read_again(void **state) {
+    (void)state;
+    struct tally_sums sums, again;
+    struct bytes bytes = {0};
+    assert_int_equal(tally_sums_create(&sums, 1, NULL), 0);
+    assert_int_equal(tally_sums_create(&again, 1, NULL), 0);
+    for (size_t r = 0; r < 4; r++)
+        tally_sums_add(&sums, 0, r % 2 == 0 ? 0x1.fp29 : -0x1.fp29, 1);
+    assert_true(sums.square[0].total > (fixed_point)1 << 120 && sums.square[0].lost == 0);
+    tally_sums_put(&bytes, &sums);
+    bytes_put_checksum(&bytes);
+    struct byte_reader reader = bytes_open(bytes.data, bytes.size);
+    tally_sums_get(&reader, &again);
+    assert_true(!reader.failed && again.square[0].total == sums.square[0].total);
+    for (size_t merged = 0; merged < 200; merged++) /* beyond the range, and counted as lost */
+        tally_sums_merge(&again, &sums);
+    assert_true(again.square[0].lost > 0 && again.square[0].total > 0);
+    bytes_clear(&bytes);
+    tally_sums_clear(&sums);
+    tally_sums_clear(&again);
+}
+
 static void means_and_weights(void **state) {
     (void)state;
     const double x[] = {1, NAN, 2, 6}, weight[] = {1, 5, 1, 2};
@@ -287,6 +311,7 @@ int main(void) {
         cmocka_unit_test(certain_and_alone),
         cmocka_unit_test(rare_and_empty),
         cmocka_unit_test(ratios_of_few),
+        cmocka_unit_test(large_sums_are_read_again),
         cmocka_unit_test(means_and_weights),
     };
     return cmocka_run_group_tests(tests, draw_sample, NULL);

@@ -1,7 +1,7 @@
 /* Protects: errors of rare cells by the neighbours that a walk through the cells finds are those of
  * windows around each cell, which grow by both neighbours at a time, made here from the
  * realisations one by one. */
-#include "jobs/tally_near.h"
+#include "jobs/tally.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <math.h>

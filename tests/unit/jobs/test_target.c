@@ -68,7 +68,7 @@ static void meets_every_point(void **state) {
     assert_int_equal(wanted[1], parts[1].done);
 }
 
-/* Two parts that are hard at points of their own need no more than each at its point: the work is
+/* Two parts that are hard at points of their own need no more than each at its point. The work is
  * that of a search over all numbers, and less than where each point is met by its worst parts. */
 static void takes_the_least_work(void **state) {
     (void)state;
@@ -343,6 +343,52 @@ static void solves_the_nayak_parameter_once(void **state) {
     study_destroy(&study);
 }
 
+/* What a target cannot answer it does not drop: each has its pointer and reason, and what is given
+ * as the target has it anyway is none. */
+static void refuses_what_it_does_not_answer(void **state) {
+    (void)state;
+    static const char *const REFUSED[][3] = {
+        {",\"estimators\":[\"perimeter\"]", "/contact/estimators", "is for surfaces"},
+        {",\"stiffness\":\"some\"", "/contact/stiffness", "measured"},
+        {",\"pressure_pdf\":{\"at\":[0.3]}", "/contact/pressure_pdf/at", "densities of pressure"},
+        {",\"pressure_pdf\":{\"bins\":[0,2,10]}", "/contact/pressure_pdf/bins", "leave it out"},
+        {",\"cell_error\":\"none\"", "/contact/cell_error", "whose length is left out"},
+        {",\"levels\":[4,8]", "/contact/levels", "give one level"}};
+    for (size_t a = 0; a < sizeof REFUSED / sizeof *REFUSED; a++) {
+        struct fault_list faults = {0};
+        assert_null(read_study("", "", "\"halfspace\"", REFUSED[a][0], &faults));
+        assert_int_equal(faults.count, 1);
+        assert_string_equal(faults.faults[0].pointer, REFUSED[a][1]);
+        assert_non_null(strstr(faults.faults[0].detail, REFUSED[a][2]));
+        fault_list_clear(&faults);
+    }
+}
+
+/* Components measure what is asked for, and edges, of which the error is; no more. */
+static void measures_what_is_asked_for(void **state) {
+    (void)state;
+    static const char *const ASKED[][3] = {
+        {"", "[\"edges\"]", "omitted"},
+        {",\"estimators\":\"nodes\"", "[\"edges\",\"nodes\"]", "omitted"},
+        {",\"estimators\":[\"nodes\",\"edges\"],\"stiffness\":\"measured\"",
+         "[\"edges\",\"nodes\"]", "measured"},
+        {",\"stiffness\":\"omitted\"", "[\"edges\"]", "omitted"}};
+    for (size_t a = 0; a < sizeof ASKED / sizeof *ASKED; a++) {
+        struct fault_list faults = {0};
+        struct study *study = read_study("", "", "\"halfspace\"", ASKED[a][0], &faults);
+        assert_non_null(study);
+        for (size_t c = 0; c < study->cases[0].component_count; c++) {
+            const cJSON *parameters = study->cases[0].components[c].parameters;
+            char *estimators = cJSON_PrintUnformatted(json_at(parameters, "/contact/estimators"));
+            assert_string_equal(estimators, ASKED[a][1]);
+            assert_string_equal(cJSON_GetStringValue(json_at(parameters, "/contact/stiffness")),
+                                ASKED[a][2]);
+            cJSON_free(estimators);
+        }
+        study_destroy(&study);
+    }
+}
+
 static void tells_faults(void **state) {
     (void)state;
     static const struct {
@@ -374,6 +420,8 @@ int main(void) {
         cmocka_unit_test(goes_without_what_has_no_room),
         cmocka_unit_test(keeps_what_is_named),
         cmocka_unit_test(keeps_the_shape_of_a_rectangle),
+        cmocka_unit_test(refuses_what_it_does_not_answer),
+        cmocka_unit_test(measures_what_is_asked_for),
         cmocka_unit_test(tells_faults),
         cmocka_unit_test(solves_the_nayak_parameter_once),
     };

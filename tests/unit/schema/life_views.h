@@ -6,7 +6,7 @@
 
 enum { TEXT_SIZE = 4096 };
 
-/* The scalar of a realisation, by which a sum tells what it is over. */
+/* The scalar of a realisation, by which a sum shows what it is over. */
 static inline double value_of(const struct life_job *job, int64_t realisation) {
     return 1000.0 * job->study + 100.0 * job->case_number + (double)(job->first + realisation);
 }

@@ -72,7 +72,7 @@ static void errors_are_put_together(void **state) {
     check_close(curve->errors[ERROR_MODEL].value[1], 4, 0); /* the second case has none */
     assert_true(curve->errors[ERROR_BLOCK].applies && curve->errors[ERROR_BLOCK].value == NULL);
     assert_false(curve->errors[ERROR_CELL].applies);
-    assert_string_equal(out.remark, "area has 2 places in common of 3 and 3");
+    assert_string_equal(out.remark, "area has 2 points in common of 3 and 3");
     result_clear(&out);
     result_clear(&a);
     result_clear(&b);
@@ -93,7 +93,7 @@ static bool scalar(void *context, const char *name, struct paired_value *out) {
     return strcmp(name, "kappa") == 0;
 }
 
-/* A realisation of four lacks a value at the last place: a quarter of two deviations. */
+/* A realisation of four lacks a value at the last point: a quarter of two deviations. */
 static void pairs_are_taken(void **state) {
     (void)state;
     double value = 7;
@@ -128,7 +128,7 @@ static void pairs_are_taken(void **state) {
     result_clear(&b);
 }
 
-/* Bounds are three changes between levels: 3 x 2 and 3 x 1.5 at the first place, where the two
+/* Bounds are three changes between levels: 3 x 2 and 3 x 1.5 at the first point, where the two
  * changes differ by 0.5, and by 1 at the next one. */
 static void meshes_go_together(void **state) {
     (void)state;
@@ -229,7 +229,7 @@ static void formats_hold_it(void **state) {
     add_scalar(&b, "kappa", 1, 4);
     struct case_result out = subtract(&a, &b, &pairs);
     char *text = print(&out, false), *table = print(&out, true);
-    assert_non_null(strstr(text, "{\"case\":4,\"less\":2,\"remark\":\"area has 2 places"));
+    assert_non_null(strstr(text, "{\"case\":4,\"less\":2,\"remark\":\"area has 2 points"));
     assert_non_null(strstr(text, "\"minuend\":[20,30],\"subtrahend\":[1,-2],\"paired\":true"));
     assert_non_null(strstr(text, "\"minuend\":2,\"subtrahend\":1,\"paired\":true"));
     cJSON *document = cJSON_Parse(text);

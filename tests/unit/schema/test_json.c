@@ -213,7 +213,20 @@ static void base64_of_every_length(void **state) {
         free(text);
         free(again);
     }
-    static const char *const BAD[] = {"A", "AA=", "A===", "AB==CD==", "AA A", "AB==", "****"};
+    /* RFC 4648, 10 */
+    static const char *const KNOWN[] = {"",         "Zg==",     "Zm8=",    "Zm9v",
+                                        "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
+    for (size_t size = 0; size < sizeof KNOWN / sizeof *KNOWN; size++) {
+        char *text = NULL;
+        assert_int_equal(base64_encode((const unsigned char *)"foobar", size, &text, NULL), 0);
+        assert_string_equal(text, KNOWN[size]);
+        free(text);
+    }
+    /* White space, padding that is not at the end or too long, and bits behind the last byte. */
+    static const char *const BAD[] = {
+        "A",         "AA=",      "A===",     "AB==CD==", "AA A",        "AB==",
+        "****",      "AA =",     "AA==    ", "AA= =AAA", "AAAAA===",    "AA==AAAA",
+        "\nAAAAAAA", "AAAA   A", "====",     "AAAA====", "AA==\n\n\n\n"};
     size_t length;
     for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++)
         assert_int_equal(base64_decode(BAD[b], &again, &length, NULL), ERROR_INPUT);

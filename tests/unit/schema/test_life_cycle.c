@@ -14,7 +14,7 @@
 
 enum { SEQUENCES = 2000 };
 
-/* --- what workers and people do; each tells the model and compares the answers --- */
+/* --- what workers and people do; each changes the model, too, and compares the answers --- */
 
 /* What the store returns of a change that the model accepts or refuses. */
 static int answer_of(bool accepted) {
@@ -216,7 +216,7 @@ static int change(struct world *world, struct store *store) {
 
 /* --- publishing --- */
 
-/* What the store was told of the last case offered is committed by now. */
+/* The store's changes for the last case offered are committed by now. */
 static void confirm_mark(struct world *world) {
     if (world->mark_pending)
         life_mark(&world->life, world->mark.study, world->mark.case_number, world->mark.revision);

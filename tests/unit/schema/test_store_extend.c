@@ -1,6 +1,6 @@
 /* Protects: a study given more realisations queues what it lacks and nothing else, whatever state
  * its jobs are in; and a study takes the blocks of another only where both are the same, of the
- * same edition, and it asks for more. */
+ * same form of results, and it asks for more. */
 #include "schema/store/store.h"
 #include "schema/study/study_reader.h"
 #include "tests/support/check.h"
@@ -131,7 +131,7 @@ static void what_is_missing_is_queued(void **state) {
     study_status_clear(&now);
     check_status(store, id, "running", 0, 80); /* until its cases are published */
     check_counts("missing.db", 40);
-    /* whose results are of before editions were kept may be of any program */
+    /* results without a form may be of any program */
     sqlite3 *db = NULL;
     assert_int_equal(sqlite3_open("missing.db", &db), SQLITE_OK);
     assert_int_equal(sqlite3_exec(db, "UPDATE study SET edition = NULL", NULL, NULL, NULL),
@@ -171,7 +171,7 @@ static void blocks_are_taken_from_the_same_study_alone(void **state) {
     } OTHERS[] = {{20, "1", 7, 0},   /* no more of them: a study to compare with */
                   {10, "1", 7, 0},   /* fewer */
                   {30, "0.9", 7, 0}, /* another case */
-                  {30, "1", 8, 0},   /* another edition */
+                  {30, "1", 8, 0},   /* another form of results */
                   {30, "1", 0, 0},   /* of none */
                   {30, "1.0", 7, 30}};
     for (size_t o = 0; o < sizeof OTHERS / sizeof *OTHERS; o++) {

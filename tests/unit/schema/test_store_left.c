@@ -1,5 +1,5 @@
-/* Protects: the time left that a store tells is near the truth from the first tenth on, however far
- * off the estimates were, however jobs fall to workers, and behind whatever else waits. */
+/* Protects: the time left that a store estimates is near the truth from the first tenth on, however
+ * far off the estimates were, however jobs fall to workers, and behind whatever else waits. */
 #include "schema/store/schedule.h"
 #include "schema/store/store.h"
 #include "schema/study/fault.h"
@@ -98,8 +98,8 @@ static bool claim(struct store *store, unsigned number, struct worker *worker, d
 
 enum { SECONDS_MOST = 20000 };
 
-/* Works a study off second by second, with reports: what is told each second of the time
- * left and the share. Returns the seconds that it took. */
+/* Works a study off second by second, with reports: what is reported each second of the time left
+ * and the share. Returns the seconds that it took. */
 static int work_off(struct store *store, const char *id, unsigned workers, const double *rates,
                     double *told, double *share) {
     struct worker at[WORKERS_MOST] = {0};

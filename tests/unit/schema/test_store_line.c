@@ -1,6 +1,6 @@
 /* Protects: owners take turns at the workers by the time that their jobs take and by their weights,
  * whoever came first and however long a study is; of an owner the study of higher priority is
- * first; and a study that waits tells its place and when it starts. */
+ * first; and a study that waits has its position and an estimate of when it starts. */
 #include "schema/store/store.h"
 #include "schema/study/study_reader.h"
 #include "tests/support/check.h"

@@ -56,7 +56,7 @@ static void hand_in(struct scene *scene, size_t at) {
     drop(scene, at);
 }
 
-/* Ends a lease in any way. */
+/* Ends a lease in one of all manners. */
 static void end_one(struct scene *scene) {
     size_t at = scene->count > 0 ? (size_t)below(scene, scene->count) : 0;
     if (scene->count == 0)

@@ -1,5 +1,5 @@
-/* Protects: a study is read as it was meant, or every fault of it is told with its pointer, what is
- * there and what is allowed; sweeps are numbered in the order of the file. */
+/* Protects: a study is read as it was meant, or every fault of it is reported with its pointer,
+ * what is there and what is allowed; sweeps are numbered in the order of the file. */
 #include "schema/study/fault.h"
 #include "schema/study/study_reader.h"
 #include "tests/support/check.h"

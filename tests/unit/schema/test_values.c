@@ -1,5 +1,5 @@
 /* Protects: values of a case are read as they were given or as their defaults; what does not fit is
- * told with the words of the one validator; and a reader that asks for what no table has fails. */
+ * refused in the words of the one validator; and a reader that asks for what no table has fails. */
 #include "schema/study/values.h"
 #include "tests/support/check.h"
 #include <stdlib.h>

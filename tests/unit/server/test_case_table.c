@@ -1,6 +1,7 @@
 /* Protects: the table of cases: which rows and columns a request stands for, that every number
- * stands in its place in each format, and what is told of a name or place that there is not. */
-#include "server/show/case_table.h"
+ * stands in its row and column in each format, and the message on a name or point that there is
+ * not. */
+#include "server/show/table/case_table.h"
 #include "tests/support/check.h"
 #include "tests/support/result_builder.h"
 #include <stdio.h>
@@ -10,7 +11,7 @@
 enum { CASES = 4, LOADS = 3 };
 static const double HURST[CASES] = {0.2, 0.2, 0.8, 0.8}, X[LOADS] = {0.03, 0.06, 0.1};
 
-/* A value that tells its case, model, level and place. */
+/* A value that encodes its case, model, level and point. */
 static double value_of(size_t c, const char *model, double level, size_t k) {
     return 1 + (double)c + (strcmp(model, "layered") == 0 ? 0.5 : 0) + level / 100 +
            (double)k / 1000;
@@ -210,7 +211,7 @@ static void each_format_has_every_number(void **state) {
                  "case  n  hurst  shape         kappa  area:layered@0.1\n"
                  "   0  4    0.2  a      2.00 +- 0.12      1.66 +- 0.25\n");
     check_format(&table, TABLE_TEXT,
-                 "area:layered@0.1: y, edges at x; errors beside chance up to ");
+                 "area:layered@0.1: y, edges at x; errors other than statistical up to ");
     check_format(&table, TABLE_TEXT, "Errors not known: cell.");
     case_table_clear(&table);
 }

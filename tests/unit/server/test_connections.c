@@ -1,5 +1,5 @@
 /* Protects: at the limit the right connection goes, and one that is needed stays. */
-#include "server/http/connections.h"
+#include "server/http/guard/connections.h"
 #include "tests/support/check.h"
 #include "worker/clock.h"
 #include <arpa/inet.h>

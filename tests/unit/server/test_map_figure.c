@@ -2,8 +2,8 @@
  * says what the characterisation says; names are text, never markup; and maps that have nothing to
  * draw, or holes, or one row, are drawn all the same. */
 #include "schema/json/json.h"
-#include "server/show/map_characterisation.h"
-#include "server/show/map_figure.h"
+#include "server/show/map/map_figure.h"
+#include "server/show/map/map_report.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include <cjson/cJSON.h>
@@ -13,8 +13,10 @@
 
 struct page {
     struct height_map map;
+    struct preparation asked;
     struct preparation_record record;
-    struct characterisation found;
+    struct map_characterisation measured;
+    struct named_values found;
     char *text;
 };
 
@@ -38,11 +40,13 @@ static void make(struct page *page, size_t nx, size_t ny, double height, const c
 static void draw(struct page *page) {
     struct error err = {0};
     size_t size = 0;
-    assert_int_equal(preparation_run(&page->record, &page->map, &(struct preparation){0}, &err), 0);
-    assert_int_equal(map_characterise(&page->found, &page->map, &page->record,
+    assert_int_equal(preparation_run(&page->record, &page->map, &page->asked, &err), 0);
+    assert_int_equal(map_characterise(&page->measured, &page->map, &page->record,
                                       &(struct spectrum_fit_request){0}, &err),
                      0);
-    const struct map_figure figure = {&page->found, &page->map, &page->record};
+    assert_int_equal(
+        map_report_fill(&page->found, &page->measured, &page->map, &page->record, &err), 0);
+    const struct map_figure figure = {&page->measured, &page->found, &page->map, &page->record};
     FILE *file = open_memstream(&page->text, &size);
     assert_non_null(file);
     assert_int_equal(map_figure_draw(&figure, file, &err), 0);
@@ -61,7 +65,8 @@ static void draw(struct page *page) {
 }
 
 static void clear(struct page *page) {
-    characterisation_clear(&page->found);
+    named_values_clear(&page->found);
+    map_characterisation_clear(&page->measured);
     height_map_clear(&page->map);
     free(page->text);
 }
@@ -72,11 +77,10 @@ static void lengths_are_in_readable_units(void **state) {
     char row[64];
     make(&page, 48, 32, 30e-9, "m");
     draw(&page);
-    snprintf(row, sizeof row, ">%.4g nm<",
-             1e9 * characterisation_value(&page.found, "heights", "rms"));
+    snprintf(row, sizeof row, ">%.4g nm<", 1e9 * named_number(&page.found, "heights", "rms"));
     assert_true(count_of(page.text, row) >= 1);
     snprintf(row, sizeof row, ">%.4g 1/\xc2\xb5m<",
-             1e-6 * characterisation_value(&page.found, "finite_difference", "rms_curvature"));
+             1e-6 * named_number(&page.found, "finite_difference", "rms_curvature"));
     assert_int_equal(count_of(page.text, row), 1);
     assert_int_equal(count_of(page.text, ">5 \xc2\xb5m<"), 1); /* the bar beside 24 of them */
     assert_int_equal(count_of(page.text, "48 \xc3\x97 32 points, 0.5 \xc2\xb5m apart; open"), 1);
@@ -130,7 +134,7 @@ static void the_file_holds_the_characterisation(void **state) {
     draw(&page);
     FILE *file = open_memstream(&json, &size);
     assert_non_null(file);
-    assert_true(characterisation_print_json(file, &page.found));
+    assert_true(named_values_print_json(file, &page.found));
     assert_int_equal(fclose(file), 0);
     char *kept = metadata_of(page.text);
     assert_string_equal(kept, json);
@@ -175,19 +179,40 @@ static void holes_profiles_and_flat_maps_are_drawn(void **state) {
     clear(&page);
 }
 
+/* Heights far from 0 that differ by their last digit alone, which no multiple of the difference is
+ * far enough from the next one to count by. */
+static void heights_that_hardly_differ_are_drawn(void **state) {
+    (void)state;
+    struct page page;
+    make(&page, 16, 16, 0, "");
+    for (size_t n = 0; n < 256; n++)
+        page.map.z[n] = n % 3 == 0 ? 0x1p60 : nextafter(0x1p60, INFINITY);
+    page.asked.detrend = ASK_DETREND_NONE;
+    draw(&page);
+    clear(&page);
+    for (size_t ny = 1; ny <= 16; ny += 15) {
+        make(&page, 16, ny, 0, "");
+        for (size_t n = 0; n < 16 * ny; n++)
+            page.map.z[n] = 0x1p60;
+        page.asked.detrend = ASK_DETREND_NONE;
+        draw(&page);
+        clear(&page);
+    }
+}
+
 /* Draws again a map without a fit, with these numbers of one, and expects this in its row. */
 static void expect_shortest(struct page *page, const double values[3], const char *expected) {
     static const char *const NAMES[3] = {"short_wavelength", "short_wavelength_low",
                                          "short_wavelength_high"};
     struct error err = {0};
     size_t size = 0, count = page->found.count;
-    assert_true(isnan(characterisation_value(&page->found, "spectrum_fit", NAMES[0])));
+    assert_true(isnan(named_number(&page->found, "spectrum_fit", NAMES[0])));
     for (size_t v = 0; v < 3; v++)
-        characterisation_add(&page->found, "spectrum_fit", NAMES[v], values[v]);
+        named_values_add(&page->found, "spectrum_fit", NAMES[v], values[v]);
     free(page->text);
     FILE *file = open_memstream(&page->text, &size);
     assert_non_null(file);
-    const struct map_figure figure = {&page->found, &page->map, &page->record};
+    const struct map_figure figure = {&page->measured, &page->found, &page->map, &page->record};
     assert_int_equal(map_figure_draw(&figure, file, &err), 0);
     assert_int_equal(fclose(file), 0);
     assert_int_equal(count_of(page->text, expected), 1);
@@ -211,6 +236,7 @@ int main(void) {
         cmocka_unit_test(without_units_there_are_none),
         cmocka_unit_test(the_file_holds_the_characterisation),
         cmocka_unit_test(holes_profiles_and_flat_maps_are_drawn),
+        cmocka_unit_test(heights_that_hardly_differ_are_drawn),
         cmocka_unit_test(intervals_leave_room_for_their_labels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

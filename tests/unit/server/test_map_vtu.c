@@ -1,13 +1,13 @@
 /* Protects: a map as a VTU file has all its points, cells and fields, to the last bit. */
 #include "core/memory_file.h"
 #include "schema/json/json.h"
-#include "server/show/map_vtu.h"
+#include "server/show/map/map_vtu.h"
 #include "tests/support/check.h"
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The bytes of an array, behind its header, which must tell their number. The caller frees what
+/* The bytes of an array, behind its header, which must have their number. The caller frees what
  * *data begins with. */
 static unsigned char *array_of(const char *text, const char *name, size_t *size) {
     char pattern[60];

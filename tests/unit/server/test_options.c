@@ -1,4 +1,4 @@
-/* Protects: the one table of options: each type's values, bounds and defaults, what is told of
+/* Protects: the one table of options: each type's values, bounds and defaults, the messages on
  * wrong ones, and that every command's own table is sound. */
 #include "server/command/command.h"
 #include "tests/support/check.h"
@@ -10,7 +10,7 @@
 
 struct values {
     bool flag;
-    const char *text;
+    const char *text, *model;
     unsigned count;
     int64_t index, pair[2];
     double number;
@@ -21,6 +21,7 @@ struct values {
 static const struct option_row ROWS[] = {
     {"flag", 'f', OPTION_FLAG, 0, 0, AT(flag), NULL, NULL, "a flag"},
     {"text", 't', OPTION_TEXT, 0, 0, AT(text), "TEXT", "standard", "a text"},
+    {"model", 0, OPTION_MODEL, 0, 0, AT(model), "MODEL", "halfspace", "a model"},
     {"count", 0, OPTION_COUNT, 1, 7, AT(count), "N", "3", "a count"},
     {"index", 0, OPTION_INDEX, 0, 0, AT(index), "I", NULL, "an index"},
     {"pair", 0, OPTION_PAIR, 0, 0, AT(pair), "A B", NULL, "two indices"},
@@ -29,7 +30,7 @@ static const struct option_row ROWS[] = {
     {"list", 0, OPTION_LIST, 0, 0, AT(list), "WORD", NULL, "words"},
     {0}};
 
-/* Parses a line of words; what is told on standard error goes into told. */
+/* Parses a line of words; keeps what is printed on standard error. */
 static int parse(const char *line, struct values *values, const char **argument, char told[200]) {
     static char copy[200];
     char *argv[24] = {"test"};
@@ -60,6 +61,7 @@ static void defaults(void **state) {
     assert_null(argument);
     assert_false(v.flag);
     assert_string_equal(v.text, "standard");
+    assert_string_equal(v.model, "halfspace");
     assert_int_equal(v.count, 3);
     assert_int_equal(v.index, -1);
     assert_true(v.pair[0] == -1 && v.pair[1] == -1);
@@ -112,6 +114,7 @@ static void wrong_values_are_told(void **state) {
     static const struct {
         const char *line, *text;
     } WRONG[] = {
+        {"--model none", "--model none is not halfspace, layered or full"},
         {"--count 0", "--count 0 is not a whole number in [1, 7]"},
         {"--count 8", "--count 8 is not a whole number in [1, 7]"},
         {"--count 99999999999999999999", "is not a whole number in [1, 7]"},
@@ -156,7 +159,7 @@ static void rising_lists(void **state) {
         assert_false(rising_numbers(WRONG[w], 3, values, &count));
 }
 
-/* Names told apart, defaults that parse, a value that lies within the struct, help for all. */
+/* Distinct names, defaults that parse, a value that lies within the struct, help for all. */
 static void tables_of_the_commands_are_sound(void **state) {
     (void)state;
     size_t rows = 0;

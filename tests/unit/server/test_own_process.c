@@ -1,7 +1,7 @@
 /* Protects: what a peer sent is read by a process that has so much memory and time and no more,
- * that ends when it is not wanted, and whose end, words and output are told as they were. The
+ * that ends when it is not wanted, and whose end, words and output are reported as they were. The
  * process is this program again: its first argument says what it does. */
-#include "server/http/own_process.h"
+#include "server/http/route/own_process.h"
 #include "tests/support/check.h"
 #include "worker/clock.h"
 #include <errno.h>
@@ -114,7 +114,7 @@ static void bytes_words_and_status_come_back(void **state) {
 
 static void memory_is_bounded(void **state) {
     (void)state;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef RUGO_SANITIZED
     print_message("SKIP: sanitizers take any address space\n");
     skip();
 #else
@@ -146,7 +146,7 @@ static void it_ends_when_it_is_not_wanted(void **state) {
 
 static void a_breakdown_is_told(void **state) {
     (void)state;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef RUGO_SANITIZED
     print_message("SKIP: sanitizers catch the signal\n");
     skip();
 #else

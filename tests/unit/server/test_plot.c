@@ -1,7 +1,7 @@
-/* Protects: a picture tells its curves apart by panels, colours and dashes, says what it leaves
- * out, and tells models, levels, estimators and theories apart. */
-#include "server/show/plot.h"
-#include "server/show/plot_layout.h"
+/* Protects: a picture distinguishes its curves by panels, colours and dashes, says what it leaves
+ * out, and distinguishes models, levels, estimators and theories. */
+#include "server/show/plot/plot.h"
+#include "server/show/plot/plot_layout.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A curve of two points. theory: a value that tells theories apart; 0 for none. */
+/* A curve of two points. theory: a value that distinguishes theories; 0 for none. */
 static void add_curve(struct case_result *one, const char *quantity, const char *series,
                       const char *model, double level, double theory) {
     struct curve curve = built_points(one, quantity, 2, (const double[]){0.1, 0.2},
@@ -105,7 +105,7 @@ static void lines_narrow_as_far_as_they_must(void **state) {
     }
 }
 
-/* Numbers rise, and are told by their symbols; words stand in the order of the study. */
+/* Numbers rise, and have their symbols; words stand in the order of the study. */
 static void channels_name_their_values(void **state) {
     (void)state;
     struct error err = {0};
@@ -152,7 +152,7 @@ static void what_there_is_not_is_refused(void **state) {
          "colour: \"shape\" does not differ between the lines; what differs: hurst"},
         {{.quantity = "contact_area", .names = {"hurst", "surface/hurst", NULL}},
          ERROR_INPUT,
-         "colour: \"surface/hurst\" is shown in another way"},
+         "colour: \"surface/hurst\" is shown by another channel"},
         {{.quantity = "contact_area", .names = {[CHANNEL_DASH] = "hurst"}},
          ERROR_INPUT,
          "has 7 values, at most 6"},
@@ -189,7 +189,7 @@ static void kinematics_go_with_their_model(void **state) {
     add_curve(one, "contact_area", "edges", "full", 4, 0);
     one->curves[2].kinematics = "green";
     assert_int_equal(plot_lines_choose(&lines, &study, &area, &err), 0);
-    assert_int_equal(lines.channels[CHANNEL_COLOUR].count, 3); /* which tells the model, too */
+    assert_int_equal(lines.channels[CHANNEL_COLOUR].count, 3); /* which names the model, too */
     assert_int_equal(lines.channels[CHANNEL_DASH].count, 1);
     plot_lines_clear(&lines);
     study_result_clear(&study);
@@ -282,7 +282,7 @@ static void missing_realisations_are_seen(void **state) {
     study_result_clear(&study);
 }
 
-/* More than colours can tell apart stand in panels, which share their axes; numbers are in the
+/* More than colours can distinguish stand in panels, which share their axes; numbers are in the
  * margins alone. */
 static void many_cases_are_panels(void **state) {
     (void)state;

@@ -1,7 +1,7 @@
 /* Protects: the picture of speed against error has a line, a circle and a label a series, its front
  * is the least of the lines, and it says which sources of error it does not know. */
-#include "server/show/plot_cost.h"
-#include "server/show/plot_frame.h"
+#include "server/show/plot/plot_cost.h"
+#include "server/show/plot/plot_frame.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Protects: the picture of a density has a colour for each level that occurs, theories as contours
  * where they cross the levels, joined bins that keep their mean, and the case's name. */
-#include "server/show/plot_density.h"
-#include "server/show/plot_heat.h"
+#include "server/show/plot/plot_density.h"
+#include "server/show/plot/plot_heat.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"

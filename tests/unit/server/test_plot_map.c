@@ -1,7 +1,7 @@
-/* Protects: the picture of a surface marks each of its summits at its place, shows the extremes of
- * a trace however many points it has, and says where it marks but the highest. */
-#include "server/show/plot_frame.h"
-#include "server/show/plot_map.h"
+/* Protects: the picture of a surface marks each of its summits at its position, shows the extremes
+ * of a trace however many points it has, and says where it marks but the highest. */
+#include "server/show/plot/plot_frame.h"
+#include "server/show/plot/plot_map.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include <math.h>
@@ -136,6 +136,23 @@ static void open_maps_end_and_have_holes(void **state) {
     free(gap);
 }
 
+/* Heights that are all the same, far from 0, or as good as the same, are drawn all the same. */
+static void next_to_flat_maps_are_drawn(void **state) {
+    (void)state;
+    static const double HEIGHTS[][2] = {{1e17, 1e17}, {0, 5e-324}, {-1e-310, 3e-310}, {1e38, 1e38}};
+    for (size_t h = 0; h < sizeof HEIGHTS / sizeof *HEIGHTS; h++)
+        for (size_t ny = 1; ny <= 20; ny += 19) {
+            const struct grid grid = {.nx = 20, .ny = ny, .lx = 20, .ly = (double)ny};
+            double z[400];
+            for (size_t n = 0; n < 20 * ny; n++)
+                z[n] = HEIGHTS[h][n % 2];
+            char *text = draw(&grid, z);
+            assert_int_equal(count_of(text, "inf"), 0);
+            assert_int_equal(count_of(text, "nan"), 0);
+            free(text);
+        }
+}
+
 /* A flat surface has neither summits nor a range. */
 static void flat_surfaces_are_drawn(void **state) {
     (void)state;
@@ -157,6 +174,7 @@ int main(void) {
         cmocka_unit_test(extremes_of_long_traces_are_seen),
         cmocka_unit_test(open_maps_end_and_have_holes),
         cmocka_unit_test(flat_surfaces_are_drawn),
+        cmocka_unit_test(next_to_flat_maps_are_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

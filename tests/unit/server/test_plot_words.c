@@ -1,6 +1,6 @@
-/* Protects: labels are set as people write them, and nothing of them becomes markup by chance. */
+/* Protects: labels are set as people write them, and nothing of them becomes markup. */
 #include "core/memory_file.h"
-#include "server/show/plot_words.h"
+#include "server/show/plot/plot_words.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 #include <string.h>

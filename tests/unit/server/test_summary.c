@@ -1,9 +1,9 @@
-/* Protects: tables show what the kind's view asks for, tell models, sources of error and missing
- * realisations apart, and need no view to show a kind. */
+/* Protects: tables show what the kind's view asks for, distinguish models, sources of error and
+ * missing realisations, and need no view to show a kind. */
 #include "schema/result/report.h"
-#include "server/show/summary.h"
-#include "server/show/summary_cells.h"
-#include "server/show/summary_status.h"
+#include "server/show/summary/summary.h"
+#include "server/show/summary/summary_cells.h"
+#include "server/show/summary/summary_status.h"
 #include "tests/support/check.h"
 #include "tests/support/result_builder.h"
 #include <stdio.h>

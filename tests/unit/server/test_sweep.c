@@ -1,6 +1,6 @@
 /* Protects: the picture of a scalar over a parameter has a line for each setting of the others,
  * marks with their errors, theories once each, and says what it leaves out or cannot draw. */
-#include "server/show/sweep.h"
+#include "server/show/table/sweep.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"

@@ -7,7 +7,7 @@
 #include "tests/support/seed.h"
 #include "tests/support/sql.h"
 #include "tests/unit/worker/small_study.h"
-#include "worker/aggregate.h"
+#include "worker/publish/aggregate.h"
 #include "worker/worker.h"
 
 enum { CASES = 2 };

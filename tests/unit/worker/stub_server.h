@@ -18,7 +18,7 @@
 
 #include <cmocka.h>
 
-/* Answers every request with the same bytes, in one of these ways. */
+/* Answers every request with the same bytes, in one of these manners. */
 enum manner { ANSWER, ANSWER_AND_CLOSE, SILENT, DRIP, ENDLESS };
 struct stub {
     enum manner manner;

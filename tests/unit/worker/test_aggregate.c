@@ -4,10 +4,9 @@
 #include "tests/support/result_tree.h"
 #include "tests/support/sql.h"
 #include "tests/unit/worker/small_study.h"
-#include "worker/aggregate.h"
-#include "worker/publish.h"
-#include "worker/realisation_values.h"
-#include "worker/source.h"
+#include "worker/link/source.h"
+#include "worker/publish/aggregate.h"
+#include "worker/publish/publish.h"
 #include "worker/worker.h"
 
 #include <math.h>
@@ -153,7 +152,7 @@ static void published_equals_merged(void **state) {
     fixture_close(&fixture);
 }
 
-/* A study under way shows what is there, and says how far it is. */
+/* A study that runs shows what is there, and says how far it is. */
 static void partial_curves_say_how_far(void **state) {
     (void)state;
     struct fixture fixture;
@@ -233,7 +232,7 @@ static void report_agrees_with_the_curves(void **state) {
     assert_true(fabs(stated - sqrt(error / size)) <= 1e-14);
     assert_true(stated > 0 && stated < 1);
     assert_null(cJSON_GetObjectItem(json_at(report, "/cases/0"), "model_error"));
-    /* without levels nothing tells what the grid does to summits: there is no total */
+    /* without levels the effect of the grid on summits is not known: there is no total */
     assert_true(cJSON_IsNull(json_at(report, "/cases/0/discretisation_error")));
     assert_true(cJSON_IsNull(json_at(report, "/cases/0/total_error")));
     assert_true(number_at(report, "/cases/1/realisations") == 24);
@@ -308,8 +307,8 @@ static double at(const cJSON *curve, const char *name, int k) {
     return number_at(curve, place);
 }
 
-/* What the curve owes to its mesh: its deviation from the limit of the finest one, within the bound
- * of that. */
+/* The discretisation error of the curve: its deviation from the limit of the finest one, within the
+ * bound of that. */
 static double mesh_deviation(const cJSON *curve, const cJSON *finest) {
     double above = 0, below = 0;
     for (int k = 0; k < 4; k++) {
@@ -321,7 +320,7 @@ static double mesh_deviation(const cJSON *curve, const cJSON *finest) {
     return sqrt(above / below);
 }
 
-/* What the finest curve owes to its model. */
+/* The model error of the finest curve. */
 static double model_deviation(const cJSON *finest) {
     double above = 0, below = 0;
     for (int k = 0; k < 4; k++) {
@@ -331,8 +330,7 @@ static double model_deviation(const cJSON *finest) {
     return sqrt(above / below);
 }
 
-/* With the cell's, all sources are known of a series of levels: the total is of all that are told.
- */
+/* With the cell's, all sources are known of a series of levels: the total is of all of them. */
 static void check_total(const cJSON *entry) {
     static const char *const SOURCES[] = {"/discretisation_error", "/cell_error",
                                           "/block_error",          "/model_error",
@@ -392,7 +390,7 @@ static void report_tells_levels_and_models_apart(void **state) {
 }
 
 /* A case that has not begun has no curves and no scalars, in a study that has begun and in one that
- * has not: nothing is merged for it, and the whole table of ten thousand comes at once. */
+ * has not. Nothing is merged for it, and the whole table of ten thousand comes at once. */
 static void cases_not_begun_are_empty(void **state) {
     (void)state;
     struct fixture fixture;
@@ -500,7 +498,7 @@ static void spoil(struct fixture *fixture, int case_number) {
     sqlite3_close(db);
 }
 
-/* A case whose stored results cannot be merged says why, in its own place; the others are as they
+/* A case whose stored results cannot be merged says why, in its own entry; the others are as they
  * would be without it. Asked for alone, or with none beside it that can be had, it is a failure. */
 static void a_case_that_cannot_be_merged_is_told(void **state) {
     (void)state;

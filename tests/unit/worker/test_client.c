@@ -1,7 +1,7 @@
 /* The client against servers that are away, slow, cut off, endless or no servers at all: an error
  * each time, within its time and memory, and the token never shown. */
 #include "tests/unit/worker/stub_server.h"
-#include "worker/client.h"
+#include "worker/link/client.h"
 
 static struct client *client_of(const char *url, const char *token) {
     struct client *client = NULL;

@@ -3,7 +3,7 @@
  * for independent cases draws anew in each; with any number of workers, in blocks of any size. */
 #include "schema/result/result.h"
 #include "tests/unit/worker/small_study.h"
-#include "worker/aggregate.h"
+#include "worker/publish/aggregate.h"
 #include "worker/worker.h"
 
 /* The half-space knows no Poisson's ratio but that in E*, which the pressures are in units of; the

@@ -1,7 +1,7 @@
 /* One case of a stored study less another: while it runs, when it is done, where cases are
  * independent, and what is refused. */
 #include "tests/unit/worker/small_study.h"
-#include "worker/comparison.h"
+#include "worker/publish/comparison.h"
 #include "worker/worker.h"
 #include <math.h>
 
@@ -45,8 +45,8 @@ static void a_difference_is_by_pairs(void **state) {
     fixture_close(&fixture);
 }
 
-/* The cases have surfaces of their own: errors are the root of the sum of squares, and it is told.
- */
+/* The cases have surfaces of their own: errors are the root of the sum of squares, and a note says
+ * so. */
 static void independent_cases_are_no_pairs(void **state) {
     (void)state;
     struct fixture fixture;

@@ -2,7 +2,7 @@
  * leave the bits of the curves alone (run under ThreadSanitizer too). */
 #include "tests/support/result_tree.h"
 #include "tests/unit/worker/small_study.h"
-#include "worker/aggregate.h"
+#include "worker/publish/aggregate.h"
 #include "worker/worker.h"
 
 /* Two cases, each of two models on two levels. */

@@ -5,7 +5,7 @@
 #include "tests/support/effort.h"
 #include "tests/support/seed.h"
 #include "tests/unit/worker/damaged_store.h"
-#include "worker/source.h"
+#include "worker/link/source.h"
 
 struct outcome {
     unsigned same, refused;

@@ -2,7 +2,7 @@
  * or done in the end. */
 #include "tests/unit/worker/small_study.h"
 #include "worker/dispatcher.h"
-#include "worker/publish.h"
+#include "worker/publish/publish.h"
 
 #include "jobs/runner.h"
 #include <time.h>

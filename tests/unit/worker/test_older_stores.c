@@ -4,8 +4,8 @@
  * made. */
 #include "tests/support/sql.h"
 #include "tests/unit/worker/small_study.h"
-#include "worker/aggregate.h"
-#include "worker/verify.h"
+#include "worker/publish/aggregate.h"
+#include "worker/publish/verify.h"
 #include "worker/worker.h"
 
 enum { STUDIES = 5, ROWS_MOST = 1 << 20 };
@@ -89,7 +89,7 @@ static void check_same_rows(const char *path, const char *study, const struct fi
 }
 
 /* Cases from this one on are compared with a fresh run. Statistics that were published before stay
- * as they were told: pits are counted beside summits since, and rare ones have other errors. */
+ * as they were: pits are counted beside summits since, and rare ones have other errors. */
 static void check_study(const char *path, const struct study_status *about, int from) {
     struct fixture fresh;
     char *source = rows_of(path,
@@ -100,8 +100,8 @@ static void check_study(const char *path, const struct study_status *about, int 
     assert_int_equal(about->cases_failed, 0);
     assert_int_equal(about->random, RANDOM_INDEPENDENT);
     run_fresh(&fresh, source);
-    /* Areas by edges were told by another law, and pressures beside edges by none. Contact was
-     * solved by other steps to the same tolerance, so that four digits are the same; stiffness, an
+    /* Areas by edges followed another law, and pressures beside edges by none. Contact was solved
+     * by other steps to the same tolerance, so that four digits are the same; stiffness, an
      * energy's slope, has a wider one. */
     check_same_rows(path, about->id, &fresh, from,
                     "quantity, series, x, iif(model IS NULL, y, printf('%.4g', y)), "
@@ -122,7 +122,7 @@ static void check_study(const char *path, const struct study_status *about, int 
     free(source);
 }
 
-/* What an older program left half-way in another format is given up, and computed anew. */
+/* What an older program left unfinished in another format is given up, and computed anew. */
 static void retry_failed(struct store *store, const char *path) {
     struct study_status *list = NULL;
     struct error err = {0};
@@ -213,7 +213,7 @@ static void a_store_of_version_3_goes_on(void **state) {
 }
 
 /* Its tables lack columns that curves got later: what it published stays, and what this program
- * publishes finds its place. */
+ * publishes finds its columns. */
 static void an_early_layout_is_mended(void **state) {
     (void)state;
     static const char points[] =

@@ -1,4 +1,4 @@
-/* Protects: the reference of the study file tells of every parameter, and the one in the tree is
+/* Protects: the reference of the study file explains every parameter, and the one in the tree is
  * what the tables say today. */
 #include "jobs/kind.h"
 #include "schema/study/reference.h"

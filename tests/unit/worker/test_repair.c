@@ -1,9 +1,9 @@
-/* Protects: `rugo verify` finds what is damaged in a store, and `rugo repair` mends it: with what
- * is computed anew the results are byte for byte what they were. */
+/* Protects: `rugo verify` finds what is damaged in a store, and `rugo repair` restores it: with
+ * what is computed anew the results are byte for byte what they were. */
 #include "tests/support/effort.h"
 #include "tests/support/seed.h"
 #include "tests/unit/worker/damaged_store.h"
-#include "worker/verify.h"
+#include "worker/publish/verify.h"
 
 /* What verify says, a line a flaw. */
 struct told {
@@ -68,7 +68,7 @@ static void check_same(const char *path, const char *what) {
 
 static const struct damage {
     const char *sql;
-    enum flaw_kind kind; /* told among others */
+    enum flaw_kind kind; /* reported among others */
 } DAMAGES[] = {
     {"UPDATE result SET data = zeroblob(length(data)) WHERE job_id = " BLOCK, FLAW_BLOCK},
     {"UPDATE result SET data = x'' WHERE job_id = " BLOCK, FLAW_BLOCK},
@@ -194,7 +194,7 @@ static void a_changed_layout_is_found(void **state) {
     }
 }
 
-/* Nobody changes a store while it is mended, and a live one can be looked at. */
+/* Nobody changes a store while it is repaired, and a live one can be looked at. */
 static void repair_needs_the_store_alone(void **state) {
     (void)state;
     struct error err = {0};
@@ -211,7 +211,7 @@ static void repair_needs_the_store_alone(void **state) {
     remove_store("shared.db");
 }
 
-/* What an older program stored has no checksum, which is told, and is added. */
+/* What an older program stored has no checksum, which is reported, and is added. */
 static void what_has_no_checksum_gets_one(void **state) {
     (void)state;
     struct error err = {0};

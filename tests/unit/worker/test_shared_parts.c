@@ -17,8 +17,9 @@ struct part {
 };
 static atomic_int alive, made, failures_left;
 
-static int read_case(void *study, const cJSON *parameters, struct fault_list *faults,
-                     struct error *err) {
+static int read_case(void *study, const cJSON *parameters, double memory_limit,
+                     struct fault_list *faults, struct error *err) {
+    (void)memory_limit;
     (void)study;
     (void)parameters;
     (void)faults;

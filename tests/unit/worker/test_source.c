@@ -1,8 +1,8 @@
 /* What a server's answers mean to a worker: a job, none, wait, lost, or the end. */
 #include "tests/unit/worker/stub_server.h"
-#include "worker/client.h"
-#include "worker/source.h"
-#include "worker/wire_report.h"
+#include "worker/link/client.h"
+#include "worker/link/source.h"
+#include "worker/link/wire_report.h"
 
 #include <math.h>
 

@@ -12,9 +12,11 @@
 
 /* What no single value shows is not in the schema: the kinds' own checks are left out. */
 static int check_nothing(const struct study_kind *kind, const cJSON *parameters,
-                         struct fault_list *faults, struct study_cost *cost, struct error *err) {
+                         double memory_limit, struct fault_list *faults, struct study_cost *cost,
+                         struct error *err) {
     (void)kind;
     (void)parameters;
+    (void)memory_limit;
     (void)faults;
     (void)err;
     *cost = (struct study_cost){.nx = 1, .ny = 1, .seconds = 1};
@@ -54,7 +56,7 @@ static cJSON *document_of(const struct study_kind *kind) {
     return document;
 }
 
-/* Puts a value (taken) at a path, with the objects on the way. */
+/* Puts a value (taken) at a path, with the objects that lead to it. */
 static void put_at(cJSON *object, const char *path, cJSON *value) {
     char name[POINTER_SIZE];
     for (const char *at = path + 1;;) {

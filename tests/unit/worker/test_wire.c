@@ -1,7 +1,7 @@
 /* Jobs and results cross the network unchanged, bit for bit, and nothing malformed gets in. */
 #include "tests/support/seed.h"
 #include "tests/unit/worker/crossing.h"
-#include "worker/wire.h"
+#include "worker/link/wire.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -30,7 +30,8 @@ static struct claimed_job some_job(void) {
     return job;
 }
 
-/* Protects the seed (beyond 2^53), the fence and the block against loss on the way. */
+/* Protects the seed (beyond 2^53), the fence and the block against loss between server and
+ * worker. */
 static void job_crosses_unchanged(void **state) {
     (void)state;
     struct claimed_job sent = some_job(), got = {0};

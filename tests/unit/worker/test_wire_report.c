@@ -1,6 +1,6 @@
 /* Many reports in one request: each has its own answer, and nothing malformed gets in. */
 #include "tests/unit/worker/crossing.h"
-#include "worker/wire_report.h"
+#include "worker/link/wire_report.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* Workers on a local store: every realisation once, whatever happens to leases and workers. */
 #include "tests/support/result_tree.h"
 #include "tests/unit/worker/small_study.h"
-#include "worker/aggregate.h"
-#include "worker/client.h"
+#include "worker/link/client.h"
+#include "worker/publish/aggregate.h"
 #include "worker/worker.h"
 
 #include <time.h>
@@ -115,7 +115,7 @@ static int tick_stop(void *context) {
     return 0;
 }
 
-/* Told to stop, a worker hands its job back at once, as if it had never had it. */
+/* Asked to stop, a worker hands its job back at once, as if it had never had it. */
 static void stop_hands_the_job_back(void **state) {
     (void)state;
     struct fixture fixture;
@@ -244,7 +244,8 @@ static void long_job_keeps_its_lease(void **state) {
     fixture_close(&fixture);
 }
 
-/* A study whose cases cannot run: told once with the reason, and the queue still drains. */
+/* A study whose cases cannot run: it is reported once with the reason, and the queue still
+ * drains. */
 static void wrong_job_fails_with_its_reason(void **state) {
     (void)state;
     struct fixture fixture;

@@ -256,9 +256,9 @@ static double first_wave(size_t nx, size_t ny, const struct block *block) {
     return length;
 }
 
-/* Relative errors of the layered block at 8, 16, 32 and 64 points a wave: at most `most` at 16
- * points, falling as the points to the power of `order`, to which the next term of the error adds
- * or takes up to `slack` at 16 points and half of it from 32 on. */
+/* Relative errors of the layered block at 8, 16, 32 and 64 points a wave. They are at most `most`
+ * at 16 points, and fall as the points to the power of `order`. The next term of the error changes
+ * this power by up to `slack` at 16 points and half of it from 32 on. */
 static void check_convergence(struct block block, bool surface, double most, double order,
                               double slack) {
     double before = 0;
@@ -306,9 +306,9 @@ static void shallow_blocks_converge_to_the_exact_layer(void **state) {
     }
 }
 
-/* What growing layers cost: they stiffen every wave by much the same part, since each wave meets
- * layers of the same thickness over wavelength. Bounds: 1.1 times what is seen at nu = 0.3, the
- * largest of all waves of at least 8 points. */
+/* The error of growing layers: they make every wave stiffer by much the same share, since each wave
+ * meets layers of the same thickness over wavelength. Bounds: 1.1 times what is seen at nu = 0.3,
+ * the largest of all waves of at least 8 points. */
 static void growing_layers_stiffen_a_little(void **state) {
     (void)state;
     static const struct {

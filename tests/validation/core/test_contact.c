@@ -301,8 +301,8 @@ static void full_contact(void **state) {
 }
 
 /* A layer much thinner than the wave on its flat far side is a row of springs, p = depth/height (in
- * E*: the oedometric modulus without friction at either face): z = cos(psi) pressed to a half-width
- * psi_a has a mean pressure of (sin psi_a - psi_a cos psi_a)/(pi height). */
+ * E*: the oedometric modulus without friction at either face). So z = cos(psi) pressed to a
+ * half-width psi_a has a mean pressure of (sin psi_a - psi_a cos psi_a)/(pi height). */
 static void thin_layer(void **state) {
     (void)state;
     enum { N = 128 };

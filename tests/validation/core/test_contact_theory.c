@@ -150,10 +150,10 @@ static void spheres_agree_with_units(void **state) {
     }
 }
 
-/* Alpha, separation, fraction, load, computed apart in Python: products of Gauss-Legendre rules
- * over height (400 nodes), mean curvature (120) and aspect ratio b/a (180), Nayak's joint density
- * times that of the elongation, Hertz's ellipses in K(e) and E(e) with 40 digits and a numerical
- * derivative. 1e-11: both rules' rounding and truncation, 3e-12 seen. */
+/* Alpha, separation, fraction, load, computed apart in Python, by products of Gauss-Legendre rules
+ * over height (400 nodes), mean curvature (120) and aspect ratio b/a (180). The integrand is
+ * Nayak's joint density times that of the elongation, with Hertz's ellipses in K(e) and E(e) with
+ * 40 digits and a numerical derivative. 1e-11: both rules' rounding and truncation, 3e-12 seen. */
 static const double BGT_VALUES[][4] = {
     // clang-format off
     {1.51, -3, 0.4767445987276, 0.3822313884651},

@@ -1,6 +1,6 @@
 /* Protects the finite elements on the true geometry: Westergaard's wave and Hertz where slopes are
- * small, the layered model as the limit of small slopes, Newton's convergence, units, and the hard
- * cases: first touch, full contact, nearly incompressible and steep blocks. */
+ * small, the layered model as the limit of small slopes, Newton's convergence, and units. The hard
+ * cases are first touch, full contact, nearly incompressible and steep blocks. */
 #include "tests/support/check.h"
 
 #include "core/full/full.h"
@@ -403,7 +403,7 @@ static void plateaus_and_twins_touch_at_once(void **state) {
 }
 
 /* Rough and nearly incompressible, where the flat block is no guide: factorisations take over, and
- * stress outweighs stiffness on the way. At slope 1 edges are up to 2.3 steep. */
+ * stress outweighs stiffness in between. At slope 1 edges are up to 2.3 steep. */
 static void stiff_profiles_find_their_answer(void **state) {
     (void)state;
     static const struct {
@@ -424,8 +424,8 @@ static void stiff_profiles_find_their_answer(void **state) {
 }
 
 /* In one load, which goes up in a few steps that grow again after the first ones were too long.
- * Active sets come back on the way; were these not taken apart node by node, a fortieth of the load
- * would be the end. */
+ * Active sets recur; were these not taken apart node by node, a fortieth of the load would be the
+ * end. */
 static void sets_that_come_back_are_taken_apart(void **state) {
     (void)state;
     struct pressed p;

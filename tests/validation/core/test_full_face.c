@@ -1,5 +1,5 @@
-/* Protects what the model full tells of the face as it is under load: gap and stiffness against the
- * volume of the block, areas against those that a linear model tells to first order. */
+/* Protects what the model full reports of the face as it is under load: gap and stiffness against
+ * the volume of the block, areas against those of a linear model to first order. */
 #include "tests/support/check.h"
 
 #include "core/contact/stretch.h"
@@ -128,13 +128,13 @@ static void small_strains_leave_the_face(void **state) {
     }
 }
 
-/* What is left once the linear model's area is stretched falls with the slope, by the second order
- * of strains and by what sideways motion does to the gap: seen are 0.083, 0.035 and 0.025 of the
- * slope for these nu, bounds 1.3 times that. What does not fall is of the mesh, 2.8e-3: the columns
- * of one model alone widen, its cells are strained evenly, and a node more or less in contact
- * changes how fast edges seem to move with the load. At slope 0.1 the undeformed area
- * is 1.0 to 4.3 % off for the first two nu, over all loads at least one and a half times as far as
- * the stretched one. */
+/* The difference from the linear model's stretched area falls with the slope: it has the second
+ * order of strains and the effect of sideways motion on the gap. Measured are 0.083, 0.035 and
+ * 0.025 of the slope for these nu, bounds are 1.3 times that. The part that does not fall is due to
+ * the mesh, 2.8e-3. The columns of one model alone widen, and its cells are strained evenly. A node
+ * more or less in contact changes how fast edges seem to move with the load. At slope 0.1 the
+ * undeformed area is 1.0 to 4.3 % off for the first two nu, over all loads at least one and a half
+ * times as far as the stretched one. */
 static void a_linear_model_knows_the_stretch(void **state) {
     (void)state;
     static const struct {

@@ -1,6 +1,6 @@
 /* Protects the graded mesh of the model full: layers that grow with depth must give the curve of
- * layers that are all as fine as the face, columns that widen that of equal ones, and a surface the
- * same curve in three dimensions as its profile in two. */
+ * layers that are all as fine as the face, and columns that widen that of equal ones. A surface
+ * must give the same curve in three dimensions as its profile in two. */
 #include "tests/support/check.h"
 
 #include "core/contact/area.h"

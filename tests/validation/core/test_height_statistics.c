@@ -1,16 +1,16 @@
-/* Protects: what one patch tells of the endless surface that it is a piece of. Over patches cut out
- * of larger surfaces with random amplitudes, the 95 % intervals hold the true values as often as
- * they say, and the p-values of the fit of heights, of isotropy and of stationarity are uniform
- * where there is nothing to find, and small where there is. RUGO_EFFORT=20 makes 320 patches of
- * each kind; the figures in FORMULAS.md, F18.16 to F18.19, are of those. */
+/* Protects: what one patch determines of the infinite surface that it is a part of. Over patches
+ * cut out of larger surfaces with random amplitudes, the 95 % intervals hold the true values as
+ * often as they say. The p-values of the fit of heights, of isotropy and of stationarity are
+ * uniform where the hypothesis holds, and small where it does not. RUGO_EFFORT=20 makes 320 patches
+ * of each kind; the figures in FORMULAS.md, F18.16 to F18.19, are of those. */
 #include "core/map/detrend.h"
-#include "core/statistics/height_fit.h"
-#include "core/statistics/isotropy.h"
-#include "core/statistics/map_chance.h"
-#include "core/statistics/open_summits.h"
-#include "core/statistics/roughness.h"
-#include "core/statistics/scalar_errors.h"
-#include "core/statistics/stationarity.h"
+#include "core/statistics/heights/height_fit.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/summits/open_summits.h"
+#include "core/statistics/uncertainty/isotropy.h"
+#include "core/statistics/uncertainty/map_chance.h"
+#include "core/statistics/uncertainty/scalar_errors.h"
+#include "core/statistics/uncertainty/stationarity.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
@@ -43,7 +43,7 @@ static const char *const NAMES[SCALARS] = {"Sa",
                                            "mean summit height",
                                            "mean summit curvature"};
 
-/* What each patch told. */
+/* The values of each patch. */
 static struct found {
     double value[SCALARS], error[SCALARS];
     struct height_fits fits;
@@ -172,8 +172,8 @@ static double chance_of(double p) {
     return 4 * sqrt(p * (1 - p) / (double)count);
 }
 
-/* p-values, `step` bytes apart: as many below 0.1, 0.25 and 0.5 as there should be, within chance
- * and 3 in 100. */
+/* p-values, `step` bytes apart: as many below 0.1, 0.25 and 0.5 as there should be, within
+ * statistical errors and 3 in 100. */
 static void check_uniform(const char *what, const double *first) {
     static const double SHARES[] = {0.05, 0.1, 0.25, 0.5, 0.75};
     printf("  p-values of %s:", what);
@@ -188,7 +188,7 @@ static void check_uniform(const char *what, const double *first) {
     printf("\n");
 }
 
-/* True values: where known[q] is NaN the mean of what the patches tell. */
+/* True values: where known[q] is NaN the mean over the patches. */
 static void check_scalars(const double *known) {
     double factor = low_modes_factor(19);
     for (size_t q = 0; q < SCALARS; q++) {

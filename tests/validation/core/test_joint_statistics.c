@@ -2,7 +2,7 @@
  * density, refined peaks of Gaussian profiles against that of Rice (1945) and Cartwright &
  * Longuet-Higgins (1956), and grid summits against theory of the same grid. Four standard errors
  * over the realisations; the seed is fixed, so a pass stays a pass. */
-#include "core/statistics/summits.h"
+#include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 #include "core/theory/nayak.h"
 #include "core/theory/quadrature.h"

@@ -1,6 +1,6 @@
 /* Non-Gaussian surfaces of the reference's shapes against their targets: Table 3.3, the exact
  * spectrum, and the limit of long plain alternation. */
-#include "core/statistics/summits.h"
+#include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 #include "core/surface/transform.h"
 #include "tests/support/check.h"
@@ -170,9 +170,9 @@ static void summit_figures(const struct surface_options *options, size_t surface
 
 /* C = 1 maximum, the hardest: number, mean height and mean curvature of summits of the default
  * iteration against 600 plain ones, paired. 2 % (number), 0.5 % (height) and 1.5 % (curvature) is
- * what these differ by the way surfaces are found (bench_nongaussian drift: 600 plain iterations
- * are 0.5, 0.5 and 1 % from 6000, the default 1.1, 0.5 and 0.7 %); the rest is 3 standard errors of
- * the paired mean. */
+ * the difference between generators (bench_nongaussian drift: 600 plain iterations are 0.5, 0.5 and
+ * 1 % from 6000, the default 1.1, 0.5 and 0.7 %); the rest is 3 standard errors of the paired
+ * mean. */
 static void default_iteration_is_near_the_limit(void **state) {
     (void)state;
     const size_t surfaces = 8 * (size_t)effort();

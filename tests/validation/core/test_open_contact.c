@@ -9,7 +9,7 @@
 
 enum { PLACES = 3 };
 
-/* Largest errors, relative, over places of the summit. */
+/* Largest errors, relative, over positions of the summit. */
 struct errors {
     double area, peak, approach, stiffness;
 };
@@ -65,7 +65,7 @@ static void press_one(const struct summit *summit, const struct grid *grid, size
     raise_error(&out->area, area.edges * cell, profile ? 2 : M_PI);
     raise_error(&out->peak, largest(n, state.p), (profile ? 0.5 : 2 / M_PI) / radius);
     /* The flat's displacement in the middle of a line contact is (2 P/pi E*) (ln(2 lx/a) + 1/2),
-     * against a place lx from it; the highest point of the map is not the summit's. */
+     * against a point lx from it; the highest point of the map is not the summit's. */
     raise_error(&out->approach, state.approach - top,
                 profile ? 2 * load / M_PI * (log(2 * grid->lx) + 0.5) : 1 / radius);
     if (!profile)

@@ -1,14 +1,14 @@
-/* Protects: a piece cut out of a surface tells of it what its inside tells: a 512 x 512 piece of
- * 1024 x 1024 points, 8 a shortest wave, H = 0.2 and 0.8, with and without a tilt. The inside is
- * known by the exact derivatives, and the refined summits, of the periodic whole at the same
- * places; what the piece may differ by is held against the scatter of the four quarters of the
- * whole, of which each is such a piece. Taken as periodic, as a control, the pieces are far off. */
+/* Protects: a sub-map has the parameters of the inside of its surface: 512 x 512 points of 1024 x
+ * 1024, 8 a shortest wave, H = 0.2 and 0.8, with and without a tilt. The inside is known by the
+ * exact derivatives, and the refined summits, of the periodic whole at the same positions.
+ * Differences are compared with the scatter of the four quarters of the whole, each of which is
+ * such a sub-map. Taken as periodic, as a control, the sub-maps are far off. */
 #include "core/map/detrend.h"
-#include "core/statistics/local_wave.h"
-#include "core/statistics/open_summits.h"
-#include "core/statistics/refined.h"
-#include "core/statistics/roughness.h"
-#include "core/statistics/seam.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/summits/local_wave.h"
+#include "core/statistics/summits/open_summits.h"
+#include "core/statistics/summits/refined.h"
+#include "core/statistics/uncertainty/seam.h"
 #include "core/surface/surface.h"
 #include "core/surface/transform.h"
 #include "tests/support/check.h"

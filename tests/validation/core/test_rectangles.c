@@ -1,5 +1,5 @@
 /* Protects contact on rectangular cells: a square surface repeated along a side is the same surface
- * on a cell twice or three times as long, so that a half-space, a low block, layers and the finite
+ * on a cell twice or three times as long. So a half-space, a low block, layers and the finite
  * elements of the full model must give the same pressures, area, gap and stiffness on both. A cell
  * that lies along x or along y is one cell, too. Unequal sides would show where a kernel, a layer,
  * a preconditioner or a law of areas takes one side for the other. */

@@ -1,9 +1,9 @@
 /* Protects: the 95 % intervals of the law that fits a spectrum hold the truth as often as they say,
- * for pieces of larger surfaces and for periodic ones, with H = 0.2, 0.5 and 0.8: H, roll-off,
- * amplitude, both ends where they are inside, RMS height and slope. 20 patches each; from
- * RUGO_EFFORT 3 on 100, of which 90 at least must hold the truth. With fixed amplitudes, as a
- * control, nearly all errors are far smaller than told. tests/bench/core/bench_spectrum.c prints
- * widths and times. */
+ * for sub-maps of larger surfaces and for periodic ones, with H = 0.2, 0.5 and 0.8. They are those
+ * of H, roll-off, amplitude, both ends where they are inside, RMS height and slope. 20 patches
+ * each; from RUGO_EFFORT 3 on 100, of which 90 at least must hold the truth. With fixed amplitudes,
+ * as a control, nearly all errors are far smaller than reported. tests/bench/core/bench_spectrum.c
+ * prints widths and times. */
 #include "tests/support/check.h"
 
 #include "tests/support/effort.h"

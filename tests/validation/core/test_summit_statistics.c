@@ -1,8 +1,8 @@
 /* Summits of generated Gaussian surfaces (H 0.8, ratio 8, L/lambda_l 8) against Nayak and against
  * the exact count of a Gaussian grid. Four standard errors over the realisations; the seed is
  * fixed, so a pass stays a pass. */
-#include "core/statistics/roughness.h"
-#include "core/statistics/summits.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 #include "core/theory/nayak.h"
 #include "tests/support/check.h"
@@ -129,8 +129,8 @@ static void five_point_density_tends_to_its_limit(void **state) {
     check_close(limit, exact, 4 * error + 1.5e-3); /* and the next order of the extrapolation */
 }
 
-/* True maxima: Nayak's density, curvature and heights at any sampling; 0.2 % of the summits are
- * pairs with a saddle too near to be told apart. */
+/* True maxima: Nayak's density, curvature and heights at any sampling; 0.2 % of the summits are too
+ * near to a saddle to be distinguished from it. */
 static void refined_summits_are_nayaks(void **state) {
     (void)state;
     for (size_t points = 4; points <= 16; points *= 2) {

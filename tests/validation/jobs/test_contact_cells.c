@@ -1,4 +1,4 @@
-/* Told errors of the cell cover the truth, against cells that are many times as long, at every
+/* Reported errors of the cell cover the truth, against cells that are many times as long, at every
  * load: in profiles whose means fall with the length (Gaussian) and fall and rise again (Weibull),
  * and in surfaces. */
 #include "tests/support/contact_document.h"
@@ -26,10 +26,10 @@ static cJSON *solve_length(const struct scene *scene, int length, const char *co
 }
 
 struct coverage {
-    int points, covered, within; /* within: told bounds that are less than ten times the truth */
+    int points, covered, within; /* within: bounds that are less than ten times the truth */
 };
 
-/* Of a mean over the cell, whose patches are told as shares of it. */
+/* Of a mean over the cell, whose patches are reported as shares of it. */
 static void count_curve(const struct scene *scene, const cJSON *curve, const cJSON *reference,
                         double scale, struct coverage *coverage) {
     for (int k = 0; k < points(curve); k++) {

@@ -1,5 +1,5 @@
-/* Told errors cover the truth, against meshes, blocks and solvers that are far better, on the same
- * realisations: by source, at every load, for both weightings, in profiles and surfaces. */
+/* Reported errors cover the truth, against meshes, blocks and solvers that are far better, on the
+ * same realisations: by source, at every load, for both weightings, in profiles and surfaces. */
 #include "tests/support/contact_document.h"
 #include "tests/support/effort.h"
 #include <stdio.h>
@@ -35,8 +35,8 @@ struct coverage {
     int points, covered;
 };
 
-/* Told less true within value +- bound, two standard errors of that, and what the reference itself
- * is not sure of; points without a value there are left out. */
+/* Reported less true lies within value +- bound, two standard errors of that, and what the
+ * reference itself is not sure of; points without a value there are left out. */
 static void count_curve(const struct scene *scene, const char *levels, const cJSON *curve,
                         const cJSON *reference, struct coverage *coverage) {
     const char *name = json_at(curve, "/quantity")->valuestring;
@@ -136,7 +136,7 @@ static void count_densities(const struct scene *scene, const char *levels, const
 }
 
 /* The lowest bins, which the law of edges fills, are covered at all loads; others hold few nodes,
- * which fall into them by chance. */
+ * which fall into them at random. */
 static void errors_of_pressures_cover(void **state) {
     (void)state;
     static const struct scene SCENES[] = {{1, "gaussian", "standard", 24},
@@ -187,7 +187,7 @@ static void lowest_pressures_are_near_their_limit(void **state) {
     " \"" heights "\", \"shape\": 1}}, \"contact\": {" contact                                     \
     " \"pressures\": {\"values\": [0.01, 0.03, 0.1]}}}"
 
-/* 160 root mean square heights are worth up to 11 % of the area at the lightest load. The told
+/* 160 root mean square heights are worth up to 11 % of the area at the lightest load. The reported
  * error is that of the realisations that were probed, the true one that of all. */
 static void errors_of_blocks_cover(void **state) {
     (void)state;
@@ -263,8 +263,8 @@ static void errors_of_solvers_cover(void **state) {
     " \"generation_error\": \"none\", \"cell_error\": \"none\", \"transition_depth\": " depth ","  \
     " \"pressures\": {\"values\": [0.03, 0.1, 0.3]}}}"
 
-/* What columns of elements change that widen with depth, which levels do not show, is within what
- * is told of it beside their changes, and more than a fiftieth of that, by either depth. */
+/* What columns of elements change that widen with depth, which levels do not show, is within its
+ * bound beside their changes, and more than a fiftieth of that, by either depth. */
 static void errors_of_wider_columns_cover(void **state) {
     (void)state;
     static const struct {

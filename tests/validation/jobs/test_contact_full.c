@@ -1,5 +1,5 @@
 /* The model on the true geometry in contact studies: where slopes are small it is the layered model
- * of the same mesh and Westergaard's wave; it gives what no linear model tells; a surface that it
+ * of the same mesh and Westergaard's wave; it gives what no linear model has; a surface that it
  * cannot press costs that realisation's values alone. */
 #include "tests/support/contact_document.h"
 #include <stdio.h>
@@ -33,7 +33,7 @@ static void small_slopes_are_layered(void **state) {
             for (int k = 0; k < points(full); k++) {
                 double y = at(full, "/y", k), load = at(full, "/x", k);
                 assert_near(at(linear, "/y", k), y, CASES[c].bound * y, load);
-                /* one level does not tell its own error, which would be in the difference */
+                /* one level does not estimate its own error, which would be in the difference */
                 assert_true(cJSON_IsNull(json_at(linear, "/model_error")));
                 assert_near(at(full, "/valueless", k), 0, 0, load);
             }
@@ -103,8 +103,8 @@ static double scalar(const cJSON *document, const char *pointer) {
     return cJSON_IsNumber(value) ? value->valuedouble : NAN;
 }
 
-/* What a step ends with is told: Newton's iterations, forces in balance, nothing through the flat,
- * and sideways strain, whose size at slope 0.2 and hencky is some percent. */
+/* What a step ends with is reported: Newton's iterations, forces in balance, nothing through the
+ * flat, and sideways strain, whose size at slope 0.2 and hencky is some percent. */
 static void what_the_model_tells(void **state) {
     (void)state;
     cJSON *document = solve(ROUGH("0.2", "hencky"), 2);

@@ -151,7 +151,7 @@ static void run_case(const struct hard_case *hard) {
     struct block_result result = {0};
     struct error err = {0};
     cJSON *parameters = parameters_of(hard), *document = NULL;
-    assert_int_equal(kind_check(&kind->study, parameters, &faults, &estimate, &err), 0);
+    assert_int_equal(kind_check(&kind->study, parameters, 0, &faults, &estimate, &err), 0);
     if (hard->refusal != NULL) {
         if (faults.count == 0 || strstr(faults.faults[0].detail, hard->refusal) == NULL)
             fail_msg("%s: not refused as it should be: %s", hard->name,

@@ -58,7 +58,7 @@ static void stated_memory(void **state) {
         struct rusage usage;
         int ended = 0;
         cJSON *parameters = cJSON_Parse(CASES[a].parameters);
-        assert_int_equal(kind_check(&kind->study, parameters, &faults, &estimate, NULL), 0);
+        assert_int_equal(kind_check(&kind->study, parameters, 0, &faults, &estimate, NULL), 0);
         assert_int_equal(faults.count, 0);
         double available = (double)sysconf(_SC_AVPHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
         if (available < 1.5 * estimate.memory_bytes) {
@@ -76,7 +76,7 @@ static void stated_memory(void **state) {
         double measured = 1024.0 * (double)usage.ru_maxrss;
         printf("%s: %.1f MB stated, %.1f MB measured\n", CASES[a].name, estimate.memory_bytes / 1e6,
                measured / 1e6);
-        /* The service's libraries, 9 MB, are told, and are none of this program's. */
+        /* The service's libraries, 9 MB, are stated, and are none of this program's. */
         assert_true(measured + 9e6 > 0.8 * estimate.memory_bytes);
         assert_true(measured < 1.2 * estimate.memory_bytes);
         cJSON_Delete(parameters);

@@ -1,5 +1,5 @@
-/* Studies of rectangular cells: what is told of them agrees with theory within its errors, a cell
- * of 8 by 4 longest waves with one of 4 by 8, and both with the square, as far as cells of so few
+/* Studies of rectangular cells: their results agree with theory within their errors. A cell of 8 by
+ * 4 longest waves agrees with one of 4 by 8, and both with the square, as far as cells of so few
  * waves are alike. Seeds are fixed: a failure can be looked at again. */
 #include "tests/support/contact_document.h"
 #include <stdio.h>
@@ -137,8 +137,9 @@ static void a_rectangle_is_like_the_squares(void **state) {
 }
 
 /* A set-up that is turned by a right angle, spectrum and all, is the same: moments to rounding,
- * summits within their errors, theory on the grid to that of its quadrature: 1e-4, but 0.5 % where
- * the spectrum is anisotropic, whose directions it takes in turn (0.23 % on a square). */
+ * summits within their errors, theory on the grid to the error of its quadrature. That is 1e-4, but
+ * 0.5 % where the spectrum is anisotropic, whose directions it takes in turn (0.23 % on a
+ * square). */
 static void a_turned_cell_is_the_same(void **state) {
     (void)state;
     static const char *const SPECTRA[][2] = {
@@ -210,7 +211,7 @@ static cJSON *contact(double x, double y, uint64_t count) {
 }
 
 /* Areas and gaps of turned cells agree within their errors, and with the square's within these and
- * the bound that a cell tells of its size. */
+ * the bound that a cell reports of its size. */
 static void contact_agrees_with_the_square(void **state) {
     (void)state;
     static const struct {

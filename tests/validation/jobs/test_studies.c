@@ -97,7 +97,7 @@ static void table_3_1(void **state) {
 }
 
 /* Table 3.3. The theory to its printed digits (half of the last). Runs that keep the heights, drawn
- * as exact quantiles, whatever their places: skewness within 0.02 (validation of the generator),
+ * as exact quantiles, whatever their positions: skewness within 0.02 (validation of the generator),
  * kurtosis within 2 %: a grid of 2^18 points cuts the tail of C = 1 at 13 deviations. */
 static void table_3_3(void **state) {
     (void)state;
@@ -185,10 +185,10 @@ static void density_of_summits(void **state) {
     }
 }
 
-/* Refined summits at 16 points a wave: every bin of the height density, the mean curvature by
- * height and the density of curvature within 5 standard errors of Nayak's average over the bin
- * (about 200 points: 4 would fail once in a hundred seeds) and 1 % of the curve's largest value for
- * the grid. Bins with too few summits to know their own error are left out. */
+/* Refined summits at 16 points a wave: the height density, the mean curvature by height and the
+ * density of curvature against Nayak's average over each bin. Allowed are 5 standard errors (about
+ * 200 points: 4 would fail once in a hundred seeds) and 1 % of the curve's largest value for the
+ * grid. Bins with too few summits to know their own error are left out. */
 static void nayak_curves(void **state) {
     (void)state;
     static const char *const quantities[] = {"summit_height_pdf", "summit_height_cdf",

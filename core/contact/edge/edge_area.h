@@ -1,0 +1,28 @@
+/* The contact area that edges between nodes enclose, and its derivative. Private to core/contact.
+ *
+ * An edge is found on every grid line that crosses one. The strip between the edge and the boundary
+ * of the cells around the nodes in contact is measured along both families of lines. Each crossing
+ * counts by the square of the cosine between its line and the edge's normal. So the two families
+ * together count each part of the strip once, and lines nearly parallel to an edge, which cross it
+ * inaccurately, hardly count. */
+#ifndef RUGO_CORE_CONTACT_EDGE_EDGE_AREA_H
+#define RUGO_CORE_CONTACT_EDGE_EDGE_AREA_H
+
+#include "core/contact/contact.h"
+#include "core/contact/edge/edge.h"
+
+/* Shares of the cell. */
+struct edge_area {
+    double straight; /* the area if edges were straight */
+    double rate;     /* its derivative by the mean pressure; 0 without a tangent */
+    double patches; /* patches less holes, over the number of nodes; diagonal contact counts half */
+    double nodes;   /* in contact */
+    double sides;   /* of nodes in contact that face open ones, over the number of nodes */
+};
+
+/* rise: scratch of grid_points. open: contact ends at the sides of the grid, on the borders of the
+ * cells of the outermost nodes. */
+void edge_area_measure(const struct edge_law *law, const struct grid *grid, bool open,
+                       const struct contact_state *state, double *rise, struct edge_area *out);
+
+#endif

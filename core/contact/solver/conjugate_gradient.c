@@ -1,0 +1,309 @@
+/* Profiles are solved by active sets (active_set.h); where these do not converge, by what follows,
+ * as surfaces are.
+ *
+ * Conjugate gradients in the set of nodes in contact (Polonsky & Keer 1999), preconditioned by the
+ * inverse compliance restricted to the set: the residual is transformed, multiplied and transformed
+ * back, values outside the set are dropped, and the mean is subtracted so that the load stays. Two
+ * things differ from the textbook. The search direction is kept when the set changes, with Polak
+ * and Ribiere's factor; a restart at every node that opens or closes takes half as many iterations
+ * again. On long cells, steps that cut pressures at 0 can make long waves overshoot repeatedly.
+ * When progress is slow, such steps are shortened to the least energy, which takes no further
+ * transform. When there is still no progress, careful steps follow (as in Dostal 1997). They are
+ * conjugate gradients in the set that stop where a pressure becomes 0, and projected gradients
+ * where that happened or where penetrations exceed the gaps inside. Each of them lowers the energy,
+ * and a projected step by at least a fixed part of the square of the change. So they converge from
+ * any start. */
+#include "core/contact/solver/conjugate_gradient.h"
+#include "core/contact/solver/active_set.h"
+#include "core/vectors.h"
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+    LANES = CONJUGATE_GRADIENT_LANES,
+    REFRESH = 50, /* iterations after which u is computed anew from p */
+    TANGENT_MOST = 300,
+    SLOW = 30, /* iterations that have not halved the violation, after which steps are shortened */
+};
+/* Length of a projected step over the inverse of the largest compliance, which is 1 here; below
+ * 2. */
+static const double STRIDE = 1.8;
+static const double TANGENT_TOLERANCE =
+    1e-2; /* residual over slope; measured errors of the slope are below 3e-4 */
+/* The approach at which nodes under pressure touch on average: minus the mean of u - z over them.
+ */
+WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double *u,
+                                         const double *z) {
+    double sum[LANES] = {0}, count[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double in = p[i + a] > 0 ? 1 : 0;
+            sum[a] += in * (u[i + a] - z[i + a]);
+            count[a] += in;
+        }
+    return -conjugate_lanes_sum(sum) / conjugate_lanes_sum(count);
+}
+
+/* r is the gap in the set {p > 0, or gap < 0 where released}, where it is never exactly 0, and 0
+ * outside, so that r != 0 marks the set. Returns the size of the set. end->approach is an input;
+ * all other fields of end are filled. */
+WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, const double *z,
+                                    double released, double *r,
+                                    struct conjugate_gradient_end *end) {
+    double inside[LANES] = {0}, outside[LANES] = {0}, deep[LANES] = {0}, members[LANES] = {0};
+    double approach = end->approach;
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double gap = u[i + a] - z[i + a] + approach;
+            double in = p[i + a] > 0 ? 1 : 0;
+            double within = in * fabs(gap), depth = fabs(u[i + a]);
+            double through = gap < 0 ? (in - 1) * gap : 0;
+            double member = in + through * released > 0 ? 1 : 0;
+            inside[a] = within > inside[a] ? within : inside[a];
+            outside[a] = through > outside[a] ? through : outside[a];
+            deep[a] = depth > deep[a] ? depth : deep[a];
+            members[a] += member;
+            r[i + a] = member * (gap == 0 ? DBL_MIN : gap);
+        }
+    end->inside = conjugate_lanes_most(inside);
+    end->penetration = conjugate_lanes_most(outside);
+    end->deepest = conjugate_lanes_most(deep);
+    return conjugate_lanes_sum(members);
+}
+
+/* The same for the tangent: r = u + approach in the set p > 0. Returns the largest |r|. */
+WIDE_VECTORS static double tangent_residual(size_t n, const double *p, const double *u,
+                                            double approach, double *r) {
+    double most[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double slope = u[i + a] + approach;
+            slope = p[i + a] > 0 ? (slope == 0 ? DBL_MIN : slope) : 0;
+            most[a] = fabs(slope) > most[a] ? fabs(slope) : most[a];
+            r[i + a] = slope;
+        }
+    return conjugate_lanes_most(most);
+}
+
+/* p -= step t, cut at 0, and u -= step w. Returns the sum of p; *cut: whether any was. */
+WIDE_VECTORS static double advance(size_t n, double step, const double *t, const double *w,
+                                   double *p, double *u, bool *cut) {
+    double sum[LANES] = {0}, below[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double next = p[i + a] - step * t[i + a];
+            below[a] += next < 0 ? 1 : 0;
+            next = next < 0 ? 0 : next;
+            p[i + a] = next;
+            u[i + a] -= step * w[i + a];
+            sum[a] += next;
+        }
+    *cut = conjugate_lanes_sum(below) > 0;
+    return conjugate_lanes_sum(sum);
+}
+
+WIDE_VECTORS static void advance_tangent(size_t n, double step, const double *t, const double *w,
+                                         double *q, double *u) {
+    for (size_t i = 0; i < n; i++) {
+        q[i] -= step * t[i];
+        u[i] -= step * w[i];
+    }
+}
+
+/* Replaces p by the pressures nearest to p - STRIDE gap among those >= 0 of this mean (Michelot
+ * 1986: the level to subtract is raised until no more of them become negative). Where p is not the
+ * solution, the energy falls by at least the square of the change times 1/STRIDE - 1/2. */
+static void project(struct conjugate_gradient *solver, double mean) {
+    double top = -INFINITY, level = -INFINITY, sum = 0;
+    size_t count = solver->n + 1, last;
+    for (size_t i = 0; i < solver->n; i++) {
+        solver->t[i] = solver->p[i] - STRIDE * (solver->u[i] - solver->z[i]);
+        top = fmax(top, solver->t[i]);
+    }
+    do {
+        last = count;
+        count = 0;
+        sum = 0;
+        for (size_t i = 0; i < solver->n; i++)
+            if (solver->t[i] - top > level) {
+                sum += solver->t[i] -
+                       top; /* largest first, so that the smallest load is not lost in rounding */
+                count++;
+            }
+        level = (sum - mean * (double)solver->n) / (double)count;
+    } while (count != last);
+    sum = 0;
+    for (size_t i = 0; i < solver->n; i++)
+        sum += solver->p[i] = fmax(0, solver->t[i] - top - level);
+    conjugate_step_scale(solver->n, mean, sum, solver->p);
+}
+
+/* Returns the longest step along t that leaves no pressure negative. */
+static double feasible_step(const struct conjugate_gradient *solver, double step) {
+    for (size_t i = 0; i < solver->n; i++)
+        if (solver->t[i] > 0 && solver->p[i] > 0 && solver->p[i] < step * solver->t[i])
+            step = solver->p[i] / solver->t[i];
+    return step;
+}
+
+/* Watches whether the violation has halved within a number of iterations. */
+struct stall_watch {
+    double best;
+    size_t since;
+};
+static bool stalled(struct stall_watch *progress, double violation, size_t iterations) {
+    if (violation < 0.5 * progress->best)
+        *progress = (struct stall_watch){violation, 0};
+    else
+        progress->since++;
+    return progress->since >= iterations;
+}
+
+/* Makes one iteration from r; *stale says whether u must be computed anew from p. */
+static void iterate(struct conjugate_gradient *solver, double mean, bool careful,
+                    struct step_memory *memory, bool *stale) {
+    conjugate_step_direct(solver, memory);
+    double step = conjugate_step_length(solver);
+    if (careful) {
+        double longest = feasible_step(solver, step);
+        memory->blocked = longest < step;
+        step = memory->blocked ? longest * (1 + 4 * DBL_EPSILON) : step; /* that pressure: 0 */
+    }
+    double sum = advance(solver->padded, step, solver->t, solver->w, solver->p, solver->u, stale);
+    if (*stale)
+        conjugate_step_scale(solver->n, mean, sum, solver->p);
+}
+
+/* Makes a projected step, after which the last search direction is no longer used. */
+static void step_projected(struct conjugate_gradient *solver, double mean,
+                           struct step_memory *memory, bool *stale) {
+    project(solver, mean);
+    *memory = (struct step_memory){0};
+    *stale = true;
+}
+
+/* Shortens the step from kept_p and kept_u to a p that was cut at 0, to the least energy between
+ * them. If the energy does not fall towards p at all, a projected step from kept_p is made instead.
+ * *stale: as for iterate. */
+static void shorten(struct conjugate_gradient *solver, double mean, struct step_memory *memory,
+                    bool *stale) {
+    double slope = 0, curvature = 0;
+    conjugate_step_apply_compliance(solver, solver->p, solver->u);
+    for (size_t i = 0; i < solver->n; i++) {
+        double change = solver->p[i] - solver->kept_p[i];
+        slope += (solver->kept_u[i] - solver->z[i]) * change;
+        curvature += (solver->u[i] - solver->kept_u[i]) * change;
+    }
+    bool falls = slope < 0;
+    double share = !falls ? 0 : -slope < curvature ? -slope / curvature : 1;
+    for (size_t i = 0; share < 1 && i < solver->n; i++) {
+        solver->p[i] = solver->kept_p[i] + share * (solver->p[i] - solver->kept_p[i]);
+        solver->u[i] = solver->kept_u[i] + share * (solver->u[i] - solver->kept_u[i]);
+    }
+    *stale = false;
+    if (!falls)
+        step_projected(solver, mean, memory, stale);
+}
+
+/* Makes an iteration, and shortens its step where pressures were cut. */
+static void iterate_shortened(struct conjugate_gradient *solver, double mean,
+                              struct step_memory *memory, bool *stale) {
+    memcpy(solver->kept_p, solver->p, solver->n * sizeof *solver->p);
+    memcpy(solver->kept_u, solver->u, solver->n * sizeof *solver->u);
+    iterate(solver, mean, false, memory, stale);
+    if (*stale)
+        shorten(solver, mean, memory, stale);
+}
+
+/* Returns whether it converged or was stopped. */
+static bool solve_by_sets(struct conjugate_gradient *solver, double mean, double tolerance,
+                          size_t max_iterations, struct conjugate_gradient_end *end) {
+    conjugate_step_apply_compliance(solver, solver->p, solver->u);
+    end->approach = mean_approach(solver->padded, solver->p, solver->u, solver->z);
+    residual(solver->padded, solver->p, solver->u, solver->z, 1, solver->r, end);
+    active_set_run(solver, mean, tolerance, max_iterations, end);
+    return end->converged || end->stopped;
+}
+
+/* Goes on from end->iterations. */
+static void solve_by_steps(struct conjugate_gradient *solver, double mean, double tolerance,
+                           size_t stall_iterations, size_t max_iterations,
+                           struct conjugate_gradient_end *end) {
+    struct step_memory memory = {0};
+    struct stall_watch progress = {.best = INFINITY};
+    bool careful = false, stale = true;
+    const double highest = conjugate_step_highest(solver);
+    for (size_t i = 0; i < solver->padded; i++)
+        solver->t[i] = solver->old[i] = 0;
+    for (;; end->iterations++) {
+        if (stale || end->iterations % REFRESH == 0)
+            conjugate_step_apply_compliance(solver, solver->p, solver->u);
+        end->approach = mean_approach(solver->padded, solver->p, solver->u, solver->z);
+        residual(solver->padded, solver->p, solver->u, solver->z, careful ? 0 : 1, solver->r, end);
+        double violation = fmax(end->inside, end->penetration);
+        bool number =
+            isfinite(end->approach); /* fmax ignores NaN, so that a violation may look finite */
+        end->converged =
+            number && violation <= fmax(tolerance * end->deepest, CONJUGATE_ROUNDING * highest);
+        if (end->converged || !number || end->iterations >= max_iterations)
+            return;
+        end->stopped = solver->stop != NULL &&
+                       end->iterations % CONJUGATE_ASK == CONJUGATE_ASK - 1 &&
+                       solver->stop(solver->stop_context) != 0;
+        if (end->stopped)
+            return;
+        if (!careful && stalled(&progress, violation, stall_iterations)) {
+            careful = memory.blocked = true;
+            memory.energy = 0;
+        }
+        if (careful && (memory.blocked || end->penetration >= end->inside)) {
+            step_projected(solver, mean, &memory, &stale);
+        } else if (!careful && progress.since >= SLOW) {
+            iterate_shortened(solver, mean, &memory, &stale);
+        } else {
+            iterate(solver, mean, careful, &memory, &stale);
+        }
+    }
+}
+
+void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, double tolerance,
+                            size_t stall_iterations, size_t max_iterations,
+                            struct conjugate_gradient_end *end) {
+    *end = (struct conjugate_gradient_end){0};
+    if (solver->grid.ny > 1 || !solve_by_sets(solver, mean, tolerance, max_iterations, end))
+        solve_by_steps(solver, mean, tolerance, stall_iterations, max_iterations, end);
+}
+
+double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
+    struct step_memory memory = {.continuation =
+                                     solver->grid.ny == 1 ? CONTINUED_BY_LINES : CONTINUED_BY_ZERO};
+    double sum = 0, slope = 0;
+    for (size_t i = 0; i < solver->padded; i++) {
+        solver->q[i] = solver->p[i] > 0 ? solver->q[i] : 0;
+        solver->t[i] = solver->old[i] = 0;
+        sum += solver->q[i];
+    }
+    if (!(sum > 0))
+        for (size_t i = 0; i < solver->padded; i++)
+            sum += solver->q[i] = solver->p[i];
+    conjugate_step_scale(solver->n, 1, sum, solver->q);
+    conjugate_step_apply_compliance(solver, solver->q, solver->u);
+    for (size_t iteration = 0;; iteration++) {
+        double approach = 0, energy = 0;
+        size_t members = 0;
+        for (size_t i = 0; i < solver->n; i++) {
+            approach -= solver->p[i] > 0 ? solver->u[i] : 0;
+            members += solver->p[i] > 0;
+            energy += solver->q[i] * solver->u[i];
+        }
+        approach /= (double)members;
+        slope = energy / (double)solver->n;
+        double most = tangent_residual(solver->padded, solver->p, solver->u, approach, solver->r);
+        if (most <= TANGENT_TOLERANCE * fabs(approach) || iteration == TANGENT_MOST)
+            return slope;
+        conjugate_step_direct(solver, &memory);
+        advance_tangent(solver->padded, conjugate_step_length(solver), solver->t, solver->w,
+                        solver->q, solver->u);
+    }
+}

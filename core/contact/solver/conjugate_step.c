@@ -1,0 +1,296 @@
+#include "core/contact/solver/conjugate_step.h"
+#include "core/vectors.h"
+#include <fftw3.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LANES = CONJUGATE_GRADIENT_LANES };
+
+/* --- arrays, and the symbols of the compliance and its inverse --- */
+
+/* Padding nodes lie so deep that they never come into contact. */
+static const double FAR = 1e30;
+static const double PI = 3.14159265358979323846;
+
+static size_t padded(size_t n) {
+    return (n + LANES - 1) / LANES * LANES;
+}
+
+enum { ARRAYS = 10 };
+
+double conjugate_gradient_bytes(const struct grid *grid) {
+    double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
+    return sizeof(double) * (ARRAYS * (double)padded(grid_points(grid)) + 4 * waves);
+}
+
+static int arrays_create(struct conjugate_gradient *solver, struct error *err) {
+    double **const arrays[ARRAYS] = {&solver->z,      &solver->p,     &solver->u, &solver->q,
+                                     &solver->r,      &solver->old,   &solver->t, &solver->w,
+                                     &solver->kept_p, &solver->kept_u};
+    for (size_t a = 0; a < ARRAYS; a++) {
+        *arrays[a] = fftw_alloc_real(solver->padded);
+        if (*arrays[a] == NULL)
+            return error_memory(err, solver->padded * sizeof(double), "a contact");
+        memset(*arrays[a], 0, solver->padded * sizeof(double));
+    }
+    for (size_t i = solver->n; i < solver->padded; i++)
+        solver->z[i] = -FAR;
+    return 0;
+}
+
+/* Inverse compliance of the periodic half-space. */
+static void fill_periodic_inverse(struct conjugate_gradient *solver) {
+    const struct grid *grid = &solver->grid;
+    for (size_t mx = 0; mx <= grid->nx / 2; mx++)
+        for (size_t row = 0; row < grid->ny; row++) {
+            size_t my = row <= grid->ny / 2 ? row : grid->ny - row;
+            double qx = (double)mx / grid->lx, qy = my > 0 ? (double)my / grid->ly : 0;
+            solver->inverse[mx * grid->ny + row] = PI * hypot(qx, qy) * solver->largest;
+        }
+}
+
+static int symbols_create(struct conjugate_gradient *solver, const struct compliance *compliance,
+                          struct error *err) {
+    size_t waves = (solver->grid.nx / 2 + 1) * solver->grid.ny;
+    solver->compliance = array_create(compliance->waves, sizeof *solver->compliance);
+    solver->inverse = array_create(waves, sizeof *solver->inverse);
+    if (solver->compliance == NULL || solver->inverse == NULL)
+        return error_memory(err, compliance->waves * sizeof(double), "a contact");
+    for (size_t k = 0; k < compliance->waves; k++)
+        solver->largest = fmax(solver->largest, fabs(compliance->length[k]));
+    for (size_t k = 0; k < compliance->waves; k++) {
+        double weight = compliance->weight != NULL ? compliance->weight[k] : 1;
+        solver->compliance[k] = compliance->length[k] / solver->largest * weight;
+    }
+    if (compliance->open) {
+        fill_periodic_inverse(solver);
+        return 0;
+    }
+    for (size_t k = 0; k < waves; k++)
+        solver->inverse[k] = solver->compliance[k] > 0 ? 1 / solver->compliance[k] : 0;
+    return 0;
+}
+
+int conjugate_gradient_create(struct conjugate_gradient *out, const struct compliance *compliance,
+                              struct error *err) {
+    const struct grid *grid = &compliance->grid;
+    const struct grid *waved = &compliance->waved;
+    *out = (struct conjugate_gradient){
+        .grid = *grid, .n = grid_points(grid), .padded = padded(grid_points(grid))};
+    int status = transform_create(&out->transform, grid, grid->nx / 2, grid->ny / 2, err);
+    if (status == 0 && compliance->open)
+        status = transform_create(&out->wide, waved, waved->nx / 2, waved->ny / 2, err);
+    if (status == 0)
+        status = arrays_create(out, err);
+    if (status == 0)
+        status = symbols_create(out, compliance, err);
+    if (status != 0)
+        conjugate_gradient_clear(out);
+    return status;
+}
+
+void conjugate_gradient_clear(struct conjugate_gradient *solver) {
+    double *const arrays[ARRAYS] = {solver->z,      solver->p,     solver->u, solver->q,
+                                    solver->r,      solver->old,   solver->t, solver->w,
+                                    solver->kept_p, solver->kept_u};
+    for (size_t a = 0; a < ARRAYS; a++)
+        fftw_free(arrays[a]);
+    free(solver->compliance);
+    free(solver->inverse);
+    transform_destroy(&solver->transform);
+    transform_destroy(&solver->wide);
+    *solver = (struct conjugate_gradient){0};
+}
+
+/* --- sums, products and directions of a step --- */
+
+/* A padded transform takes about as long as three of the grid. */
+static const double WIDE_TRANSFORMS = 3;
+
+double conjugate_lanes_sum(const double *lanes) {
+    double total = 0;
+    for (size_t a = 0; a < LANES; a++)
+        total += lanes[a];
+    return total;
+}
+
+double conjugate_lanes_most(const double *lanes) {
+    double most = 0;
+    for (size_t a = 0; a < LANES; a++)
+        most = fmax(most, lanes[a]);
+    return most;
+}
+
+/* --- products with the compliance and its inverse --- */
+
+void conjugate_step_apply_compliance(struct conjugate_gradient *solver, const double *in,
+                                     double *out) {
+    if (solver->wide == NULL) {
+        transform_filter(solver->transform, solver->compliance, 1, in, out);
+        solver->transforms += 2;
+        return;
+    }
+    transform_filter_part(solver->wide, solver->compliance, 1, solver->grid.nx, solver->grid.ny, in,
+                          out);
+    solver->transforms += 2 * WIDE_TRANSFORMS;
+}
+
+/* Two nodes in contact of a profile with `apart` - 1 open nodes between them, also across the ends
+ * of the cell. */
+struct neighbours {
+    size_t from, to, apart;
+};
+
+/* Returns the first node of the set r != 0; n where there is none. */
+static size_t first_of(size_t n, const double *r) {
+    size_t i = 0;
+    while (i < n && r[i] == 0)
+        i++;
+    return i;
+}
+
+/* Advances to the next pair of a walk once around the cell, which begins with from = to = first_of.
+ * Returns false when the walk is back at its start. */
+static bool next_neighbours(size_t n, const double *r, size_t first, struct neighbours *pair) {
+    size_t i = pair->to;
+    if (pair->apart > 0 && i == first)
+        return false;
+    pair->from = i;
+    pair->apart = 0;
+    do {
+        i = i + 1 < n ? i + 1 : 0;
+        pair->apart++;
+    } while (r[i] == 0);
+    pair->to = i;
+    return true;
+}
+
+/* Copies r, and fills the nodes outside the set r != 0 by straight lines between its nodes. */
+static void continue_by_lines(size_t n, const double *r, double *out) {
+    size_t first = first_of(n, r);
+    struct neighbours pair = {first, first, 0};
+    memcpy(out, r, n * sizeof *out);
+    while (first < n && next_neighbours(n, r, first, &pair)) {
+        double slope = (r[pair.to] - r[pair.from]) / (double)pair.apart;
+        for (size_t a = 1, i = pair.from; a < pair.apart; a++) {
+            i = i + 1 < n ? i + 1 : 0;
+            out[i] = r[pair.from] + slope * (double)a;
+        }
+    }
+}
+
+/* The transpose of continue_by_lines, in place: w of each node outside is shared between its two
+ * neighbours in the set. */
+static void continue_by_lines_transposed(size_t n, const double *r, double *w) {
+    size_t first = first_of(n, r);
+    struct neighbours pair = {first, first, 0};
+    while (first < n && next_neighbours(n, r, first, &pair)) {
+        double sum = 0, moment = 0;
+        for (size_t a = 1, i = pair.from; a < pair.apart; a++) {
+            i = i + 1 < n ? i + 1 : 0;
+            sum += w[i];
+            moment += w[i] * (double)a;
+        }
+        moment /= (double)pair.apart;
+        w[pair.to] += moment;
+        w[pair.from] += sum - moment;
+    }
+}
+
+/* out = inverse compliance times r, to be read in the set r != 0 alone. */
+static void precondition(struct conjugate_gradient *solver, enum continuation continuation,
+                         const double *r, double *out) {
+    bool lines = continuation == CONTINUED_BY_LINES;
+    if (lines)
+        continue_by_lines(solver->n, r, out);
+    transform_filter(solver->transform, solver->inverse, 1, lines ? out : r, out);
+    if (lines)
+        continue_by_lines_transposed(solver->n, r, out);
+    solver->transforms += 2;
+}
+
+/* --- directions --- */
+
+/* These sums are over the set r != 0. */
+struct products {
+    double members, w, r, old, t, w_r, w_old;
+};
+
+WIDE_VECTORS static struct products multiply(size_t n, const double *r, const double *w,
+                                             const double *old, const double *t) {
+    double m[LANES] = {0}, sw[LANES] = {0}, sr[LANES] = {0}, so[LANES] = {0}, st[LANES] = {0};
+    double wr[LANES] = {0}, wo[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double in = r[i + a] != 0 ? 1 : 0, v = in * w[i + a];
+            m[a] += in;
+            sw[a] += v;
+            sr[a] += r[i + a];
+            so[a] += in * old[i + a];
+            st[a] += in * t[i + a];
+            wr[a] += v * r[i + a];
+            wo[a] += v * old[i + a];
+        }
+    return (struct products){.members = conjugate_lanes_sum(m),
+                             .w = conjugate_lanes_sum(sw),
+                             .r = conjugate_lanes_sum(sr),
+                             .old = conjugate_lanes_sum(so),
+                             .t = conjugate_lanes_sum(st),
+                             .w_r = conjugate_lanes_sum(wr),
+                             .w_old = conjugate_lanes_sum(wo)};
+}
+
+/* Sets t to w - w_mean + beta (t - t_mean) in the set, to 0 outside. */
+WIDE_VECTORS static void redirect(size_t n, const double *r, const double *w, double w_mean,
+                                  double beta, double t_mean, double *t) {
+    for (size_t i = 0; i < n; i++) {
+        double direction = w[i] - w_mean + beta * (t[i] - t_mean);
+        t[i] = r[i] != 0 ? direction : 0;
+    }
+}
+
+void conjugate_step_direct(struct conjugate_gradient *solver, struct step_memory *memory) {
+    precondition(solver, memory->continuation, solver->r, solver->w);
+    struct products s = multiply(solver->padded, solver->r, solver->w, solver->old, solver->t);
+    double mean = s.w / s.members;
+    double energy = s.w_r - mean * s.r, change = energy - (s.w_old - mean * s.old);
+    double beta = memory->energy > 0 ? fmax(0, change / memory->energy) : 0;
+    redirect(solver->padded, solver->r, solver->w, mean, beta, s.t / s.members, solver->t);
+    memory->energy = energy;
+    double *last = solver->old;
+    solver->old = solver->r;
+    solver->r = last;
+    conjugate_step_apply_compliance(solver, solver->t, solver->w);
+}
+
+WIDE_VECTORS static double least_along(size_t n, const double *r, const double *t,
+                                       const double *w) {
+    double above[LANES] = {0}, below[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            above[a] += r[i + a] * t[i + a];
+            below[a] += t[i + a] * w[i + a];
+        }
+    double curvature = conjugate_lanes_sum(below);
+    return curvature > 0 ? conjugate_lanes_sum(above) / curvature : 0;
+}
+
+double conjugate_step_length(const struct conjugate_gradient *solver) {
+    return least_along(solver->padded, solver->old, solver->t, solver->w);
+}
+
+/* --- scales --- */
+
+void conjugate_step_scale(size_t n, double mean, double sum, double *x) {
+    double factor = mean * (double)n / sum;
+    for (size_t i = 0; i < n; i++)
+        x[i] *= factor;
+}
+
+double conjugate_step_highest(const struct conjugate_gradient *solver) {
+    double highest = 0;
+    for (size_t i = 0; i < solver->n; i++)
+        highest = fmax(highest, fabs(solver->z[i]));
+    return highest;
+}

@@ -1,0 +1,85 @@
+/* Parts of a step of conjugate gradients for the quadratic programme of contact (F9.2): the arrays,
+ * products with compliance and preconditioner, and directions within a set of nodes. Private to
+ * core/contact.
+ *
+ * The caller scales heights and pressures to be near 1. */
+#ifndef RUGO_CORE_CONTACT_SOLVER_CONJUGATE_STEP_H
+#define RUGO_CORE_CONTACT_SOLVER_CONJUGATE_STEP_H
+
+#include "core/contact/compliance.h"
+#include "core/surface/transform.h"
+#include <float.h>
+
+enum { CONJUGATE_GRADIENT_LANES = 8 }; /* independent partial sums, so that reductions vectorise */
+
+/* Arrays of the grid have `padded` entries, a multiple of the lanes. Those from n on stand for
+ * nodes that never touch: their z is far below and all else 0. */
+struct conjugate_gradient {
+    struct transform *transform; /* owned, as all below */
+    struct transform *wide;      /* of the padded grid where the compliance is open; else NULL */
+    struct grid grid;
+    size_t n, padded;
+    double largest; /* largest compliance, the unit of the two below; the grid's length */
+    double *compliance,
+        *inverse;  /* by wave: weighted compliance over largest, and its inverse; 0 for the mean.
+                      Where open, compliance is that of the padded grid, and inverse that of the
+                      periodic half-space: a preconditioner alone */
+    double *z;     /* heights of mean 0, filled by the caller */
+    double *p, *u; /* pressures, and the displacements that they make */
+    double *q;     /* tangent dp/d(mean p): of mean 1, 0 outside of the contact */
+    double *r, *old, *t, *w;    /* scratch */
+    double *kept_p, *kept_u;    /* before a step that may be shortened */
+    double transforms;          /* Fourier transforms made so far, forward and inverse */
+    int (*stop)(void *context); /* called every few iterations, non-zero stops; may be NULL */
+    void *stop_context;
+};
+
+int conjugate_gradient_create(struct conjugate_gradient *out, const struct compliance *compliance,
+                              struct error *err);
+void conjugate_gradient_clear(struct conjugate_gradient *solver);
+double conjugate_gradient_bytes(const struct grid *grid);
+
+struct conjugate_gradient_end {
+    bool converged, stopped;
+    size_t iterations;
+    double approach;    /* D: the gap is D + u - z */
+    double inside;      /* largest |gap| under pressure */
+    double penetration; /* largest -gap elsewhere */
+    double deepest;     /* largest |u|, to which the tolerance refers */
+};
+
+/* Rounding of the highest points can make violations as large as this, over the heights. */
+#define CONJUGATE_ROUNDING (64 * DBL_EPSILON)
+/* Steps between calls of stop, which may take as long as a step on a small grid. */
+enum { CONJUGATE_ASK = 8 };
+
+/* How a residual is continued outside the set before it is multiplied by the inverse compliance;
+ * the product is brought back by the transpose. With zeros, long waves on a sparse set look like
+ * short ones: on a profile the condition number grows with the number of patches in contact (from
+ * 44 to 132 for 142 to 433 patches). With straight lines between patches it is about 2, however
+ * long the cell. Lines serve sets that are solved before nodes leave or join. Pressures that are
+ * cut at 0 after one such step make long waves overshoot. */
+enum continuation { CONTINUED_BY_ZERO, CONTINUED_BY_LINES };
+
+/* What a step of the iteration passes on to the next one. */
+struct step_memory {
+    enum continuation continuation; /* lines: of profiles alone */
+    double energy;                  /* w.r of the last direction; 0 restarts */
+    bool blocked;                   /* a careful step ended where a pressure came to 0 */
+};
+
+/* Computes the next direction t in the set r != 0 of nodes, and w = S t. r is old from then on. */
+void conjugate_step_direct(struct conjugate_gradient *solver, struct step_memory *memory);
+/* Returns old.t/t.w, the multiple of t at which the energy is least. */
+double conjugate_step_length(const struct conjugate_gradient *solver);
+/* out = S in. */
+void conjugate_step_apply_compliance(struct conjugate_gradient *solver, const double *in,
+                                     double *out);
+/* Multiplies x[n] so that its mean, of the sum given, is `mean`. */
+void conjugate_step_scale(size_t n, double mean, double sum, double *x);
+/* Returns the largest |z|. */
+double conjugate_step_highest(const struct conjugate_gradient *solver);
+double conjugate_lanes_sum(const double *lanes);
+double conjugate_lanes_most(const double *lanes);
+
+#endif

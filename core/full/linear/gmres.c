@@ -1,0 +1,328 @@
+#include "core/full/linear/gmres.h"
+#include "core/full/linear/aliasing.h"
+#include "core/vectors.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BASIS = 24, RESTARTS = 10, LANES = 8 };
+/* A restart that leaves more than this part of the residual is the last one. */
+static const double STALLED = 0.5;
+/* Bulk over shear modulus above which pressures are unknowns of their own. */
+static const double BULK_RATIO_LEAST = 10;
+/* The preconditioner solves the face (face_solver.h) down to this residual. */
+static const double FACE_TOLERANCE = 1e-3;
+
+struct gmres {
+    const struct mesh *mesh; /* borrowed */
+    struct preconditioner *preconditioner;
+    struct face_solver face_solver;
+    struct volumetric *volumetric; /* of the flat block; NULL where pressures are not unknowns */
+    size_t degrees_of_freedom, unknowns; /* the pressures of elements follow the displacements */
+    double *basis[BASIS + 1];            /* orthonormal residuals */
+    double *direction[BASIS];            /* preconditioned */
+    double *load, *moved, *pressures;
+    double *face, *target, *forces;      /* by node of the face */
+    double hessenberg[BASIS + 1][BASIS]; /* made upper triangular by rotate() */
+    double cosine[BASIS], sine[BASIS], right[BASIS + 1];
+};
+
+int gmres_create(struct gmres **out, const struct mesh *mesh, const struct material *material,
+                 enum gap_weighting weighting, struct error *err) {
+    bool pressures = gmres_needs_pressures(material);
+    *out = NULL;
+    struct gmres *gmres = array_create(1, sizeof *gmres);
+    if (gmres == NULL)
+        return error_memory(err, sizeof *gmres, "residuals");
+    gmres->mesh = mesh;
+    gmres->degrees_of_freedom = mesh_degrees_of_freedom(mesh);
+    gmres->unknowns = mesh_unknowns(mesh, pressures);
+    int status = pressures ? volumetric_create(&gmres->volumetric, mesh, true, err) : 0;
+    if (status == 0)
+        status =
+            preconditioner_create(&gmres->preconditioner, mesh, material, gmres->volumetric, err);
+    if (status == 0)
+        status =
+            face_solver_create(&gmres->face_solver, mesh, gmres->preconditioner, weighting, err);
+    for (size_t b = 0; status == 0 && b < 2 * BASIS + 1; b++) {
+        double **array = b <= BASIS ? &gmres->basis[b] : &gmres->direction[b - BASIS - 1];
+        *array = array_create(gmres->unknowns, sizeof(double));
+        if (*array == NULL)
+            status = error_memory(err, gmres->unknowns * sizeof(double), "residuals");
+    }
+    double **const others[] = {&gmres->face, &gmres->target, &gmres->forces,
+                               &gmres->load, &gmres->moved,  &gmres->pressures};
+    for (size_t a = 0; status == 0 && a < 6; a++) {
+        *others[a] = array_create(a < 3 ? mesh->face : gmres->unknowns, sizeof(double));
+        if (*others[a] == NULL)
+            status = error_memory(err, gmres->unknowns * sizeof(double), "residuals");
+    }
+    if (status != 0)
+        gmres_destroy(&gmres);
+    *out = gmres;
+    return status;
+}
+
+void gmres_destroy(struct gmres **handle) {
+    struct gmres *gmres = *handle;
+    if (gmres == NULL)
+        return;
+    for (size_t b = 0; b <= BASIS; b++)
+        free(gmres->basis[b]);
+    for (size_t b = 0; b < BASIS; b++)
+        free(gmres->direction[b]);
+    free(gmres->face);
+    free(gmres->target);
+    free(gmres->forces);
+    free(gmres->load);
+    free(gmres->moved);
+    free(gmres->pressures);
+    volumetric_destroy(&gmres->volumetric);
+    face_solver_clear(&gmres->face_solver);
+    preconditioner_destroy(&gmres->preconditioner);
+    free(gmres);
+    *handle = NULL;
+}
+
+double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations) {
+    enum { VECTORS = 3, FACES = 7, WAVES = 5 };
+    bool pressures = gmres_needs_pressures(material);
+    double waves = (double)level_waves(&mesh->level[0]);
+    double unknowns = (double)mesh_unknowns(mesh, pressures);
+    double vectors = 2 * fmin(iterations, BASIS) + 1 + VECTORS;
+    return preconditioner_bytes(mesh) + (pressures ? volumetric_bytes(mesh, true) : 0) +
+           sizeof(double) * (vectors * unknowns + FACES * (double)mesh->face + WAVES * waves);
+}
+
+bool gmres_needs_pressures(const struct material *material) {
+    return material->mean > BULK_RATIO_LEAST * material->shear;
+}
+
+void gmres_weigh(const struct gmres *gmres, const double *in, double *out) {
+    face_solver_weigh(&gmres->face_solver, in, out);
+}
+
+/* --- vectors --- */
+
+WIDE_VECTORS static double dot(size_t n, const double *a, const double *b) {
+    double lanes[LANES] = {0}, sum = 0;
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES)
+        for (size_t l = 0; l < LANES; l++)
+            lanes[l] += a[i + l] * b[i + l];
+    for (; i < n; i++)
+        sum += a[i] * b[i];
+    for (size_t l = 0; l < LANES; l++)
+        sum += lanes[l];
+    return sum;
+}
+
+WIDE_VECTORS static void add(size_t n, double factor, const double *x, double *y) {
+    for (size_t i = 0; i < n; i++)
+        y[i] += factor * x[i];
+}
+
+static void scale(size_t n, double factor, double *x) {
+    for (size_t i = 0; i < n; i++)
+        x[i] *= factor;
+}
+
+/* --- operator and preconditioner --- */
+
+/* The factorisation covers the equations of the displacements alone. */
+static size_t unknowns_of(const struct gmres *gmres, const struct linear_system *system) {
+    return system->factorisation != NULL ? gmres->degrees_of_freedom : gmres->unknowns;
+}
+
+/* y = A x. Rows are forces. The first node of the far side has the sum of the far side's vertical
+ * ones; vertical rows of nodes in contact are the weighted displacements of the face. */
+static void operate(struct gmres *gmres, const struct linear_system *system, const double *x,
+                    double *y) {
+    const struct mesh *mesh = gmres->mesh;
+    size_t far_side = mesh_far_side(mesh);
+    double sum = 0;
+    tangent_apply(system->tangent, x, y);
+    if (unknowns_of(gmres, system) > gmres->degrees_of_freedom) {
+        volumetric_pressures(system->tangent->volumetric, x, -1, x + gmres->degrees_of_freedom,
+                             y + gmres->degrees_of_freedom);
+        volumetric_forces(system->tangent->volumetric, y + gmres->degrees_of_freedom, 1, y);
+    }
+    for (size_t node = far_side; node < mesh->nodes; node++) {
+        sum += y[mesh_vertical(mesh, node)];
+        y[mesh_vertical(mesh, node)] = 0;
+    }
+    y[mesh_vertical(mesh, far_side)] = sum;
+    for (size_t node = 0; node < mesh->face; node++)
+        gmres->face[node] = x[mesh_vertical(mesh, node)];
+    face_solver_weigh(&gmres->face_solver, gmres->face, gmres->face);
+    for (size_t node = 0; node < mesh->face; node++)
+        if (system->active[node])
+            y[mesh_vertical(mesh, node)] = gmres->face[node];
+}
+
+/* x: displacements by the factorised tangent, with the displacements of nodes in contact prescribed
+ * by r. */
+static int precondition_factored(struct gmres *gmres, const struct linear_system *system,
+                                 const double *r, double *x, struct error *err) {
+    const struct mesh *mesh = gmres->mesh;
+    const bool *active = system->active;
+    memset(gmres->moved, 0, gmres->degrees_of_freedom * sizeof *gmres->moved);
+    for (size_t node = 0; node < mesh->face; node++)
+        if (active[node])
+            gmres->moved[mesh_vertical(mesh, node)] = r[mesh_vertical(mesh, node)];
+    tangent_apply(system->tangent, gmres->moved, x);
+    for (size_t f = 0; f < gmres->degrees_of_freedom; f++)
+        x[f] = r[f] - x[f];
+    int status = factorisation_solve(system->factorisation, x, err);
+    for (size_t node = 0; node < mesh->face; node++)
+        if (active[node])
+            x[mesh_vertical(mesh, node)] = r[mesh_vertical(mesh, node)];
+    return status;
+}
+
+/* Fills x with the displacements and pressures of the flat block under r. */
+static void preconditioner_apply_flat(struct gmres *gmres, const bool *active, const double *r,
+                                      double *x) {
+    const struct mesh *mesh = gmres->mesh;
+    double sum = 0;
+    memcpy(gmres->moved, r, gmres->degrees_of_freedom * sizeof *r);
+    for (size_t node = 0; node < mesh->face; node++) {
+        size_t vertical = mesh_vertical(mesh, node);
+        gmres->target[node] = r[vertical];
+        if (active[node])
+            gmres->moved[vertical] = 0;
+    }
+    if (gmres->volumetric != NULL)
+        volumetric_forces(gmres->volumetric, r + gmres->degrees_of_freedom, -1, gmres->moved);
+    for (size_t node = 0; node < mesh->nodes; node++)
+        sum += gmres->moved[mesh_vertical(mesh, node)];
+    preconditioner_load(gmres->preconditioner, gmres->moved);
+    preconditioner_face(gmres->preconditioner, gmres->face);
+    face_solver_weigh(&gmres->face_solver, gmres->face, gmres->face);
+    double shift = face_solver_solve(&gmres->face_solver, active, gmres->face, gmres->target, -sum,
+                                     FACE_TOLERANCE, gmres->forces);
+    preconditioner_displace(gmres->preconditioner, gmres->forces, x);
+    for (size_t node = 0; node < mesh->nodes; node++)
+        x[mesh_vertical(mesh, node)] += shift;
+    if (gmres->volumetric != NULL)
+        volumetric_pressures(gmres->volumetric, x, 1, r + gmres->degrees_of_freedom,
+                             x + gmres->degrees_of_freedom);
+}
+
+/* --- minimal residuals --- */
+
+/* Givens' rotations make column c upper triangular. Returns the size of the residual. */
+static double rotate(struct gmres *gmres, size_t c) {
+    double(*h)[BASIS] = gmres->hessenberg;
+    for (size_t a = 0; a < c; a++) {
+        double upper = h[a][c], lower = h[a + 1][c];
+        h[a][c] = gmres->cosine[a] * upper + gmres->sine[a] * lower;
+        h[a + 1][c] = gmres->cosine[a] * lower - gmres->sine[a] * upper;
+    }
+    double size = hypot(h[c][c], h[c + 1][c]);
+    gmres->cosine[c] = h[c][c] / size;
+    gmres->sine[c] = h[c + 1][c] / size;
+    h[c][c] = size;
+    gmres->right[c + 1] = -gmres->sine[c] * gmres->right[c];
+    gmres->right[c] *= gmres->cosine[c];
+    return fabs(gmres->right[c + 1]);
+}
+
+static void combine(struct gmres *gmres, size_t n, size_t count, double *x) {
+    double factor[BASIS];
+    for (size_t a = count; a-- > 0;) {
+        factor[a] = gmres->right[a];
+        for (size_t b = a + 1; b < count; b++)
+            factor[a] -= gmres->hessenberg[a][b] * factor[b];
+        factor[a] /= gmres->hessenberg[a][a];
+    }
+    for (size_t a = 0; a < count; a++)
+        add(n, factor[a], gmres->direction[a], x);
+}
+
+/* One restart from the residual in basis 0, whose size is *left: adds its solution to x and sets
+ * *left to the size that remains. */
+static int cycle(struct gmres *gmres, const struct linear_system *system, double goal, double *x,
+                 double *left, size_t *iterations, struct error *err) {
+    size_t n = unknowns_of(gmres, system), c = 0;
+    scale(n, 1 / *left, gmres->basis[0]);
+    gmres->right[0] = *left;
+    for (double size = 1; c<BASIS && * left> goal && size > 0; c++) {
+        double *next = gmres->basis[c + 1];
+        int status = 0;
+        if (system->factorisation != NULL)
+            status =
+                precondition_factored(gmres, system, gmres->basis[c], gmres->direction[c], err);
+        else
+            preconditioner_apply_flat(gmres, system->active, gmres->basis[c], gmres->direction[c]);
+        if (status != 0)
+            return status;
+        operate(gmres, system, gmres->direction[c], next);
+        for (size_t a = 0; a <= c; a++) {
+            gmres->hessenberg[a][c] = dot(n, next, gmres->basis[a]);
+            add(n, -gmres->hessenberg[a][c], gmres->basis[a], next);
+        }
+        size = sqrt(dot(n, next, next));
+        gmres->hessenberg[c + 1][c] = size;
+        if (size > 0)
+            scale(n, 1 / size, next);
+        *left = rotate(gmres, c);
+    }
+    combine(gmres, n, c, x);
+    *iterations += c;
+    return 0;
+}
+
+/* Moves the block sideways as a whole, so that the first node of its far side does not move. */
+static void hold(const struct gmres *gmres, double *x) {
+    size_t d = (size_t)gmres->mesh->dimension, held = mesh_far_side(gmres->mesh) * d;
+    for (size_t axis = 0; axis + 1 < d; axis++) {
+        double drift = x[held + axis];
+        for (size_t node = 0; node < gmres->mesh->nodes; node++)
+            x[node * d + axis] -= drift;
+    }
+}
+
+/* Subtracts the forces of the pressures from x, where the equations are solved for displacements
+ * alone. */
+static void eliminate_pressures(struct gmres *gmres, const struct linear_system *system,
+                                double *x) {
+    memcpy(gmres->pressures, x + gmres->degrees_of_freedom,
+           (gmres->unknowns - gmres->degrees_of_freedom) * sizeof *x);
+    volumetric_forces(system->tangent->volumetric, gmres->pressures, -1, x);
+}
+
+int gmres_solve(struct gmres *gmres, const struct linear_system *system, double tolerance,
+                double *x, size_t *iterations, struct error *err) {
+    size_t n = unknowns_of(gmres, system);
+    bool eliminated = n < gmres->unknowns;
+    if (eliminated)
+        eliminate_pressures(gmres, system, x);
+    double first = sqrt(dot(n, x, x)), left = first, before = INFINITY;
+    memcpy(gmres->load, x, n * sizeof *x);
+    memcpy(gmres->basis[0], x, n * sizeof *x);
+    memset(x, 0, n * sizeof *x);
+    for (int restart = 0; restart < RESTARTS && left > tolerance * first; restart++) {
+        if (restart > 0) {
+            operate(gmres, system, x, gmres->basis[0]);
+            for (size_t i = 0; i < n; i++)
+                gmres->basis[0][i] = gmres->load[i] - gmres->basis[0][i];
+            left = sqrt(dot(n, gmres->basis[0], gmres->basis[0]));
+        }
+        if (!(left <= STALLED * before))
+            break;
+        before = left;
+        int status = cycle(gmres, system, tolerance * first, x, &left, iterations, err);
+        if (status != 0)
+            return status;
+    }
+    hold(gmres, x);
+    if (eliminated)
+        volumetric_pressures(system->tangent->volumetric, x, 1, gmres->pressures,
+                             x + gmres->degrees_of_freedom);
+    if (!(left <= tolerance * first))
+        return error_set(err, ERROR_NUMERIC,
+                         "the linear equations of a step of Newton's were solved to %.2g only",
+                         left / first);
+    return 0;
+}

@@ -1,0 +1,41 @@
+/* The inverse stiffness of the block with a flat face, the preconditioner of the rough block.
+ *
+ * Because its columns are equal, the flat block's stiffness separates into one block-tridiagonal
+ * system in depth for each wave vector (as in core/contact/layered.c, which keeps only the face).
+ * With sideways displacements written as i X and i Y the systems are real. They are eliminated
+ * once, from the far side up. Where columns widen, a wave and its aliases (aliasing.h) are coupled.
+ * The inverse neglects that coupling; for forces on the face its relative error is exp(-pi depth),
+ * with the depth of the wider columns in columns.
+ *
+ * All nodes of the far side have one vertical displacement. The block is free to move sideways, and
+ * vertically where nothing is in contact; the mean displacements of its far side and of its face
+ * are then set to 0. */
+#ifndef RUGO_CORE_FULL_LINEAR_PRECONDITIONER_H
+#define RUGO_CORE_FULL_LINEAR_PRECONDITIONER_H
+
+#include "core/full/volumetric.h"
+
+struct preconditioner;
+
+/* Fills volumetric, which may be NULL, with the entries of the layers. */
+int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
+                          const struct material *material, struct volumetric *volumetric,
+                          struct error *err);
+void preconditioner_destroy(struct preconditioner **handle);
+double preconditioner_bytes(const struct mesh *mesh);
+
+/* Vertical displacement of the face over the force on each node, one value a wave in the layout of
+ * transform.h; 0 for the mean. The caller borrows the array. */
+const double *preconditioner_compliance(const struct preconditioner *preconditioner);
+
+/* Stores forces (mesh_degrees_of_freedom values; only the sum of the vertical ones on the far side
+ * counts) and eliminates all levels but the face. */
+void preconditioner_load(struct preconditioner *preconditioner, const double *forces);
+/* Computes the face's vertical displacements under the forces stored; their mean is 0. */
+void preconditioner_face(struct preconditioner *preconditioner, double *vertical);
+/* Adds vertical forces on the face to those stored, and computes all displacements. May be called
+ * once after each preconditioner_load. */
+void preconditioner_displace(struct preconditioner *preconditioner, const double *vertical,
+                             double *displacements);
+
+#endif

@@ -1,0 +1,350 @@
+/* Text exports with headers: matrices of heights and lists of points, as Gwyddion, SPIP, Keyence's
+ * programs and many others write them (README.md). */
+#include "core/instrument/formats.h"
+#include "core/instrument/layers.h"
+#include "core/instrument/point_grid.h"
+#include "core/instrument/text/text_block.h"
+#include "core/instrument/text/text_number.h"
+#include "core/instrument/unit_of.h"
+#include "core/map/height_map.h"
+#include "core/map/height_map_file.h"
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Height maps from the numbers of a text export. */
+
+/* All numbers of a block, row by row; NaN for holes. */
+struct text_table {
+    double *numbers; /* owned */
+    size_t rows, columns;
+    size_t line; /* of the first row */
+};
+
+struct growing {
+    double *numbers; /* owned */
+    size_t count, capacity;
+};
+
+static int append(struct growing *numbers, double number, struct error *err) {
+    if (numbers->count == numbers->capacity) {
+        size_t capacity = numbers->capacity == 0 ? 1024 : 2 * numbers->capacity;
+        double *more = capacity <= SIZE_MAX / sizeof *more
+                           ? realloc(numbers->numbers, capacity * sizeof *more)
+                           : NULL;
+        if (more == NULL)
+            return error_memory(err, capacity * sizeof *more, "a height map");
+        numbers->numbers = more;
+        numbers->capacity = capacity;
+    }
+    numbers->numbers[numbers->count++] = number;
+    return 0;
+}
+
+static int refuse(const struct text_field *field, size_t line, size_t column, struct error *err) {
+    int shown = field->end - field->at < 40 ? (int)(field->end - field->at) : 40;
+    return error_set(err, ERROR_INPUT,
+                     "line %zu, column %zu: '%.*s' is not a number as the others; allowed: numbers "
+                     "as -1.5e-6, with point or comma throughout, and nan for holes",
+                     line, column, shown, field->at);
+}
+
+/* Returns whether a field is empty because some programs write a separator after the last number of
+ * a row. It is a hole only where a number is missing. */
+static bool is_ending(const struct text_field *field, size_t column, size_t columns) {
+    return field->last && field->at == field->end && column > 0 &&
+           (columns == 0 || column == columns);
+}
+
+static int read_row(struct growing *numbers, struct text_line line, struct text_dialect *dialect,
+                    size_t *columns, struct error *err) {
+    struct text_field field;
+    const size_t number_of_line = line.number;
+    size_t column = 0;
+    int status = 0;
+    while (status == 0 && text_field_next(&line, dialect->separator, &field)) {
+        double number;
+        if (is_ending(&field, column, *columns))
+            break;
+        if (text_value_of(&field, dialect, &number) == TEXT_OTHER)
+            return refuse(&field, number_of_line, column + 1, err);
+        status = append(numbers, number, err);
+        column++;
+    }
+    if (*columns == 0)
+        *columns = column;
+    if (status == 0 && column != *columns)
+        return error_set(err, ERROR_INPUT,
+                         "line %zu has %zu numbers, not %zu; allowed: as many in each row, and as "
+                         "the header says",
+                         number_of_line, column, *columns);
+    return status;
+}
+
+/* columns: of each row, where the header states it; 0: as many as the first row has. */
+static int text_table_read(struct text_table *out, const struct text_block *block, const char *end,
+                           size_t columns, struct error *err) {
+    struct text_line line = block->first;
+    struct text_dialect dialect = text_dialect_of(line);
+    struct growing numbers = {0};
+    const char *next = block->next;
+    struct text_table table = {.line = line.number};
+    int status = 0;
+    bool more = true;
+    for (; status == 0 && more; more = text_line_next(&line, &next, end)) {
+        if (line.at == line.end)
+            continue;
+        if (table.rows > 0 && !text_goes_on(line, dialect.separator))
+            break; /* the header of the next block, or a comment */
+        status = read_row(&numbers, line, &dialect, &columns, err);
+        table.rows++;
+    }
+    table.numbers = numbers.numbers;
+    table.columns = columns;
+    if (status != 0)
+        free(numbers.numbers);
+    else
+        *out = table;
+    return status;
+}
+
+/* Scales heights in place by the header's scale and unit, and sets map->z_unit. */
+static int text_scale_heights(struct height_map *map, const struct text_header *header,
+                              struct error *err) {
+    const struct text_quantity *scale = &header->numbers[TEXT_Z_SCALE];
+    const struct text_quantity *empty = &header->numbers[TEXT_VOID];
+    double metres, factor = scale->there ? scale->value : 1;
+    /* The unit of a scale is that of the product: "height conversion factor (-> m)". */
+    unit_keep(map->z_unit, scale->there && scale->unit[0] != '\0' ? scale->unit : header->z_unit,
+              &metres);
+    for (size_t point = 0; point < grid_points(&map->grid); point++) {
+        bool hole = empty->there && map->z[point] == empty->value;
+        map->z[point] = hole ? NAN : map->z[point] * factor * metres;
+        if (isinf(map->z[point]))
+            return error_set(err, ERROR_INPUT, "a height is too large with the scale %g", factor);
+    }
+    return 0;
+}
+
+/* Returns metres in one unit of x and of y, 1 where they are no lengths, and sets map->xy_unit. */
+static int text_lateral_units(struct height_map *map, const char *x_unit, const char *y_unit,
+                              double metres[2], struct error *err) {
+    char other[UNIT_ROOM];
+    unit_keep(map->xy_unit, x_unit, &metres[0]);
+    unit_keep(other, y_unit, &metres[1]);
+    if (strcmp(map->xy_unit, other) == 0)
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "x is in '%.20s' and y in '%.20s'; allowed: lengths for both, or one unit",
+                     x_unit, y_unit);
+}
+
+/* Returns the unit of a quantity: its own, or that of its axis in the header. */
+static const char *unit_for(const struct text_quantity *quantity, const char *of_axis) {
+    bool own = quantity->unit[0] != '\0' && !(quantity->usual && of_axis[0] != '\0');
+    return own ? quantity->unit : of_axis;
+}
+
+/* Returns the distance between points along an axis, in the file's unit; 0 where the header has
+ * none. */
+static double spacing(const struct text_quantity *step, const struct text_quantity *length,
+                      size_t points, const char **unit) {
+    const struct text_quantity *known = step->there ? step : length;
+    if (!known->there)
+        return 0;
+    *unit = unit_for(known, *unit);
+    return step->there ? step->value : length->value / (double)points;
+}
+
+static int check_lengths(const struct text_header *header, struct error *err) {
+    static const char *const NAMES[] = {"length along x", "length along y", "spacing along x",
+                                        "spacing along y"};
+    for (int key = TEXT_WIDTH; key <= TEXT_DY; key++) {
+        const struct text_quantity *length = &header->numbers[key];
+        if (length->there && !(length->value > 0))
+            return error_set(err, ERROR_INPUT, "the header says a %s of %g %s; allowed: above 0",
+                             NAMES[key - TEXT_WIDTH], length->value, length->unit);
+    }
+    return 0;
+}
+
+static int set_lengths(struct height_map *map, const struct text_header *header,
+                       struct error *err) {
+    const struct text_quantity *numbers = header->numbers;
+    const char *x_unit = header->x_unit, *y_unit = header->y_unit;
+    double metres[2];
+    double dx = spacing(&numbers[TEXT_DX], &numbers[TEXT_WIDTH], map->grid.nx, &x_unit);
+    double dy = spacing(&numbers[TEXT_DY], &numbers[TEXT_HEIGHT], map->grid.ny, &y_unit);
+    if (!numbers[TEXT_DY].there && (dy == 0 || numbers[TEXT_DX].there)) {
+        dy = dx;
+        y_unit = x_unit;
+    }
+    if (dx == 0) {
+        dx = dy != 0 ? dy : 1;
+        x_unit = dy != 0 ? y_unit : "";
+        y_unit = x_unit;
+    }
+    if (dy == 0)
+        dy = dx;
+    if (y_unit[0] == '\0')
+        y_unit = x_unit;
+    int status = check_lengths(header, err);
+    if (status == 0)
+        status = text_lateral_units(map, x_unit, y_unit, metres, err);
+    if (status != 0)
+        return status;
+    map->grid.lx = dx * metres[0] * (double)map->grid.nx;
+    map->grid.ly = dy * metres[1] * (double)map->grid.ny;
+    status = grid_check(&map->grid, err);
+    return status == 0 ? 0 : error_context(err, "the header's lengths");
+}
+
+/* Checks a count against the header's. */
+static int check_count(const struct text_quantity *said, const char *what, size_t found,
+                       struct error *err) {
+    if (!said->there || said->value == (double)found)
+        return 0;
+    return error_set(err, ERROR_INPUT, "the header says %g %s, %zu are there", said->value, what,
+                     found);
+}
+
+/* Moves the numbers of a matrix of heights into a map, and sets those of the table to NULL. On
+ * failure *map may hold heights, which the caller clears. */
+static int text_matrix_map(struct height_map *map, struct text_table *table,
+                           const struct text_header *header, struct error *err) {
+    const struct text_quantity *numbers = header->numbers;
+    bool column =
+        table->columns == 1 && !(numbers[TEXT_ROWS].there && numbers[TEXT_COLUMNS].there &&
+                                 numbers[TEXT_COLUMNS].value == 1);
+    size_t nx = column ? table->rows : table->columns, ny = column ? 1 : table->rows;
+    int status = check_count(&numbers[TEXT_COLUMNS], "points a row", nx, err);
+    if (status == 0)
+        status = check_count(&numbers[TEXT_ROWS], "rows", ny, err);
+    if (status == 0)
+        status = height_map_shape(map, ny, nx, 1, err);
+    if (status == 0)
+        status = set_lengths(map, header, err);
+    if (status != 0)
+        return status;
+    map->z = table->numbers;
+    table->numbers = NULL;
+    return text_scale_heights(map, header, err);
+}
+
+/* Makes a map of a list of points x y z, in any order, on a regular grid; nodes without a point are
+ * holes. */
+static int text_points_map(struct height_map *map, const struct text_table *table,
+                           const struct text_block *block, struct error *err) {
+    const size_t plain[3] = {0, 1, 2};
+    const size_t *of = block->columns.named ? block->columns.of : plain;
+    const struct text_header *header = &block->header;
+    struct point_list points = {.n = table->rows, .stride = table->columns};
+    double metres[2];
+    for (size_t c = 0; c < 3; c++) {
+        if (of[c] >= table->columns)
+            return error_set(err, ERROR_INPUT, "a point has %zu numbers, %c is column %zu",
+                             table->columns, "xyz"[c], of[c] + 1);
+        points.of[c] = table->numbers + of[c];
+    }
+    int status = text_lateral_units(map, header->x_unit,
+                                    header->y_unit[0] != '\0' ? header->y_unit : header->x_unit,
+                                    metres, err);
+    if (status == 0)
+        status = point_grid_map(map, &points, metres, err);
+    return status == 0 ? text_scale_heights(map, header, err) : status;
+}
+
+static bool owns(const char *data, size_t size) {
+    static const char *const MARKS[] = {"\xff\xfe", "\xfe\xff"};
+    for (size_t mark = 0; mark < 2; mark++)
+        if (size >= 2 && memcmp(data, MARKS[mark], 2) == 0)
+            return true;
+    return text_blocks_own(data, size);
+}
+
+static int choose_block(const struct text_blocks *blocks, const char *asked, size_t *out,
+                        struct error *err) {
+    struct layer *layers = array_create(blocks->count, sizeof *layers);
+    if (layers == NULL)
+        return error_memory(err, blocks->count * sizeof *layers, "the blocks of a text");
+    for (size_t b = 0; b < blocks->count; b++) {
+        const struct text_header *header = &blocks->blocks[b].header;
+        const char *scaled = header->numbers[TEXT_Z_SCALE].unit;
+        layers[b] = (struct layer){*header->title != '\0' ? header->title : NULL,
+                                   *scaled != '\0' ? scaled : header->z_unit};
+    }
+    int status = layer_choose(layers, blocks->count, asked, "", out, err);
+    free(layers);
+    return status;
+}
+
+/* Returns whether a block is a list of points. Names of columns show it, and so do three columns
+ * with a unit along x where the header has no length of a matrix's row. */
+static bool is_list(const struct text_block *block, const struct text_table *table, bool points) {
+    const struct text_quantity *numbers = block->header.numbers;
+    bool matrix = false;
+    for (int key = TEXT_COLUMNS; key <= TEXT_DY; key++)
+        matrix = matrix || numbers[key].there;
+    if (block->columns.named)
+        return true;
+    return table->columns == 3 && !matrix && (points || block->header.x_unit[0] != '\0');
+}
+
+static int read_block(struct height_map *map, const struct text_block *block, const char *end,
+                      bool points, struct error *err) {
+    const struct text_quantity *columns = &block->header.numbers[TEXT_COLUMNS];
+    bool stated = !block->columns.named && columns->there && columns->value > 1 &&
+                  columns->value < 2147483648.0;
+    struct text_table table = {0};
+    int status = text_table_read(&table, block, end, stated ? (size_t)columns->value : 0, err);
+    if (status == 0)
+        status = is_list(block, &table, points) ? text_points_map(map, &table, block, err)
+                                                : text_matrix_map(map, &table, &block->header, err);
+    free(table.numbers);
+    return status;
+}
+
+static int read_text(struct height_map *out, const char *data, size_t size, const char *layer,
+                     bool points, struct error *err) {
+    struct text_file file = {0};
+    struct text_blocks blocks = {0};
+    struct height_map map = {0};
+    size_t chosen;
+    int status = text_file_open(&file, data, size, err);
+    if (status == 0)
+        status = text_blocks_find(&blocks, &file, err);
+    if (status == 0)
+        status = choose_block(&blocks, layer, &chosen, err);
+    if (status == 0)
+        status = read_block(&map, &blocks.blocks[chosen], file.text + file.size, points, err);
+    text_blocks_clear(&blocks);
+    text_file_close(&file);
+    if (status == 0)
+        *out = map;
+    else
+        height_map_clear(&map);
+    return status;
+}
+
+static int read_export(struct height_map *out, const char *data, size_t size,
+                       const struct instrument_request *request, struct error *err) {
+    return read_text(out, data, size, request->layer, false, err);
+}
+
+/* A plain list in the program's own order is read as such, bit for bit. */
+static int read_points(struct height_map *out, const char *data, size_t size,
+                       const struct instrument_request *request, struct error *err) {
+    struct error why;
+    if (request->layer == NULL && !owns(data, size)) {
+        int status = height_map_parse(out, HEIGHT_MAP_XYZ, data, size, 0, &why);
+        if (status == ERROR_MEMORY)
+            return error_set(err, ERROR_MEMORY, "%s", why.text);
+        if (status == 0)
+            return 0;
+    }
+    return read_text(out, data, size, request->layer, true, err);
+}
+
+const struct instrument_format INSTRUMENT_TEXT = {"text", "", owns, read_export};
+const struct instrument_format INSTRUMENT_POINTS = {"xyz", "xyz", NULL, read_points};

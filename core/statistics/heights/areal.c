@@ -1,0 +1,188 @@
+#include "core/statistics/heights/areal.h"
+#include "core/statistics/heights/roughness.h"
+#include <stdint.h>
+#include <stdlib.h>
+
+/* Points are numbered by 32 bits, as the largest maps that are read have 2^31 of them. */
+static const uint32_t NONE = UINT32_MAX;
+
+struct search {
+    const struct measured_map *map;
+    uint32_t *order;           /* owned: points with heights, sorted */
+    size_t count;              /* of them */
+    uint32_t *parent;          /* owned; NONE: not yet flooded; a peak is its own parent */
+    unsigned char *whole;      /* owned: points with all neighbours */
+    struct summit_list *peaks; /* borrowed; NULL: not wanted */
+    struct average bends;      /* of the peaks that count */
+};
+
+/* Highest first; of equal ones the first point. */
+static int by_height(const void *a, const void *b, void *search) {
+    const double *z = ((const struct search *)search)->map->z;
+    uint32_t s = *(const uint32_t *)a, t = *(const uint32_t *)b;
+    if (z[s] != z[t])
+        return z[s] > z[t] ? -1 : 1;
+    return (s > t) - (s < t);
+}
+
+static void search_clear(struct search *s) {
+    free(s->order);
+    free(s->parent);
+    free(s->whole);
+}
+
+static int search_create(struct search *s, const struct measured_map *map, struct error *err) {
+    size_t points = grid_points(map->grid);
+    if (points >= NONE)
+        return error_set(err, ERROR_INPUT, "hills of %zu points; allowed: fewer than 2^32 - 1",
+                         points);
+    *s = (struct search){.map = map,
+                         .order = array_create(points, sizeof *s->order),
+                         .parent = array_create(points, sizeof *s->parent),
+                         .whole = array_create(points, 1)};
+    if (s->order == NULL || s->parent == NULL || s->whole == NULL) {
+        search_clear(s);
+        return error_memory(err, points * (sizeof *s->order + sizeof *s->parent + 1), "hills");
+    }
+    for (uint32_t point = 0; point < points; point++) {
+        s->parent[point] = NONE;
+        if (!isnan(map->z[point]))
+            s->order[s->count++] = point;
+    }
+    qsort_r(s->order, s->count, sizeof *s->order, by_height, s);
+    return 0;
+}
+
+/* Returns the peak of the hill that a flooded point belongs to (Tarjan 1975). */
+static uint32_t peak_of(uint32_t *parent, uint32_t at) {
+    while (parent[at] != at) {
+        parent[at] = parent[parent[at]];
+        at = parent[at];
+    }
+    return at;
+}
+
+static int peak_count(struct search *s, uint32_t peak, struct error *err) {
+    const struct grid *grid = s->map->grid;
+    long i = (long)(peak % grid->nx), j = (long)(peak / grid->nx);
+    double dx = grid_dx(grid), dy = grid_dy(grid), z = s->map->z[peak];
+    if (s->whole[peak] == 0)
+        return 0;
+    double xx = map_height(s->map, i - 1, j) - 2 * z + map_height(s->map, i + 1, j);
+    double yy = map_height(s->map, i, j - 1) - 2 * z + map_height(s->map, i, j + 1);
+    double bend = -(xx / (dx * dx) + yy / (dy * dy)) / 2;
+    const struct summit summit = {(double)i * dx, (double)j * dy, z, bend};
+    average_add(&s->bends, bend);
+    return s->peaks != NULL ? summit_list_add(s->peaks, &summit, err) : 0;
+}
+
+/* Returns the number of a neighbour; NONE beside an open map. */
+static uint32_t neighbour(const struct measured_map *map, long i, long j) {
+    long nx = (long)map->grid->nx, ny = (long)map->grid->ny;
+    if (map->boundary == BOUNDARY_OPEN && (i < 0 || i >= nx || j < 0 || j >= ny))
+        return NONE;
+    return (uint32_t)((j + ny) % ny * nx + (i + nx) % nx);
+}
+
+/* Lets a point rise out of the falling water: it begins a hill, or joins the hills around it, of
+ * which the highest goes on. */
+static int point_flood(struct search *s, uint32_t at, double least, struct error *err) {
+    const double *z = s->map->z;
+    long nx = (long)s->map->grid->nx, i = (long)at % nx, j = (long)at / nx;
+    int status = 0;
+    s->parent[at] = at;
+    for (long step = 0; step < 9 && status == 0; step++) {
+        uint32_t beside = neighbour(s->map, i + step % 3 - 1, j + step / 3 - 1);
+        if (beside == NONE || s->parent[beside] == NONE)
+            continue;
+        uint32_t here = peak_of(s->parent, at), there = peak_of(s->parent, beside);
+        if (here == there)
+            continue;
+        bool higher = z[there] > z[here] || (z[there] == z[here] && there < here);
+        uint32_t stays = higher ? there : here, ends = higher ? here : there;
+        if (ends != at && z[ends] - z[at] >= least)
+            status = peak_count(s, ends, err);
+        s->parent[ends] = stays;
+    }
+    return status;
+}
+
+int hills_find(const struct measured_map *map, double least, struct summit_list *peaks,
+               struct hills *out, struct error *err) {
+    struct search s;
+    int status = search_create(&s, map, err);
+    if (status != 0)
+        return status;
+    size_t searched = map_mark_whole(map, 1, 1, s.whole);
+    s.peaks = peaks;
+    for (size_t n = 0; n < s.count && status == 0; n++)
+        status = point_flood(&s, s.order[n], least, err);
+    for (size_t n = 0; n < s.count && status == 0; n++)
+        if (s.parent[s.order[n]] == s.order[n])
+            status = peak_count(&s, s.order[n], err); /* the highest, and one in each part cut off
+                                                         by holes */
+    *out = (struct hills){.count = s.bends.count,
+                          .density = (double)s.bends.count / (double)searched /
+                                     (grid_dx(map->grid) * grid_dy(map->grid)),
+                          .curvature = average_value(&s.bends)};
+    search_clear(&s);
+    return status;
+}
+
+static const double CORRELATION_LEVEL = 0.2, PRUNED_SHARE = 0.05; /* the standard's defaults */
+
+static double mean_size(const struct measured_map *map, double mean) {
+    struct average size = {0};
+    for (size_t point = 0; point < grid_points(map->grid); point++)
+        average_add(&size, fabs(map->z[point] - mean));
+    return average_value(&size);
+}
+
+/* Returns sqrt(1 + x^2 + y^2) - 1. */
+static double stretch(double x, double y) {
+    double square = x * x + y * y;
+    return square / (sqrt(1 + square) + 1);
+}
+
+/* Of each cell of four points the mean over its corners, whose triangles have these slopes. */
+static double developed_area(const struct measured_map *map) {
+    const struct grid *grid = map->grid;
+    double dx = grid_dx(grid), dy = grid_dy(grid);
+    struct average area = {0};
+    for (long j = 0; j < (long)grid->ny; j++)
+        for (long i = 0; i < (long)grid->nx; i++) {
+            double a = map_height(map, i, j), b = map_height(map, i + 1, j);
+            double c = map_height(map, i, j + 1), d = map_height(map, i + 1, j + 1);
+            double x0 = (b - a) / dx, x1 = (d - c) / dx, y0 = (c - a) / dy, y1 = (d - b) / dy;
+            average_add(
+                &area, (stretch(x0, y0) + stretch(x0, y1) + stretch(x1, y0) + stretch(x1, y1)) / 4);
+        }
+    return average_value(&area);
+}
+
+int areal_measure(const struct measured_map *map, const struct correlation *correlation,
+                  struct summit_list *list, struct areal *out, struct error *err) {
+    struct roughness roughness;
+    struct hills hills;
+    double shortest, longest;
+    open_roughness_measure(map, &roughness);
+    double highest = roughness.highest - roughness.mean, lowest = roughness.mean - roughness.lowest;
+    int status = hills_find(map, PRUNED_SHARE * (highest + lowest), list, &hills, err);
+    if (status != 0)
+        return status;
+    correlation_lengths(correlation, CORRELATION_LEVEL, &shortest, &longest);
+    *out = (struct areal){.sa = mean_size(map, roughness.mean),
+                          .sq = roughness.rms_height,
+                          .ssk = roughness.skewness,
+                          .sku = roughness.kurtosis,
+                          .sp = highest,
+                          .sv = lowest,
+                          .sz = highest + lowest,
+                          .sdq = roughness.rms_slope,
+                          .sdr = developed_area(map),
+                          .sal = shortest,
+                          .str = shortest / longest,
+                          .spd = hills.density,
+                          .spc = hills.curvature};
+    return 0;
+}

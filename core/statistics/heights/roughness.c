@@ -1,0 +1,374 @@
+#include "core/statistics/heights/roughness.h"
+#include "core/sum.h"
+#include "core/surface/transform.h"
+#include "core/vectors.h"
+#include <math.h>
+#include <stdlib.h>
+
+struct powers {
+    struct average second, third, fourth;  /* of heights about the mean */
+    struct average slope_x, slope_y;       /* squares of forward differences */
+    struct average bend_x, bend_y, either; /* squares of second ones, and of their sum */
+};
+
+static void heights_measure(const struct measured_map *map, struct roughness *out) {
+    struct average mean = {0};
+    out->lowest = INFINITY;
+    out->highest = -INFINITY;
+    for (size_t point = 0; point < grid_points(map->grid); point++) {
+        double z = map->z[point];
+        average_add(&mean, z);
+        out->lowest = z < out->lowest ? z : out->lowest;
+        out->highest = z > out->highest ? z : out->highest;
+    }
+    out->mean = average_value(&mean);
+}
+
+/* Adds point i, j; dx and dy are the spacings. */
+static void inner_point_add(const struct measured_map *map, long i, long j, double mean, double dx,
+                            double dy, struct powers *powers) {
+    double z = map_height(map, i, j), h = z - mean;
+    double right = map_height(map, i + 1, j), left = map_height(map, i - 1, j);
+    average_add(&powers->second, h * h);
+    average_add(&powers->third, h * h * h);
+    average_add(&powers->fourth, h * h * h * h);
+    double slope_x = (right - z) / dx, bend_x = (left - 2 * z + right) / (dx * dx);
+    average_add(&powers->slope_x, slope_x * slope_x);
+    average_add(&powers->bend_x, bend_x * bend_x);
+    if (grid_is_profile(map->grid))
+        return;
+    double up = map_height(map, i, j - 1), down = map_height(map, i, j + 1);
+    double slope_y = (down - z) / dy, bend_y = (up - 2 * z + down) / (dy * dy);
+    average_add(&powers->slope_y, slope_y * slope_y);
+    average_add(&powers->bend_y, bend_y * bend_y);
+    average_add(&powers->either, (bend_x + bend_y) * (bend_x + bend_y));
+}
+
+void open_roughness_measure(const struct measured_map *map, struct roughness *out) {
+    const struct grid *grid = map->grid;
+    bool profile = grid_is_profile(grid);
+    double dx = grid_dx(grid), dy = profile ? dx : grid_dy(grid);
+    struct powers powers = {0};
+    heights_measure(map, out);
+    for (size_t j = 0; j < grid->ny; j++)
+        for (size_t i = 0; i < grid->nx; i++)
+            inner_point_add(map, (long)i, (long)j, out->mean, dx, dy, &powers);
+    double variance = average_value(&powers.second), slope_x = average_value(&powers.slope_x);
+    double bend_x = average_value(&powers.bend_x);
+    out->rms_height = sqrt(variance);
+    out->skewness = average_value(&powers.third) / (variance * out->rms_height);
+    out->kurtosis = average_value(&powers.fourth) / (variance * variance);
+    out->m2 = profile ? slope_x : (slope_x + average_value(&powers.slope_y)) / 2;
+    out->m4 = profile ? bend_x : (bend_x + average_value(&powers.bend_y)) / 2;
+    out->rms_slope = profile ? sqrt(slope_x) : sqrt(2 * out->m2);
+    out->rms_curvature = profile ? sqrt(bend_x) : sqrt(average_value(&powers.either)) / 2;
+    out->nayak_alpha = variance / out->m2 * (out->m4 / out->m2);
+}
+
+/* Sums over points in LANES interleaved parts: short chains of rounding, and vectors for the
+ * compiler. */
+enum { LANES = 8 };
+struct row_sums {
+    double second[LANES], third[LANES], fourth[LANES]; /* powers of the height about the mean */
+    double slope_x[LANES], slope_y[LANES];             /* squares of forward differences */
+    double bend_x[LANES], bend_y[LANES], bend[LANES];  /* squares of second ones, of their sum */
+};
+
+static double lanes_total(const double *lanes) {
+    return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) +
+           ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
+}
+
+/* Adds one point to lane l: z[i] with its neighbours; up == middle == down for a profile. */
+static inline void point_add(struct row_sums *sums, size_t l, double left, double z, double right,
+                             double up, double down, double mean) {
+    double h = z - mean, h2 = h * h;
+    double slope_x = right - z, slope_y = down - z;
+    double bend_x = left - 2 * z + right, bend_y = up - 2 * z + down;
+    sums->second[l] += h2;
+    sums->third[l] += h2 * h;
+    sums->fourth[l] += h2 * h2;
+    sums->slope_x[l] += slope_x * slope_x;
+    sums->slope_y[l] += slope_y * slope_y;
+    sums->bend_x[l] += bend_x * bend_x;
+    sums->bend_y[l] += bend_y * bend_y;
+    sums->bend[l] += bend_x * bend_y;
+}
+
+WIDE_VECTORS static void row_add(const double *up, const double *row, const double *down, size_t nx,
+                                 double mean, struct row_sums *sums) {
+    point_add(sums, 0, row[nx - 1], row[0], row[1], up[0], down[0], mean);
+    size_t i = 1;
+    for (; i + LANES < nx; i += LANES)
+        for (size_t l = 0; l < LANES; l++)
+            point_add(sums, l, row[i + l - 1], row[i + l], row[i + l + 1], up[i + l], down[i + l],
+                      mean);
+    for (; i < nx; i++)
+        point_add(sums, 0, row[i - 1], row[i], row[i + 1 < nx ? i + 1 : 0], up[i], down[i], mean);
+}
+
+static double map_mean(const struct grid *grid, const double *z, double *lowest, double *highest) {
+    struct sum total = {0, 0}; /* of rows */
+    *lowest = *highest = z[0];
+    for (size_t j = 0; j < grid->ny; j++) {
+        const double *row = z + j * grid->nx;
+        double sum = 0;
+        for (size_t i = 0; i < grid->nx; i++) {
+            sum += row[i];
+            *lowest = row[i] < *lowest ? row[i] : *lowest;
+            *highest = row[i] > *highest ? row[i] : *highest;
+        }
+        sum_add(&total, sum);
+    }
+    return sum_value(&total) / (double)grid_points(grid);
+}
+
+enum { SUMS = sizeof(struct row_sums) / sizeof(double[LANES]) };
+
+/* Computes means over the map, in the order of struct row_sums. */
+static void map_means(const struct grid *grid, const double *z, double mean, double *means) {
+    struct sum totals[SUMS] = {{0}};
+    size_t nx = grid->nx, ny = grid->ny;
+    for (size_t j = 0; j < ny; j++) {
+        const double *up = z + (j != 0 ? j - 1 : ny - 1) * nx,
+                     *down = z + (j + 1 < ny ? j + 1 : 0) * nx;
+        union {
+            struct row_sums named;
+            double lanes[SUMS][LANES];
+        } sums = {.lanes = {{0}}};
+        row_add(up, z + j * nx, down, nx, mean, &sums.named);
+        for (size_t s = 0; s < SUMS; s++)
+            sum_add(&totals[s], lanes_total(sums.lanes[s]));
+    }
+    for (size_t s = 0; s < SUMS; s++)
+        means[s] = sum_value(&totals[s]) / (double)grid_points(grid);
+}
+
+void roughness_measure(const struct grid *grid, const double *z, struct roughness *out) {
+    double means[SUMS];
+    out->mean = map_mean(grid, z, &out->lowest, &out->highest);
+    map_means(grid, z, out->mean, means);
+    bool profile = grid_is_profile(grid);
+    double dx = grid_dx(grid), dy = profile ? dx : grid_dy(grid);
+    double slope_x = means[3] / (dx * dx), slope_y = means[4] / (dy * dy);
+    double bend_x = means[5] / (dx * dx * dx * dx), bend_y = means[6] / (dy * dy * dy * dy);
+    double both = means[7] / (dx * dx * dy * dy), variance = means[0];
+    out->rms_height = sqrt(variance);
+    out->skewness = means[1] / (variance * out->rms_height);
+    out->kurtosis = means[2] / (variance * variance);
+    out->rms_slope = sqrt(slope_x + slope_y);
+    out->rms_curvature = profile ? sqrt(bend_x) : sqrt(bend_x + 2 * both + bend_y) / 2;
+    out->m2 = profile ? slope_x : (slope_x + slope_y) / 2;
+    out->m4 = profile ? bend_x : (bend_x + bend_y) / 2;
+    out->nayak_alpha = variance / out->m2 * (out->m4 / out->m2);
+}
+
+int map_modes_measure(const struct grid *grid, const double *z, struct modes *modes,
+                      struct error *err) {
+    struct transform *transform = NULL;
+    *modes = (struct modes){.grid = *grid, .mode_x = grid->nx / 2, .mode_y = grid->ny / 2};
+    size_t rows = 2 * modes->mode_y + 1;
+    modes->power = array_create((modes->mode_x + 1) * rows, sizeof *modes->power);
+    if (modes->power == NULL)
+        return error_memory(err, (modes->mode_x + 1) * rows * sizeof *modes->power, "a spectrum");
+    int status = transform_create(&transform, grid, modes->mode_x, modes->mode_y, err);
+    if (status != 0) {
+        free(modes->power);
+        modes->power = NULL;
+        return status;
+    }
+    transform_forward(transform, z);
+    const double complex *mode = transform_spectrum(transform);
+    for (size_t mx = 0; mx <= modes->mode_x; mx++)
+        for (size_t row = 0; row < grid->ny; row++, mode++) {
+            size_t at = row <= modes->mode_y ? row + modes->mode_y : row + modes->mode_y - grid->ny;
+            double amplitude2 = creal(*mode) * creal(*mode) + cimag(*mode) * cimag(*mode);
+            modes->power[mx * rows + at] = mx == 0 && row == 0 ? 0 : amplitude2;
+        }
+    transform_destroy(&transform);
+    return 0;
+}
+
+int roughness_spectral(const struct grid *grid, const double *z, struct moments *out,
+                       struct error *err) {
+    struct modes modes;
+    int status = map_modes_measure(grid, z, &modes, err);
+    if (status != 0)
+        return status;
+    modes_moments(&modes, out);
+    free(modes.power);
+    return 0;
+}
+
+static double shorter_side(const struct grid *grid) {
+    return grid_is_profile(grid) ? grid->lx : fmin(grid->lx, grid->ly);
+}
+
+/* Returns |m| in units of one wave along the shorter side. */
+static double radius(const struct grid *grid, double mx, double my) {
+    double side = shorter_side(grid);
+    return hypot(mx * (side / grid->lx), grid_is_profile(grid) ? 0 : my * (side / grid->ly));
+}
+
+size_t radial_bins(const struct grid *grid) {
+    size_t nyquist_x = grid->nx / 2, nyquist_y = grid->ny / 2;
+    return (size_t)(radius(grid, (double)nyquist_x, (double)nyquist_y) + 0.5) + 1;
+}
+
+/* band: means are over the waves of a ring that have any power, else over all of the ring. */
+static void ring_density(const struct modes *modes, bool band, double *wave_number,
+                         double *density) {
+    const struct grid *grid = &modes->grid;
+    size_t bins = radial_bins(grid);
+    bool profile = grid_is_profile(grid);
+    double cell = profile ? grid->lx / (2 * M_PI) : grid->lx * grid->ly / (4 * M_PI * M_PI);
+    long mode_y = (long)modes->mode_y;
+    for (size_t r = 0; r < bins; r++) {
+        wave_number[r] = 0; /* first the number of modes, then the wave number */
+        density[r] = 0;
+    }
+    for (long my = -(long)(grid->ny / 2); my <= (long)(grid->ny / 2); my++)
+        for (size_t mx = 0; mx <= grid->nx / 2; mx++) {
+            if (my < 0 && 2 * (size_t)-my == grid->ny)
+                continue;
+            size_t r = (size_t)(radius(grid, (double)mx, (double)my) + 0.5);
+            double weight = mx == 0 || 2 * mx == grid->nx ? 1 : 2;
+            double power =
+                mx <= modes->mode_x && labs(my) <= mode_y ? modes_power(modes, mx, my) : 0;
+            wave_number[r] += band && power == 0 ? 0 : weight;
+            density[r] += weight * power;
+        }
+    for (size_t r = 0; r < bins; r++) {
+        density[r] = wave_number[r] > 0 ? density[r] / wave_number[r] * cell : 0;
+        wave_number[r] = 2 * M_PI * (double)r / shorter_side(grid);
+    }
+}
+
+void psd_of_modes(const struct modes *modes, double *wave_number, double *density) {
+    ring_density(modes, false, wave_number, density);
+}
+
+void psd_of_band(const struct modes *modes, double *wave_number, double *density) {
+    ring_density(modes, true, wave_number, density);
+}
+
+int psd_measure(const struct grid *grid, const double *z, double *wave_number, double *density,
+                struct error *err) {
+    struct modes modes;
+    int status = map_modes_measure(grid, z, &modes, err);
+    if (status != 0)
+        return status;
+    psd_of_modes(&modes, wave_number, density);
+    free(modes.power);
+    return 0;
+}
+
+size_t acf_lags(const struct grid *grid) {
+    static const double EDGE = 1e-9; /* a lag this near to half a side is that */
+    if (grid_is_profile(grid) || grid->lx <= grid->ly)
+        return grid->nx / 2 + 1;
+    return (size_t)(grid->ly / grid_dx(grid) * (1 + EDGE) / 2) + 1;
+}
+
+/* Mean of a field even about the origin over rings of width dx about it, over its value there. */
+static void ring_means(const struct grid *grid, const double *field, double *counts, double *lag,
+                       double *mean) {
+    size_t lags = acf_lags(grid);
+    double dx = grid_dx(grid), dy = grid_is_profile(grid) ? 0 : grid_dy(grid);
+    for (size_t r = 0; r < lags; r++)
+        counts[r] = mean[r] = 0;
+    for (size_t j = 0; j < grid->ny; j++)
+        for (size_t i = 0; i < grid->nx; i++) {
+            double x = (double)(i <= grid->nx / 2 ? i : grid->nx - i);
+            double y = (double)(j <= grid->ny / 2 ? j : grid->ny - j) * (dy / dx);
+            size_t r = (size_t)(sqrt(x * x + y * y) + 0.5);
+            if (r >= lags)
+                continue;
+            counts[r]++;
+            mean[r] += field[j * grid->nx + i];
+        }
+    double origin = field[0];
+    for (size_t r = 0; r < lags; r++) {
+        lag[r] = (double)r * dx;
+        mean[r] = mean[r] / counts[r] / origin;
+    }
+}
+
+int ring_average(const struct grid *grid, const double *field, double *lag, double *mean,
+                 struct error *err) {
+    size_t lags = acf_lags(grid);
+    double *counts = array_create(lags, sizeof *counts);
+    if (counts == NULL)
+        return error_memory(err, lags * sizeof *counts, "rings of lags");
+    ring_means(grid, field, counts, lag, mean);
+    free(counts);
+    return 0;
+}
+
+/* correlation: of the field on all points. */
+static int changes_fill(const struct grid *grid, const double *field, const double *correlation,
+                        double *change, struct error *err) {
+    size_t lags = (acf_lags(grid) + 1) / 2; /* as many as the coarser grid has */
+    struct grid coarse = *grid;
+    for (size_t r = 0; r < lags; r++)
+        change[r] = NAN;
+    bool strip = grid->ny == 2 && grid->nx > 2; /* half of which would be a profile */
+    if (strip || grid->nx % 2 != 0 || (!grid_is_profile(grid) && grid->ny % 2 != 0))
+        return 0;
+    coarse.nx = grid->nx / 2;
+    coarse.ny = grid_is_profile(grid) ? 1 : grid->ny / 2;
+    double *samples = array_create(grid_points(&coarse) + lags, sizeof *samples);
+    if (samples == NULL)
+        return error_memory(err, grid_points(&coarse) * sizeof *samples, "a coarser field");
+    for (size_t j = 0; j < coarse.ny; j++)
+        for (size_t i = 0; i < coarse.nx; i++)
+            samples[j * coarse.nx + i] = field[2 * j * grid->nx + 2 * i];
+    double *lag = samples + grid_points(&coarse);
+    int status = ring_average(&coarse, samples, lag, change, err);
+    for (size_t r = 0; r < lags && status == 0; r++)
+        change[r] = correlation[2 * r] - change[r];
+    free(samples);
+    return status;
+}
+
+int acf_of_modes_changes(const struct modes *modes, double *lag, double *correlation,
+                         double *change, struct error *err) {
+    const struct grid *grid = &modes->grid;
+    struct transform *transform = NULL;
+    double *field = array_create(grid_points(grid), sizeof *field);
+    int status = field != NULL
+                     ? 0
+                     : error_memory(err, grid_points(grid) * sizeof *field, "an autocorrelation");
+    if (status == 0)
+        status = transform_create(&transform, grid, modes->mode_x, modes->mode_y, err);
+    if (status == 0) {
+        double complex *mode = transform_spectrum(transform);
+        for (size_t mx = 0; mx <= modes->mode_x; mx++)
+            for (size_t row = 0; row < grid->ny; row++, mode++) {
+                long my = row <= grid->ny / 2 ? (long)row : (long)row - (long)grid->ny;
+                *mode = labs(my) <= (long)modes->mode_y ? modes_power(modes, mx, my) : 0;
+            }
+        transform_inverse(transform, field);
+        status = ring_average(grid, field, lag, correlation, err);
+    }
+    if (status == 0 && change != NULL)
+        status = changes_fill(grid, field, correlation, change, err);
+    transform_destroy(&transform);
+    free(field);
+    return status;
+}
+
+int acf_of_modes(const struct modes *modes, double *lag, double *correlation, struct error *err) {
+    return acf_of_modes_changes(modes, lag, correlation, NULL, err);
+}
+
+int acf_measure(const struct grid *grid, const double *z, double *lag, double *correlation,
+                struct error *err) {
+    struct modes modes;
+    int status = map_modes_measure(grid, z, &modes, err);
+    if (status != 0)
+        return status;
+    status = acf_of_modes(&modes, lag, correlation, err);
+    free(modes.power);
+    return status;
+}

@@ -1,0 +1,391 @@
+#include "core/statistics/spectra/spectrum_fit.h"
+#include "core/statistics/spectra/spectrum_law.h"
+#include "core/statistics/spectra/spectrum_range.h"
+
+/* The rise of the deviance at the ends of a 95 % interval, also where only one end is known. An end
+ * at 5 %, reported where noise hides the other, would be wrong more often than 1 time in 20. */
+static const double RISE = 3.841;
+/* By how much the rings at a sharp end scatter more than those inside: half of a ring is empty
+ * there, and under a window what its modes hold comes from few. */
+static const double EDGE_SCATTER = 2, EDGE_SCATTER_WINDOWED = 1.6;
+/* Ratio of the variances found over 1500 surfaces of known laws to those estimated without it. */
+static const double OVERDISPERSION = 1.1;
+static const double SCORE = 1.960; /* of a standard deviation, of two ends */
+enum { FEWEST_RINGS = 6, STARTS = 6 };
+
+/* A law and what is known of it. */
+struct fitted {
+    struct law_problem *problem;
+    struct law law;        /* with every parameter that may be seen */
+    struct law plain;      /* the same, or without a roll-off where none is seen */
+    law_matrix likelihood; /* covariances, widened where the law is wrong */
+    law_matrix covariance;
+    double ratio;    /* of the deviance to the degrees of freedom */
+    bool wrong;      /* whether that is significantly too large */
+    double widening; /* of variances */
+    bool known;      /* false: too few rings, or none that determines the law */
+};
+
+static const double NONE = (double)NAN;
+
+static void problem_bounds(struct law_problem *problem, const struct spectrum_range *range) {
+    double last = (double)range->last, edge = (double)range->edge;
+    double *low = problem->low, *high = problem->high;
+    low[LAW_AMPLITUDE] = -INFINITY;
+    high[LAW_AMPLITUDE] = INFINITY;
+    low[LAW_HURST] = 0;
+    high[LAW_HURST] = 1;
+    low[LAW_ROLLOFF] = log(LAW_FEWEST_WAVES);
+    high[LAW_ROLLOFF] = log(last);
+    low[LAW_SHORT] = edge > 0 ? log(edge - 2) : 0;
+    high[LAW_SHORT] = edge > 0 ? log(edge + 2.5) : INFINITY;
+    low[LAW_LONG] = log(LAW_FEWEST_WAVES / 2);
+    high[LAW_LONG] = log(last / 2);
+    low[LAW_BLUR] = log(1e-3 / (last * last));
+    high[LAW_BLUR] = log(30 / (last * last));
+    low[LAW_NOISE] = log(1e-4 * range->tail_density);
+    high[LAW_NOISE] = log(1.1 * range->tail_density);
+}
+
+static struct law law_start(const struct law_problem *problem, const struct spectrum_range *range,
+                            double rolloff, double longest) {
+    const struct map_spectrum *s = problem->spectrum;
+    bool blurred = range->to_end == SPECTRUM_END_LOW_PASS;
+    bool noisy = range->to_end == SPECTRUM_END_SPACING || range->to_end == SPECTRUM_END_NOISE;
+    double noise = range->noise > 0 || !noisy ? range->noise : 0.1 * range->tail_density;
+    double last = (double)range->last, edge = (double)range->edge;
+    size_t middle = (size_t)problem->reference;
+    return (struct law){.p = {log(fmax(s->density[middle], problem->floor)), 0.5, log(rolloff),
+                              edge > 0 ? log(edge + (s->windowed ? 0.5 : 0)) : INFINITY,
+                              longest > 0 ? log(longest) : problem->low[LAW_LONG],
+                              blurred ? log(0.5 / (last * last)) : -INFINITY,
+                              noise > 0 ? log(noise) : -INFINITY},
+                        .free = {true, true, true, edge > 0, longest > 0, blurred, noisy}};
+}
+
+/* Fits from several roll-offs. */
+static struct law law_search(struct law_problem *problem, const struct spectrum_range *range,
+                             double longest) {
+    struct law best = {.deviance = INFINITY};
+    double least = fmax(longest, LAW_FEWEST_WAVES), most = 0.8 * (double)range->last;
+    for (int start = 0; start < STARTS; start++) {
+        double rolloff = least * pow(most / least, (double)start / STARTS);
+        struct law law = law_start(problem, range, rolloff, longest);
+        law_maximise(problem, &law);
+        if (law.deviance < best.deviance)
+            best = law;
+    }
+    /* a sharp end from both sides: the likelihood has bends at rings */
+    for (int side = 0; side < 2 && range->edge > 0; side++) {
+        struct law law = best;
+        law.p[LAW_SHORT] = log((double)range->edge + (side == 0 ? -0.4 : 0.8));
+        law_maximise(problem, &law);
+        if (law.deviance < best.deviance)
+            best = law;
+    }
+    return best;
+}
+
+/* Returns a wave number about which the density begins, where it does so among the rings; 0: it
+ * does not seem to. */
+static double begin_guess(const struct map_spectrum *s, const struct spectrum_range *range) {
+    static const double WEAK = 0.2;
+    double highest = 0;
+    for (size_t r = range->first; r <= range->last; r++)
+        highest = fmax(highest, s->density[r]);
+    size_t r = range->first;
+    while (r < range->last && s->density[r] < WEAK * highest)
+        r++;
+    return r > range->first ? (double)r - 0.25 : 0;
+}
+
+/* Returns the standard deviation of the deviance of the right law, over its mean. */
+static double deviance_scatter(const struct law_problem *problem) {
+    const struct map_spectrum *s = problem->spectrum;
+    size_t first = problem->leakage->first, count = problem->leakage->count;
+    double variance = 0;
+    for (size_t r = first; r < first + count; r++)
+        for (size_t d = 0; d < RING_REACH && r + d < first + count; d++) {
+            double both = s->covariance[r][d];
+            variance +=
+                (d == 0 ? 2 : 4) * both * both / (s->covariance[r][0] * s->covariance[r + d][0]);
+        }
+    return sqrt(variance) / (double)count;
+}
+
+static double freedom(const struct fitted *fitted) {
+    double left = (double)fitted->problem->leakage->count;
+    for (size_t a = 0; a < LAW_PARAMETERS; a++)
+        left -= fitted->law.free[a] ? 1 : 0;
+    return left;
+}
+
+static void fitted_measure(struct fitted *fitted, const struct spectrum_range *range) {
+    static const double BETTER = 12; /* what a lowest wave number must gain to be reported */
+    struct law_problem *problem = fitted->problem;
+    double guess = begin_guess(problem->spectrum, range);
+    problem_bounds(problem, range);
+    fitted->law = law_search(problem, range, 0);
+    if (guess > 0) {
+        struct law begun = law_search(problem, range, guess);
+        if (begun.deviance + BETTER < fitted->law.deviance)
+            fitted->law = begun;
+    }
+    fitted->ratio = fitted->law.deviance / freedom(fitted);
+    fitted->wrong = fitted->ratio > 1 + 2 * deviance_scatter(problem);
+    fitted->widening = OVERDISPERSION * (fitted->wrong ? fitted->ratio : 1);
+    fitted->known = freedom(fitted) > 0 &&
+                    law_covariance(problem, &fitted->law, fitted->likelihood, fitted->covariance);
+}
+
+/* Fits over a range; the caller destroys the problem, which may be NULL. */
+static int fitted_create(struct fitted *fitted, const struct map_spectrum *spectrum,
+                         const struct spectrum_range *range, struct error *err) {
+    static const double DEEP = 1e-3, DEEPEST = 1e-6;
+    *fitted = (struct fitted){0};
+    if (range->last + 1 < FEWEST_RINGS + range->first)
+        return 0;
+    double level = range->edge > 0 ? DEEP * spectrum->density[range->edge - 2]
+                                   : DEEPEST * spectrum->density[range->last];
+    if (!(level > 0))
+        return 0;
+    int status =
+        law_problem_create(&fitted->problem, spectrum, range->first, range->last, level, err);
+    if (status == 0)
+        fitted_measure(fitted, range);
+    return status;
+}
+
+/* Takes a sharp end that no law with one fits for a low pass, where a law with that does. */
+static int fitted_reconsider(struct fitted *fitted, struct spectrum_range *range,
+                             struct error *err) {
+    static const double BETTER = 0.5;
+    if (!fitted->known || range->edge == 0 || !fitted->wrong)
+        return 0;
+    struct spectrum_range other = *range;
+    struct fitted passed;
+    other.edge = 0;
+    other.to_end = SPECTRUM_END_LOW_PASS;
+    other.last = range->steep;
+    int status = fitted_create(&passed, fitted->problem->spectrum, &other, err);
+    if (status == 0 && passed.known && passed.ratio < BETTER * fitted->ratio) {
+        struct fitted before = *fitted;
+        *fitted = passed;
+        passed = before;
+        *range = other;
+    }
+    law_problem_destroy(&passed.problem);
+    return status;
+}
+
+/* Returns an end of an interval in terms of a parameter; NaN: open. */
+static double bound(const struct fitted *fitted, enum law_parameter a, int direction) {
+    double ratio = fitted->covariance[a][a] / fitted->likelihood[a][a];
+    double error = sqrt(fitted->covariance[a][a] * fitted->widening);
+    double wider = fmax(ratio, 0.5) * fitted->widening;
+    if (a == LAW_SHORT || a == LAW_LONG)
+        wider *= fitted->problem->spectrum->windowed ? EDGE_SCATTER_WINDOWED : EDGE_SCATTER;
+    return law_bound(fitted->problem, &fitted->law, a, direction, RISE * wider, sqrt(RISE) * error);
+}
+
+/* Returns a wavelength by its wave number's interval, whose ends are in the reverse order. */
+static struct interval wavelength(const struct fitted *fitted, enum law_parameter a, bool within) {
+    double side = fitted->problem->spectrum->side;
+    struct interval interval = {side / exp(fitted->law.p[a]), NONE, NONE};
+    double lowest = within ? bound(fitted, a, -1) : NONE, highest = bound(fitted, a, 1);
+    if (isnan(lowest) || isnan(highest))
+        interval.value = NONE;
+    interval.low = side / exp(highest);
+    interval.high = side / exp(lowest);
+    return interval;
+}
+
+/* An open end stays open. */
+static void include(struct interval *interval) {
+    if (interval->low > interval->value)
+        interval->low = interval->value;
+    if (interval->high < interval->value)
+        interval->high = interval->value;
+}
+
+/* The roll-off; where none is seen the plain law goes without. */
+static void fill_rolloff(struct fitted *fitted, struct spectrum_fit *out) {
+    out->rolloff_wavelength = wavelength(fitted, LAW_ROLLOFF, true);
+    fitted->plain = fitted->law;
+    if (isnan(out->rolloff_wavelength.value) && isnan(out->rolloff_wavelength.high)) {
+        fitted->plain.free[LAW_ROLLOFF] = false;
+        fitted->plain.p[LAW_ROLLOFF] = fitted->problem->low[LAW_ROLLOFF];
+        law_maximise(fitted->problem, &fitted->plain);
+    }
+}
+
+static void fill_ends(const struct fitted *fitted, const struct spectrum_range *range,
+                      struct spectrum_fit *out) {
+    const struct grid *grid = &fitted->problem->spectrum->modes.grid;
+    double longer = out->profile ? grid->lx : fmax(grid->lx, grid->ly);
+    out->short_wavelength = (struct interval){NONE, NONE, out->trusted_to};
+    if (range->edge > 0)
+        out->short_wavelength = wavelength(fitted, LAW_SHORT, true);
+    struct fitted begun = *fitted;
+    bool begins = fitted->law.free[LAW_LONG];
+    if (!begins) { /* how far it could be moved */
+        begun.likelihood[LAW_LONG][LAW_LONG] = begun.covariance[LAW_LONG][LAW_LONG] = 1;
+        begun.widening = fitted->widening;
+    }
+    out->long_wavelength = wavelength(&begun, LAW_LONG, begins);
+    out->longest = begins ? out->long_wavelength.value : longer;
+    out->shortest = range->edge > 0 ? out->short_wavelength.value : out->trusted_to;
+    if (isnan(out->longest))
+        out->longest = longer;
+    if (isnan(out->shortest))
+        out->shortest = out->trusted_to;
+}
+
+/* Returns the integral of k^power over low to high. */
+static double power_integral(double power, double low, double high) {
+    if (!(high > low))
+        return 0;
+    return fabs(power + 1) < 1e-9 ? log(high / low)
+                                  : (pow(high, power + 1) - pow(low, power + 1)) / (power + 1);
+}
+
+/* Returns the logarithm of the mean square height (order 0) or slope (2) of a law, its wave
+ * numbers being in waves per side, from lowest to highest, or the law's own ends. */
+static double log_moment(const struct law_problem *problem, const double *p, int order,
+                         double lowest, double highest) {
+    bool profile = problem->dimension == 1;
+    double fall = problem->dimension + 2 * p[LAW_HURST], begin = exp(p[LAW_ROLLOFF]);
+    double low = lowest > 0 ? lowest : exp(p[LAW_LONG]);
+    double high = highest > 0 ? highest : exp(p[LAW_SHORT]);
+    double scale = pow(2 * M_PI / problem->spectrum->side, problem->dimension + order);
+    double weight = (profile ? 0 : 1) + order, knee = fmin(fmax(begin, low), high);
+    double flat = power_integral(weight, low, knee) * pow(begin / problem->reference, -fall);
+    double falling = power_integral(weight - fall, knee, high) * pow(problem->reference, fall);
+    return p[LAW_AMPLITUDE] + log((profile ? 2 : 2 * M_PI) * scale * (flat + falling));
+}
+
+/* The interval of what has this logarithm and its standard error; with one far above 1 it is not
+ * known. */
+static struct interval about(double logarithm, double error) {
+    static const double TOLD = 1;
+    return (struct interval){exp(logarithm), error < TOLD ? exp(logarithm - SCORE * error) : NONE,
+                             error < TOLD ? exp(logarithm + SCORE * error) : NONE};
+}
+
+/* The root of a mean square, with its error by those of the law. */
+static struct interval moment(const struct fitted *fitted, const struct spectrum_fit *fit,
+                              int order) {
+    static const double STEP = 1e-5;
+    const struct law *law = &fitted->plain;
+    double side = fitted->problem->spectrum->side, slope[LAW_PARAMETERS], variance = 0;
+    double low = law->free[LAW_LONG] ? 0 : side / fit->longest;
+    double high = law->free[LAW_SHORT] ? 0 : side / fit->shortest;
+    double value = log_moment(fitted->problem, law->p, order, low, high);
+    for (size_t a = 0; a < LAW_PARAMETERS; a++) {
+        struct law moved = *law;
+        moved.p[a] += STEP;
+        slope[a] = law->free[a]
+                       ? (log_moment(fitted->problem, moved.p, order, low, high) - value) / STEP
+                       : 0;
+    }
+    for (size_t a = 0; a < LAW_PARAMETERS; a++)
+        for (size_t b = 0; b < LAW_PARAMETERS; b++)
+            variance += slope[a] * fitted->covariance[a][b] * slope[b];
+    return about(value / 2, sqrt(variance * fitted->widening) / 2);
+}
+
+/* Trusts waves up to a sharp end, or as long as half of their power has passed. */
+static void fill_trusted(const struct fitted *fitted, struct spectrum_fit *out) {
+    double side = fitted->problem->spectrum->side;
+    if (out->to_end == SPECTRUM_END_CUTOFF)
+        out->trusted_to = side / exp(fitted->law.p[LAW_SHORT]);
+    else if (out->to_end == SPECTRUM_END_LOW_PASS)
+        out->trusted_to = fmax(out->trusted_to, side / sqrt(log(2) / exp(fitted->law.p[LAW_BLUR])));
+}
+
+static void fill(struct fitted *fitted, const struct spectrum_range *range,
+                 struct spectrum_fit *out) {
+    struct law_problem *problem = fitted->problem;
+    out->fitted = true;
+    out->freedom = freedom(fitted);
+    out->deviance = fitted->ratio;
+    out->noise = range->noise > 0 ? exp(fitted->law.p[LAW_NOISE]) : 0;
+    fill_trusted(fitted, out);
+    fill_rolloff(fitted, out);
+    fill_ends(fitted, range, out);
+    const double *p = fitted->plain.p;
+    double lowest = bound(fitted, LAW_HURST, -1);
+    double highest = bound(fitted, LAW_HURST, 1);
+    out->hurst =
+        (struct interval){p[LAW_HURST], isnan(lowest) ? 0 : lowest, isnan(highest) ? 1 : highest};
+    include(&out->hurst);
+    out->reference_wavelength = problem->spectrum->side / problem->reference;
+    out->amplitude = (struct interval){exp(p[LAW_AMPLITUDE]), exp(bound(fitted, LAW_AMPLITUDE, -1)),
+                                       exp(bound(fitted, LAW_AMPLITUDE, 1))};
+    include(&out->amplitude);
+    out->rms_height = moment(fitted, out, 0);
+    out->rms_slope = moment(fitted, out, 2);
+}
+
+int spectrum_fit_measure(const struct map_spectrum *spectrum,
+                         const struct spectrum_fit_request *request, struct spectrum_fit *out,
+                         struct error *err) {
+    static const struct interval UNKNOWN = {(double)NAN, (double)NAN, (double)NAN};
+    struct spectrum_range range;
+    struct fitted fitted;
+    int status = spectrum_range_find(spectrum, request, &range, err);
+    if (status != 0)
+        return status;
+    status = fitted_create(&fitted, spectrum, &range, err);
+    if (status == 0)
+        status = fitted_reconsider(&fitted, &range, err);
+    *out = (struct spectrum_fit){.trusted_from = spectrum->side / (double)range.first,
+                                 .trusted_to = spectrum->side / (double)range.last,
+                                 .from_end = range.from_end,
+                                 .to_end = range.to_end,
+                                 .noise = range.noise,
+                                 .hurst = UNKNOWN,
+                                 .rolloff_wavelength = UNKNOWN,
+                                 .short_wavelength = UNKNOWN,
+                                 .long_wavelength = UNKNOWN,
+                                 .reference_wavelength = NONE,
+                                 .amplitude = UNKNOWN,
+                                 .rms_height = UNKNOWN,
+                                 .rms_slope = UNKNOWN,
+                                 .longest = NONE,
+                                 .shortest = NONE,
+                                 .profile = grid_is_profile(&spectrum->modes.grid),
+                                 .deviance = NONE};
+    if (status == 0 && fitted.known)
+        fill(&fitted, &range, out);
+    law_problem_destroy(&fitted.problem);
+    return status;
+}
+
+double spectrum_fit_density(const struct spectrum_fit *fit, double wave_number) {
+    static const double GUARD = 1e-9;
+    double length = 2 * M_PI / fmax(wave_number, 1e-300);
+    if (!fit->fitted || length > fit->longest * (1 + GUARD) || length < fit->shortest * (1 - GUARD))
+        return 0;
+    double rolloff =
+        isnan(fit->rolloff_wavelength.value) ? fit->longest : fit->rolloff_wavelength.value;
+    return fit->amplitude.value * pow(fmin(length, rolloff) / fit->reference_wavelength,
+                                      (fit->profile ? 1 : 2) + 2 * fit->hurst.value);
+}
+
+int spectrum_fit_law(const struct spectrum_fit *fit, struct spectrum *out, struct error *err) {
+    if (!fit->fitted)
+        return error_set(err, ERROR_INPUT,
+                         "no law fits the spectrum of the map: it has too few "
+                         "wavelengths that can be trusted");
+    double rolloff =
+        isnan(fit->rolloff_wavelength.value) ? fit->longest : fit->rolloff_wavelength.value;
+    *out = (struct spectrum){.type = SPECTRUM_SELF_AFFINE,
+                             .hurst = fit->hurst.value,
+                             .wavelength_long = fit->longest,
+                             .wavelength_rolloff = fmin(fmax(rolloff, fit->shortest), fit->longest),
+                             .wavelength_short = fit->shortest,
+                             .scale = SCALE_RMS_HEIGHT,
+                             .scale_value = fit->rms_height.value};
+    return 0;
+}

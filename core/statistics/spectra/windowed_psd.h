@@ -1,0 +1,18 @@
+/* The spectral density of a map that does not repeat. */
+#ifndef RUGO_CORE_STATISTICS_SPECTRA_WINDOWED_PSD_H
+#define RUGO_CORE_STATISTICS_SPECTRA_WINDOWED_PSD_H
+
+#include "core/statistics/measured_map.h"
+
+/* Fills rings as psd_measure does, radial_bins(grid) of them, of an open map times Hann's window,
+ * its density divided by the mean square of the window; the mean under the window is taken out.
+ * Holes are filled from their rim inwards by means of neighbours (FORMULAS.md, F18.7).
+ * ERROR_MEMORY, or ERROR_INPUT for a map of holes alone. */
+int windowed_psd_measure(const struct measured_map *map, double *wave_number, double *density,
+                         struct error *err);
+
+/* Fills z with the heights of the map under the window, as above; *power: mean square of the
+ * window. */
+int windowed_heights(const struct measured_map *map, double *z, double *power, struct error *err);
+
+#endif

@@ -1,0 +1,186 @@
+#include "core/statistics/summits/summits.h"
+#include "core/statistics/summits/grid_summits.h"
+#include "core/statistics/summits/refined.h"
+#include "core/surface/transform.h"
+#include <math.h>
+#include <stdlib.h>
+
+struct summit_finder {
+    struct grid grid;
+    enum summit_stencil stencil;
+    size_t mode_x, mode_y;
+    size_t *columns;             /* one row's summits */
+    struct transform *transform; /* spectral curvature: exact derivatives, NULL otherwise */
+    double *curvature;           /* of every point, likewise */
+    struct refined *refined;     /* SUMMITS_REFINED, NULL otherwise */
+};
+
+static int finder_fill(struct summit_finder *f, enum summit_curvature curvature,
+                       struct error *err) {
+    if (f->stencil == SUMMITS_REFINED)
+        return refined_create(&f->refined, &f->grid, f->mode_x, f->mode_y, err);
+    f->columns = array_create(f->grid.nx, sizeof *f->columns);
+    if (f->columns == NULL)
+        return error_memory(err, f->grid.nx * sizeof *f->columns, "a row of summits");
+    if (curvature == CURVATURE_FINITE_DIFFERENCE)
+        return 0;
+    f->curvature = array_create(grid_points(&f->grid), sizeof *f->curvature);
+    if (f->curvature == NULL)
+        return error_memory(err, grid_points(&f->grid) * sizeof *f->curvature, "curvatures");
+    return transform_create(&f->transform, &f->grid, f->mode_x, f->mode_y, err);
+}
+
+int summit_finder_create(struct summit_finder **out, const struct grid *grid,
+                         enum summit_stencil stencil, enum summit_curvature curvature,
+                         size_t mode_x, size_t mode_y, struct error *err) {
+    int status = grid_check(grid, err);
+    if (status != 0)
+        return status;
+    struct summit_finder *f = array_create(1, sizeof *f);
+    if (f == NULL)
+        return error_memory(err, sizeof *f, "a summit finder");
+    f->grid = *grid;
+    f->stencil = stencil;
+    f->mode_x = mode_x;
+    f->mode_y = mode_y;
+    status = finder_fill(f, curvature, err);
+    if (status != 0) {
+        summit_finder_destroy(&f);
+        return status;
+    }
+    *out = f;
+    return 0;
+}
+
+void summit_finder_destroy(struct summit_finder **finder) {
+    struct summit_finder *f = *finder;
+    if (f == NULL)
+        return;
+    refined_destroy(&f->refined);
+    transform_destroy(&f->transform);
+    free(f->curvature);
+    free(f->columns);
+    free(f);
+    *finder = NULL;
+}
+
+double summit_finder_bytes(const struct grid *grid, enum summit_stencil stencil,
+                           enum summit_curvature curvature, size_t mode_x, size_t mode_y) {
+    if (stencil == SUMMITS_REFINED)
+        return refined_bytes(grid, mode_x, mode_y);
+    double bytes = (double)grid->nx * sizeof(size_t);
+    if (curvature == CURVATURE_SPECTRAL)
+        bytes += (double)grid_points(grid) * sizeof(double) +
+                 (double)(mode_x + 1) * (double)grid->ny * sizeof(double complex);
+    return bytes;
+}
+
+/* Fills in -(z_xx + z_yy)/2 of every point (profiles -z_xx), exact for a band-limited surface. */
+static void curvature_fill(struct summit_finder *f, const double *z) {
+    const struct grid *grid = &f->grid;
+    size_t ny = grid->ny;
+    double step_x = 2 * M_PI / grid->lx, step_y = grid_is_profile(grid) ? 0 : 2 * M_PI / grid->ly;
+    double half = grid_is_profile(grid) ? 1 : 0.5;
+    transform_forward(f->transform, z);
+    double complex *mode = transform_spectrum(f->transform);
+    for (size_t mx = 0; mx <= f->mode_x; mx++)
+        for (size_t row = 0; row < ny; row++, mode++) {
+            size_t my = row <= ny / 2 ? row : ny - row;
+            double kx = (double)mx * step_x, ky = (double)my * step_y;
+            *mode *= my <= f->mode_y ? half * (kx * kx + ky * ky) : 0;
+        }
+    transform_inverse(f->transform, f->curvature);
+}
+
+/* Computes the curvature by central second differences (F1.3). */
+static double difference_curvature(const struct grid *grid, const double *z, size_t i, size_t j) {
+    size_t nx = grid->nx, ny = grid->ny;
+    const double *row = z + j * nx;
+    double dx = grid_dx(grid), dy = grid_dy(grid);
+    double left = row[i != 0 ? i - 1 : nx - 1], right = row[i + 1 < nx ? i + 1 : 0];
+    double xx = (left - 2 * row[i] + right) / (dx * dx);
+    if (grid_is_profile(grid))
+        return -xx;
+    double up = z[(j != 0 ? j - 1 : ny - 1) * nx + i], down = z[(j + 1 < ny ? j + 1 : 0) * nx + i];
+    double yy = (up - 2 * row[i] + down) / (dy * dy);
+    return -(xx + yy) / 2;
+}
+
+static int point_add(struct summit_finder *f, const double *z, size_t i, size_t j, bool mirrored,
+                     struct summit_list *list, struct error *err) {
+    const struct grid *grid = &f->grid;
+    const double sign = mirrored ? -1 : 1;
+    size_t point = j * grid->nx + i;
+    double curvature =
+        f->curvature != NULL ? f->curvature[point] : difference_curvature(grid, z, i, j);
+    struct summit summit = {.x = (double)i * grid_dx(grid),
+                            .y = grid_is_profile(grid) ? 0 : (double)j * grid_dy(grid),
+                            .height = sign * z[point],
+                            .curvature = sign * curvature};
+    return summit_list_add(list, &summit, err);
+}
+
+/* Rows above and below are NULL for a profile. */
+struct three_rows {
+    const double *up, *middle, *down;
+};
+static struct three_rows rows_at(const struct grid *grid, const double *z, size_t j) {
+    size_t nx = grid->nx, ny = grid->ny;
+    if (grid_is_profile(grid))
+        return (struct three_rows){NULL, z, NULL};
+    return (struct three_rows){z + (j != 0 ? j - 1 : ny - 1) * nx, z + j * nx,
+                               z + (j + 1 < ny ? j + 1 : 0) * nx};
+}
+
+static int find(struct summit_finder *f, const double *z, bool mirrored, struct summit_list *list,
+                struct error *err) {
+    list->count = 0;
+    if (f->stencil == SUMMITS_REFINED)
+        return mirrored ? refined_find_pits(f->refined, z, list, err)
+                        : refined_find(f->refined, z, list, err);
+    if (f->curvature != NULL)
+        curvature_fill(f, z);
+    const bool corners = f->stencil == SUMMITS_NINE_POINT;
+    int status = 0;
+    for (size_t j = 0; j < f->grid.ny && status == 0; j++) {
+        struct three_rows rows = rows_at(&f->grid, z, j);
+        size_t found = (mirrored ? row_pits : row_summits)(rows.up, rows.middle, rows.down,
+                                                           f->grid.nx, corners, f->columns);
+        for (size_t s = 0; s < found && status == 0; s++)
+            status = point_add(f, z, f->columns[s], j, mirrored, list, err);
+    }
+    return status;
+}
+
+int summits_find(struct summit_finder *f, const double *z, struct summit_list *list,
+                 struct error *err) {
+    return find(f, z, false, list, err);
+}
+
+int pits_find(struct summit_finder *f, const double *z, struct summit_list *list,
+              struct error *err) {
+    return find(f, z, true, list, err);
+}
+
+int extremes_find(struct summit_finder *f, const double *z, size_t first, size_t count,
+                  struct summit_list *summits, struct summit_list *pits, struct error *err) {
+    const bool corners = f->stencil == SUMMITS_NINE_POINT;
+    int status = 0;
+    if (f->stencil == SUMMITS_REFINED) {
+        status = first == 0 ? refined_find(f->refined, z, summits, err) : 0;
+        return status != 0 || first > 0 ? status : refined_find_pits(f->refined, z, pits, err);
+    }
+    if (f->curvature != NULL && first == 0)
+        curvature_fill(f, z);
+    for (size_t j = first; j < first + count && status == 0; j++) {
+        struct three_rows rows = rows_at(&f->grid, z, j);
+        size_t found =
+            row_extremes(rows.up, rows.middle, rows.down, f->grid.nx, corners, f->columns);
+        for (size_t s = 0; s < found && status == 0; s++) {
+            size_t i = f->columns[s];
+            bool pit = rows.middle[i] < rows.middle[i + 1 < f->grid.nx ? i + 1 : 0];
+            status = point_add(f, z, i, j, pit, pit ? pits : summits, err);
+        }
+    }
+    return status;
+}

@@ -1,0 +1,139 @@
+#include "core/statistics/uncertainty/scalar_errors.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Fourth powers have so long a tail that a map which has few of its far heights underestimates both
+ * the kurtosis and its error. This factor on the error corrects for it (FORMULAS.md, F18.16). */
+static const double LONG_TAIL = 1.15;
+
+static double total(const double *sums, size_t cells) {
+    double all = 0;
+    for (size_t cell = 0; cell < cells; cell++)
+        all += sums[cell];
+    return all;
+}
+
+/* Share by which the mean, and tilts where they were taken out, make the mean square height of an
+ * open map smaller than that of the endless surface: each takes as much as a slow wave has. */
+static double share_lost(const struct cell_heights *h, const struct low_modes *modes) {
+    double share = low_modes_variance(modes, h->power[1], h->count) / (h->rms * h->rms);
+    return modes->open ? (h->untilted ? 3 : 1) * share : 0;
+}
+
+void scalar_errors_heights(const struct cell_heights *h, const struct low_modes *modes,
+                           struct scalar_errors *out) {
+    double n = h->count, s = h->rms, third = total(h->power[3], h->cells) / n;
+    double fourth = total(h->power[4], h->cells) / n, size = total(h->size, h->cells) / n;
+    double skewness = third / pow(s, 3), kurtosis = fourth / pow(s, 4), below = 0.5;
+    double sa[LOW_CELLS_MOST], sq[LOW_CELLS_MOST], ssk[LOW_CELLS_MOST], sku[LOW_CELLS_MOST];
+    for (size_t l = 0; l < h->levels && h->level[l] < h->mean; l++)
+        below = h->share[l];
+    for (size_t cell = 0; cell < h->cells; cell++) {
+        double p0 = h->power[0][cell], p1 = h->power[1][cell] / s;
+        double p2 = h->power[2][cell] / (s * s), p3 = h->power[3][cell] / pow(s, 3);
+        double p4 = h->power[4][cell] / pow(s, 4);
+        sa[cell] = h->size[cell] - p0 * size - p1 * s * (1 - 2 * below);
+        sq[cell] = s * (p2 - p0) / 2;
+        ssk[cell] = p3 - skewness * p0 - 3 * p1 - 1.5 * skewness * (p2 - p0);
+        sku[cell] = p4 - kurtosis * p0 - 4 * skewness * p1 - 2 * kurtosis * (p2 - p0);
+    }
+    double lost = share_lost(h, modes);
+    out->sa = hypot(sqrt(modes->excess[2] * low_modes_variance(modes, sa, n)), lost / 2 * size);
+    out->sq = hypot(sqrt(modes->excess[2] * low_modes_variance(modes, sq, n)), lost / 2 * s);
+    out->ssk = sqrt(modes->excess[3] * low_modes_variance(modes, ssk, n));
+    out->sku = LONG_TAIL * sqrt(modes->excess[2] * low_modes_variance(modes, sku, n));
+}
+
+/* Fills the deviations from the mean by cell, over the mean and the number of all; returns the
+ * mean. */
+static double deviations_fill(const double *counts, const double *sums, size_t cells, double *out) {
+    double n = total(counts, cells), mean = total(sums, cells) / n;
+    for (size_t cell = 0; cell < cells; cell++)
+        out[cell] = (sums[cell] - mean * counts[cell]) / (mean * n);
+    return mean;
+}
+
+void scalar_errors_differences(const struct cell_differences *d, const struct cell_heights *h,
+                               const struct low_modes *modes, struct scalar_errors *out) {
+    size_t cells = modes->cells_x * modes->cells_y;
+    double m0[LOW_CELLS_MOST], m2[LOW_CELLS_MOST], m4[LOW_CELLS_MOST], alpha[LOW_CELLS_MOST];
+    double curvature[LOW_CELLS_MOST], area[LOW_CELLS_MOST];
+    deviations_fill(h->power[0], h->power[2], cells, m0);
+    deviations_fill(d->count, d->slope, cells, m2);
+    deviations_fill(d->count, d->bend, cells, m4);
+    deviations_fill(d->count, d->curvature, cells, curvature);
+    double developed = deviations_fill(d->count, d->area, cells, area);
+    for (size_t cell = 0; cell < cells; cell++) {
+        alpha[cell] = m0[cell] + m4[cell] - 2 * m2[cell];
+        area[cell] *= developed / (developed - 1);
+    }
+    double lost = share_lost(h, modes);
+    out->m0 = hypot(sqrt(modes->excess[2] * low_modes_variance(modes, m0, 1)), lost);
+    out->m2 = sqrt(low_modes_variance(modes, m2, 1));
+    out->m4 = sqrt(low_modes_variance(modes, m4, 1));
+    out->alpha = hypot(sqrt(modes->excess[2] * low_modes_variance(modes, alpha, 1)), lost);
+    out->area = sqrt(low_modes_variance(modes, area, 1));
+    out->slope = out->m2 / 2;
+    out->curvature = sqrt(low_modes_variance(modes, curvature, 1)) / 2;
+}
+
+void summit_errors_measure(const struct summit_list *list, double density, const struct grid *grid,
+                           const double *searched, const struct cell_heights *heights,
+                           const struct low_modes *modes, struct summit_errors *out) {
+    size_t cells = modes->cells_x * modes->cells_y;
+    double count[LOW_CELLS_MOST] = {0}, height[LOW_CELLS_MOST] = {0};
+    double spread[LOW_CELLS_MOST] = {0}, curvature[LOW_CELLS_MOST] = {0};
+    double n = (double)list->count, mean = 0, variance = 0, bend = 0, none = (double)NAN;
+    *out = (struct summit_errors){none, none, none, none};
+    if (list->count < 2)
+        return;
+    for (size_t a = 0; a < list->count; a++) {
+        mean += list->summits[a].height / n;
+        bend += list->summits[a].curvature / n;
+    }
+    for (size_t a = 0; a < list->count; a++)
+        variance += pow(list->summits[a].height - mean, 2) / n;
+    for (size_t a = 0; a < list->count; a++) {
+        const struct summit *summit = &list->summits[a];
+        size_t cx = (size_t)(summit->x / grid->lx * (double)modes->cells_x);
+        size_t cy =
+            grid_is_profile(grid) ? 0 : (size_t)(summit->y / grid->ly * (double)modes->cells_y);
+        cx = cx < modes->cells_x ? cx : modes->cells_x - 1;
+        cy = cy < modes->cells_y ? cy : modes->cells_y - 1;
+        size_t cell = cy * modes->cells_x + cx;
+        count[cell]++;
+        height[cell] += summit->height - mean;
+        spread[cell] += pow(summit->height - mean, 2) - variance;
+        curvature[cell] += summit->curvature - bend;
+    }
+    double all = total(searched, cells);
+    for (size_t cell = 0; cell < cells; cell++) {
+        count[cell] -= n * searched[cell] / all;
+        height[cell] -= heights->power[1][cell] * n / heights->count;
+    }
+    out->density = density * sqrt(low_modes_variance(modes, count, n));
+    out->height_mean = sqrt(low_modes_variance(modes, height, n));
+    out->height_deviation =
+        sqrt(modes->excess[2] * low_modes_variance(modes, spread, n) / variance) / 2;
+    out->curvature_mean = sqrt(low_modes_variance(modes, curvature, n));
+}
+
+int summit_cells_count(const struct measured_map *map, const struct low_modes *modes, size_t before,
+                       size_t after, double *searched, struct error *err) {
+    const struct grid *grid = map->grid;
+    unsigned char *whole = array_create(grid_points(grid), 1);
+    if (whole == NULL)
+        return error_memory(err, grid_points(grid), "marks of a map");
+    map_mark_whole(map, before, after, whole);
+    for (size_t cell = 0; cell < modes->cells_x * modes->cells_y; cell++)
+        searched[cell] = 0;
+    for (size_t j = 0; j < grid->ny; j++)
+        for (size_t cx = 0; cx < modes->cells_x; cx++) {
+            size_t cell = cell_of(j, modes->cells_y, grid->ny) * modes->cells_x + cx;
+            size_t end = cell_begin(cx + 1, modes->cells_x, grid->nx);
+            for (size_t i = cell_begin(cx, modes->cells_x, grid->nx); i < end; i++)
+                searched[cell] += whole[j * grid->nx + i];
+        }
+    free(whole);
+    return 0;
+}

@@ -1,0 +1,121 @@
+#include "jobs/contact/companion/coarse_solver.h"
+#include "core/contact/area.h"
+#include "core/contact/contact.h"
+#include "core/contact/patches.h"
+#include "core/cost.h"
+#include "jobs/contact/contact_measure.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { COARSE_POINTS = 4 };
+
+struct coarse_solver {
+    const struct contact_case *one_case;
+    struct grid grid;
+    double rms_slope, rms_height;
+    struct compliance *compliance; /* owned, as all below */
+    struct contact *contact;
+    struct area_workspace *area;
+    struct patch_finder *finder;
+};
+
+struct contact_level coarse_level(const struct contact_case *one_case) {
+    struct contact_level level = one_case->levels[0];
+    bool even = level.grid.nx % 2 == 0 && (grid_is_profile(&level.grid) || level.grid.ny % 2 == 0);
+    if (level.stride == 0 || !even || level.points < 2 * COARSE_POINTS)
+        return level;
+    level.points /= 2;
+    level.stride *= 2;
+    level.grid.nx /= 2;
+    if (!grid_is_profile(&level.grid))
+        level.grid.ny /= 2;
+    return level;
+}
+
+static int solver_fill(struct coarse_solver *solver, double height, struct error *err) {
+    struct block block = {.model = MODEL_HALFSPACE, .height = height, .layer_growth = 1};
+    struct contact_options options = CONTACT_DEFAULTS;
+    options.tolerance = solver->one_case->tolerance;
+    options.without_tangent = !solver->one_case->stiffness;
+    int status = compliance_create(&solver->compliance, &solver->grid, &block, err);
+    if (status == 0)
+        status = contact_create(&solver->contact, solver->compliance, &options, err);
+    if (status == 0)
+        status = area_workspace_create(&solver->area, solver->compliance, err);
+    return status != 0 ? status : patch_finder_create(&solver->finder, &solver->grid, err);
+}
+
+int coarse_solver_create(struct coarse_solver **out, const struct contact_case *one_case,
+                         const struct grid *grid, double height, const struct moments *moments,
+                         struct error *err) {
+    struct coarse_solver *solver = array_create(1, sizeof *solver);
+    if (solver == NULL)
+        return error_memory(err, sizeof *solver, "a coarse contact solver");
+    solver->one_case = one_case;
+    solver->grid = *grid;
+    solver->rms_slope = moments->rms_slope;
+    solver->rms_height = moments->rms_height;
+    int status = solver_fill(solver, height, err);
+    if (status != 0)
+        coarse_solver_destroy(&solver);
+    *out = solver;
+    return status;
+}
+
+void coarse_solver_destroy(struct coarse_solver **solver) {
+    struct coarse_solver *gone = *solver;
+    if (gone == NULL)
+        return;
+    patch_finder_destroy(&gone->finder);
+    area_workspace_destroy(&gone->area);
+    contact_destroy(&gone->contact);
+    compliance_destroy(&gone->compliance);
+    free(gone);
+    *solver = NULL;
+}
+
+/* Without a solution the realisation lacks these values, and nothing else. */
+int coarse_solver_press(struct coarse_solver *solver, const double *z, double *series,
+                        const struct contact_stopper *stopper, struct error *err) {
+    const struct contact_case *one_case = solver->one_case;
+    const size_t n = one_case->load_count;
+    const struct measure_context context = {.one_case = one_case,
+                                            .area = solver->area,
+                                            .finder = solver->finder,
+                                            .points = (double)grid_points(&solver->grid),
+                                            .rms_slope = solver->rms_slope,
+                                            .rms_height = solver->rms_height,
+                                            .scaled = true};
+    struct error reason = {0};
+    contact_set_stop(solver->contact, stopper->stop, stopper->context);
+    int status = contact_begin(solver->contact, z, &reason);
+    for (size_t k = 0; k < n && status == 0; k++) {
+        struct contact_pressed pressed = {.stretch = 1, .open_stretch = 1};
+        double values[MEASURE_OWN];
+        if (stopper->stop(stopper->context) != 0)
+            return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k, n);
+        status = contact_press(solver->contact, one_case->loads[k] * solver->rms_slope,
+                               &pressed.state, &reason);
+        if (status != 0)
+            break;
+        contact_measure(&context, &pressed, values);
+        for (size_t a = 0; a < MEASURE_PAIRED; a++)
+            series[a * n + k] = values[a];
+    }
+    for (size_t a = 0; status == ERROR_NUMERIC && a < MEASURE_PAIRED * n; a++)
+        series[a] = NAN;
+    return status == 0 || status == ERROR_NUMERIC
+               ? 0
+               : error_set(err, status, "probe on a coarse mesh: %s", reason.text);
+}
+
+double coarse_solver_bytes(const struct grid *grid) {
+    const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY};
+    double patches = 16 * (double)grid_points(grid);
+    return patches + contact_bytes(grid) + area_workspace_bytes(grid, &block) +
+           compliance_bytes(grid, &block);
+}
+
+double coarse_solver_seconds(const struct contact_case *one_case, const struct grid *grid) {
+    return cost_linear_contact(grid, one_case->tolerance, one_case->load_count);
+}

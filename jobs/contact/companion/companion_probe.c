@@ -1,0 +1,213 @@
+/* The probe: the cheap model on a coarse mesh. The surface is pressed on a half-space and, where
+ * blocks of the case are low, on exact layers of their heights. These pairs have the same surface,
+ * and differ by the height alone, of which they estimate the error. The half-space is also compared
+ * with surfaces of another length (companion_cell.c) and with those of alternative generators
+ * (companion_generation.c). */
+#include "jobs/contact/companion/companion.h"
+#include "jobs/contact/model/model_linear.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Where blocks are low, the first sixteen realisations are probed, and then each fourth. */
+static const struct subset LOW_BLOCKS = {16, 1, 4};
+/* Else they are as few as the error of the cell needs: this is their time over that of the case
+ * without. */
+static const double TIME_SHARE = 0.02;
+/* With a larger bound of its relative change (contact_case_block_bound) the error of the height is
+ * estimated. */
+static const double BLOCK_LOW = 1e-4;
+/* The relative error of the block is that of a half-space on a coarse mesh; for other models and
+ * meshes it holds within this part of itself. */
+static const double BLOCK_MARGIN = 0.25;
+/* The half-space, and a layer for each model. */
+enum { BLOCKS_MOST = CONTACT_MODELS_MOST + 1 };
+
+struct probe {
+    const struct companion_plan *plan;
+    struct coarse_solver *blocks[BLOCKS_MOST]; /* owned; NULL where same[] is another one, or a
+                                                * model's values stand for the half-space */
+    size_t same[BLOCKS_MOST];                  /* the first block of that height */
+    double *z;
+};
+
+/* Returns the height of a block: number 0 is the half-space, the others are those of the models. */
+static double height_of(const struct contact_case *one_case, size_t number) {
+    return number == 0 ? INFINITY : one_case->blocks[number - 1].height;
+}
+
+static size_t first_of_height(const struct contact_case *one_case, size_t number) {
+    size_t first = 0;
+    while (height_of(one_case, first) != height_of(one_case, number))
+        first++;
+    return first;
+}
+
+/* Returns the position of the twin: the model that has solved the half-space of the probe already,
+ * on the coarsest level; model_count without one. */
+static size_t twin_of(const struct contact_case *one_case, const struct companion_plan *plan) {
+    size_t m = 0;
+    while (m < one_case->model_count &&
+           (one_case->models[m]->press != linear_press ||
+            one_case->blocks[m].model != MODEL_HALFSPACE || isfinite(one_case->blocks[m].height)))
+        m++;
+    return plan->level.grid.nx == one_case->levels[0].grid.nx ? m : one_case->model_count;
+}
+
+/* Returns whether a block is solved: it is neither the twin nor as high as one before it. */
+static bool is_solved(const struct contact_case *one_case, const struct companion_plan *plan,
+                      size_t number) {
+    bool twin = twin_of(one_case, plan) < one_case->model_count;
+    return first_of_height(one_case, number) == number && (number > 0 || !twin);
+}
+
+static size_t solved_blocks(const struct contact_case *one_case,
+                            const struct companion_plan *plan) {
+    size_t count = 0;
+    for (size_t b = 0; b < plan->series; b++)
+        count += is_solved(one_case, plan, b);
+    return count;
+}
+
+/* --- the plan --- */
+
+static double probe_bytes(const struct contact_case *one_case, const struct companion_plan *plan) {
+    const struct grid *grid = &plan->level.grid;
+    return 8 * (double)grid_points(grid) +
+           (double)solved_blocks(one_case, plan) * coarse_solver_bytes(grid);
+}
+
+static double probe_seconds(const struct contact_case *one_case,
+                            const struct companion_plan *plan) {
+    return (double)solved_blocks(one_case, plan) *
+           coarse_solver_seconds(one_case, &plan->level.grid);
+}
+
+/* Returns the position of the cheapest model that has a value of every realisation; model_count
+ * without one. */
+static size_t control_of(const struct contact_case *one_case) {
+    size_t found = one_case->model_count;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        if (!one_case->models[m]->may_fail &&
+            (found == one_case->model_count ||
+             one_case->models[m]->rank < one_case->models[found]->rank))
+            found = m;
+    return found;
+}
+
+/* Sets the pairs: the block of each model less the half-space, and the control less that. */
+static void set_pairs(const struct contact_case *one_case, struct companion_plan *out) {
+    size_t control = control_of(one_case);
+    for (size_t b = 1; b < out->series; b++)
+        out->pairs[out->pair_count++] = (struct companion_pair){.of = b};
+    if (control < one_case->model_count)
+        out->pairs[out->pair_count++] = (struct companion_pair){.of_model = true, .of = control};
+}
+
+static bool probe_plan(const struct contact_case *one_case, struct companion_plan *out) {
+    bool low = false;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        low = low || contact_case_block_bound(one_case, m) > BLOCK_LOW;
+    if (!low && !contact_case_has(one_case, COMPANION_LONGER) &&
+        !contact_case_has(one_case, COMPANION_SHORTER))
+        return false;
+    out->level = coarse_level(one_case);
+    out->series = low ? one_case->model_count + 1 : 1;
+    out->due =
+        low ? LOW_BLOCKS
+            : subset_each(subset_interval(probe_seconds(one_case, out),
+                                          TIME_SHARE * contact_case_least_seconds(one_case), 1));
+    set_pairs(one_case, out);
+    return true;
+}
+
+/* --- one surface --- */
+
+static int probe_create(void *workspace, const struct contact_case *one_case,
+                        const struct companion_plan *plan, const struct moments *moments,
+                        struct error *err) {
+    struct probe *probe = workspace;
+    size_t points = grid_points(&plan->level.grid);
+    int status = 0;
+    probe->plan = plan;
+    for (size_t b = 0; b < plan->series && status == 0; b++) {
+        probe->same[b] = first_of_height(one_case, b);
+        if (is_solved(one_case, plan, b))
+            status = coarse_solver_create(&probe->blocks[b], one_case, &plan->level.grid,
+                                          height_of(one_case, b), moments, err);
+    }
+    if (status != 0)
+        return status;
+    probe->z = array_create(points, sizeof *probe->z);
+    return probe->z != NULL ? 0 : error_memory(err, points * sizeof *probe->z, "a surface");
+}
+
+static void probe_clear(void *workspace) {
+    struct probe *probe = workspace;
+    for (size_t b = 0; b < BLOCKS_MOST; b++)
+        coarse_solver_destroy(&probe->blocks[b]);
+    free(probe->z);
+}
+
+/* Copies the values of the twin. It has areas undeformed and under load, the probe only
+ * undeformed. */
+static void copy_twin(const struct companion_plan *plan, struct contact_tally *tally,
+                      double *series) {
+    const struct contact_case *one_case = tally->one_case;
+    size_t n = one_case->load_count;
+    size_t cell = contact_case_cell(one_case, twin_of(one_case, plan), 0, 0);
+    for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++)
+        memcpy(series + a * n,
+               contact_tally_values(tally, a == MEASURE_EDGES_STRETCHED ? MEASURE_EDGES : a) + cell,
+               n * sizeof *series);
+}
+
+static int probe_solve(void *workspace, const struct contact_surface *surface,
+                       struct contact_tally *tally, struct companion_tally *out,
+                       const struct contact_stopper *stopper, struct error *err) {
+    const struct probe *probe = workspace;
+    const struct contact_case *one_case = tally->one_case;
+    int status = contact_level_sample(&probe->plan->level, &one_case->surface.grid, one_case->band,
+                                      surface->z, probe->z, err);
+    for (size_t b = 0; b < probe->plan->series && status == 0; b++) {
+        double *series = companion_series(one_case, out, b);
+        if (probe->blocks[b] != NULL)
+            status = coarse_solver_press(probe->blocks[b], probe->z, series, stopper, err);
+        else if (b == 0)
+            copy_twin(probe->plan, tally, series);
+        else
+            memcpy(series, companion_series(one_case, out, probe->same[b]),
+                   MEASURE_PAIRED * one_case->load_count * sizeof *series);
+    }
+    return status;
+}
+
+/* --- the error --- */
+
+static bool probe_applies(const struct contact_case *one_case, size_t model) {
+    return isfinite(one_case->blocks[model].height);
+}
+
+static bool probe_errors(const struct contact_tally *tally, enum contact_measure measure,
+                         size_t model, struct contact_error *out) {
+    const struct contact_case *one_case = tally->one_case;
+    double bound = contact_case_block_bound(one_case, model);
+    for (size_t k = 0; k < one_case->load_count; k++) {
+        double y = contact_mean(tally, measure, model, one_case->level_count - 1, k).value;
+        if (bound <= BLOCK_LOW) { /* practically infinitely high */
+            out[k] = (struct contact_error){.value = 0 * y, .bound = bound * fabs(y), .order = NAN};
+            continue;
+        }
+        struct estimate change = contact_tally_pair(tally, COMPANION_PROBE, model, measure, k);
+        double block = contact_tally_companion(tally, COMPANION_PROBE, model + 1, measure, k).value;
+        double scale = block != 0 ? y / block : (double)NAN;
+        out[k] = (struct contact_error){.value = scale * change.value,
+                                        .bound = BLOCK_MARGIN * fabs(scale * change.value),
+                                        .standard_error = fabs(scale) * change.standard_error,
+                                        .order = NAN};
+    }
+    return true;
+}
+
+COMPANION_DEFINE(PROBE, "a probe", NULL, ERROR_BLOCK, probe_plan, struct probe, probe_create,
+                 probe_clear, probe_bytes, probe_seconds, probe_solve, probe_applies, probe_errors,
+                 NULL)

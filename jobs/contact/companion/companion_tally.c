@@ -1,0 +1,106 @@
+#include "jobs/contact/companion/companion_tally.h"
+#include "jobs/contact/contact_measure.h"
+#include <math.h>
+#include <stdlib.h>
+
+int companion_tally_create(struct companion_tally *out, const struct contact_case *one_case,
+                           const struct companion_plan *plan, struct error *err) {
+    size_t cells = companion_cell(one_case, plan->series, 0, 0);
+    out->values = array_create(cells, sizeof *out->values);
+    int status = out->values != NULL
+                     ? contact_sums_create(&out->sums, cells, err)
+                     : error_memory(err, cells * sizeof *out->values, "a tally of a companion");
+    if (status == 0)
+        status = contact_sums_create(&out->differences,
+                                     companion_cell(one_case, plan->pair_count, 0, 0), err);
+    if (status == 0)
+        status = contact_sums_create(&out->fact_sums, plan->fact_count, err);
+    if (status == 0)
+        companion_tally_begin(out);
+    return status;
+}
+
+void companion_tally_clear(struct companion_tally *tally) {
+    contact_sums_clear(&tally->sums);
+    contact_sums_clear(&tally->differences);
+    contact_sums_clear(&tally->fact_sums);
+    free(tally->values);
+    *tally = (struct companion_tally){0};
+}
+
+double companion_tally_bytes(const struct contact_case *one_case,
+                             const struct companion_plan *plan) {
+    size_t cells = companion_cell(one_case, plan->series, 0, 0);
+    size_t pairs = companion_cell(one_case, plan->pair_count, 0, 0);
+    return sizeof(double) * (double)cells + contact_sums_bytes(cells) + contact_sums_bytes(pairs) +
+           contact_sums_bytes(plan->fact_count);
+}
+
+void companion_tally_begin(struct companion_tally *tally) {
+    for (size_t a = 0; a < tally->sums.counts.size; a++)
+        tally->values[a] = NAN;
+    for (size_t a = 0; a < COMPANION_FACTS_MOST; a++)
+        tally->facts[a] = NAN;
+}
+
+/* Computes the fits of a series of loads from its areas. */
+static void fill_fits(const struct contact_case *one_case, double *series) {
+    const size_t n = one_case->load_count;
+    contact_measure_fits(n, one_case->loads, series + MEASURE_EDGES * n, series + MEASURE_KAPPA * n,
+                         series + MEASURE_POWER_LAW_A * n, series + MEASURE_POWER_LAW_B * n);
+}
+
+static void add_pair(struct companion_tally *tally, const struct contact_case *one_case,
+                     const struct companion_plan *plan, size_t pair, const double *case_values) {
+    const struct companion_pair *of = &plan->pairs[pair];
+    for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++) {
+        const double *less = tally->values + companion_cell(one_case, of->less, a, 0);
+        const double *from = of->of_model ? case_values + a * contact_case_cells(one_case) +
+                                                contact_case_cell(one_case, of->of, 0, 0)
+                                          : tally->values + companion_cell(one_case, of->of, a, 0);
+        for (size_t k = 0; k < one_case->load_count; k++)
+            contact_sums_add(&tally->differences, companion_cell(one_case, pair, a, k),
+                             (from[k] - less[k]) * contact_sums_scale(one_case, a, k));
+    }
+}
+
+void companion_tally_add(struct companion_tally *tally, const struct contact_case *one_case,
+                         const struct companion_plan *plan, const double *case_values) {
+    for (size_t series = 0; series < plan->series; series++) {
+        fill_fits(one_case, companion_series(one_case, tally, series));
+        for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++)
+            for (size_t k = 0; k < one_case->load_count; k++) {
+                size_t cell = companion_cell(one_case, series, a, k);
+                contact_sums_add(&tally->sums, cell,
+                                 tally->values[cell] * contact_sums_scale(one_case, a, k));
+            }
+    }
+    for (size_t pair = 0; pair < plan->pair_count; pair++)
+        add_pair(tally, one_case, plan, pair, case_values);
+    for (size_t a = 0; a < plan->fact_count; a++)
+        contact_sums_add(&tally->fact_sums, a, tally->facts[a]);
+}
+
+bool companion_tally_fits(const struct companion_tally *tally, uint64_t realisations) {
+    return contact_sums_fit(&tally->sums, realisations) &&
+           contact_sums_fit(&tally->differences, realisations) &&
+           contact_sums_fit(&tally->fact_sums, realisations);
+}
+
+void companion_tally_put(struct bytes *bytes, const struct companion_tally *tally) {
+    contact_sums_put(bytes, &tally->sums);
+    contact_sums_put(bytes, &tally->differences);
+    contact_sums_put(bytes, &tally->fact_sums);
+}
+
+void companion_tally_get(struct byte_reader *reader, struct companion_tally *tally) {
+    contact_sums_get(reader, &tally->sums);
+    contact_sums_get(reader, &tally->differences);
+    contact_sums_get(reader, &tally->fact_sums);
+}
+
+void companion_tally_merge(struct companion_tally *into, const struct companion_tally *from) {
+    contact_sums_merge(&into->sums, &from->sums);
+    contact_sums_merge(&into->differences, &from->differences);
+    contact_sums_merge(&into->fact_sums, &from->fact_sums);
+}

@@ -1,0 +1,301 @@
+/* The model "full": finite elements on the rough geometry itself (core/full). */
+#include "core/cost.h"
+#include "core/full/full.h"
+#include "core/full/mesh_file.h"
+#include "jobs/contact/contact_case.h"
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double ROUNDING = 1e-9; /* relative */
+/* Elements may have edges of slope 6 (core/full/mesh.c), which the steepest ones reach then. */
+static const double SLOPE_MOST = 2;
+/* Least height of a block in RMS heights. Layers fold over valleys deeper than two thirds of the
+ * block. Of Gaussian profiles of 32 to 2048 points and surfaces of 16 or 32 a side none mesh at 1,
+ * few to most at 2 and 3, all at 4. */
+static const double HEIGHT_LEAST = 4;
+/* The error of columns of elements that widen from a depth of 8 of their widths on, the default, on
+ * meshes of any fineness. It is at most these shares of areas (too small), and of gaps (too large)
+ * and stiffnesses of profiles, and a tenth of them of surfaces; it falls with the square of the
+ * depth. Measured on profiles of wavelength ratio 8 at 16 and 64 points a shortest wave against
+ * columns of one width, loads of 0.01 to 0.5: areas 0.05 (Poisson's ratio 0), 0.17 (0.3) and 0.27 %
+ * (0.5), gaps 0.17, 0.49 and 0.54 %. A depth of 16 leaves a fifth of it. */
+static const double WIDENING_DEPTH = 8, WIDENING_AREA = 0.003, WIDENING_GAP = 0.008,
+                    WIDENING_SURFACE = 0.1;
+/* Measures, facts and scalars of this model's own. */
+enum {
+    FULL_CUTS,    /* of load steps */
+    FULL_CHANGES, /* of single nodes of the active set */
+    FULL_DEEPEST, /* node below the flat */
+    FULL_BALANCE, /* |sum of contact forces/load - 1| */
+    FULL_STRETCH  /* area of the nodes in contact under load, over that undeformed */
+};
+static const struct model_curve CURVES[] = {
+    {"stretch", "contact area now/undeformed", FULL_STRETCH},
+    {"load_cuts", "load steps made smaller", FULL_CUTS},
+    {"set_changes", "changes of single nodes of the active set", FULL_CHANGES}};
+enum { FACT_SLOPE, FACT_QUALITY }; /* mesh.h */
+enum full_scalar {
+    SCALAR_LOAD_REACHED, /* the last load with values; 0: no mesh, or no equilibrium */
+    SCALAR_ITERATIONS,   /* Newton's, of all loads, as the cuts */
+    SCALAR_CUTS,
+    SCALAR_CHANGES,     /* of single nodes of the active set, of all loads */
+    SCALAR_BALANCE,     /* largest, as the penetrations, which are in RMS heights */
+    SCALAR_PENETRATION, /* of the nodes */
+    SCALAR_WEIGHTED_PENETRATION,
+    SCALAR_STRETCH, /* at the last load reached */
+    SCALAR_SLOPE,   /* steepest edge of the face; none without a mesh, as the next */
+    SCALAR_QUALITY, /* least Jacobian over edges of the undeformed elements */
+    SCALAR_COUNT
+};
+static const char *const SCALARS[SCALAR_COUNT] = {
+    [SCALAR_LOAD_REACHED] = "full_load_reached",
+    [SCALAR_ITERATIONS] = "full_iterations",
+    [SCALAR_CUTS] = "full_load_cuts",
+    [SCALAR_CHANGES] = "full_set_changes",
+    [SCALAR_BALANCE] = "full_force_balance",
+    [SCALAR_PENETRATION] = "full_penetration",
+    [SCALAR_WEIGHTED_PENETRATION] = "full_weighted_penetration",
+    [SCALAR_STRETCH] = "full_stretch",
+    [SCALAR_SLOPE] = "full_steepest_slope",
+    [SCALAR_QUALITY] = "full_mesh_quality",
+};
+
+static struct full_options full_model_options(const struct contact_case *one_case) {
+    struct full_options options = FULL_DEFAULTS;
+    options.kinematics = one_case->kinematics;
+    options.transition = one_case->transition_depth;
+    options.tolerance = one_case->tolerance;
+    return options;
+}
+
+static const char *kinematics_name(const struct contact_case *one_case) {
+    return choice_name(KINEMATICS_CHOICES, (int)one_case->kinematics);
+}
+
+/* Checks the surface for finite elements on the true geometry, for which its slopes matter. */
+static int check(struct contact_case *one_case, size_t model, struct values *values,
+                 struct error *err) {
+    const struct surface_case *surface = &one_case->surface;
+    double rms_height, rms_slope;
+    if (!contact_case_has_scale(one_case)) {
+        values_fault(
+            values, "/surface/rms_slope",
+            "the model full needs the scale of the surface, whose slopes count in it: give "
+            "rms_slope or rms_height");
+        return 0;
+    }
+    int status = contact_case_scale(one_case, &rms_height, &rms_slope, err);
+    if (status != 0)
+        return status;
+    double height = one_case->blocks[model].height / rms_height;
+    if (rms_slope > SLOPE_MOST)
+        values_fault(
+            values,
+            surface->spectrum.scale == SCALE_RMS_SLOPE ? "/surface/rms_slope"
+                                                       : "/surface/rms_height",
+            "RMS slope %.4g: the model full can mesh surfaces up to about %g, whose steepest "
+            "edges are three times as steep",
+            rms_slope, SLOPE_MOST);
+    else if (height < HEIGHT_LEAST * (1 - ROUNDING))
+        values_fault(
+            values, "/contact/block_height",
+            "%.4g RMS heights of the surface: the model full needs %g or more; the layers of "
+            "lower blocks fold over the surface's valleys",
+            height, HEIGHT_LEAST);
+    one_case->rms_slope = rms_slope;
+    return 0;
+}
+
+/* --- errors --- */
+
+static double mesh_floor(int dimension, enum measure_field field, double transition_depth) {
+    double profile = field == FIELD_GAP ? WIDENING_GAP : WIDENING_AREA;
+    double usual = dimension == 1 ? profile : WIDENING_SURFACE * profile;
+    return usual * pow(WIDENING_DEPTH / transition_depth, 2);
+}
+
+/* --- cost --- */
+
+static double bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    const struct block *block = &one_case->blocks[model];
+    struct full_options options = full_model_options(one_case);
+    struct full_size size = cost_full_size(grid, block, &options, one_case->rms_slope);
+    return cost_full_bytes(grid, block, &options, &size);
+}
+
+static double seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    struct full_options options = full_model_options(one_case);
+    struct full_size size =
+        cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
+    return cost_full_contact(grid, &size, one_case->load_count);
+}
+
+/* --- solving --- */
+
+struct contact_solver {
+    struct full *full;
+    double transforms; /* of the same cost as its work */
+};
+
+static void destroy(struct contact_solver **solver) {
+    if (*solver != NULL)
+        full_destroy(&(*solver)->full);
+    free(*solver);
+    *solver = NULL;
+}
+
+static int create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
+                  const struct compliance *compliance, struct error *err) {
+    struct full_options options = full_model_options(one_case);
+    const struct grid *grid = &compliance->grid;
+    struct contact_solver *solver = array_create(1, sizeof *solver);
+    if (solver == NULL)
+        return error_memory(err, sizeof *solver, "a contact solver");
+    solver->transforms = cost_full_transforms(grid);
+    int status = full_create(&solver->full, grid, &one_case->blocks[model], &options, err);
+    if (status != 0)
+        destroy(&solver);
+    *out = solver;
+    return status;
+}
+
+static int begin(struct contact_solver *solver, const double *z, int (*stop)(void *context),
+                 void *context, double *facts, struct error *err) {
+    full_set_stop(solver->full, stop, context);
+    int status = full_begin(solver->full, z, err);
+    if (status != 0)
+        return status;
+    const struct mesh *mesh = full_mesh(solver->full);
+    facts[FACT_SLOPE] = mesh->slope;
+    facts[FACT_QUALITY] = mesh->quality;
+    return 0;
+}
+
+/* Presses. Areas are stretched unless strains are small, or nothing is in contact. */
+static int press(struct contact_solver *solver, double pressure, struct contact_pressed *out,
+                 struct error *err) {
+    struct full_report report = {.reached = NAN};
+    int status = full_press(solver->full, pressure, &out->state, &report, err);
+    out->reached = report.reached;
+    if (status != 0)
+        return status;
+    out->state.work *= solver->transforms;
+    if (report.kinematics != KINEMATICS_SMALL && isfinite(report.stretch))
+        out->stretch = report.stretch;
+    out->open_stretch = report.open_stretch;
+    out->own[FULL_CUTS] = (double)report.cuts;
+    out->own[FULL_CHANGES] = (double)report.changes;
+    out->own[FULL_DEEPEST] = report.penetration;
+    out->own[FULL_BALANCE] = fabs(report.balance);
+    out->own[FULL_STRETCH] = report.stretch;
+    return 0;
+}
+
+static void measure(const struct model_values *values, double *out) {
+    const double *const *own = &values->of[MEASURE_OWN];
+    size_t n = values->load_count, solved = 0;
+    while (solved < n && !isnan(values->of[MEASURE_ITERATIONS][solved]))
+        solved++;
+    out[SCALAR_LOAD_REACHED] = solved > 0 ? values->loads[solved - 1] : 0;
+    out[SCALAR_ITERATIONS] = model_sum(n, values->of[MEASURE_ITERATIONS]);
+    out[SCALAR_CUTS] = model_sum(n, own[FULL_CUTS]);
+    out[SCALAR_CHANGES] = model_sum(n, own[FULL_CHANGES]);
+    out[SCALAR_BALANCE] = model_largest(n, own[FULL_BALANCE]);
+    out[SCALAR_PENETRATION] = model_largest(n, own[FULL_DEEPEST]);
+    out[SCALAR_WEIGHTED_PENETRATION] = model_largest(n, values->of[MEASURE_PENETRATION]);
+    if (solved > 0)
+        out[SCALAR_STRETCH] = own[FULL_STRETCH][solved - 1];
+    out[SCALAR_SLOPE] = values->facts[FACT_SLOPE];
+    out[SCALAR_QUALITY] = values->facts[FACT_QUALITY];
+}
+
+/* --- the block on its true geometry, as a file for other programs --- */
+
+struct meshed {
+    struct full *full;
+    double *z; /* on the finest level */
+};
+
+static void meshed_clear(struct meshed *meshed) {
+    full_destroy(&meshed->full);
+    free(meshed->z);
+}
+
+/* Makes the block on the surface z. Leaves what was made in *out, also on failure. */
+static int meshed_open(struct meshed *out, const struct contact_case *one_case, size_t model,
+                       const double *z, struct error *err) {
+    const struct contact_level *finest = contact_case_finest(one_case);
+    struct full_options options = full_model_options(one_case);
+    size_t points = grid_points(&finest->grid);
+    *out = (struct meshed){.z = array_create(points, sizeof *out->z)};
+    if (out->z == NULL)
+        return error_memory(err, points * sizeof *out->z, "a surface");
+    int status =
+        contact_level_sample(finest, &one_case->surface.grid, one_case->band, z, out->z, err);
+    if (status == 0)
+        status = full_create(&out->full, &finest->grid, &one_case->blocks[model], &options, err);
+    return status != 0 ? status : full_begin(out->full, out->z, err);
+}
+
+static int write_file(const char *path, const char *title, const struct mesh *mesh,
+                      const struct mesh_step *step, struct error *err) {
+    FILE *file = fopen(path, "wb");
+    if (file == NULL)
+        return error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
+    int status = mesh_file_write(file, title, mesh, step, err);
+    if (fclose(file) != 0 && status == 0)
+        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
+    return status;
+}
+
+static int full_write_mesh(const char *path, const struct contact_case *one_case, size_t model,
+                           const double *z, double pressure, struct error *err) {
+    struct meshed meshed;
+    struct mesh_step step = {0};
+    char title[160] = "lengths in lambda_s";
+    int status = meshed_open(&meshed, one_case, model, z, err);
+    if (status == 0 && pressure > 0) {
+        status = full_press(meshed.full, pressure * one_case->rms_slope, &step.face, NULL, err);
+        step.material = material_of(one_case->blocks[model].poisson, one_case->kinematics);
+        step.unit = one_case->rms_slope;
+        snprintf(title, sizeof title,
+                 "lengths in lambda_s; pressure and stress in E* h'; mean pressure %.9g; "
+                 "kinematics %s",
+                 pressure, choice_name(KINEMATICS_CHOICES, (int)one_case->kinematics));
+    }
+    if (status == 0) {
+        step.u = full_displacement(meshed.full);
+        status = write_file(path, title, full_mesh(meshed.full), pressure > 0 ? &step : NULL, err);
+    }
+    meshed_clear(&meshed);
+    return status;
+}
+
+const struct contact_model FULL_MODEL = {
+    .rank = 2,
+    .block = MODEL_LAYERED,
+    .elements = true,
+    .may_fail = true,
+    .stretches = true,
+    .default_height = 1.5,
+    .tolerance = 1e-9,
+    .curve_count = sizeof CURVES / sizeof *CURVES,
+    .curves = CURVES,
+    .scalar_count = SCALAR_COUNT,
+    .scalars = SCALARS,
+    .kinematics = kinematics_name,
+    .check = check,
+    .mesh_floor = mesh_floor,
+    .bytes = bytes,
+    .seconds = seconds,
+    .times_linear = 20,
+    .create = create,
+    .destroy = destroy,
+    .begin = begin,
+    .press = press,
+    .measure = measure,
+    .write_mesh = full_write_mesh,
+};

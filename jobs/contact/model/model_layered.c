@@ -1,0 +1,16 @@
+/* The model "layered": linear finite elements in layers below a flat face. */
+#include "jobs/contact/model/model_linear.h"
+
+const struct contact_model LAYERED_MODEL = {
+    .rank = 1,
+    .block = MODEL_LAYERED,
+    .elements = true,
+    .default_height = 1.5,
+    .bytes = linear_bytes,
+    .seconds = linear_seconds,
+    .create = linear_create,
+    .destroy = linear_destroy,
+    .begin = linear_begin,
+    .press = linear_press,
+    .full_pressure = linear_full_pressure,
+};

@@ -1,0 +1,60 @@
+#include "jobs/contact/model/model_linear.h"
+#include "core/contact/stretch.h"
+#include "core/cost.h"
+#include <stdlib.h>
+
+struct contact_solver {
+    struct contact *contact;
+    double poisson;
+};
+
+double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    (void)model;
+    return cost_linear_contact(grid, one_case->tolerance, one_case->load_count);
+}
+
+double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    (void)one_case;
+    (void)model;
+    return contact_bytes(grid);
+}
+
+int linear_create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
+                  const struct compliance *compliance, struct error *err) {
+    struct contact_options options = CONTACT_DEFAULTS;
+    struct contact_solver *solver = array_create(1, sizeof *solver);
+    if (solver == NULL)
+        return error_memory(err, sizeof *solver, "a contact solver");
+    options.tolerance = one_case->tolerance;
+    options.without_tangent = !one_case->stiffness;
+    solver->poisson = one_case->blocks[model].poisson;
+    int status = contact_create(&solver->contact, compliance, &options, err);
+    if (status != 0)
+        linear_destroy(&solver);
+    *out = solver;
+    return status;
+}
+
+void linear_destroy(struct contact_solver **solver) {
+    if (*solver != NULL)
+        contact_destroy(&(*solver)->contact);
+    free(*solver);
+    *solver = NULL;
+}
+
+int linear_begin(struct contact_solver *solver, const double *z, int (*stop)(void *context),
+                 void *context, double *facts, struct error *err) {
+    (void)facts;
+    contact_set_stop(solver->contact, stop, context);
+    return contact_begin(solver->contact, z, err);
+}
+
+int linear_press(struct contact_solver *solver, double pressure, struct contact_pressed *out,
+                 struct error *err) {
+    out->open_stretch = stretch_open(solver->poisson, pressure);
+    return contact_press(solver->contact, pressure, &out->state, err);
+}
+
+double linear_full_pressure(const struct contact_solver *solver) {
+    return contact_full_pressure(solver->contact);
+}

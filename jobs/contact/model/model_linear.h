@@ -1,0 +1,19 @@
+/* What the linear models share: all but their compliance. */
+#ifndef RUGO_JOBS_CONTACT_MODEL_MODEL_LINEAR_H
+#define RUGO_JOBS_CONTACT_MODEL_MODEL_LINEAR_H
+
+#include "jobs/contact/contact_case.h"
+
+/* Functions of a struct contact_model. */
+double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid);
+double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid);
+int linear_create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
+                  const struct compliance *compliance, struct error *err);
+void linear_destroy(struct contact_solver **solver);
+int linear_begin(struct contact_solver *solver, const double *z, int (*stop)(void *context),
+                 void *context, double *facts, struct error *err);
+int linear_press(struct contact_solver *solver, double pressure, struct contact_pressed *out,
+                 struct error *err);
+double linear_full_pressure(const struct contact_solver *solver);
+
+#endif

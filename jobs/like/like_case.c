@@ -1,0 +1,146 @@
+#include "jobs/like/like_case.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double ROUNDING = 1e-6;    /* relative, of the spacing of points */
+static const double NANOSECONDS = 1000; /* to measure a point of a sub-map */
+
+static int read_points(struct like_case *out, struct values *values, bool profile,
+                       struct error *err) {
+    static const char path[] = "/surface/like/points";
+    double *points;
+    size_t n;
+    int status = values_numbers(values, path, &points, &n, err);
+    if (status != 0)
+        return status;
+    if (points == NULL || n != (profile ? 1 : 2))
+        values_fault(values, path, "a measured %s has %s", profile ? "profile" : "surface",
+                     profile ? "[nx] points" : "[nx, ny] points");
+    else {
+        out->nx = (size_t)points[0];
+        out->ny = profile ? 1 : (size_t)points[1];
+    }
+    free(points);
+    return 0;
+}
+
+static int read_measured(struct like_case *out, struct values *values, struct error *err) {
+    static const char path[] = "/surface/like/measured";
+    int quantities[PATCH_QUANTITY_COUNT];
+    double *measured;
+    size_t n, count = values_choices(values, "/surface/like/quantities", quantities);
+    int status = values_numbers(values, path, &measured, &n, err);
+    if (status != 0)
+        return status;
+    if (measured != NULL && n != count)
+        values_fault(values, path, "%zu values of %zu quantities", n, count);
+    for (size_t a = 0; measured != NULL && n == count && a < n; a++)
+        out->measured[quantities[a]] = measured[a];
+    free(measured);
+    return 0;
+}
+
+/* Returns how many spacings of the surface's grid one of the map has; 0 where that is no whole
+ * number. 0 also where the map is larger than half of the cell: its opposite rims would be
+ * neighbours. */
+static size_t stride_of(const struct like_case *like, const struct grid *grid, double spacing) {
+    double stride = rint(spacing / grid_dx(grid));
+    bool whole = stride >= 1 && fabs(spacing / grid_dx(grid) - stride) <= ROUNDING * stride;
+    bool fits = whole && 2 * stride * (double)like->nx <= (double)grid->nx &&
+                (grid_is_profile(grid) || 2 * stride * (double)like->ny <= (double)grid->ny);
+    return fits ? (size_t)stride : 0;
+}
+
+/* Checks the digest. A file without one is reported before a case is made
+ * (schema/study/study_reader.c). */
+static void check_digest(struct values *values) {
+    static const char path[] = "/surface/like/sha256";
+    const char *digest = values_text(values, path);
+    if (digest == NULL || strspn(digest, "0123456789abcdef") != strlen(digest))
+        values_fault(values, path, "a SHA-256 digest has 64 of the digits 0 to 9 and a to f");
+}
+
+int like_case_fill(struct like_case *out, struct values *values, const struct surface_case *surface,
+                   struct error *err) {
+    *out = (struct like_case){.given = values_text(values, "/surface/like/file") != NULL};
+    for (size_t a = 0; a < PATCH_QUANTITY_COUNT; a++)
+        out->measured[a] = NAN;
+    if (!out->given)
+        return 0;
+    check_digest(values);
+    double spacing = values_number(values, "/surface/like/spacing");
+    out->detrend = (enum detrend)values_choice(values, "/surface/like/detrend");
+    size_t before = values_fault_count(values);
+    int status = read_points(out, values, surface_case_dimension(values) == 1, err);
+    if (isnan(spacing))
+        values_fault(values, "/surface/like/spacing", "missing: distance of the points of the map");
+    if (status == 0 && surface != NULL && values_fault_count(values) == before)
+        out->stride = stride_of(out, &surface->grid, spacing);
+    return status == 0 ? read_measured(out, values, err) : status;
+}
+
+struct like_patch {
+    const struct like_case *like; /* borrowed */
+    const struct grid *of;        /* borrowed: of the surface */
+    struct grid grid;
+    double *z; /* owned */
+};
+
+int like_patch_create(struct like_patch **out, const struct like_case *like,
+                      const struct grid *grid, struct error *err) {
+    struct like_patch *patch = array_create(1, sizeof *patch);
+    if (patch == NULL)
+        return error_memory(err, sizeof *patch, "a sub-map of a surface");
+    double spacing = grid_dx(grid) * (double)like->stride;
+    patch->like = like;
+    patch->of = grid;
+    patch->grid =
+        (struct grid){like->nx, like->ny, spacing * (double)like->nx, spacing * (double)like->ny};
+    patch->z = array_create(grid_points(&patch->grid), sizeof *patch->z);
+    if (patch->z == NULL) {
+        like_patch_destroy(&patch);
+        return error_memory(err, like->nx * like->ny * sizeof(double), "a sub-map of a surface");
+    }
+    *out = patch;
+    return 0;
+}
+
+void like_patch_destroy(struct like_patch **patch) {
+    if (*patch == NULL)
+        return;
+    free((*patch)->z);
+    free(*patch);
+    *patch = NULL;
+}
+
+int like_patch_cut(struct like_patch *patch, const double *z, const double **heights,
+                   struct error *err) {
+    const struct like_case *like = patch->like;
+    struct trend trend;
+    for (size_t j = 0; j < like->ny; j++)
+        for (size_t i = 0; i < like->nx; i++)
+            patch->z[j * like->nx + i] = z[(j * patch->of->nx + i) * like->stride];
+    *heights = patch->z;
+    return detrend(&patch->grid, patch->z, like->detrend, &trend, err);
+}
+
+int like_patch_measure(struct like_patch *patch, const double *z, double out[PATCH_QUANTITY_COUNT],
+                       struct error *err) {
+    const double *heights;
+    int status = like_patch_cut(patch, z, &heights, err);
+    if (status != 0)
+        return status;
+    const struct measured_map map = {&patch->grid, heights, BOUNDARY_OPEN};
+    return patch_measure(&map, out, err);
+}
+
+double like_patch_bytes(const struct like_case *like) {
+    /* heights twice, and a correlation of twice the sides with its transform */
+    return like_case_is_cut(like) ? 16.0 * sizeof(double) * (double)like->nx * (double)like->ny : 0;
+}
+
+double like_patch_seconds(const struct like_case *like) {
+    double points = like_case_is_cut(like) ? (double)like->nx * (double)like->ny : 0;
+    return 1e-9 * NANOSECONDS * points;
+}

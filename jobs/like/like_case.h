@@ -1,0 +1,45 @@
+/* The measured surface that a case resembles, and sub-maps of random surfaces as an instrument
+ * would have measured them (FORMULAS.md, F18.28). */
+#ifndef RUGO_JOBS_LIKE_LIKE_CASE_H
+#define RUGO_JOBS_LIKE_LIKE_CASE_H
+
+#include "core/map/detrend.h"
+#include "core/statistics/patch.h"
+#include "jobs/like/like_parameters.h"
+#include "jobs/surface/surface_case.h"
+
+struct like_case {
+    bool given;           /* the case resembles a measured surface */
+    size_t nx, ny;        /* points of its map; of a profile ny is 1 */
+    size_t stride;        /* spacing of its points in those of the surface's grid; 0: no sub-maps,
+                           * as they would not fit into the cell, or not have its points */
+    enum detrend detrend; /* of the map, and of each sub-map */
+    double measured[PATCH_QUANTITY_COUNT]; /* of the map, lengths in lambda_s; NaN: not known */
+};
+/* Reads the measured surface from values that a kind has checked by tables with LIKE_PARAMETERS
+ * among them; adds faults. surface: that of the same values; NULL where it is at fault, and then
+ * there are no sub-maps. Fails with ERROR_MEMORY alone. */
+int like_case_fill(struct like_case *out, struct values *values, const struct surface_case *surface,
+                   struct error *err);
+static inline bool like_case_is_cut(const struct like_case *like) {
+    return like->given && like->stride > 0;
+}
+
+/* Sub-maps of the surfaces of a case. */
+struct like_patch;
+/* Borrows both. */
+int like_patch_create(struct like_patch **out, const struct like_case *like,
+                      const struct grid *grid, struct error *err);
+void like_patch_destroy(struct like_patch **patch);
+/* Copies the sub-map at the origin from z and removes its trend: *heights, nx by ny heights, is
+ * valid until the next call. */
+int like_patch_cut(struct like_patch *patch, const double *z, const double **heights,
+                   struct error *err);
+/* Measures this sub-map as the map was measured. */
+int like_patch_measure(struct like_patch *patch, const double *z, double out[PATCH_QUANTITY_COUNT],
+                       struct error *err);
+/* Return the peak bytes of this, and its CPU seconds on a 3 GHz core. */
+double like_patch_bytes(const struct like_case *like);
+double like_patch_seconds(const struct like_case *like);
+
+#endif

@@ -1,0 +1,388 @@
+#include "jobs/like/like_fit.h"
+#include "core/statistics/heights/height_fit.h"
+#include "core/statistics/heights/height_quantiles.h"
+#include "core/statistics/measured_map.h"
+#include "core/statistics/patch.h"
+#include "core/statistics/spectra/map_spectrum.h"
+#include "core/statistics/spectra/spectrum_fit.h"
+#include "core/statistics/uncertainty/isotropy.h"
+#include "core/statistics/uncertainty/map_chance.h"
+#include "core/surface/spectrum.h"
+#include "jobs/like/like_spectrum.h"
+#include "jobs/surface/surface_case.h"
+#include "schema/json/field.h"
+#include "schema/json/json.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Laws that fit a measured surface, as parameters of a study. */
+
+/* Probability with which an isotropic surface is taken for an anisotropic one. */
+static const double SIGNIFICANCE = 0.01;
+/* A surface with this ratio is taken as anisotropic where the map is too small for a test. */
+static const double RATIO_PLAIN = 2;
+
+/* Fits the self-affine law to an open map. law: NULL if it is not wanted. trusted: the longest and
+ * the shortest wavelength at which the map determines its spectrum. ERROR_INPUT where a law is
+ * wanted and none fits. */
+static int like_law_fit(const struct measured_map *map, struct spectrum *law, double trusted[2],
+                        struct error *err) {
+    struct map_spectrum *spectrum = NULL;
+    struct spectrum_fit fit;
+    int status = map_spectrum_create(&spectrum, map, err);
+    if (status == 0)
+        status = spectrum_fit_measure(spectrum, &(struct spectrum_fit_request){0}, &fit, err);
+    map_spectrum_destroy(&spectrum);
+    if (status != 0)
+        return status;
+    trusted[0] = fit.trusted_from;
+    trusted[1] = fit.trusted_to;
+    return law != NULL ? spectrum_fit_law(&fit, law, err) : 0;
+}
+
+#define NAME(type, name, value) name,
+static const char *const NAMES[HEIGHTS_QUANTILE] = {RUGO_DISTRIBUTIONS(NAME)};
+
+/* Finds the distribution that fits the heights best: its name in studies, static, and the shape,
+ * NaN without one. */
+static int like_law_heights(const struct measured_map *map, const char **name, double *shape,
+                            struct error *err) {
+    struct map_chance *chance = NULL;
+    struct height_fits fits;
+    int status = map_chance_create(&chance, map, err);
+    if (status != 0)
+        return status;
+    height_fit_measure(chance->heights, map_chance_modes(chance), &fits);
+    map_chance_destroy(&chance);
+    *name = NAMES[fits.best];
+    *shape = fits.list[fits.best].shape;
+    return 0;
+}
+
+/* Finds how many times longer waves are along the grooves of a surface than across: 1 for profiles,
+ * and where an isotropic surface may look so. across: the angle from x of the steepest slopes. */
+static int like_law_anisotropy(const struct measured_map *map, double *ratio, double *across,
+                               struct error *err) {
+    struct map_chance *chance = NULL;
+    struct cell_differences differences;
+    struct isotropy isotropy;
+    *ratio = 1;
+    *across = 0;
+    if (grid_is_profile(map->grid))
+        return 0;
+    int status = map_chance_create(&chance, map, err);
+    if (status != 0)
+        return status;
+    double spacing = grid_dx(map->grid);
+    double excess = chance->told ? low_modes_excess_slopes(&chance->modes, chance->correlation,
+                                                           map->grid, spacing)
+                                 : (double)NAN;
+    cell_differences_measure(map, &chance->modes, 1, &differences);
+    isotropy_measure(&differences, spacing, &chance->modes, excess, &isotropy);
+    bool sure = isnan(isotropy.p_value) ? isotropy.ratio > RATIO_PLAIN
+                                        : isotropy.p_value < SIGNIFICANCE && isotropy.ratio > 1;
+    *ratio = sure ? isotropy.ratio : 1;
+    *across = sure ? isotropy.direction : 0;
+    map_chance_destroy(&chance);
+    return 0;
+}
+
+static const double SAME_SPACING = 1e-4; /* relative, of distances along x and along y */
+static const double HURST_LEAST = 0.01;
+enum { CELL_SIDES = 2 }; /* of a cell, in sides of the map */
+
+/* A fit to the map. Lengths are in its unit until they are written. */
+struct fit {
+    const struct like_source *source;
+    const char *unit; /* of lengths */
+    struct measured_map map;
+    enum like_spectrum spectrum;
+    enum like_heights heights;
+    bool profile;
+    double wavelength; /* lambda_s: the shortest wave that the points hold */
+    double side;       /* the shorter one of the map */
+    struct grid cell;
+    struct like_table table;
+    double measured[PATCH_QUANTITY_COUNT];
+    double trusted[2];         /* the longest and the shortest wavelength, in units of the map */
+    double anisotropy, across; /* of the map, and the angle of its steepest slopes from x */
+    double rms_slope;          /* of random surfaces on the cell */
+};
+
+/* --- the map --- */
+
+static int check_map(const struct height_map *map, struct error *err) {
+    const struct grid *grid = &map->grid;
+    double dx = grid_dx(grid), dy = grid_is_profile(grid) ? dx : grid_dy(grid);
+    if (strcmp(map->xy_unit, map->z_unit) != 0)
+        return error_set(err, ERROR_INPUT,
+                         "heights are in \"%s\" and lengths along x in \"%s\": slopes have no "
+                         "meaning; say \"z_unit\", or \"unit\"",
+                         map->z_unit, map->xy_unit);
+    if (fabs(dx - dy) > SAME_SPACING * dx)
+        return error_set(err, ERROR_INPUT,
+                         "points are %g apart along x and %g along y: random surfaces have the "
+                         "same distances; give \"resample\"",
+                         dx, dy);
+    return 0;
+}
+
+/* Random surfaces can have grooves along x, or none. */
+static int check_grooves(const struct fit *fit, struct error *err) {
+    static const double ASIDE = 22.5, LONGEST = 1000; /* the range of /surface/anisotropy */
+    double degrees = fit->across * 180 / M_PI;
+    if (fit->spectrum != LIKE_SPECTRUM_GIVEN && !(fit->anisotropy <= LONGEST))
+        return error_set(err, ERROR_INPUT,
+                         "the waves of the map are more than %g times as long in one direction as "
+                         "across, which those of random surfaces are not; give the spectrum",
+                         LONGEST);
+    if (fit->spectrum == LIKE_SPECTRUM_GIVEN || fit->anisotropy == 1 || fabs(degrees) > 90 - ASIDE)
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "the waves of the map are %.2f times as long in one direction as across, and "
+                     "steepest at %.0f degrees from x: random surfaces have their long waves "
+                     "along x; turn the map so that slopes are steepest along y, or give the "
+                     "spectrum",
+                     fit->anisotropy, degrees);
+}
+
+static void choose_cell(struct fit *fit) {
+    const struct grid *grid = fit->map.grid;
+    double dx = grid_dx(grid);
+    struct grid *cell = &fit->cell;
+    cell->nx = surface_case_side(CELL_SIDES * (double)grid->nx - 0.5); /* has small prime factors */
+    cell->ny = fit->profile ? 1 : surface_case_side(CELL_SIDES * (double)grid->ny - 0.5);
+    cell->lx = dx * (double)cell->nx;
+    cell->ly = fit->profile ? cell->lx : dx * (double)cell->ny;
+    fit->side = dx * (double)(fit->profile || grid->nx < grid->ny ? grid->nx : grid->ny);
+    fit->wavelength = 2 * dx;
+}
+
+/* --- parameters, each only where the study has none --- */
+
+static bool has(const cJSON *surface, const char *name) {
+    return cJSON_HasObjectItem(surface, name);
+}
+
+static bool put_number(cJSON *surface, const char *name, double value) {
+    return has(surface, name) || field_put(surface, name, json_number(value));
+}
+
+static bool put_lengths(cJSON *surface, const struct fit *fit) {
+    double side = fit->side, along_x = fit->cell.lx / side, along_y = fit->cell.ly / side;
+    bool lengths = has(surface, "length_ratio") || has(surface, "length_ratio_y");
+    bool put = put_number(surface, "dimension", fit->profile ? 1 : 2) &&
+               put_number(surface, "wavelength_ratio", side / fit->wavelength) &&
+               put_number(surface, "points_per_wavelength",
+                          /* at least two, which a study must have, but for rounding */
+                          fmax(2, fit->wavelength / grid_dx(fit->map.grid)));
+    if (put && !lengths)
+        put = put_number(surface, "length_ratio", along_x) &&
+              (along_y == along_x || put_number(surface, "length_ratio_y", along_y));
+    return put;
+}
+
+static bool put_spectrum(cJSON *surface, const struct fit *fit) {
+    cJSON *spectrum = cJSON_AddObjectToObject(surface, "spectrum");
+    double unit = fit->wavelength;
+    double *wave_number = array_create(fit->table.count, sizeof *wave_number);
+    bool put = spectrum != NULL && wave_number != NULL;
+    for (size_t row = 0; put && row < fit->table.count; row++)
+        wave_number[row] = fit->table.wave_number[row] * unit;
+    put = put && field_put_text(spectrum, "type", "table") &&
+          field_put(spectrum, "wave_number", json_numbers(wave_number, fit->table.count)) &&
+          field_put(spectrum, "density", json_numbers(fit->table.density, fit->table.count));
+    free(wave_number);
+    return put;
+}
+
+static bool put_scale(cJSON *surface, const struct fit *fit) {
+    if (fit->anisotropy > 1 && !put_number(surface, "anisotropy", fit->anisotropy))
+        return false;
+    return has(surface, "rms_height") || put_number(surface, "rms_slope", fit->rms_slope);
+}
+
+/* lambda_s is the shortest wave of the law, or the shortest that the points hold if that is
+ * longer. */
+static int put_law(cJSON *surface, struct fit *fit, struct error *err) {
+    struct spectrum law;
+    struct moments moments;
+    int status = like_law_fit(&fit->map, &law, fit->trusted, err);
+    if (status != 0)
+        return status;
+    law.anisotropy = fit->anisotropy;
+    law.wavelength_short = fmax(law.wavelength_short, 2 * grid_dx(fit->map.grid));
+    law.wavelength_long = fmax(law.wavelength_long, law.wavelength_short);
+    law.wavelength_rolloff = fmax(law.wavelength_rolloff, law.wavelength_short);
+    status = spectrum_moments(&law, &fit->cell, &moments, err);
+    if (status != 0)
+        return status;
+    fit->wavelength = law.wavelength_short;
+    fit->side = law.wavelength_long;
+    fit->rms_slope = moments.rms_slope;
+    bool put = put_number(surface, "hurst", fmax(law.hurst, HURST_LEAST)) &&
+               put_number(surface, "rolloff_ratio", law.wavelength_long / law.wavelength_rolloff) &&
+               put_scale(surface, fit);
+    return put ? 0 : error_memory(err, sizeof law, "a fitted law");
+}
+
+static int put_distribution(cJSON *surface, const struct fit *fit, struct error *err) {
+    const char *name;
+    double shape;
+    int status = like_law_heights(&fit->map, &name, &shape, err);
+    if (status != 0)
+        return status;
+    cJSON *heights = cJSON_AddObjectToObject(surface, "heights");
+    bool put = heights != NULL && field_put_text(heights, "distribution", name) &&
+               (isnan(shape) || field_put(heights, "shape", json_number(shape)));
+    return put ? 0 : error_memory(err, sizeof shape, "fitted heights");
+}
+
+static int put_quantiles(cJSON *surface, const struct fit *fit, struct error *err) {
+    size_t n = 0, points = grid_points(fit->map.grid);
+    for (size_t i = 0; i < points; i++)
+        n += isnan(fit->map.z[i]) ? 0 : 1;
+    size_t count = height_quantiles_count(n);
+    if (count == 0)
+        return error_set(err, ERROR_INPUT,
+                         "a map of %zu heights is too small for its quantiles; give \"heights\": "
+                         "\"gaussian\"",
+                         n);
+    double *probability = array_create(count, sizeof *probability);
+    double *quantile = array_create(count, sizeof *quantile);
+    int status = probability != NULL && quantile != NULL
+                     ? height_quantiles_measure(&fit->map, n, probability, quantile, err)
+                     : error_memory(err, 2 * count * sizeof *quantile, "quantiles");
+    cJSON *heights = status == 0 ? cJSON_AddObjectToObject(surface, "heights") : NULL;
+    for (size_t a = 0; a < count && status == 0; a++)
+        quantile[a] /= fit->wavelength;
+    if (status == 0 && !(field_put_text(heights, "distribution", "quantiles") &&
+                         field_put(heights, "probability", json_numbers(probability, count)) &&
+                         field_put(heights, "quantile", json_numbers(quantile, count))))
+        status = error_memory(err, 2 * count * sizeof *quantile, "quantiles");
+    free(probability);
+    free(quantile);
+    return status;
+}
+
+/* --- measured values --- */
+
+static bool put_measured(cJSON *like, const struct fit *fit) {
+    const double *measured = fit->measured;
+    cJSON *names = cJSON_AddArrayToObject(like, "quantities");
+    cJSON *values = cJSON_AddArrayToObject(like, "measured");
+    bool put = names != NULL && values != NULL;
+    for (size_t a = 0; a < PATCH_QUANTITY_COUNT && put; a++) {
+        double unit = pow(fit->wavelength, patch_power((enum patch_quantity)a, fit->profile));
+        if (!isfinite(measured[a]))
+            continue;
+        put = list_put(names, cJSON_CreateString(PATCH_NAMES[a])) &&
+              list_put(values, json_number(measured[a] / unit));
+    }
+    return put;
+}
+
+static bool put_marks(cJSON *like, const struct fit *fit) {
+    const struct like_source *source = fit->source;
+    const struct grid *grid = fit->map.grid;
+    const double points[] = {(double)grid->nx, (double)grid->ny};
+    const double trusted[] = {fit->trusted[0] / fit->wavelength, fit->trusted[1] / fit->wavelength};
+    return field_put_text(like, "file", source->file) &&
+           field_put_text(like, "sha256", source->sha256) &&
+           field_put_count(like, "bytes", source->bytes) &&
+           field_put_text(like, "format", source->format) &&
+           field_put_text(like, "prepared", source->prepared) &&
+           field_put_text(like, "unit", fit->unit) &&
+           field_put(like, "wavelength", json_number(fit->wavelength)) &&
+           field_put(like, "spacing", json_number(grid_dx(grid) / fit->wavelength)) &&
+           field_put(like, "points", json_numbers(points, fit->profile ? 1 : 2)) &&
+           (!isfinite(trusted[0] * trusted[1]) ||
+            field_put(like, "trusted", json_numbers(trusted, 2))) &&
+           field_put_text(like, "detrend", choice_name(LIKE_DETRENDS, (int)source->detrend)) &&
+           field_put_text(like, "spectrum", choice_name(LIKE_SPECTRA, (int)fit->spectrum)) &&
+           field_put_text(like, "heights", choice_name(LIKE_HEIGHTS, (int)fit->heights));
+}
+
+static int put_like(cJSON *surface, const struct fit *fit, struct error *err) {
+    cJSON_DeleteItemFromObjectCaseSensitive(surface, "like");
+    cJSON *like = cJSON_AddObjectToObject(surface, "like");
+    if (like != NULL && put_marks(like, fit) && put_measured(like, fit))
+        return 0;
+    return error_memory(err, sizeof *fit, "a fitted surface");
+}
+
+/* --- together --- */
+
+static int fit_table(cJSON *surface, struct fit *fit, struct error *err) {
+    const double squares[LIKE_MOMENTS] = {pow(fit->measured[PATCH_RMS_HEIGHT], 2),
+                                          pow(fit->measured[PATCH_RMS_SLOPE], 2),
+                                          pow(fit->measured[PATCH_RMS_CURVATURE], 2)};
+    int status = like_table_measure(&fit->table, &fit->map, fit->anisotropy, 0, err);
+    if (status == 0)
+        status = like_table_calibrate(&fit->table, fit->map.grid, fit->source->detrend, &fit->cell,
+                                      squares, err);
+    if (status != 0)
+        return status;
+    fit->wavelength = 2 * M_PI / fit->table.highest;
+    status = like_table_slope(&fit->table, &fit->cell, fit->measured[PATCH_RMS_SLOPE],
+                              &fit->rms_slope, err);
+    if (status == 0 && !(put_spectrum(surface, fit) && put_scale(surface, fit)))
+        status = error_memory(err, fit->table.count * sizeof(double), "a table spectrum");
+    return status;
+}
+
+static int fit_spectrum(cJSON *surface, struct fit *fit, struct error *err) {
+    int status = like_law_fit(&fit->map, NULL, fit->trusted, err);
+    if (status == 0)
+        status = like_law_anisotropy(&fit->map, &fit->anisotropy, &fit->across, err);
+    if (status == 0)
+        status = check_grooves(fit, err);
+    if (status == 0 && fit->spectrum == LIKE_SPECTRUM_TABLE)
+        status = fit_table(surface, fit, err);
+    if (status == 0 && fit->spectrum == LIKE_SPECTRUM_FIT)
+        status = put_law(surface, fit, err);
+    if (status == 0 && !put_lengths(surface, fit))
+        status = error_memory(err, sizeof *fit, "a fitted surface");
+    return status;
+}
+
+/* Chooses what is fitted: not what the study gives of the spectrum and of the heights. If the study
+ * has a shortest wave, its points are those of that wave. */
+static void choose(struct fit *fit, const cJSON *surface) {
+    bool own_spectrum = has(surface, "spectrum") || has(surface, "hurst");
+    double points = field_number(surface, "points_per_wavelength");
+    fit->spectrum = own_spectrum ? LIKE_SPECTRUM_GIVEN : fit->source->spectrum;
+    fit->heights = has(surface, "heights") ? LIKE_HEIGHTS_GIVEN : fit->source->heights;
+    choose_cell(fit);
+    if (own_spectrum && points > 0)
+        fit->wavelength = points * grid_dx(fit->map.grid);
+}
+
+int like_fit(cJSON *surface, const struct height_map *map, const struct like_source *source,
+             struct error *err) {
+    struct fit fit = {.source = source,
+                      .unit = map->xy_unit,
+                      .map = {&map->grid, map->z, BOUNDARY_OPEN},
+                      .profile = grid_is_profile(&map->grid)};
+    int status = check_map(map, err);
+    if (status != 0)
+        return status;
+    choose(&fit, surface);
+    status = patch_measure(&fit.map, fit.measured, err);
+    if (status == 0 && !(fit.measured[PATCH_RMS_SLOPE] > 0))
+        status = error_set(err, ERROR_INPUT, "the map is flat");
+    if (status == 0)
+        status = fit_spectrum(surface, &fit, err);
+    if (status == 0 && fit.heights == LIKE_HEIGHTS_QUANTILES)
+        status = put_quantiles(surface, &fit, err);
+    if (status == 0 && fit.heights == LIKE_HEIGHTS_FIT)
+        status = put_distribution(surface, &fit, err);
+    if (status == 0 && !has(surface, "amplitudes") &&
+        !field_put_text(surface, "amplitudes", "random"))
+        status = error_memory(err, sizeof fit, "a fitted surface");
+    if (status == 0)
+        status = put_like(surface, &fit, err);
+    like_table_clear(&fit.table);
+    return status;
+}

@@ -1,0 +1,27 @@
+/* Fits the parameters of random surfaces to a measured surface (FORMULAS.md, F18.27). */
+#ifndef RUGO_JOBS_LIKE_LIKE_FIT_H
+#define RUGO_JOBS_LIKE_LIKE_FIT_H
+
+#include "core/map/detrend.h"
+#include "core/map/height_map.h"
+#include "jobs/like/like_parameters.h"
+#include <cjson/cJSON.h>
+
+/* The source of a map, which is reported beside the fit, and what of it is fitted. Borrowed. */
+struct like_source {
+    const char *file, *format, *prepared;
+    const char *sha256; /* of the file, 64 digits */
+    size_t bytes;
+    enum detrend detrend; /* of the trend that was removed */
+    enum like_spectrum spectrum;
+    enum like_heights heights;
+};
+
+/* Writes the parameters of surfaces like the map into the object "surface" of a study, but for
+ * those that it has. Replaces its "like" by the marks of the file and the measured values.
+ * ERROR_INPUT: points with another spacing along x than along y, lengths along z in another unit,
+ * too few heights, an unknown name. */
+int like_fit(cJSON *surface, const struct height_map *map, const struct like_source *source,
+             struct error *err);
+
+#endif

@@ -1,0 +1,20 @@
+/* The parameters of the measured surface that the surfaces of a study resemble. */
+#ifndef RUGO_JOBS_LIKE_LIKE_PARAMETERS_H
+#define RUGO_JOBS_LIKE_LIKE_PARAMETERS_H
+
+#include "schema/study/parameter.h"
+
+/* Sources of the spectrum and of the heights of such a study; GIVEN: the study had them before. */
+enum like_spectrum { LIKE_SPECTRUM_TABLE, LIKE_SPECTRUM_FIT, LIKE_SPECTRUM_GIVEN };
+enum like_heights {
+    LIKE_HEIGHTS_QUANTILES,
+    LIKE_HEIGHTS_FIT,
+    LIKE_HEIGHTS_GAUSSIAN,
+    LIKE_HEIGHTS_GIVEN
+};
+extern const struct choice LIKE_SPECTRA[], LIKE_HEIGHTS[], LIKE_DETRENDS[], LIKE_QUANTITIES[];
+
+/* The rows of /surface/like/... */
+extern const struct parameter_table LIKE_PARAMETERS;
+
+#endif

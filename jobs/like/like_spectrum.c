@@ -1,0 +1,135 @@
+#include "jobs/like/like_spectrum.h"
+#include "core/statistics/heights/roughness.h"
+#include "core/statistics/spectra/windowed_psd.h"
+#include "core/theory/sampled_field.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { PARTS_OF_OCTAVE = 4 };
+static const double ROUNDING = 1e-9; /* relative, of wave numbers */
+static const double LONGER = 64;     /* the table has waves of cells so many times as long */
+
+void like_table_clear(struct like_table *table) {
+    free(table->wave_number);
+    free(table->density);
+    *table = (struct like_table){0};
+}
+
+static void add_row(struct like_table *table, double wave_number, double density) {
+    table->wave_number[table->count] = wave_number;
+    table->density[table->count++] = density;
+}
+
+/* Exponent of the density of a rough surface over the wave number: H is about 0.75. */
+static double fall_of(bool profile) {
+    return profile ? 2.5 : 3.5;
+}
+
+/* Adds a row with the mean of rings first..last - 1, weighted by their numbers of waves. The
+ * exponent is taken out, so that the row is at the middle of their logarithms. */
+static void add_rings(struct like_table *table, size_t first, size_t last,
+                      const double *wave_number, const double *density, bool profile) {
+    double fall = fall_of(profile);
+    double middle = sqrt(wave_number[first] * wave_number[last - 1]), sum = 0, weight = 0;
+    for (size_t r = first; r < last; r++) {
+        double waves = profile ? 1 : (double)r;
+        sum += waves * density[r] * pow(wave_number[r] / middle, fall);
+        weight += waves;
+    }
+    add_row(table, middle, sum / weight);
+}
+
+/* Measures rings of the map stretched along x by the anisotropy, in which they are circles. */
+static int measure_rings(const struct measured_map *map, const struct grid *stretched,
+                         double **wave_number, double **density, struct error *err) {
+    size_t bins = radial_bins(stretched);
+    *wave_number = array_create(bins, sizeof **wave_number);
+    *density = array_create(bins, sizeof **density);
+    if (*wave_number == NULL || *density == NULL)
+        return error_memory(err, 2 * bins * sizeof **density, "a spectral density");
+    const struct measured_map seen = {stretched, map->z, BOUNDARY_OPEN};
+    return windowed_psd_measure(&seen, *wave_number, *density, err);
+}
+
+/* Returns the wave number below which all but a small part of the fourth moment lies. Beyond it a
+ * spectrum with a cut-off has only leakage of the window. */
+static double highest_of(const double *wave_number, const double *density, size_t bins, double most,
+                         bool profile) {
+    static const double BEYOND = 1e-4;
+    double total = 0, above = 0;
+    size_t last = bins - 1;
+    while (last > 1 && wave_number[last] > most * (1 + ROUNDING))
+        last--;
+    for (size_t r = 1; r <= last; r++)
+        total += (profile ? 1 : (double)r) * density[r] * pow(wave_number[r], 4);
+    for (size_t r = last; r > 2; r--) {
+        above += (profile ? 1 : (double)r) * density[r] * pow(wave_number[r], 4);
+        if (above > BEYOND * total)
+            return r == last ? most : wave_number[r];
+    }
+    return most;
+}
+
+static void smooth(struct like_table *out, const double *wave_number, const double *density,
+                   size_t bins, double most, bool profile) {
+    double octave = pow(2, 1.0 / PARTS_OF_OCTAVE);
+    size_t first = 1;
+    add_row(out, wave_number[1] / LONGER, density[1]);
+    while (first < bins && wave_number[first] <= most * (1 + ROUNDING)) {
+        size_t last = first + 1;
+        while (last < bins && wave_number[last] <= wave_number[first] * octave &&
+               wave_number[last] <= most * (1 + ROUNDING))
+            last++;
+        add_rings(out, first, last, wave_number, density, profile);
+        first = last;
+    }
+    double last = out->wave_number[out->count - 1];
+    if (last < most * (1 - ROUNDING))
+        add_row(out, most, out->density[out->count - 1] * pow(most / last, -fall_of(profile)));
+}
+
+int like_table_measure(struct like_table *out, const struct measured_map *map, double anisotropy,
+                       double most, struct error *err) {
+    struct grid stretched = *map->grid;
+    stretched.lx /= anisotropy;
+    double *wave_number = NULL, *density = NULL;
+    size_t bins = radial_bins(&stretched);
+    bool profile = grid_is_profile(map->grid);
+    *out = (struct like_table){.anisotropy = anisotropy,
+                               .wave_number = array_create(bins + 2, sizeof *out->wave_number),
+                               .density = array_create(bins + 2, sizeof *out->density)};
+    int status = out->wave_number != NULL && out->density != NULL
+                     ? measure_rings(map, &stretched, &wave_number, &density, err)
+                     : error_memory(err, 2 * bins * sizeof *density, "a table spectrum");
+    if (status == 0) {
+        if (most == 0)
+            most = highest_of(wave_number, density, bins, M_PI / grid_dx(map->grid), profile);
+        smooth(out, wave_number, density, bins, most, profile);
+        out->highest = out->wave_number[out->count - 1];
+    }
+    free(wave_number);
+    free(density);
+    if (status != 0)
+        like_table_clear(out);
+    return status;
+}
+
+int like_table_slope(const struct like_table *table, const struct grid *cell, double measured,
+                     double *rms_slope, struct error *err) {
+    const struct spectrum spectrum = {.type = SPECTRUM_TABLE,
+                                      .anisotropy = table->anisotropy,
+                                      .table_count = table->count,
+                                      .table_wave_number = table->wave_number,
+                                      .table_density = table->density};
+    struct modes *modes = NULL;
+    struct moments moments;
+    struct sampled_moments sampled;
+    int status = modes_create(&modes, &spectrum, cell, err);
+    if (status != 0)
+        return status;
+    modes_moments(modes, &moments);
+    sampled_moments(modes, &sampled);
+    *rms_slope = moments.rms_slope * measured / sampled.rms_slope;
+    modes_destroy(&modes);
+    return 0;
+}

@@ -1,0 +1,173 @@
+#include "jobs/maps/map_characterisation.h"
+#include "core/statistics/heights/height_quantiles.h"
+#include <math.h>
+#include <stdlib.h>
+
+static int curve_create(struct map_curve *out, size_t count, const char *what, struct error *err) {
+    double *room = array_create(count > 0 ? count : 1, 2 * sizeof *room);
+    if (room == NULL)
+        return error_memory(err, 2 * count * sizeof *room, what);
+    *out = (struct map_curve){count, room, room + count};
+    return 0;
+}
+
+void map_characterisation_clear(struct map_characterisation *characterisation) {
+    map_spectra_clear(&characterisation->spectra);
+    free(characterisation->correlation.x);
+    free(characterisation->quantiles.x);
+    characterisation->correlation = characterisation->quantiles = (struct map_curve){.count = 0};
+}
+
+/* --- heights --- */
+
+static int measure_quantiles(struct map_curve *out, const struct measured_map *map, size_t heights,
+                             struct error *err) {
+    size_t count = height_quantiles_count(heights);
+    if (count == 0)
+        return 0;
+    int status = curve_create(out, count, "quantiles of the heights", err);
+    return status == 0 ? height_quantiles_measure(map, heights, out->x, out->y, err) : status;
+}
+
+static void count_heights(struct map_histogram *out, const struct measured_map *map) {
+    size_t points = grid_points(map->grid), count = 0;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t n = 0; n < points; n++) {
+        low = fmin(low, map->z[n]);
+        high = fmax(high, map->z[n]);
+        count += isnan(map->z[n]) ? 0 : 1;
+    }
+    double wanted = fmin(HISTOGRAM_BINS_MOST, fmax(12, 2 * cbrt((double)count)));
+    *out = (struct map_histogram){
+        .count = low < high ? (size_t)wanted : 0, .low = low, .width = 1, .total = (double)count};
+    if (out->count == 0)
+        return;
+    out->width = (high - low) / (double)out->count;
+    for (size_t n = 0; n < points; n++)
+        if (!isnan(map->z[n]))
+            out->counts[(size_t)fmin((double)out->count - 1, (map->z[n] - low) / out->width)] += 1;
+}
+
+bool map_height_law_find(struct map_height_law *out,
+                         const struct map_characterisation *characterisation) {
+    const struct height_fits *fits = &characterisation->height_fits;
+    const struct height_fit *best = &fits->list[fits->best];
+    struct error unused;
+    if (isnan(best->distance) || fits->best == HEIGHTS_GAUSSIAN)
+        return false;
+    *out = (struct map_height_law){
+        .heights = {.type = (enum heights_type)fits->best, .shape = best->shape}};
+    return heights_moments(&out->heights, &out->moments, &unused) == 0;
+}
+
+double map_height_law_density(const struct map_height_law *law, double x, double mean,
+                              double deviation) {
+    static const double STEP = 1e-3; /* of the standard deviation */
+    double t = (x - mean) / deviation;
+    return (heights_cdf(&law->heights, &law->moments, t + STEP) -
+            heights_cdf(&law->heights, &law->moments, t - STEP)) /
+           (2 * STEP * deviation);
+}
+
+/* --- surfaces --- */
+
+static int measure_hill_errors(struct map_characterisation *out, const struct measured_map *map,
+                               const struct map_chance *chance, const struct summit_list *hills,
+                               struct error *err) {
+    double searched[LOW_CELLS_MOST];
+    if (!chance->told)
+        return 0;
+    int status = summit_cells_count(map, &chance->modes, 1, 1, searched, err);
+    if (status != 0)
+        return status;
+    summit_errors_measure(hills, out->areal.spd, map->grid, searched, chance->heights,
+                          &chance->modes, &out->hill_errors);
+    out->hills_have_errors = true;
+    return 0;
+}
+
+static int measure_areal(struct map_characterisation *out, const struct measured_map *map,
+                         const struct map_chance *chance, struct error *err) {
+    struct summit_list hills = {0};
+    int status = areal_measure(map, chance->correlation, &hills, &out->areal, err);
+    if (status == 0)
+        status = measure_hill_errors(out, map, chance, &hills, err);
+    summit_list_clear(&hills);
+    return status;
+}
+
+/* --- statistical errors --- */
+
+static void fill_certainty(struct map_certainty *out, const struct map_chance *chance) {
+    double none = (double)NAN;
+    *out = (struct map_certainty){.has_errors = chance->told,
+                                  .reason = chance->reason,
+                                  .lengths = chance->lengths,
+                                  .freedom = chance->told ? (double)chance->modes.count : none,
+                                  .factor =
+                                      chance->told ? low_modes_factor(chance->modes.count) : none};
+}
+
+static int measure_chance(struct map_characterisation *out, const struct measured_map *map,
+                          const struct map_chance *chance, struct error *err) {
+    struct cell_differences differences;
+    cell_differences_measure(map, &chance->modes, 1, &differences);
+    fill_certainty(&out->certainty, chance);
+    if (chance->told) {
+        scalar_errors_heights(chance->heights, &chance->modes, &out->errors);
+        scalar_errors_differences(&differences, chance->heights, &chance->modes, &out->errors);
+    }
+    height_fit_measure(chance->heights, map_chance_modes(chance), &out->height_fits);
+    int status =
+        grid_is_profile(map->grid) ? 0 : map_directions_measure(&out->directions, map, chance, err);
+    out->stationarity = (struct stationarity){.p_value = {(double)NAN, (double)NAN}};
+    if (status == 0 && chance->told)
+        stationarity_measure(map, chance->heights, &differences, &chance->modes,
+                             chance->correlation, &out->stationarity);
+    out->stationarity_p_value = least_p_value(out->stationarity.p_value, STATIONARY_DIVISIONS);
+    return status;
+}
+
+/* --- all --- */
+
+static int measure_correlation(struct map_curve *out, const struct correlation *correlation,
+                               struct error *err) {
+    int status = curve_create(out, correlation_rings(correlation), "an autocorrelation", err);
+    if (status == 0)
+        correlation_radial(correlation, out->x, out->y);
+    return status;
+}
+
+static int measure(struct map_characterisation *out, const struct measured_map *map,
+                   const struct map_chance *chance, bool under_window,
+                   const struct spectrum_fit_request *trusted, struct error *err) {
+    int status = map_parameters_measure(&out->parameters, map, map->grid->nx / 2, map->grid->ny / 2,
+                                        chance, err);
+    if (status == 0 && !grid_is_profile(map->grid))
+        status = measure_areal(out, map, chance, err);
+    if (status == 0)
+        status = measure_chance(out, map, chance, err);
+    if (status != 0)
+        return status;
+    count_heights(&out->histogram, map);
+    map_scales_measure(&out->scales, map, chance);
+    status = map_spectra_measure(&out->spectra, map, under_window, trusted, err);
+    return status == 0 ? measure_correlation(&out->correlation, chance->correlation, err) : status;
+}
+
+int map_characterise(struct map_characterisation *out, const struct height_map *map,
+                     const struct preparation_record *record,
+                     const struct spectrum_fit_request *trusted, struct error *err) {
+    const struct measured_map measured = {&map->grid, map->z, record->boundary};
+    const bool under_window = record->window_power < 1;
+    struct map_chance *chance = NULL;
+    int status = map_chance_create(&chance, &measured, err);
+    if (status != 0)
+        return status;
+    if (under_window)
+        map_chance_forgo(chance, "none: the map is under a window");
+    status = measure(out, &measured, chance, under_window, trusted, err);
+    map_chance_destroy(&chance);
+    size_t heights = grid_points(&map->grid) - height_map_holes(map);
+    return status == 0 ? measure_quantiles(&out->quantiles, &measured, heights, err) : status;
+}

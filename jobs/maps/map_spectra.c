@@ -1,0 +1,104 @@
+#include "jobs/maps/map_spectra.h"
+#include "core/statistics/heights/roughness.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int density_create(struct map_density *out, size_t count, struct error *err) {
+    double *room = array_create(count > 0 ? count : 1, 5 * sizeof *room);
+    if (room == NULL)
+        return error_memory(err, 5 * count * sizeof *room, "a spectral density");
+    *out = (struct map_density){.count = count,
+                                .wave_number = room,
+                                .density = room + count,
+                                .low = room + 2 * count,
+                                .high = room + 3 * count,
+                                .law = room + 4 * count};
+    return 0;
+}
+
+void map_spectra_clear(struct map_spectra *spectra) {
+    free(spectra->rings.wave_number);
+    free(spectra->line[0].wave_number);
+    free(spectra->line[1].wave_number);
+    *spectra = (struct map_spectra){.has_fit = false};
+}
+
+/* The law at the wave numbers of the rings. */
+static void fill_law(struct map_density *rings, const struct spectrum_fit *fit) {
+    for (size_t r = 0; r < rings->count; r++) {
+        double density = r > 0 ? spectrum_fit_density(fit, rings->wave_number[r]) : 0;
+        rings->law[r] = density > 0 ? density : (double)NAN;
+    }
+}
+
+static int measure_rings(struct map_spectra *out, const struct map_spectrum *spectrum,
+                         struct error *err) {
+    struct map_density *rings = &out->rings;
+    size_t bytes = spectrum->bins * sizeof *spectrum->density;
+    int status = density_create(rings, spectrum->bins, err);
+    if (status != 0)
+        return status;
+    memcpy(rings->wave_number, spectrum->wave_number, bytes);
+    memcpy(rings->density, spectrum->density, bytes);
+    for (size_t r = 0; r < rings->count; r++)
+        map_spectrum_band(spectrum, r, &rings->low[r], &rings->high[r]);
+    if (out->fit.fitted)
+        fill_law(rings, &out->fit);
+    else
+        rings->law = NULL;
+    return 0;
+}
+
+static int measure_line(struct map_density *out, const struct map_spectrum *spectrum, int axis,
+                        struct error *err) {
+    size_t count = line_psd_count(spectrum, axis);
+    int status = count > 0 ? density_create(out, count, err) : 0;
+    if (status != 0 || count == 0)
+        return status;
+    line_psd_measure(spectrum, axis, out->wave_number, out->density, out->low, out->high);
+    out->law = NULL;
+    return 0;
+}
+
+/* The density of a map under a window of its own. */
+static int measure_plain(struct map_density *out, const struct measured_map *map,
+                         struct error *err) {
+    int status = density_create(out, radial_bins(map->grid), err);
+    if (status != 0)
+        return status;
+    out->low = out->high = out->law = NULL;
+    return psd_measure(map->grid, map->z, out->wave_number, out->density, err);
+}
+
+/* Fits the law: of a long profile by its parts, which takes as long as it has points. */
+static int law_fit(const struct measured_map *map, const struct map_spectrum *spectrum,
+                   const struct spectrum_fit_request *request, struct spectrum_fit *out,
+                   struct error *err) {
+    struct map_spectrum *pieces = NULL;
+    bool is_long = grid_is_profile(map->grid) && map->grid->nx >= 2 * (size_t)PROFILE_PIECE;
+    if (!is_long)
+        return spectrum_fit_measure(spectrum, request, out, err);
+    int status = profile_spectrum_create(&pieces, map, err);
+    if (status == 0)
+        status = spectrum_fit_measure(pieces, request, out, err);
+    map_spectrum_destroy(&pieces);
+    return status;
+}
+
+int map_spectra_measure(struct map_spectra *out, const struct measured_map *map, bool under_window,
+                        const struct spectrum_fit_request *request, struct error *err) {
+    struct map_spectrum *spectrum = NULL;
+    if (under_window)
+        return measure_plain(&out->rings, map, err);
+    int status = map_spectrum_create(&spectrum, map, err);
+    if (status == 0)
+        status = law_fit(map, spectrum, request, &out->fit, err);
+    if (status == 0)
+        status = measure_rings(out, spectrum, err);
+    for (int axis = 0; axis < 2 && status == 0; axis++)
+        status = measure_line(&out->line[axis], spectrum, axis, err);
+    out->has_fit = status == 0;
+    map_spectrum_destroy(&spectrum);
+    return status;
+}

@@ -1,0 +1,27 @@
+/* Spectral densities of a map with their 95 % bands, and the self-affine law that fits. */
+#ifndef RUGO_JOBS_MAPS_MAP_SPECTRA_H
+#define RUGO_JOBS_MAPS_MAP_SPECTRA_H
+
+#include "core/statistics/spectra/spectrum_fit.h"
+
+/* One density; all arrays have `count` values and are owned by wave_number. */
+struct map_density {
+    size_t count; /* 0: there is none */
+    double *wave_number, *density;
+    double *low, *high; /* its band; NULL: none is known */
+    double *law;        /* the fitted law; NaN beyond its ends; NULL: none fits */
+};
+struct map_spectra {
+    struct map_density rings;   /* over |k| */
+    struct map_density line[2]; /* along x, along y */
+    bool has_fit;               /* the trusted range was sought, and a law in it */
+    struct spectrum_fit fit;
+};
+/* Measures a map; *out is {0} at first, and the caller's to clear in any case. A map under a window
+ * of its own has neither bands nor a law, since its waves scatter otherwise. ERROR_INPUT where the
+ * request leaves no wave; ERROR_MEMORY. */
+int map_spectra_measure(struct map_spectra *out, const struct measured_map *map, bool under_window,
+                        const struct spectrum_fit_request *request, struct error *err);
+void map_spectra_clear(struct map_spectra *spectra);
+
+#endif

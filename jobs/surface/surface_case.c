@@ -1,0 +1,486 @@
+#include "jobs/surface/surface_case.h"
+#include "jobs/surface/surface_parameters.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TWO_PI 6.283185307179586
+static const double ROUNDING = 1e-9; /* relative: guards integers behind divisions */
+
+static const struct parameter_table *const TABLES[] = {&SURFACE_PARAMETERS, NULL};
+
+static void read_distribution(struct surface_case *out, struct values *values) {
+    struct heights *heights = &out->options.heights;
+    const struct distribution *distribution = heights_distribution(heights->type);
+    out->heights_name = distribution->family;
+    if (distribution->shape_means == NULL)
+        return;
+    heights->shape = values_number(values, "/surface/heights/shape");
+    if (!(heights->shape >= distribution->shape_low && heights->shape <= distribution->shape_high))
+        values_fault(values, "/surface/heights/shape",
+                     "the distribution needs its shape (%s), a number in [%g, %g]",
+                     distribution->shape_means, distribution->shape_low, distribution->shape_high);
+}
+
+/* Adds a fault for an invalid table; any other failure is returned. */
+static int table_status(struct values *values, const char *path, int status,
+                        const struct error *reason, struct error *err) {
+    if (status == ERROR_INPUT)
+        values_fault(values, path, "%s", reason->text);
+    return status == 0 || status == ERROR_INPUT ? 0 : error_set(err, status, "%s", reason->text);
+}
+
+static int read_samples(struct surface_case *out, struct values *values, struct error *err) {
+    static const char path[] = "/surface/heights/samples";
+    double *samples = NULL;
+    size_t n = 0;
+    struct error reason = {0};
+    int status = values_numbers(values, path, &samples, &n, err);
+    if (status != 0)
+        return status;
+    out->heights_name = "samples";
+    if (samples == NULL) {
+        values_fault(values, path, "the distribution needs its samples, heights in any order");
+        return 0;
+    }
+    status = height_table_of_samples(&out->height_table, n, samples, &reason);
+    free(samples);
+    return table_status(values, path, status, &reason, err);
+}
+
+static int read_quantiles(struct surface_case *out, struct values *values, struct error *err) {
+    static const char at[] = "/surface/heights/probability", path[] = "/surface/heights/quantile";
+    double *probability = NULL, *quantile = NULL;
+    size_t n = 0, quantiles = 0;
+    struct error reason = {0};
+    out->heights_name = "quantiles";
+    int status = values_numbers(values, at, &probability, &n, err);
+    if (status == 0)
+        status = values_numbers(values, path, &quantile, &quantiles, err);
+    if (status == 0 && (probability == NULL || quantile == NULL || n != quantiles))
+        values_fault(values, path,
+                     "the distribution needs probability and quantile, as many of each");
+    else if (status == 0 && height_table_check(n, probability, &reason) != 0)
+        values_fault(values, at, "%s", reason.text);
+    else if (status == 0)
+        status = table_status(
+            values, path,
+            height_table_of_quantiles(&out->height_table, n, probability, quantile, &reason),
+            &reason, err);
+    free(probability);
+    free(quantile);
+    return status;
+}
+
+static void read_iteration(struct surface_options *options, struct values *values) {
+    options->amplitudes = (enum surface_amplitudes)values_choice(values, "/surface/amplitudes");
+    options->tolerance = values_number(values, "/surface/heights/tolerance");
+    options->keep = (enum surface_keep)values_choice(values, "/surface/heights/keep");
+    options->iteration =
+        (enum surface_iteration)values_choice(values, "/surface/heights/iteration");
+    options->draw = (enum surface_draw)values_choice(values, "/surface/heights/draw");
+    options->stall_gain = values_number(values, "/surface/heights/stall_gain");
+    double stall = values_number(values, "/surface/heights/stall_iterations");
+    double most = values_number(values, "/surface/heights/max_iterations");
+    double relaxed = values_number(values, "/surface/heights/relaxed_iterations");
+    options->stall_iterations = isnan(stall) ? options->stall_iterations : (size_t)stall;
+    options->max_iterations = isnan(most) ? options->max_iterations : (size_t)most;
+    options->relaxed_iterations = isnan(relaxed) ? options->relaxed_iterations : (size_t)relaxed;
+}
+
+/* Reads the heights and the iteration that produces them. */
+static int read_heights(struct surface_case *out, struct values *values, struct error *err) {
+    struct surface_options *options = &out->options;
+    int distribution = values_choice(values, "/surface/heights/distribution");
+    int status = 0;
+    *options = SURFACE_DEFAULTS;
+    options->heights.type =
+        distribution < HEIGHTS_TABLE ? (enum heights_type)distribution : HEIGHTS_TABLE;
+    if (distribution == GIVEN_SAMPLES)
+        status = read_samples(out, values, err);
+    else if (distribution == GIVEN_QUANTILES)
+        status = read_quantiles(out, values, err);
+    else
+        read_distribution(out, values);
+    options->heights.table = out->height_table;
+    read_iteration(options, values);
+    return status;
+}
+
+static void read_scale(struct surface_case *out, struct values *values) {
+    double slope = values_number(values, "/surface/rms_slope");
+    double height = values_number(values, "/surface/rms_height");
+    if (!isnan(slope) && !isnan(height))
+        values_fault(values, "/surface/rms_height", "give rms_slope or rms_height, not both");
+    out->spectrum.scale = !isnan(slope)    ? SCALE_RMS_SLOPE
+                          : !isnan(height) ? SCALE_RMS_HEIGHT
+                                           : SCALE_NONE;
+    out->spectrum.scale_value = !isnan(slope) ? slope : !isnan(height) ? height : 1;
+}
+
+/* Solves for the lambda_l/lambda_s of nayak_alpha; NaN with a fault where no ratio gives it. */
+static int solve_ratio(struct surface_case *out, struct values *values, double alpha,
+                       double rolloff, struct error *err) {
+    struct error reason = {0};
+    double reached;
+    out->wavelength_ratio = NAN;
+    if (isnan(out->spectrum.hurst) || isnan(rolloff) || isnan(out->length_ratio))
+        return 0; /* at fault already */
+    double hurst = out->spectrum.hurst;
+    int status;
+    if (values_choice(values, "/surface/alpha_formula") == ALPHA_CONTINUOUS)
+        status = spectrum_ratio_continuous(out->dimension, hurst, rolloff, alpha,
+                                           &out->wavelength_ratio, &reason);
+    else if (surface_case_is_square(out))
+        status = spectrum_ratio_discrete(out->dimension, hurst, rolloff, out->length_ratio, alpha,
+                                         &out->wavelength_ratio, &reached, &reason);
+    else
+        status = spectrum_ratio_rectangle(hurst, rolloff, out->length_ratio, out->length_ratio_y,
+                                          alpha, &out->wavelength_ratio, &reached, &reason);
+    if (status == 0)
+        return 0;
+    out->wavelength_ratio = NAN;
+    if (status == ERROR_MEMORY)
+        return error_set(err, status, "%s", reason.text);
+    values_fault(values, "/surface/nayak_alpha", "%s", reason.text);
+    return 0;
+}
+
+/* Returns whether a wave vector lies in the self-affine band of a profile, or along one side. */
+static bool line_has_mode(double low, double high) {
+    return floor(high * (1 + ROUNDING)) >= ceil(low * (1 - ROUNDING));
+}
+
+/* Returns the same of a cell with wave numbers from low to high along x, and from `times` as much
+ * along y. */
+static bool plane_has_mode(double low, double high, double times) {
+    low *= 1 - ROUNDING;
+    high *= 1 + ROUNDING;
+    if (high >= low + 1)
+        return floor(high) >= ceil(low);
+    for (size_t mx = 0; (double)mx <= high; mx++) {
+        double square = (double)mx * (double)mx;
+        double my = ceil(times * sqrt(fmax(0, low * low - square))) / times;
+        if (square + my * my <= high * high)
+            return true;
+    }
+    return false;
+}
+
+/* Returns whether a wave vector of the cell lies in the self-affine band; else the spectrum would
+ * be empty. Waves that are longer along x have the band's lengths along y. */
+static bool band_has_mode(const struct surface_case *surface) {
+    double low = surface->length_ratio, along_y = surface->length_ratio_y;
+    double ratio = surface->wavelength_ratio;
+    if (surface->dimension == 1 || surface->spectrum.anisotropy > 1)
+        return line_has_mode(along_y, along_y * ratio);
+    return plane_has_mode(low, low * ratio, along_y / low);
+}
+
+/* Reads the anisotropy. The cell must hold the longest waves of a self-affine surface along x, too.
+ * Nayak's parameter is that of isotropic surfaces. */
+static void read_anisotropy(struct surface_case *out, struct values *values) {
+    static const char path[] = "/surface/anisotropy";
+    double anisotropy = values_number(values, path);
+    out->spectrum.anisotropy = anisotropy;
+    if (!(anisotropy > 1))
+        return;
+    if (out->dimension == 1)
+        values_fault(values, path, "%g: profiles have one direction", anisotropy);
+    if (out->spectrum.type == SPECTRUM_SELF_AFFINE &&
+        anisotropy > out->length_ratio * (1 + ROUNDING))
+        values_fault(values, path, "%g is more than length_ratio, %g: no longest wave fits along x",
+                     anisotropy, out->length_ratio);
+    if (!isnan(values_number(values, "/surface/nayak_alpha")))
+        values_fault(values, path,
+                     "%g: nayak_alpha is of isotropic surfaces; give wavelength_ratio", anisotropy);
+}
+
+static int read_self_affine(struct surface_case *out, struct values *values, struct error *err) {
+    double alpha = values_number(values, "/surface/nayak_alpha");
+    double rolloff = values_number(values, "/surface/rolloff_ratio");
+    read_anisotropy(out, values);
+    out->spectrum.hurst = values_number(values, "/surface/hurst");
+    if (isnan(out->spectrum.hurst))
+        values_fault(values, "/surface/hurst",
+                     "a self-affine spectrum needs it: a number in (0, 1]");
+    if (!isnan(alpha) && !isnan(out->wavelength_ratio)) {
+        values_fault(values, "/surface/nayak_alpha",
+                     "give wavelength_ratio or nayak_alpha, not both");
+        out->wavelength_ratio = NAN;
+    } else if (!isnan(alpha)) {
+        int status = solve_ratio(out, values, alpha, rolloff, err);
+        if (status != 0)
+            return status;
+    } else if (isnan(out->wavelength_ratio))
+        values_fault(values, "/surface/wavelength_ratio",
+                     "give wavelength_ratio, or nayak_alpha in its place");
+    double ratio = out->wavelength_ratio;
+    if (rolloff > ratio * (1 + ROUNDING))
+        values_fault(values, "/surface/rolloff_ratio",
+                     "%g is more than wavelength_ratio, %g: the roll-off lies within the band",
+                     rolloff, ratio);
+    if (!isnan(ratio) && !isnan(out->length_ratio) && !band_has_mode(out))
+        values_fault(
+            values, "/surface/length_ratio",
+            "no wave of this cell lies between lambda_l and lambda_s: take an integer, or a "
+            "wider band");
+    out->spectrum.wavelength_short = 1;
+    out->spectrum.wavelength_long = ratio;
+    out->spectrum.wavelength_rolloff = fmax(1, ratio / rolloff);
+    return 0;
+}
+
+static int read_exponential(struct surface_case *out, struct values *values, struct error *err) {
+    double *lengths;
+    size_t n;
+    int status = values_numbers(values, "/surface/spectrum/length", &lengths, &n, err);
+    if (status != 0)
+        return status;
+    if (lengths == NULL) {
+        values_fault(values, "/surface/spectrum/length",
+                     "exponential_acf needs its correlation lengths, [b] or [bx, by]");
+        return 0;
+    }
+    out->spectrum.correlation_x = lengths[0];
+    out->spectrum.correlation_y = lengths[n - 1];
+    free(lengths);
+    return 0;
+}
+
+static void check_table(const struct surface_case *surface, struct values *values, double points) {
+    const struct spectrum *spectrum = &surface->spectrum;
+    bool any = false;
+    for (size_t a = 0; a < spectrum->table_count; a++) {
+        any = any || spectrum->table_density[a] > 0;
+        if (a > 0 && spectrum->table_wave_number[a] <= spectrum->table_wave_number[a - 1]) {
+            values_fault(values, "/surface/spectrum/wave_number", "must rise; number %zu does not",
+                         a);
+            return;
+        }
+    }
+    double last = spectrum->table_wave_number[spectrum->table_count - 1];
+    if (!any)
+        values_fault(values, "/surface/spectrum/density", "must be above 0 somewhere");
+    if (last > TWO_PI / 2 * points * (1 + ROUNDING))
+        values_fault(values, "/surface/spectrum/wave_number",
+                     "%g is beyond what points_per_wavelength resolves, %g radians per lambda_s",
+                     last, TWO_PI / 2 * points);
+}
+
+static int read_table(struct surface_case *out, struct values *values, double points,
+                      struct error *err) {
+    double *wave_number = NULL, *density = NULL;
+    size_t n = 0, densities = 0;
+    read_anisotropy(out, values);
+    int status = values_numbers(values, "/surface/spectrum/wave_number", &wave_number, &n, err);
+    if (status == 0)
+        status = values_numbers(values, "/surface/spectrum/density", &density, &densities, err);
+    if (status == 0 && (wave_number == NULL || density == NULL || n != densities))
+        values_fault(values, "/surface/spectrum/density",
+                     "a table needs wave_number and density, as many of each");
+    else if (status == 0) {
+        out->table = array_create(2 * n, sizeof *out->table);
+        if (out->table == NULL)
+            status = error_memory(err, 2 * n * sizeof *out->table, "a table spectrum");
+    }
+    if (out->table != NULL && wave_number != NULL && density != NULL) {
+        memcpy(out->table, wave_number, n * sizeof *wave_number);
+        memcpy(out->table + n, density, n * sizeof *density);
+        out->spectrum.table_count = n;
+        out->spectrum.table_wave_number = out->table;
+        out->spectrum.table_density = out->table + n;
+        check_table(out, values, points);
+    }
+    free(wave_number);
+    free(density);
+    return status;
+}
+
+static void read_lengths(struct surface_case *out, struct values *values) {
+    static const char path[] = "/surface/length_ratio_y";
+    double along_y = values_number(values, path);
+    out->length_ratio = values_number(values, "/surface/length_ratio");
+    if (!isnan(along_y) && out->dimension == 1)
+        values_fault(values, path, "%g: profiles have one length, length_ratio", along_y);
+    bool own = !isnan(along_y) && !isnan(out->length_ratio) && out->dimension == 2;
+    out->length_ratio_y = own ? along_y : out->length_ratio;
+}
+
+int surface_case_dimension(struct values *values) {
+    return values_number(values, "/surface/dimension") == 1 ? 1 : 2;
+}
+
+/* Reads the whole surface. A value at fault is NaN or empty, and what depends on it is left out. */
+static int read_surface(struct surface_case *out, struct values *values, struct error *err) {
+    double points = values_number(values, "/surface/points_per_wavelength");
+    out->dimension = surface_case_dimension(values);
+    read_lengths(out, values);
+    out->wavelength_ratio = values_number(values, "/surface/wavelength_ratio");
+    out->spectrum.type = (enum spectrum_type)values_choice(values, "/surface/spectrum/type");
+    int status = read_heights(out, values, err);
+    read_scale(out, values);
+    if (status == 0 && out->spectrum.type == SPECTRUM_SELF_AFFINE)
+        status = read_self_affine(out, values, err);
+    else if (status == 0 && isnan(out->wavelength_ratio))
+        values_fault(values, "/surface/wavelength_ratio",
+                     "this spectrum needs it for the size of the cell, L/lambda_s = length_ratio "
+                     "wavelength_ratio");
+    if (status == 0 && out->spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
+        status = read_exponential(out, values, err);
+    if (status == 0 && out->spectrum.type == SPECTRUM_TABLE)
+        status = read_table(out, values, points, err);
+    if (status == 0 &&
+        !isnan(out->length_ratio * out->wavelength_ratio * points)) /* else at fault */
+        surface_case_grid(out, points, "/surface/points_per_wavelength", values, &out->grid);
+    return status;
+}
+
+int surface_case_fill(struct surface_case *out, struct values *values,
+                      const struct surface_case **whole, struct error *err) {
+    size_t before = values_fault_count(values);
+    *out = (struct surface_case){0};
+    *whole = NULL;
+    int status = read_surface(out, values, err);
+    if (status == 0 && values_fault_count(values) == before)
+        *whole = out;
+    else
+        surface_case_clear(out);
+    return status;
+}
+
+int surface_case_read(struct surface_case *out, const cJSON *parameters, struct fault_list *faults,
+                      struct error *err) {
+    struct values *values = NULL;
+    const struct surface_case *whole;
+    *out = (struct surface_case){0};
+    int status = values_create(&values, parameters, TABLES, faults, err);
+    if (status == 0)
+        status = surface_case_fill(out, values, &whole, err);
+    if (status == 0)
+        status = values_status(values, err);
+    if (status != 0)
+        surface_case_clear(out);
+    values_destroy(&values);
+    return status;
+}
+
+void surface_case_clear(struct surface_case *surface) {
+    free(surface->table);
+    height_table_destroy(&surface->height_table);
+    *surface = (struct surface_case){0};
+}
+
+/* Returns the highest wave number along a side of so many points and lambda_s. */
+static size_t side_band(const struct spectrum *spectrum, size_t points, double length) {
+    double highest = length;
+    if (spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
+        highest = (double)points;
+    else if (spectrum->type == SPECTRUM_TABLE)
+        highest = spectrum->table_wave_number[spectrum->table_count - 1] * length / TWO_PI;
+    size_t nyquist = points / 2;
+    highest = floor(highest * (1 + ROUNDING));
+    return highest < (double)nyquist ? (size_t)highest : nyquist;
+}
+
+struct surface_band surface_case_band(const struct surface_case *surface) {
+    const struct grid *grid = &surface->grid;
+    return (struct surface_band){
+        side_band(&surface->spectrum, grid->nx, grid->lx),
+        surface->dimension == 1 ? 0 : side_band(&surface->spectrum, grid->ny, grid->ly)};
+}
+
+struct surface_band surface_case_own_band(const struct surface_case *surface) {
+    const struct grid *grid = &surface->grid;
+    return surface_case_band_limited(surface) ? surface_case_band(surface)
+                                              : (struct surface_band){grid->nx / 2, grid->ny / 2};
+}
+
+double surface_case_bytes(const struct surface_case *surface) {
+    struct surface_band band = surface_case_band(surface);
+    return generator_bytes(&surface->grid, band.x, band.y, &surface->options);
+}
+
+/* --- the grid of the cell --- */
+
+static bool is_smooth(size_t n) {
+    for (size_t prime = 2; prime <= 7; prime += prime == 2 ? 1 : 2)
+        while (n % prime == 0)
+            n /= prime;
+    return n == 1;
+}
+
+size_t surface_case_side(double points) {
+    double nearest = round(points);
+    if (fabs(points - nearest) <= ROUNDING * points)
+        return (size_t)nearest;
+    size_t n = (size_t)ceil(points);
+    for (n += n % 2; !is_smooth(n);)
+        n += 2;
+    return n;
+}
+
+static bool is_whole(double number) {
+    return fabs(number - round(number)) <= ROUNDING * number;
+}
+
+/* Finds sides of at least `shorter` and `longer` points in that ratio, with the same spacing. False
+ * if the ratio is not one of whole numbers of which the smaller is at most RATIO_MOST. */
+static bool sides_of(double shorter, double longer, size_t *few, size_t *many) {
+    enum { RATIO_MOST = 64 };
+    if (is_whole(shorter) && is_whole(longer)) {
+        *few = (size_t)round(shorter);
+        *many = (size_t)round(longer);
+        return true;
+    }
+    for (size_t parts = 1; parts <= RATIO_MOST; parts++) {
+        double times = longer / shorter * (double)parts;
+        size_t side = surface_case_side(shorter / (double)parts);
+        if (is_whole(times)) {
+            *few = parts * side;
+            *many = (size_t)round(times) * side;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Makes the grid of a surface that is no square. */
+static bool rectangle_of(const struct surface_case *surface, double points, const char *path,
+                         struct values *values, struct grid *out) {
+    double lx = surface->length_ratio * surface->wavelength_ratio;
+    double ly = surface->length_ratio_y * surface->wavelength_ratio;
+    size_t few, many;
+    if (lx * points * ly * points > SURFACE_POINTS_MOST * (1 + ROUNDING)) {
+        values_fault(values, path,
+                     "a grid of %.0f by %.0f points is too large: at most %.0f in all", lx * points,
+                     ly * points, SURFACE_POINTS_MOST);
+        return false;
+    }
+    if (!sides_of(fmin(lx, ly) * points, fmax(lx, ly) * points, &few, &many)) {
+        values_fault(values, "/surface/length_ratio_y",
+                     "a cell of %g by %g longest waves: %g by %g points cannot be rounded to whole "
+                     "numbers with the same distances along x and y; take sides in a simple ratio",
+                     surface->length_ratio, surface->length_ratio_y, lx * points, ly * points);
+        return false;
+    }
+    *out = lx < ly ? (struct grid){few, many, lx, ly} : (struct grid){many, few, lx, ly};
+    return true;
+}
+
+bool surface_case_grid(const struct surface_case *surface, double points, const char *path,
+                       struct values *values, struct grid *out) {
+    bool profile = surface->dimension == 1;
+    double length = surface->length_ratio * surface->wavelength_ratio;
+    if (!surface_case_is_square(surface))
+        return rectangle_of(surface, points, path, values, out);
+    double wanted = length * points, total = profile ? wanted : wanted * wanted;
+    if (total > SURFACE_POINTS_MOST * (1 + ROUNDING)) {
+        values_fault(values, path, "a grid of %.0f points a side is too large: at most %.0f",
+                     wanted, profile ? SURFACE_POINTS_MOST : floor(sqrt(SURFACE_POINTS_MOST)));
+        return false;
+    }
+    size_t side = surface_case_side(wanted);
+    *out = (struct grid){side, profile ? 1 : side, length, length};
+    return true;
+}

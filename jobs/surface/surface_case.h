@@ -1,0 +1,96 @@
+/* The "surface" part of a case, shared by every kind and by `rugo generate`. */
+#ifndef RUGO_JOBS_SURFACE_SURFACE_CASE_H
+#define RUGO_JOBS_SURFACE_SURFACE_CASE_H
+
+#include "core/surface/surface.h"
+#include "schema/study/values.h"
+#include <math.h>
+
+struct surface_case {
+    int dimension;    /* 1 profile, 2 surface */
+    struct grid grid; /* cell in units of lambda_s = 1: lx = length_ratio * wavelength_ratio, ly
+                         likewise; its points are as far apart along y as along x */
+    struct spectrum spectrum;
+    struct surface_options options;
+    double wavelength_ratio;             /* as given, or solved for nayak_alpha */
+    double length_ratio, length_ratio_y; /* sides of the cell in longest waves; of profiles both are
+                                            the length */
+    double *table;                       /* owned: memory behind a table spectrum */
+    struct height_table *height_table;   /* owned: samples or quantiles of heights; NULL: none */
+    const char *heights_name;            /* of the theory curves of heights */
+};
+/* Highest wave numbers along x and y, in units of 2 pi over that side; y of profiles is 0. */
+struct surface_band {
+    size_t x, y;
+};
+/* Reads the surface of a case; adds faults (pointer "/surface/...") where values do not fit their
+ * rows or each other, and returns ERROR_INPUT. faults may be NULL: the first fault is the error in
+ * any case. *out is left cleared on failure. Absent values are their defaults. */
+int surface_case_read(struct surface_case *out, const cJSON *parameters, struct fault_list *faults,
+                      struct error *err);
+/* Fills a surface from values that a kind has checked by tables with SURFACE_PARAMETERS among them.
+ * Where all values fit together *whole is `out`; else it is NULL and *out is cleared, and
+ * values_status returns the faults: whoever needs the surface takes it from *whole. Fails only with
+ * ERROR_MEMORY; *out is to be cleared in any case. */
+int surface_case_fill(struct surface_case *out, struct values *values,
+                      const struct surface_case **whole, struct error *err);
+/* Returns the dimension of the surface, 1 or 2, which does not depend on the other values. */
+int surface_case_dimension(struct values *values);
+void surface_case_clear(struct surface_case *surface);
+
+/* Returns whether the generated surfaces have no waves outside the prescribed band. */
+static inline bool surface_case_band_limited(const struct surface_case *surface) {
+    return surface->options.heights.type == HEIGHTS_GAUSSIAN ||
+           surface->options.keep == KEEP_SPECTRUM;
+}
+/* Returns whether each surface has the prescribed spectrum exactly; with random amplitudes only
+ * their mean has. */
+static inline bool surface_case_exact(const struct surface_case *surface) {
+    return surface_case_band_limited(surface) && surface->options.amplitudes == AMPLITUDES_FIXED;
+}
+/* Returns the highest wave numbers of the spectrum on the grid: at most nx/2 and ny/2. */
+struct surface_band surface_case_band(const struct surface_case *surface);
+/* Returns those of the generated surfaces: the same if they are band limited, else those of the
+ * grid. */
+struct surface_band surface_case_own_band(const struct surface_case *surface);
+static inline bool surface_band_fits(struct surface_band band, const struct grid *grid) {
+    return grid->nx > 2 * band.x && (grid_is_profile(grid) || grid->ny > 2 * band.y);
+}
+
+static inline bool surface_case_is_square(const struct surface_case *surface) {
+    return surface->length_ratio == surface->length_ratio_y;
+}
+/* Return sides in longest waves: the shorter one, and the geometric mean, which is exact for
+ * squares. */
+static inline double surface_case_shorter(const struct surface_case *surface) {
+    return fmin(surface->length_ratio, surface->length_ratio_y);
+}
+static inline double surface_case_mean_side(const struct surface_case *surface) {
+    return sqrt(surface->length_ratio * surface->length_ratio_y);
+}
+/* Returns the area of the cell in squares of the longest wave; of profiles its length in longest
+ * waves. */
+static inline double surface_case_waves(const struct surface_case *surface) {
+    return pow(surface_case_mean_side(surface), surface->dimension);
+}
+/* Returns the longer side in lambda_s, which is the longest wave that the cell can hold. */
+static inline double surface_case_longest(const struct surface_case *surface) {
+    return surface->dimension == 1 ? surface->grid.lx : fmax(surface->grid.lx, surface->grid.ly);
+}
+
+/* Returns the peak bytes of a generator of the surface, with heights on its grid. */
+double surface_case_bytes(const struct surface_case *surface);
+
+/* Returns the points a side for `points`, at least that: if it is no integer, rounded up to an even
+ * number without prime factors above 7. */
+size_t surface_case_side(double points);
+/* Makes the grid of the cell with at least so many points a shortest wave, as far apart along x as
+ * along y. Sides of p by q parts of equal length have p n by q n points, n rounded as above. If the
+ * grid would be too large, or sides that need rounding are no simple ratio, adds a fault at `path`
+ * and returns false; *out is then unchanged. */
+bool surface_case_grid(const struct surface_case *surface, double points, const char *path,
+                       struct values *values, struct grid *out);
+/* A grid has at most 2^31 points. */
+#define SURFACE_POINTS_MOST 2147483648.0
+
+#endif

@@ -1,0 +1,170 @@
+/* rugo characterise FILE: what a height map in a file is like. */
+#include "core/memory_file.h"
+#include "server/command/command.h"
+#include "server/command/map/like_study.h"
+#include "server/command/map/map_file.h"
+#include "server/command/output_file.h"
+#include "server/show/map/map_figure.h"
+#include "server/show/map/map_report.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct characterise_options {
+    struct map_options map;
+    const char *trust_from, *trust_to; /* NULL: by the map */
+    int format;
+    const char *picture, *report; /* NULL: none */
+};
+#define AT(member) offsetof(struct characterise_options, member)
+static const struct option_row OPTIONS[] = {
+    MAP_OPTION_ROWS(struct characterise_options, map),
+    MAP_BOUNDARY_ROW(struct characterise_options, map),
+    {"trust-from", 0, OPTION_TEXT, 0, 0, AT(trust_from), "LENGTH", NULL,
+     "the longest waves whose spectrum is fitted, such as 50um (by the map)"},
+    {"trust-to", 0, OPTION_TEXT, 0, 0, AT(trust_to), "LENGTH", NULL,
+     "the shortest ones (by the map: where noise, or what the instrument takes, begins)"},
+    {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|svg|study", "text",
+     "what to print; svg: the page of --report; study: one of surfaces like the map"},
+    {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
+     "draw the map as it was measured, without its trend, with its summits marked"},
+    {"report", 0, OPTION_TEXT, 0, 0, AT(report), "FILE.svg|FILE.png", NULL,
+     "draw a page for print: map, heights, spectrum, scales, main parameters, where they come "
+     "from"},
+    {0}};
+
+enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_STUDY };
+
+static int print_study(const struct map_figure *figure, struct error *err) {
+    cJSON *study = NULL;
+    int status = like_study_make(&study, figure->map, figure->record, err);
+    if (status == 0)
+        status = output_document(study, err);
+    cJSON_Delete(study);
+    return status;
+}
+
+static int print(int format, const struct map_figure *figure, struct error *err) {
+    int status = 0;
+    if (format == FORMAT_TEXT)
+        named_values_print(stdout, figure->found);
+    else if (format == FORMAT_SVG)
+        status = map_figure_draw(figure, stdout, err);
+    else if (format == FORMAT_STUDY)
+        status = print_study(figure, err);
+    else if (named_values_print_json(stdout, figure->found))
+        putchar('\n');
+    else
+        status = error_memory(err, sizeof *figure->found, "the characterisation");
+    if (status == 0 && (fflush(stdout) != 0 || ferror(stdout) != 0))
+        status = error_set(err, ERROR_SYSTEM, "cannot write to standard output");
+    return status;
+}
+
+static int draw(const char *path, const char *name, const struct height_map *map,
+                enum boundary boundary, struct error *err) {
+    const struct map_picture picture = {.name = name,
+                                        .subject = boundary == BOUNDARY_OPEN ? "open" : "periodic",
+                                        .x_label = "x",
+                                        .y_label = "y",
+                                        .z_label = "z",
+                                        .grid = &map->grid,
+                                        .z = map->z,
+                                        .boundary = boundary};
+    return output_file_picture(path, &picture, err);
+}
+
+/* A page under a name of another kind, such as .pdf, would not be what it seems. */
+static int check_report(const char *path, struct error *err) {
+    size_t length = path != NULL ? strlen(path) : 0;
+    if (path == NULL || output_file_is_png(path) ||
+        (length > 4 && strcmp(path + length - 4, ".svg") == 0))
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "--report %.200s: allowed are files that end in .svg or .png; --format svg "
+                     "prints the page",
+                     path);
+}
+
+static int report(const char *path, const struct map_figure *figure, struct error *err) {
+    struct memory_file memory;
+    size_t size = 0;
+    if (!memory_file_open(&memory))
+        return error_memory(err, 0, "a page");
+    int status = map_figure_draw(figure, memory.file, err);
+    char *text = memory_file_close(&memory, &size);
+    if (status == 0 && text == NULL)
+        status = error_memory(err, 0, "a page");
+    if (status == 0)
+        status = output_file_drawn(path, text, size, err);
+    free(text);
+    return status;
+}
+
+/* Reads a wavelength in the unit of the map, or with one; *out stays where text is NULL. */
+static int wavelength_read(double *out, const char *option, const char *text,
+                           const struct height_map *map, struct error *err) {
+    struct asked_length length = {0};
+    if (text == NULL)
+        return 0;
+    if (!asked_length_parse(&length, text, strlen(text)) || !(length.value > 0))
+        return error_set(err, ERROR_INPUT,
+                         "--%s is \"%.40s\"; allowed: a length above 0, such as 50um", option,
+                         text);
+    if (length.has_unit && strcmp(map->xy_unit, "m") != 0)
+        return error_set(err, ERROR_INPUT,
+                         "--%s is \"%.40s\", but the map has no unit of length (--unit says it)",
+                         option, text);
+    *out = length.value;
+    return 0;
+}
+
+static int characterise(struct map_characterisation *measured, struct named_values *found,
+                        const struct height_map *map, const struct preparation_record *record,
+                        const struct characterise_options *options, struct error *err) {
+    struct spectrum_fit_request trusted = {0};
+    int status = wavelength_read(&trusted.longest, "trust-from", options->trust_from, map, err);
+    if (status == 0)
+        status = wavelength_read(&trusted.shortest, "trust-to", options->trust_to, map, err);
+    if (status == 0)
+        status = map_characterise(measured, map, record, &trusted, err);
+    return status == 0 ? map_report_fill(found, measured, map, record, err) : status;
+}
+
+static int run(const void *values, const char *const *arguments) {
+    const struct characterise_options *options = values;
+    struct height_map map = {0};
+    struct map_characterisation measured = {0};
+    struct named_values found = {0};
+    struct error err = {0};
+    struct preparation_record record = {0};
+    int status = check_report(options->report, &err);
+    if (status == 0)
+        status = map_options_read(&map, &record, arguments[0], &options->map, &err);
+    if (status == 0) {
+        status = characterise(&measured, &found, &map, &record, options, &err);
+        if (status != 0)
+            error_context(&err, "%s", arguments[0]);
+    }
+    if (status == 0 && options->picture != NULL)
+        status = draw(options->picture, arguments[0], &map, record.boundary, &err);
+    const struct map_figure figure = {&measured, &found, &map, &record};
+    if (status == 0 && options->report != NULL)
+        status = report(options->report, &figure, &err);
+    if (status == 0)
+        status = print(options->format, &figure, &err);
+    named_values_clear(&found);
+    map_characterisation_clear(&measured);
+    height_map_clear(&map);
+    return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
+}
+
+const struct command COMMAND_CHARACTERISE = {
+    .name = "characterise",
+    .arguments = "FILE",
+    .summary = "parameters and summits of a height map in a file",
+    .least = 1,
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = sizeof(struct characterise_options),
+    .run = run,
+};

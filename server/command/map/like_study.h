@@ -1,0 +1,24 @@
+/* Studies of surfaces like a measured one. The file that a study names is read and fitted where the
+ * command runs. The study that is kept and sent holds the fit, and needs no file. */
+#ifndef RUGO_SERVER_COMMAND_MAP_LIKE_STUDY_H
+#define RUGO_SERVER_COMMAND_MAP_LIKE_STUDY_H
+
+#include "core/map/preparation.h"
+#include <cjson/cJSON.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Where the study in *text[*size], with these changes (--set, NULL-terminated or NULL), names a
+ * file under /surface/like that is not fitted, replaces *text by the fitted study, with the
+ * changes made, and sets *fitted. path: of the study; the file's name is relative to its folder, or
+ * to the working folder where it is NULL or "-". A text that is no study stays as it is, for its
+ * reader to say so. *text is the caller's, from malloc. ERROR_INPUT names the parameter or file. */
+int like_study_fit(char **text, size_t *size, const char *path, const char *const *overrides,
+                   bool *fitted, struct error *err);
+
+/* Makes a study of statistics of surfaces like the map, fitted, for the caller to delete.
+ * ERROR_INPUT where its reader would refuse what was measured. */
+int like_study_make(cJSON **out, const struct height_map *map,
+                    const struct preparation_record *record, struct error *err);
+
+#endif

@@ -1,0 +1,66 @@
+/* A height map in a file that was named on the command line, and the options by which commands
+ * read and prepare it. */
+#ifndef RUGO_SERVER_COMMAND_MAP_MAP_FILE_H
+#define RUGO_SERVER_COMMAND_MAP_MAP_FILE_H
+
+#include "core/map/height_map_file.h"
+#include "core/map/preparation_words.h"
+#include "server/command/options.h"
+
+/* Part of a command's options. */
+struct map_options {
+    const char *name;  /* of the file; NULL: that of its path */
+    const char *layer; /* NULL: the first with heights */
+    struct preparation_words words;
+};
+
+/* Rows of a table of options: those of a struct map_options that is `member` of the struct `type`.
+ * The boundary is a row of its own, for commands that know others. */
+#define MAP_ROW(type, member, name, kind, field, argument, standard, help)                         \
+    {                                                                                              \
+        name, 0, kind, 0, 0, offsetof(type, member) + offsetof(struct map_options, field),         \
+            argument, standard, help                                                               \
+    }
+#define MAP_BOUNDARY_ROW(type, member)                                                             \
+    MAP_ROW(type, member, "boundary", OPTION_CHOICE, words.boundary, MAP_BOUNDARIES, "auto",       \
+            "whether the map repeats; auto: where its seam is no rougher than its inside")
+#define MAP_OPTION_ROWS(type, member) MAP_OPTION_ROWS_DETREND(type, member, "auto")
+/* The same for commands that take out no trend unless it is asked for. */
+#define MAP_OPTION_ROWS_DETREND(type, member, standard)                                            \
+    MAP_ROW(type, member, "name", OPTION_TEXT, name, "NAME", NULL,                                 \
+            "of the file, such as patch.x3p, where it comes by standard input (-)"),               \
+        MAP_ROW(type, member, "layer", OPTION_TEXT, layer, "NAME|NUMBER", NULL,                    \
+                "layer of the file (the first with heights); a name that is none lists them"),     \
+        MAP_ROW(type, member, "dx", OPTION_TEXT, words.dx, "DX[,DY]", NULL,                        \
+                "distance of points, such as 0.5um (what the file says, or 1)"),                   \
+        MAP_ROW(type, member, "unit", OPTION_TEXT, words.unit, "UNIT", NULL,                       \
+                "of x and y, such as um, where the file tells none"),                              \
+        MAP_ROW(type, member, "z-unit", OPTION_TEXT, words.z_unit, "UNIT", NULL,                   \
+                "of heights, such as nm, where the file tells none"),                              \
+        MAP_ROW(type, member, "crop", OPTION_TEXT, words.crop, "X0,Y0,WIDTH,HEIGHT", NULL,         \
+                "the part to take, in points or in lengths such as 10um"),                         \
+        MAP_ROW(type, member, "detrend", OPTION_CHOICE, words.detrend, MAP_DETRENDS, standard,     \
+                "trend taken out first; auto: a plane, of an open map"),                           \
+        MAP_ROW(type, member, "fill", OPTION_FLAG, words.fill, NULL, NULL,                         \
+                "fill holes with the smoothest membrane"),                                         \
+        MAP_ROW(type, member, "filter", OPTION_TEXT, words.filter, "S=LENGTH,L=LENGTH,robust",     \
+                NULL, "Gaussian filters: S keeps waves longer than this, L takes them out"),       \
+        MAP_ROW(type, member, "resample", OPTION_TEXT, words.resample, "NX[,NY]|SPACING", NULL,    \
+                "other points: so many, or so far apart, such as 0.5um or dx=0.5"),                \
+        MAP_ROW(type, member, "window", OPTION_CHOICE, words.window, MAP_WINDOWS, "none",          \
+                "let heights fall towards the sides, so that the map repeats")
+
+/* Reads the file and prepares the map; *record, {0} at first, gets the name of the file and the
+ * steps of the preparation. Errors name the file. A map whose units give slopes no meaning is
+ * refused (height_map_check_units). */
+int map_options_read(struct height_map *map, struct preparation_record *record, const char *path,
+                     const struct map_options *options, struct error *err);
+/* Does the same whatever the units. */
+int map_options_read_any(struct height_map *map, struct preparation_record *record,
+                         const char *path, const struct map_options *options, struct error *err);
+
+/* Reads a map as it is, by the first bytes of the file or by the ending of its name. Errors name
+ * the file. */
+int map_file_read(struct height_map *out, const char *path, struct error *err);
+
+#endif

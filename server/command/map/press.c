@@ -1,0 +1,383 @@
+/* rugo press FILE: the contact of a height map in a file with a rigid flat. */
+#include "core/map/height_map_file.h"
+#include "jobs/maps/map_press_error.h"
+#include "schema/result/result_json.h"
+#include "schema/study/parameter.h"
+#include "server/command/command.h"
+#include "server/command/map/map_file.h"
+#include "server/command/map/press_loads.h"
+#include "server/command/output_file.h"
+#include "server/show/map/map_vtu.h"
+#include "server/show/map/press_print.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Paths; NULL: not wanted. By their endings maps are npy, csv, xyz, or pictures (png, svg); without
+ * one npy. */
+struct press_paths {
+    const char *pressures, *gap, *contact;
+    const char *mesh; /* VTU of the surface with all three */
+};
+
+/* The fields over the map as it was measured, the first of its mirror images. */
+enum drawn_field { DRAWN_HEIGHT, DRAWN_PRESSURE, DRAWN_GAP, DRAWN_CONTACT, DRAWN_FIELDS };
+struct fields {
+    const struct map_press *press;
+    const double *z;
+    double unit;    /* of pressures, over E* */
+    double *values; /* scratch: DRAWN_FIELDS maps, one after the other */
+};
+
+static void fill(struct fields *fields) {
+    const struct map_press *press = fields->press;
+    const struct contact_state *state = &press->state;
+    size_t n = grid_points(&press->map), nx = press->map.nx;
+    for (size_t j = 0; j < press->map.ny; j++)
+        for (size_t i = 0; i < nx; i++) {
+            size_t from = j * press->grid.nx + i, to = j * nx + i;
+            fields->values[DRAWN_HEIGHT * n + to] = fields->z[from];
+            fields->values[DRAWN_PRESSURE * n + to] = state->p[from] * fields->unit;
+            fields->values[DRAWN_GAP * n + to] = state->gap[from];
+            fields->values[DRAWN_CONTACT * n + to] = state->p[from] > 0 ? 1 : 0;
+        }
+}
+
+static bool ends_with(const char *path, const char *ending) {
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcmp(path + length - tail, ending) == 0;
+}
+
+static bool is_picture(const char *path) {
+    return ends_with(path, ".png") || ends_with(path, ".svg");
+}
+
+static int check_map(const char *path, struct error *err) {
+    const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
+    if (strchr(name, '.') != NULL && !is_picture(path) &&
+        height_map_format_of(path) == HEIGHT_MAP_FORMATS)
+        return error_set(err, ERROR_INPUT,
+                         "file %.200s: its name ends in none of .npy, .csv, .xyz, .png, .svg",
+                         path);
+    return output_file_check(path, err);
+}
+
+/* Before anything is computed: ERROR_INPUT for another ending, ERROR_SYSTEM where nothing can be
+ * written. */
+static int press_files_check(const struct press_paths *paths, struct error *err) {
+    const char *const maps[] = {paths->pressures, paths->gap, paths->contact};
+    int status = paths->mesh != NULL ? output_file_check(paths->mesh, err) : 0;
+    for (size_t f = 0; f < sizeof maps / sizeof *maps && status == 0; f++)
+        if (maps[f] != NULL)
+            status = check_map(maps[f], err);
+    return status;
+}
+
+static int write_map(const char *path, const char *name, const struct grid *grid,
+                     const double *values, struct error *err) {
+    enum height_map_format format = height_map_format_of(path);
+    FILE *file;
+    if (is_picture(path)) {
+        const struct map_picture picture = {.name = name,
+                                            .subject = "",
+                                            .x_label = "x",
+                                            .y_label = "y",
+                                            .z_label = name,
+                                            .grid = grid,
+                                            .z = values,
+                                            .boundary = BOUNDARY_OPEN,
+                                            .unmarked = true};
+        return output_file_picture(path, &picture, err);
+    }
+    int status = output_file_open(&file, path, err);
+    if (status != 0)
+        return status;
+    status = height_map_write(file, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format, grid,
+                              values, err);
+    return output_file_close(file, path, status, err);
+}
+
+static int write_mesh(const char *path, const struct fields *fields, const char *unit_name,
+                      struct error *err) {
+    const struct grid *grid = &fields->press->map;
+    size_t n = grid_points(grid);
+    char title[120];
+    FILE *file;
+    const struct map_field list[] = {{"pressure", fields->values + DRAWN_PRESSURE * n},
+                                     {"gap", fields->values + DRAWN_GAP * n},
+                                     {"contact", fields->values + DRAWN_CONTACT * n}};
+    int status = output_file_open(&file, path, err);
+    if (status != 0)
+        return status;
+    snprintf(title, sizeof title, "A pressed map: pressure in %s, lengths as in the map",
+             unit_name);
+    status = map_vtu(file, title, grid, fields->values, sizeof list / sizeof *list, list, err);
+    return output_file_close(file, path, status, err);
+}
+
+/* Writes the part of the map that was measured: pressures are over E* h' times `unit`, gaps in the
+ * map's length, contact is 1 or 0. z: heights as they were pressed. */
+static int press_files_write(const struct press_paths *paths, const struct map_press *press,
+                             const double *z, double unit, const char *unit_name,
+                             struct error *err) {
+    const struct grid *grid = &press->map;
+    size_t n = grid_points(grid);
+    const char *const list[DRAWN_FIELDS] = {NULL, paths->pressures, paths->gap, paths->contact};
+    char pressure[40];
+    const char *const names[DRAWN_FIELDS] = {"z", pressure, "gap", "contact"};
+    if (paths->pressures == NULL && paths->gap == NULL && paths->contact == NULL &&
+        paths->mesh == NULL)
+        return 0;
+    struct fields fields = {press, z, unit / press->slope,
+                            array_create(DRAWN_FIELDS * n, sizeof(double))};
+    if (fields.values == NULL)
+        return error_memory(err, DRAWN_FIELDS * n * sizeof(double), "fields of contact");
+    fill(&fields);
+    snprintf(pressure, sizeof pressure, "pressure, %s", unit_name);
+    int status = 0;
+    for (size_t f = DRAWN_PRESSURE; f < DRAWN_FIELDS && status == 0; f++)
+        if (list[f] != NULL)
+            status = write_map(list[f], names[f], grid, fields.values + f * n, err);
+    if (status == 0 && paths->mesh != NULL)
+        status = write_mesh(paths->mesh, &fields, unit_name, err);
+    free(fields.values);
+    return status;
+}
+
+enum asked { ASKED_AUTO, ASKED_OPEN, ASKED_MIRRORED, ASKED_PERIODIC };
+#define BOUNDARIES "auto|open|mirrored|periodic" /* in this order */
+
+/* With fewer nodes in contact, areas and pressures are rough. */
+enum { CONTACT_NODES_FEW = 50 };
+
+struct press_options {
+    const char *model;
+    double lengths; /* height of the block in lengths of the map, 0: not given */
+    int boundary, format, without_error;
+    struct press_words words;
+    struct press_paths paths;
+    struct map_options map;
+};
+#define AT(member) offsetof(struct press_options, member)
+static const struct option_row OPTIONS[] = {
+    MAP_OPTION_ROWS(struct press_options, map),
+    {"boundary", 0, OPTION_CHOICE, 0, 0, AT(boundary), BOUNDARIES, "auto",
+     "open: in free space; mirrored: with its mirror images; auto: periodic where its seam is no "
+     "rougher than its inside, else open"},
+    {"loads", 0, OPTION_TEXT, 0, 0, AT(words.loads), "LIST", NULL,
+     "rising loads p/(E* h') (0.01,0.02,0.05,0.1,0.2,0.3)"},
+    {"pressure", 0, OPTION_TEXT, 0, 0, AT(words.pressure), "LIST", NULL,
+     "in place of it: rising nominal pressures, such as 1MPa,2MPa"},
+    {"force", 0, OPTION_TEXT, 0, 0, AT(words.force), "LIST", NULL,
+     "in place of it: rising forces on the map, such as 10mN (of a profile 10N/m)"},
+    {"modulus", 0, OPTION_TEXT, 0, 0, AT(words.modulus), "E", NULL,
+     "Young's modulus of the block, such as 210GPa: results in physical units"},
+    {"effective-modulus", 0, OPTION_TEXT, 0, 0, AT(words.effective_modulus), "E*", NULL,
+     "in place of it: E* = E/(1 - nu^2), or that of two elastic bodies"},
+    {"model", 0, OPTION_MODEL, 0, 0, AT(model), "MODEL", "halfspace", "what the block is made of"},
+    {"poisson", 0, OPTION_NUMBER, 0, 0.4999, AT(words.poisson), "NU", "0.3",
+     "Poisson's ratio, of meshes and for --modulus"},
+    {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
+     "height of the block in lengths of the map (infinite; of meshes 1.5)"},
+    {"error", 0, OPTION_CHOICE, 0, 0, AT(without_error), "points|none", "points",
+     "tell what every second point alone changes, for a third more time at most"},
+    {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|curves", "text",
+     "what to print; curves: as those of a study's case, with what the model alone tells"},
+    {"output", 'o', OPTION_TEXT, 0, 0, AT(paths.pressures), "FILE", NULL,
+     "write the pressures of the last load (p/(E* h'), with a modulus Pa) as npy, csv, xyz, png or "
+     "svg"},
+    {"gap", 0, OPTION_TEXT, 0, 0, AT(paths.gap), "FILE", NULL, "the gaps, likewise"},
+    {"contact", 0, OPTION_TEXT, 0, 0, AT(paths.contact), "FILE", NULL,
+     "where there is contact (1, else 0), likewise"},
+    {"vtu", 0, OPTION_TEXT, 0, 0, AT(paths.mesh), "FILE.vtu", NULL,
+     "the surface with all three on it, for ParaView"},
+    {0}};
+
+enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_CURVES };
+
+/* The options ask for this. */
+struct press_order {
+    const char *path;
+    const struct press_options *options;
+    struct press_block block;
+    struct press_loads loads;
+    struct preparation_record record;
+};
+
+/* --- the map --- */
+
+static enum press_boundary boundary_of(const struct press_order *order) {
+    if (order->options->boundary == ASKED_MIRRORED)
+        return PRESS_MIRRORED;
+    return order->record.boundary == BOUNDARY_OPEN ? PRESS_OPEN : PRESS_PERIODIC;
+}
+
+/* A map is taken as periodic where the option says so; this warns of the jumps at its seam. */
+static void warn_of_seam(const struct press_order *order) {
+    const struct seam *seam = &order->record.seam;
+    if (order->options->boundary == ASKED_PERIODIC && seam_is_rough(seam))
+        fprintf(
+            stderr,
+            "rugo press: warning: %s: contact takes the map as periodic, and its seam is rougher "
+            "than the roughest place inside: %.3g times across x, %.3g times across y\n",
+            order->path, seam->x, seam->y);
+}
+
+static int read_map(struct height_map *map, struct press_order *order, struct error *err) {
+    static const int ASKED[] = {[ASKED_AUTO] = ASK_BOUNDARY_AUTO,
+                                [ASKED_OPEN] = ASK_BOUNDARY_OPEN,
+                                [ASKED_MIRRORED] = ASK_BOUNDARY_OPEN,
+                                [ASKED_PERIODIC] = ASK_BOUNDARY_PERIODIC};
+    struct map_options options = order->options->map;
+    options.words.boundary = ASKED[order->options->boundary];
+    int status = map_options_read(map, &order->record, order->path, &options, err);
+    struct error holes = {0};
+    if (status == 0 && height_map_check_whole(map, &holes) != 0)
+        return error_set(err, ERROR_INPUT, "%s: %s; --fill fills them", order->path, holes.text);
+    if (status == 0)
+        status = press_loads_of_map(&order->loads, map, err);
+    if (status != 0)
+        return status;
+    order->block.boundary = boundary_of(order);
+    warn_of_seam(order);
+    return 0;
+}
+
+/* --- the loads --- */
+
+static void warn_of_few_nodes(const struct press_order *order, const struct press_row *row) {
+    double nodes = row->value[PRESS_CONTACT_NODES];
+    if (nodes < CONTACT_NODES_FEW)
+        fprintf(stderr,
+                "rugo press: warning: %s: at p/(E* h') = %.3g only %.3g %s in contact, so that "
+                "areas and pressures are rough there\n",
+                order->path, row->value[PRESS_LOAD], nodes, nodes > 1 ? "points are" : "point is");
+}
+
+static double map_area(const struct map_press *press) {
+    const struct grid *grid = &press->map;
+    return grid_is_profile(grid) ? grid->lx : grid->lx * grid->ly;
+}
+
+/* One load after the other, and the files of the last one. pressures: mean, in E*. */
+static int press_loads(const struct press_order *order, struct map_press *press,
+                       const struct height_map *map, double *pressures, struct press_row *rows,
+                       struct error *err) {
+    double modulus = order->loads.modulus;
+    int status = 0;
+    for (size_t l = 0; status == 0 && l < order->loads.count; l++) {
+        pressures[l] = press_loads_mean(&order->loads, l, press->slope, map_area(press));
+        status = map_press_load(press, pressures[l], &rows[l], err);
+    }
+    if (status != 0)
+        return status;
+    warn_of_few_nodes(order, &rows[0]);
+    return press_files_write(&order->options->paths, press, map->z,
+                             modulus > 0 ? modulus * press->slope : 1, modulus > 0 ? "Pa" : "E* h'",
+                             err);
+}
+
+static int print_json(const struct press_report *report, struct error *err) {
+    cJSON *document = press_document(report);
+    int status = document != NULL ? output_document(document, err)
+                                  : error_memory(err, sizeof(cJSON), "the contact");
+    cJSON_Delete(document);
+    return status;
+}
+
+static int print(const struct press_report *report, int format, struct error *err) {
+    if (format == FORMAT_JSON)
+        return print_json(report, err);
+    if (format == FORMAT_TEXT)
+        press_print_table(stdout, report);
+    else if (result_print(stdout, report->result)) /* as those of a study's case */
+        putchar('\n');
+    else
+        return error_memory(err, sizeof *report->result, "the curves");
+    return output_flush(err);
+}
+
+static int report(const struct press_order *order, const struct map_press *press,
+                  const struct height_map *map, const struct press_row *rows, struct error *err) {
+    static const char *const BOUNDARY_NAMES[] = {"open", "mirrored", "periodic"};
+    struct case_result result = {0};
+    const struct press_report report = {.press = press,
+                                        .record = &order->record,
+                                        .boundary = BOUNDARY_NAMES[order->block.boundary],
+                                        .boundary_by = order->options->boundary != ASKED_AUTO
+                                                           ? "option"
+                                                           : order->record.boundary_by,
+                                        .model = order->options->model,
+                                        .modulus = order->loads.modulus,
+                                        .metres = strcmp(map->xy_unit, "m") == 0,
+                                        .map_area = map_area(press),
+                                        .loads = order->loads.count,
+                                        .with_errors = order->options->without_error == 0,
+                                        .result = &result};
+    int status = map_press_result(&result, press, order->loads.count, rows, err);
+    if (status == 0)
+        status = print(&report, order->options->format, err);
+    result_clear(&result);
+    return status;
+}
+
+static int press_map(struct press_order *order, struct height_map *map, struct error *err) {
+    struct map_press press = {0};
+    size_t count = order->loads.count;
+    double *pressures = array_create(count, sizeof *pressures);
+    struct press_row *rows = array_create(count, sizeof *rows);
+    int status = pressures == NULL || rows == NULL
+                     ? error_memory(err, count * sizeof *rows, "the loads")
+                     : map_press_begin(&press, map, &order->block, err);
+    if (status != 0)
+        error_context(err, "%s", order->path);
+    if (status == 0)
+        status = press_loads(order, &press, map, pressures, rows, err);
+    map_press_release(&press);
+    if (status == 0 && order->options->without_error == 0)
+        status = map_press_error(&press, map, &order->block, count, pressures, rows, err);
+    if (status == 0)
+        status = report(order, &press, map, rows, err);
+    map_press_clear(&press);
+    free(pressures);
+    free(rows);
+    return status;
+}
+
+static int run(const void *values, const char *const *arguments) {
+    const struct press_options *options = values;
+    struct error err = {0};
+    const struct choice *model = choice_find(CONTACT_MODEL_CHOICES, options->model);
+    struct press_order *order = array_create(1, sizeof *order);
+    struct height_map map = {0};
+    int status = order == NULL ? error_memory(&err, sizeof *order, "the loads") : 0;
+    if (status == 0 && model == NULL)
+        status = error_set(&err, ERROR_INPUT, "there is no model %.40s", options->model);
+    if (status == 0) {
+        order->path = arguments[0];
+        order->options = options;
+        order->block = (struct press_block){.model = CONTACT_MODELS[model->value],
+                                            .poisson = options->words.poisson,
+                                            .lengths = options->lengths};
+        status = press_loads_parse(&order->loads, &options->words, &err);
+        if (status == 0)
+            status = press_files_check(&options->paths, &err);
+    }
+    if (status == 0)
+        status = read_map(&map, order, &err);
+    if (status == 0)
+        status = press_map(order, &map, &err);
+    height_map_clear(&map);
+    free(order);
+    return status == 0 ? EXIT_DONE : command_fail("press", &err);
+}
+
+const struct command COMMAND_PRESS = {
+    .name = "press",
+    .arguments = "FILE",
+    .summary = "contact of a height map in a file with a rigid flat",
+    .least = 1,
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = sizeof(struct press_options),
+    .run = run,
+};

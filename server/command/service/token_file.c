@@ -1,0 +1,145 @@
+#include "server/command/service/token_file.h"
+#include "schema/store/store.h"
+#include "server/command/service/secret_file.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Returns the roles that a line's first word names; ROLE_NONE for an unknown one. */
+static unsigned roles_of(const char *word, size_t length) {
+    static const struct {
+        const char *name;
+        unsigned roles;
+    } ROLES[] = {{"read", ROLE_READ},
+                 {"submit", ROLE_READ | ROLE_SUBMIT},
+                 {"work", ROLE_READ | ROLE_WORK},
+                 {"admin", ROLE_READ | ROLE_SUBMIT | ROLE_ADMIN}};
+    for (size_t r = 0; r < sizeof ROLES / sizeof *ROLES; r++)
+        if (strlen(ROLES[r].name) == length && memcmp(word, ROLES[r].name, length) == 0)
+            return ROLES[r].roles;
+    return ROLE_NONE;
+}
+
+/* Splits a line in place. A name and a digest both begin behind a colon: sha256 with 64 digits
+ * behind it is a digest. */
+static void line_read(char *text, struct token_line *line) {
+    size_t length = strcspn(text, ":");
+    line->name = line->role = "";
+    line->token = text;
+    line->roles = text[length] != '\0' ? roles_of(text, length)
+                                       : ROLE_READ | ROLE_SUBMIT | ROLE_WORK | ROLE_ADMIN;
+    if (text[length] != '\0' && line->roles != ROLE_NONE) {
+        char *rest = text + length + 1, *colon = strchr(rest, ':');
+        text[length] = '\0';
+        line->role = text;
+        line->token = rest;
+        if (colon != NULL && !digest_read(rest, line->digest)) {
+            *colon = '\0';
+            line->name = rest;
+            line->token = colon + 1;
+        }
+    }
+    if (digest_read(line->token, line->digest))
+        line->token = NULL;
+    else
+        digest_text(line->token, line->digest);
+}
+
+int token_lines_visit(char *text, token_visit *visit, void *context, struct error *err) {
+    size_t number = 0;
+    int status = 0;
+    for (char *line = text, *rest = NULL; status == 0 && line != NULL; line = rest) {
+        struct token_line read = {.number = ++number};
+        rest = strchr(line, '\n');
+        if (rest != NULL)
+            *rest++ = '\0';
+        line[strcspn(line, "\r")] = '\0';
+        if (*line == '\0' || *line == '#')
+            continue;
+        line_read(line, &read);
+        status = visit(context, &read, err);
+    }
+    return status;
+}
+
+int token_file_read(const char *file, bool open, token_visit *visit, void *context,
+                    struct error *err) {
+    char *text = NULL;
+    size_t size = 0;
+    int status = secret_file_read(file, open, &text, &size, err);
+    if (status != 0)
+        return status;
+    status = token_lines_visit(text, visit, context, err);
+    explicit_bzero(text, size);
+    free(text);
+    return status;
+}
+
+static bool is_name(const char *text) {
+    size_t length = strlen(text);
+    return length > 0 && length < OWNER_SIZE &&
+           strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._@-") ==
+               length;
+}
+
+int token_line_check(const struct token_line *line, const char *file, struct error *err) {
+    if (line->roles == ROLE_NONE)
+        return error_set(err, ERROR_INPUT,
+                         "%s, line %zu: no role:token; roles are read, submit, work and admin",
+                         file, line->number);
+    if (*line->name != '\0' && !is_name(line->name))
+        return error_set(err, ERROR_INPUT,
+                         "%s, line %zu: in role:name:token, a name has 1 to %d letters, digits, "
+                         ". _ @ or -",
+                         file, line->number, OWNER_SIZE - 1);
+    if (line->token != NULL && strncmp(line->token, DIGEST_HEAD, strlen(DIGEST_HEAD)) == 0)
+        return error_set(err, ERROR_INPUT, "%s, line %zu: sha256: needs 64 hexadecimal digits",
+                         file, line->number);
+    if (line->token != NULL && strlen(line->token) < 16)
+        return error_set(err, ERROR_INPUT, "%s, line %zu: a token of less than 16 characters", file,
+                         line->number);
+    return 0;
+}
+
+/* The choice of a client. */
+struct choice_of_token {
+    unsigned role;
+    unsigned roles; /* of the token so far */
+    char *token;    /* owned; NULL before the first line */
+    bool digests;   /* lines had no token to ask with */
+};
+
+static int choose(void *context, const struct token_line *line, struct error *err) {
+    struct choice_of_token *choice = context;
+    choice->digests = choice->digests || line->token == NULL;
+    if (line->token == NULL)
+        return 0;
+    if (choice->token != NULL &&
+        ((choice->roles & choice->role) != 0 || (line->roles & choice->role) == 0))
+        return 0;
+    free(choice->token);
+    choice->roles = line->roles;
+    choice->token = strdup(line->token);
+    return choice->token != NULL ? 0 : error_memory(err, strlen(line->token), "a token");
+}
+
+int token_read(const char *file, enum role role, char **token, struct error *err) {
+    struct choice_of_token choice = {.role = (unsigned)role};
+    const char *given = getenv("RUGO_TOKEN");
+    *token = NULL;
+    if (file == NULL && (given == NULL || *given == '\0'))
+        return 0;
+    const struct token_line alone = {.role = "", .name = "", .token = given};
+    int status = file != NULL ? token_file_read(file, false, choose, &choice, err)
+                              : choose(&choice, &alone, err);
+    if (status == 0 && choice.token == NULL)
+        status = error_set(err, ERROR_INPUT, "%s holds %s", file,
+                           choice.digests ? "digests alone, which a server checks: a client needs "
+                                            "the token that rugo token new printed"
+                                          : "no token");
+    if (status != 0)
+        free(choice.token);
+    else
+        *token = choice.token;
+    return status;
+}

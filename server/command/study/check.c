@@ -1,0 +1,207 @@
+/* `rugo check`: what a study would do, and what it would cost; runs nothing. */
+#include "jobs/kind.h"
+#include "jobs/target.h"
+#include "schema/json/field.h"
+#include "server/command/command.h"
+#include "server/command/options.h"
+#include "server/show/summary/plan.h"
+#include "server/show/summary/summary_cells.h"
+#include "server/show/summary/summary_target.h"
+#include "worker/allotment.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PLANS_SHOWN = 5 };
+
+static const char *random_name(const struct study *study) {
+    return choice_name(STUDY_RANDOM, (int)study->random);
+}
+
+/* --- text --- */
+
+static void print_value(struct text_table *table, const cJSON *value) {
+    char *text = value != NULL ? json_print(value) : NULL;
+    size_t length = text != NULL ? strlen(text) : 0;
+    bool quoted = length > 1 && text[0] == '"';
+    table_cell(table, "%.*s", text != NULL ? (int)(length - 2 * quoted) : 1,
+               text != NULL ? text + quoted : "-");
+    free(text);
+}
+
+static void print_cases(const struct study *study) {
+    size_t swept = 0;
+    while (study->swept[swept] != NULL)
+        swept++;
+    struct text_table table = {.columns = swept + 6};
+    table_cell(&table, "case");
+    for (size_t p = 0; p < swept; p++)
+        table_cell(&table, "%s", strrchr(study->swept[p], '/') + 1);
+    static const char *const HEADINGS[] = {"grid", "memory MiB", "jobs", "CPU time", "error %"};
+    for (size_t h = 0; h < 5; h++)
+        table_cell(&table, "%s", HEADINGS[h]);
+    for (size_t c = 0; c < study->case_count; c++) {
+        const struct study_case *one = &study->cases[c];
+        char time[48];
+        duration_text(plan_case_seconds(&study->cases[c]), time, sizeof time);
+        table_cell(&table, "%zu", c);
+        for (size_t p = 0; p < swept; p++)
+            print_value(&table, json_at(one->parameters, study->swept[p]));
+        table_cell(&table, "%zu x %zu", one->cost.nx, one->cost.ny);
+        table_cell(&table, "%.1f", plan_case_bytes(one) / 0x1p20);
+        table_cell(&table, "%llu", (unsigned long long)plan_case_jobs(one));
+        table_cell(&table, "%s", time);
+        table_cell(&table, "%.2g", 100 * plan_case_error(&study->cases[c]));
+    }
+    table_print(&table, stdout);
+    table_clear(&table);
+}
+
+enum { NUMBERS_SHOWN = 8 };
+
+/* Prints a value; of a long list of numbers, such as samples of heights, the first ones. */
+static void print_whole(const char *pointer, const cJSON *value) {
+    char *text = json_print(value);
+    int length = text != NULL ? (int)strlen(text) : 0, count = cJSON_GetArraySize(value);
+    bool cut = text != NULL && count > NUMBERS_SHOWN && cJSON_IsNumber(value->child);
+    if (cut) {
+        const char *end = text;
+        for (int n = 0; n < NUMBERS_SHOWN; n++)
+            end = strchr(end, ',') + 1;
+        length = (int)(end - text);
+    }
+    printf("  %-36s %.*s", pointer, text != NULL ? length : 1, text != NULL ? text : "?");
+    if (cut)
+        printf(" ...] (%d numbers)", count);
+    putchar('\n');
+    free(text);
+}
+
+/* Prints the effective values of all cases; what is swept stands in the table. */
+static void print_values(const struct study *study, const cJSON *object, const char *prefix) {
+    for (const cJSON *member = object->child; member != NULL; member = member->next) {
+        char pointer[256];
+        snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
+        bool swept = false;
+        for (size_t p = 0; study->swept[p] != NULL; p++)
+            swept = swept || strcmp(study->swept[p], pointer) == 0;
+        if (cJSON_IsObject(member))
+            print_values(study, member, pointer);
+        else if (!swept)
+            print_whole(pointer, member);
+    }
+}
+
+static void print_text(const struct study *study) {
+    char cpu[48], wall[48];
+    duration_text(plan_seconds(study), cpu, sizeof cpu);
+    duration_text(plan_seconds(study) / allotment_threads(), wall, sizeof wall);
+    printf("%s (%s), seed %llu: %zu cases", study->name, study->kind->name,
+           (unsigned long long)study->seed, study->case_count);
+    if (study->realisations > 0)
+        printf(" of %llu realisations", (unsigned long long)study->realisations);
+    if (study->case_count > 1)
+        printf(", %s random numbers", random_name(study));
+    putchar('\n');
+    print_values(study, study->cases[0].parameters, "");
+    print_cases(study);
+    for (size_t c = 0; c < study->case_count && c < PLANS_SHOWN; c++)
+        summary_of_plan(&study->cases[c], stdout);
+    printf("in all about %s of CPU, %s on %u processors; up to %.0f MiB a worker\n", cpu, wall,
+           allotment_threads(), plan_bytes(study) / 0x1p20);
+}
+
+/* --- JSON --- */
+
+static int print_document(cJSON *document, struct error *err) {
+    int status = output_document(document, err);
+    cJSON_Delete(document);
+    return status;
+}
+
+/* Prints the schema as the service gives it (GET /v1/study.schema.json). */
+static int print_schema(struct error *err) {
+    cJSON *schema = study_schema(JOB_KINDS);
+    char *text = schema != NULL ? json_print_pretty(schema) : NULL;
+    cJSON_Delete(schema);
+    if (text == NULL)
+        return error_memory(err, 0, "the schema of studies");
+    fputs(text, stdout);
+    free(text);
+    return output_flush(err);
+}
+
+/* --- the command --- */
+
+struct options {
+    const char **sets;
+    int json;
+    bool schema, study;
+};
+
+/* Prints the study as it would be kept and sent: with its changes, and what was fitted in the place
+ * of a file. */
+static int print_study(const struct study *study, struct error *err) {
+    cJSON *document = NULL;
+    int status = json_parse(study->source, strlen(study->source), NULL, &document, err);
+    char *text = status == 0 ? json_print_pretty(document) : NULL;
+    cJSON_Delete(document);
+    if (status == 0 && text == NULL)
+        status = error_memory(err, strlen(study->source), "a study");
+    if (status != 0)
+        return status;
+    fputs(text, stdout);
+    free(text);
+    return output_flush(err);
+}
+
+static int check(const char *file, const struct options *options, struct fault_list *faults,
+                 struct error *err) {
+    struct study *study = NULL;
+    int status = study_file_read(&study, file, options->sets, faults, err);
+    if (status == 0 && options->study) {
+        status = print_study(study, err);
+    } else if (status == 0 && options->json != 0) {
+        status = print_document(plan_document(study), err);
+    } else if (status == 0) {
+        print_text(study);
+        status = output_flush(err);
+    }
+    study_destroy(&study);
+    return status;
+}
+
+#define AT(member) offsetof(struct options, member)
+static const struct option_row OPTIONS[] = {
+    {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
+    {"format", 0, OPTION_CHOICE, 0, 0, AT(json), "text|json", "text", "what to print"},
+    {"study", 0, OPTION_FLAG, 0, 0, AT(study), NULL, NULL,
+     "print the study instead, as it would be kept and sent: with its changes, and the values "
+     "fitted to a measured surface in place of its file"},
+    {"schema", 0, OPTION_FLAG, 0, 0, AT(schema), NULL, NULL,
+     "print the JSON Schema of studies instead; needs no study"},
+    {0}};
+
+static int run(const void *values, const char *const *arguments) {
+    const struct options *options = values;
+    const char *file = arguments[0];
+    struct error err = {0};
+    struct fault_list faults = {0};
+    if (file == NULL && !options->schema)
+        return usage_error("check", "an argument is missing");
+    int status = options->schema ? print_schema(&err) : check(file, options, &faults, &err);
+    int result = command_end("check", status, file, &faults, &err);
+    fault_list_clear(&faults);
+    return result;
+}
+
+const struct command COMMAND_CHECK = {
+    .name = "check",
+    .arguments = "STUDY.json",
+    .summary = "read and validate a study, print cases and cost, run nothing",
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,0 +1,179 @@
+/* `rugo plot`: one picture of a study's results, or of a map in a file, as SVG or PNG. */
+#include "core/memory_file.h"
+#include "server/command/access/access.h"
+#include "server/command/map/map_file.h"
+#include "server/command/output_file.h"
+#include "server/show/plot/picture.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct options {
+    struct access_options place;
+    int64_t case_number; /* -1: all */
+    int64_t difference[2];
+    const char *quantity, *x, *colour, *dash, *panel, *model, *series, *level, *width, *out;
+    const char **where;
+    int axes;
+};
+#define AT(member) offsetof(struct options, member)
+static const struct option_row OPTIONS[] = {
+    ACCESS_ROWS(struct options),
+    {"quantity", 0, OPTION_TEXT, 0, 0, AT(quantity), "Q", NULL,
+     "of curves, such as contact_area; a scalar, such as summit_density; or a value of curves, "
+     "such "
+     "as contact_area@0.1 or contact_area:layered:nodes@0.1"},
+    {"where", 0, OPTION_LIST, 0, 0, AT(where), "NAME=VALUE", NULL,
+     "only cases with this value, e.g. hurst=0.8; several with commas between, or given again: any "
+     "of one name, all of different names"},
+    {"x", 0, OPTION_TEXT, 0, 0, AT(x), "PARAMETER", NULL,
+     "of a scalar or a value of curves: over this parameter (the number that the study sweeps "
+     "most)"},
+    {"colour", 0, OPTION_TEXT, 0, 0, AT(colour), "NAME", NULL,
+     "a colour for each value of a parameter, of model, series, level or pressure (the number of "
+     "most values)"},
+    {"dash", 0, OPTION_TEXT, 0, 0, AT(dash), "NAME", NULL,
+     "dashes for each value, of up to 6 (words of few values)"},
+    {"panel", 0, OPTION_TEXT, 0, 0, AT(panel), "NAME", NULL,
+     "a panel for each value (whatever else differs)"},
+    {"model", 0, OPTION_TEXT, 0, 0, AT(model), "MODEL", NULL, "of curves: of this model alone"},
+    {"series", 0, OPTION_TEXT, 0, 0, AT(series), "SERIES", NULL,
+     "of curves: of this series alone, such as nodes"},
+    {"level", 0, OPTION_TEXT, 0, 0, AT(level), "N", NULL, "of curves: of this level alone"},
+    {"log", 0, OPTION_CHOICE, 0, 0, AT(axes), AXES_WORDS, "auto",
+     "which axes are logarithmic; auto: as suits the quantity and the steps of x"},
+    {"width", 0, OPTION_TEXT, 0, 0, AT(width), "MM", NULL,
+     "for print: so many millimetres wide, or one (85) or two (178) columns; without the title"},
+    {"out", 'o', OPTION_TEXT, 0, 0, AT(out), "FILE", NULL,
+     "in place of standard output; drawn as pixels by rsvg-convert where it ends in .png"},
+    {"case", 0, OPTION_INDEX, 0, 0, AT(case_number), "K", NULL, "of curves: this case only"},
+    {"difference", 0, OPTION_PAIR, 0, 0, AT(difference), "A B", NULL,
+     "of curves: case A less case B"},
+    {0}};
+
+/* What a picture is drawn from: a study behind an access. */
+struct origin {
+    struct access *access;
+    const char *id;
+};
+
+static int results(const void *context, const struct result_filter *filter,
+                   struct study_result *out, struct error *err) {
+    const struct origin *origin = context;
+    return access_results(origin->access, origin->id, filter, out, err);
+}
+
+static int difference(const void *context, const struct comparison *comparison,
+                      struct study_result *out, struct error *err) {
+    const struct origin *origin = context;
+    return access_difference(origin->access, origin->id, comparison, out, err);
+}
+
+static int draw(struct access *access, const char *id, const struct options *options, FILE *file,
+                struct error *err) {
+    struct origin origin = {access, id};
+    const struct picture_source source = {&origin, results, difference};
+    const struct comparison comparison = {.minuend = (uint64_t)options->difference[0],
+                                          .subtrahend = (uint64_t)options->difference[1],
+                                          .quantity = options->quantity};
+    const struct picture_request request = {
+        .quantity = options->quantity,
+        .x = options->x,
+        .where = options->where != NULL && options->where[0] != NULL ? options->where : NULL,
+        .colour = options->colour,
+        .dash = options->dash,
+        .panel = options->panel,
+        .model = options->model,
+        .series = options->series,
+        .level = options->level,
+        .width = options->width,
+        .axes = options->axes,
+        .case_number = options->case_number,
+        .difference = options->difference[0] >= 0 ? &comparison : NULL};
+    return picture_draw(&source, &request, file, err);
+}
+
+/* Draws in memory first, so that a picture that cannot be drawn leaves no file. */
+static int draw_file(struct access *access, const char *id, const struct options *options,
+                     struct error *err) {
+    struct memory_file memory;
+    size_t size = 0;
+    if (!memory_file_open(&memory))
+        return error_memory(err, 0, "a picture");
+    int status = draw(access, id, options, memory.file, err);
+    char *text = memory_file_close(&memory, &size);
+    if (status == 0 && text == NULL)
+        status = error_memory(err, 0, "a picture");
+    if (status == 0)
+        status = output_file_drawn(options->out, text, size, err);
+    free(text);
+    return status;
+}
+
+static int show(struct access *access, const char *id, const struct options *options,
+                struct error *err) {
+    if (options->out != NULL)
+        return draw_file(access, id, options, err);
+    int status = draw(access, id, options, stdout, err);
+    return status == 0 ? output_flush(err) : status;
+}
+
+/* --- a map in a file --- */
+
+static int draw_map(const char *path, const struct options *options, struct error *err) {
+    const char *slash = strrchr(path, '/');
+    struct height_map map = {0};
+    int status = map_file_read(&map, path, err);
+    if (status != 0)
+        return status;
+    char subject[64];
+    snprintf(subject, sizeof subject, "%zu x %zu points", map.grid.nx, map.grid.ny);
+    const struct map_picture picture = {.name = slash != NULL ? slash + 1 : path,
+                                        .subject = subject,
+                                        .x_label = "x",
+                                        .y_label = "y",
+                                        .z_label = "z",
+                                        .grid = &map.grid,
+                                        .z = map.z,
+                                        .boundary = BOUNDARY_OPEN,
+                                        .unmarked = true};
+    if (options->out != NULL)
+        status = output_file_picture(options->out, &picture, err);
+    else if ((status = plot_map(&picture, stdout, err)) == 0)
+        status = output_flush(err);
+    height_map_clear(&map);
+    return status;
+}
+
+static int run(const void *values, const char *const *arguments) {
+    const struct options *options = values;
+    struct error err = {0};
+    char id[STUDY_ID_SIZE];
+    struct access *access = NULL;
+    if (access_options_check("plot", &options->place) != 0)
+        return EXIT_USAGE;
+    if (options->quantity == NULL) {
+        if (height_map_format_of(arguments[0]) == HEIGHT_MAP_FORMATS)
+            return usage_error("plot", "--quantity is missing: the name of curves or of a scalar");
+        return draw_map(arguments[0], options, &err) != 0 ? command_fail("plot", &err) : EXIT_DONE;
+    }
+    int status = access_open(&access, &options->place, ACCESS_READ, &err);
+    if (status == 0)
+        status = access_find(access, arguments[0], id, &err);
+    if (status == 0)
+        status = show(access, id, options, &err);
+    access_close(&access);
+    return status != 0 ? command_fail("plot", &err) : EXIT_DONE;
+}
+
+const struct command COMMAND_PLOT = {
+    .name = "plot",
+    .arguments = "ID|MAP.npy",
+    .summary =
+        "a picture (SVG, PNG) of curves, of a scalar or values over what was swept, or of a map",
+    .least = 1,
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,0 +1,123 @@
+/* `rugo run`: a study from submission to table in one process; goes on where an earlier run of the
+ * same study stopped. */
+#include "server/command/access/access.h"
+#include "server/command/command.h"
+#include "server/command/study/local_study.h"
+#include "server/show/output.h"
+#include "server/show/summary/progress.h"
+#include "worker/allotment.h"
+#include "worker/log.h"
+#include "worker/publish/publish.h"
+#include "worker/worker.h"
+
+/* A run that was killed is started again soon: its blocks need not wait for the usual minute.
+ */
+enum { LEASE_MS = 20000, REPORT_MS = 1000 /* for the bar */ };
+
+struct options {
+    const char *database, *folder;
+    const char **sets;
+    unsigned threads;
+    int log_level;
+};
+#define AT(member) offsetof(struct options, member)
+static const struct option_row OPTIONS[] = {
+    {"db", 0, OPTION_TEXT, 0, 0, AT(database), "FILE", DATABASE, "the local store"},
+    {"workers", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(threads), "N", "0",
+     "threads; 0: as many processors as are allotted"},
+    {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
+    {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
+     "write curves.json, curves.csv and an SVG a quantity"},
+    {"log-level", 0, OPTION_CHOICE, 0, 0, AT(log_level), LOG_LEVELS, "warning", LOG_LEVEL_HELP},
+    {0}};
+
+struct run {
+    const char *file, *database, *folder;
+    const char *const *sets;
+    unsigned threads;
+    struct store *store;
+    char id[STUDY_ID_SIZE];
+    struct fault_list faults;
+};
+
+/* Works until the study has ended; with others at work on it, waits for them too. */
+static int work(struct run *run, struct error *err) {
+    struct study_progress progress = {
+        .store = run->store, .study = run->id, .bar = {.command = "run"}};
+    struct worker_options options = {
+        .source = {.database = run->database,
+                   .study = run->id,
+                   .lease_ms = LEASE_MS,
+                   .report_ms = REPORT_MS},
+        .threads = run->threads,
+        .drain = true,
+        .stop = &stop_requested,
+        .tick = progress_tick,
+        .context = &progress,
+    };
+    int status = workers_run(&options, err);
+    if (progress.bar.shown) { /* as it is at the end */
+        progress.bar.next_ms = progress.bar.next_ms > 0 ? 1 : 0;
+        progress_tick(&progress);
+    }
+    progress_end(&progress.bar);
+    return status;
+}
+
+static int perform(struct run *run, struct error *err) {
+    struct study_status now = {0};
+    struct publish_counts counts = {0};
+    int status = run->folder != NULL ? output_prepare(run->folder, err) : 0;
+    if (status == 0)
+        status = local_study_submit(&run->store, run->database, run->file, run->sets, run->id,
+                                    &run->faults, err);
+    if (status == 0)
+        status = store_status(run->store, run->id, &now, err);
+    do { /* publishing may queue a round of a case that asks for an error */
+        if (status == 0 && now.jobs_waiting + now.jobs_running > 0)
+            status = work(run, err);
+        if (status == 0)
+            status = publish_due(run->store, NULL, NULL, &counts, err);
+        study_status_clear(&now);
+        if (status == 0)
+            status = store_status(run->store, run->id, &now, err);
+    } while (status == 0 && now.jobs_waiting > 0);
+    study_status_clear(&now);
+    if (status != 0)
+        return status;
+    const struct outcome outcome = {.command = "run",
+                                    .store = run->store,
+                                    .database = run->database,
+                                    .id = run->id,
+                                    .folder = run->folder,
+                                    .published = &counts};
+    return local_study_present(&outcome, err);
+}
+
+static int run_study(const void *values, const char *const *arguments) {
+    const struct options *options = values;
+    struct run run = {.file = arguments[0],
+                      .database = options->database,
+                      .folder = options->folder,
+                      .sets = options->sets,
+                      .threads = options->threads > 0 ? options->threads : allotment_threads()};
+    struct error err = {0};
+    signals_catch();
+    log_set_least((enum log_level)options->log_level);
+    int status = perform(&run, &err);
+    int result = command_end("run", status, run.file, &run.faults, &err);
+    store_close(&run.store);
+    fault_list_clear(&run.faults);
+    return result;
+}
+
+const struct command COMMAND_RUN = {
+    .name = "run",
+    .arguments = "STUDY.json",
+    .summary = "run a study here, from submission to table",
+    .least = 1,
+    .most = 1,
+    .options = OPTIONS,
+    .options_size = sizeof(struct options),
+    .run = run_study,
+};

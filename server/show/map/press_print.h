@@ -1,0 +1,30 @@
+/* What `press` prints of the contact of a map: a table for people, or JSON. */
+#ifndef RUGO_SERVER_SHOW_MAP_PRESS_PRINT_H
+#define RUGO_SERVER_SHOW_MAP_PRESS_PRINT_H
+
+#include "core/map/preparation.h"
+#include "jobs/maps/map_press.h"
+#include <cjson/cJSON.h>
+#include <stdio.h>
+
+/* The loads of one map; borrows all. */
+struct press_report {
+    const struct map_press *press;
+    const struct preparation_record *record;
+    const char *boundary;    /* "open", "mirrored", "periodic" */
+    const char *boundary_by; /* "option", "seam", "holes", "window" */
+    const char *model;
+    double modulus;  /* E* in Pa; 0: not known */
+    bool metres;     /* the map's lengths are */
+    double map_area; /* of a profile its length */
+    size_t loads;
+    bool with_errors;                 /* by the points (map_press_error.h) */
+    const struct case_result *result; /* its first curves are the columns (map_press_result) */
+};
+
+/* Prints heading, values, those in physical units where these are known, and errors. */
+void press_print_table(FILE *file, const struct press_report *report);
+/* Returns the same as a document, for the caller to delete; NULL when out of memory. */
+cJSON *press_document(const struct press_report *report);
+
+#endif

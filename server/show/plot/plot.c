@@ -1,0 +1,454 @@
+#include "server/show/plot/plot.h"
+#include "schema/result/swept.h"
+#include "server/show/plot/plot_layout.h"
+#include "server/show/plot/plot_style.h"
+#include "server/show/view.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Theories beside the lines of a picture. */
+
+enum { NAMES_MOST = 16 };
+static const char BLACK[] = "#222222";
+
+/* The names of theories, in the order in which they are met. */
+static size_t names_of(const struct plot_lines *lines, const char *names[NAMES_MOST]) {
+    size_t count = 0;
+    for (size_t n = 0; n < lines->count; n++)
+        for (size_t t = 0; t < lines->list[n].curve->theory_count; t++) {
+            const struct theory *theory = &lines->list[n].curve->theories[t];
+            bool met = theory->y == NULL;
+            for (size_t m = 0; m < count && !met; m++)
+                met = strcmp(names[m], theory->name) == 0;
+            if (!met && count < NAMES_MOST)
+                names[count++] = theory->name;
+        }
+    return count;
+}
+
+/* Returns NULL where the line has no such theory. */
+static const double *theory_of(const struct plot_line *line, const char *name) {
+    for (size_t t = 0; t < line->curve->theory_count; t++)
+        if (strcmp(line->curve->theories[t].name, name) == 0)
+            return line->curve->theories[t].y;
+    return NULL;
+}
+
+static bool same_numbers(size_t n, const double *a, const double *b) {
+    for (size_t k = 0; k < n; k++)
+        if (!same_number(a[k], b[k]))
+            return false;
+    return true;
+}
+
+/* Returns whether two lines that have a theory have the same one, at the same points. */
+static bool same_theory(const struct plot_line *a, const struct plot_line *b, const char *name) {
+    size_t n = a->curve->n;
+    return n == b->curve->n && same_numbers(n, a->curve->x, b->curve->x) &&
+           same_numbers(n, theory_of(a, name), theory_of(b, name));
+}
+
+static bool has(const struct plot_lines *lines, size_t n, size_t panel, const char *name) {
+    return lines->list[n].at[CHANNEL_PANEL] == panel && theory_of(&lines->list[n], name) != NULL;
+}
+
+/* Returns whether all lines of a panel that have a theory share it; *first is one of them, or the
+ * count of the lines where none has it. */
+static bool is_shared(const struct plot_lines *lines, size_t panel, const char *name,
+                      size_t *first) {
+    *first = 0;
+    while (*first < lines->count && !has(lines, *first, panel, name))
+        (*first)++;
+    for (size_t n = *first + 1; n < lines->count; n++)
+        if (has(lines, n, panel, name) && !same_theory(&lines->list[*first], &lines->list[n], name))
+            return false;
+    return true;
+}
+
+static bool is_drawn(const struct plot_lines *lines, size_t line, size_t panel, const char *name) {
+    for (size_t n = 0; n < line; n++)
+        if (has(lines, n, panel, name) && same_theory(&lines->list[n], &lines->list[line], name))
+            return true;
+    return false;
+}
+
+/* Draws the theories of the lines of one panel, whose frame the pen has: each once where lines
+ * share it, black where all of them do, else in the colour of its line, darkened. */
+static void plot_theories_draw(const struct plot_lines *lines, size_t panel,
+                               const struct plot_pen *pen) {
+    const char *names[NAMES_MOST];
+    size_t count = names_of(lines, names), first;
+    for (size_t t = 0; t < count; t++) {
+        bool shared = is_shared(lines, panel, names[t], &first);
+        for (size_t n = first; n < lines->count; n++) {
+            const struct plot_line *line = &lines->list[n];
+            char style[LEGEND_STYLE_SIZE], colour[COLOUR_SIZE];
+            if (!has(lines, n, panel, names[t]) || is_drawn(lines, n, panel, names[t]))
+                continue;
+            plot_colour(&lines->channels[CHANNEL_COLOUR], line->at[CHANNEL_COLOUR], colour);
+            plot_darken(colour);
+            plot_theory_style(lines, t, shared ? BLACK : colour, style);
+            pen_line(pen, line->curve->n, line->curve->x, theory_of(line, names[t]), style);
+        }
+    }
+}
+
+/* Adds a row for each theory of any line. */
+static void plot_theories_name(const struct plot_lines *lines, struct legend *legend) {
+    const char *names[NAMES_MOST];
+    size_t count = names_of(lines, names), first;
+    for (size_t t = 0; t < count; t++) {
+        char label[PLOT_LABEL_SIZE], style[LEGEND_STYLE_SIZE], name[96];
+        bool shared = true;
+        for (size_t panel = 0; panel < lines->channels[CHANNEL_PANEL].count && shared; panel++)
+            shared = is_shared(lines, panel, names[t], &first);
+        plot_spaced(names[t], name, sizeof name);
+        snprintf(label, sizeof label, "%s%s%s",
+                 strncmp(name, "theory", 6) == 0 ? "" : "theory: ", name,
+                 shared ? "" : ", of each");
+        plot_theory_style(lines, t, shared ? BLACK : "#777777", style);
+        legend_add(legend, label, style);
+    }
+}
+
+enum { TICKS_MOST = 12, TICK_ROOM = 36 };
+
+struct plot {
+    const struct plot_lines *lines;
+    const struct plot_request *request;
+    const struct plot_words *words;
+    enum plot_marks marks;
+    size_t panels;
+    struct plot_pen pen;
+    struct legend legend;
+    struct plot_layout layout;
+    size_t tick_count;
+    double ticks[TICKS_MOST];
+};
+
+/* --- one line --- */
+
+static double clamped(const struct frame *frame, double y) {
+    return frame_y(frame, fmin(frame->y.high, fmax(frame->y.low, y)));
+}
+
+/* Draws a bar of one standard error to either side, where the error can be seen. */
+static void draw_bars(const struct plot_pen *pen, const struct curve *curve, const char *colour) {
+    const struct frame *frame = &pen->frame;
+    for (size_t n = 0; n < curve->n; n++) {
+        double x = curve->x[n], y = curve->y[n], error = curve->standard_error[n];
+        if (!pen_reaches(pen, x, y) || !isfinite(error) || (frame->y.logarithmic && y - error <= 0))
+            continue;
+        double top = clamped(frame, y + error), bottom = clamped(frame, y - error);
+        if (bottom - top > 1)
+            fprintf(pen->file, "<path d=\"M%.2f %.2fV%.2f\" class=\"bar\" stroke=\"%s\"/>",
+                    frame_x(frame, x), top, bottom, colour);
+    }
+    fputc('\n', pen->file);
+}
+
+static bool has_band(const struct plot_pen *pen, const struct curve *curve, size_t n) {
+    return n < curve->n && pen_reaches(pen, curve->x[n], curve->y[n]) &&
+           isfinite(curve->standard_error[n]) &&
+           (!pen->frame.y.logarithmic || curve->y[n] > curve->standard_error[n]);
+}
+
+/* Draws a band of one standard error to either side, a part for each run of points that have
+ * one. */
+static void draw_band(const struct plot_pen *pen, const struct curve *curve, const char *colour) {
+    const struct frame *frame = &pen->frame;
+    for (size_t n = 0; n < curve->n;) {
+        size_t end = n;
+        while (has_band(pen, curve, end))
+            end++;
+        if (end > n + 1) {
+            fputs("<path class=\"band\" fill-opacity=\".18\" d=\"", pen->file);
+            for (size_t k = n; k < end; k++)
+                fprintf(pen->file, "%c%.2f %.2f", k == n ? 'M' : 'L', frame_x(frame, curve->x[k]),
+                        clamped(frame, curve->y[k] + curve->standard_error[k]));
+            for (size_t k = end; k-- > n;)
+                fprintf(pen->file, "L%.2f %.2f", frame_x(frame, curve->x[k]),
+                        clamped(frame, curve->y[k] - curve->standard_error[k]));
+            fprintf(pen->file, "Z\" fill=\"%s\"/>\n", colour);
+        }
+        n = end > n ? end : n + 1;
+    }
+}
+
+/* Marks where values were computed; open circles where some realisations have none. */
+static void draw_marks(const struct plot *plot, const struct plot_line *line, const char *colour) {
+    const struct plot_pen *pen = &plot->pen;
+    const struct curve *curve = line->curve;
+    for (size_t n = 0; n < curve->n; n++) {
+        double x = frame_x(&pen->frame, curve->x[n]), y = frame_y(&pen->frame, curve->y[n]);
+        if (!pen_reaches(pen, curve->x[n], curve->y[n]))
+            continue;
+        if (curve_is_partial(curve) && curve->valueless[n] > 0)
+            fprintf(pen->file,
+                    "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" class=\"partial\" stroke=\"%s\"/>\n",
+                    x, y, colour);
+        else if (plot->marks == MARKS_SHAPES && line->coarseness == 0)
+            mark_draw(pen->file, line->at[CHANNEL_DASH], x, y, plot->layout.scale, colour);
+        else if (plot->marks == MARKS_DOTS && line->coarseness == 0)
+            fprintf(pen->file, "<path d=\"M%.2f %.2fh0\" class=\"dot\" stroke=\"%s\"/>", x, y,
+                    colour);
+    }
+}
+
+static void draw_line(const struct plot *plot, const struct plot_line *line) {
+    char style[LEGEND_STYLE_SIZE], colour[COLOUR_SIZE];
+    plot_colour(&plot->lines->channels[CHANNEL_COLOUR], line->at[CHANNEL_COLOUR], colour);
+    plot_curve_style(plot->lines, line, style);
+    if (line->coarseness == 0 && (plot->marks == MARKS_NONE || line->curve->minuend != NULL))
+        draw_band(&plot->pen, line->curve, colour);
+    else if (line->coarseness == 0)
+        draw_bars(&plot->pen, line->curve, colour);
+    pen_line(&plot->pen, line->curve->n, line->curve->x, line->curve->y, style);
+    draw_marks(plot, line, colour);
+}
+
+/* --- the axes --- */
+
+/* Values in geometric steps: their middle one lies near the geometric mean of the ends. */
+static bool is_geometric(size_t n, const double *x) {
+    return n > 4 && x[0] > 0 && x[n - 1] > 10 * x[0] && x[n / 2] < x[n - 1] / 4;
+}
+
+/* Returns whether the values of a parameter lie nearer to geometric than to even steps. */
+static bool are_geometric(size_t n, const double *ticks) {
+    if (n < 3 || n > TICKS_MOST || ticks[0] <= 0 || ticks[n - 1] < 4 * ticks[0])
+        return false;
+    double low = ticks[0], high = ticks[n - 1], middle = ticks[n / 2];
+    if (n % 2 == 0)
+        middle = (middle + ticks[n / 2 - 1]) / 2;
+    return fabs(middle - sqrt(low * high)) < fabs(middle - (low + high) / 2);
+}
+
+/* Adds a value of x to those that take the place of ticks; TICKS_MOST + 1 of them are too many. */
+static void add_tick(struct plot *plot, double x) {
+    size_t place = 0;
+    if (plot->tick_count > TICKS_MOST)
+        return;
+    while (place < plot->tick_count && plot->ticks[place] < x)
+        place++;
+    if (place < plot->tick_count && plot->ticks[place] == x)
+        return;
+    if (plot->tick_count++ == TICKS_MOST)
+        return;
+    memmove(plot->ticks + place + 1, plot->ticks + place,
+            (plot->tick_count - 1 - place) * sizeof *plot->ticks);
+    plot->ticks[place] = x;
+}
+
+static void set_ticks(const struct plot *plot, struct frame *frame) {
+    if (!plot->words->points || plot->tick_count > TICKS_MOST)
+        return;
+    for (size_t n = 1; n < plot->tick_count; n++)
+        if (frame_x(frame, plot->ticks[n]) - frame_x(frame, plot->ticks[n - 1]) <
+            TICK_ROOM * frame->scale)
+            return;
+    frame->x.ticks = plot->ticks;
+    frame->x.tick_count = plot->tick_count;
+}
+
+/* Includes what is seen of a line: its points, the errors of differences and of single points, and
+ * theories as far as the line goes, or as a whole. */
+static void include(struct frame *frame, const struct plot *plot, const struct curve *curve) {
+    bool points = plot->words->points, errors = points || curve->minuend != NULL;
+    if (!points)
+        frame_include(frame, curve->n, curve->x, curve->y);
+    for (size_t n = 0; n < curve->n && errors; n++) {
+        double error = isfinite(curve->standard_error[n]) ? curve->standard_error[n] : 0;
+        frame_include_point(frame, curve->x[n], curve->y[n] - error);
+        frame_include_point(frame, curve->x[n], curve->y[n] + error);
+    }
+    for (size_t t = 0; t < curve->theory_count; t++)
+        for (size_t n = 0; n < curve->n && curve->theories[t].y != NULL; n++) {
+            if (points)
+                frame_include_point(frame, curve->x[n], curve->theories[t].y[n]);
+            else if (plot->request->theories_whole)
+                frame_include(frame, 1, &curve->x[n], &curve->theories[t].y[n]);
+        }
+}
+
+static void set_logarithmic(const struct plot *plot, const struct study_result *study, bool *x,
+                            bool *y) {
+    const struct curve *first = plot->lines->list[0].curve;
+    const struct logarithmic_picture *picture =
+        view_logarithmic(view_of(study->kind), first->quantity);
+    enum plot_axes axes = plot->request->axes;
+    bool both = axes == AXES_XY || (axes == AXES_AUTOMATIC && !plot->words->points &&
+                                    picture != NULL && picture->suffix == NULL);
+    bool steps = plot->words->points ? are_geometric(plot->tick_count, plot->ticks)
+                                     : is_geometric(first->n, first->x);
+    *x = both || axes == AXES_X || (axes == AXES_AUTOMATIC && steps);
+    *y = axes == AXES_Y || (both && first->minuend == NULL); /* differences have either sign */
+}
+
+/* Marks at the ends keep away from the frame. */
+static void widen(struct plot_axis *axis) {
+    double low = axis->low, high = axis->high;
+    double margin = low < high ? 0.06 * (high - low) : 0.5 * fabs(low) + (low == 0);
+    double factor = low < high ? pow(high / low, 0.06) : 2;
+    axis->low = axis->logarithmic ? low / factor : low - margin;
+    axis->high = axis->logarithmic ? high * factor : high + margin;
+}
+
+/* Fits one frame to the lines of all panels, which share their axes. */
+static bool fit(struct plot *plot, const struct study_result *study) {
+    struct frame *frame = &plot->pen.frame;
+    bool x, y;
+    for (size_t n = 0; n < plot->lines->count && plot->words->points; n++)
+        for (size_t k = 0; k < plot->lines->list[n].curve->n; k++)
+            add_tick(plot, plot->lines->list[n].curve->x[k]);
+    set_logarithmic(plot, study, &x, &y);
+    frame_start(frame, x, y);
+    for (size_t n = 0; n < plot->lines->count; n++)
+        if (plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels)
+            include(frame, plot, plot->lines->list[n].curve);
+    struct plot_axis own = frame->x;
+    if (!frame_finish(frame))
+        return false;
+    if (plot->words->points) {
+        frame->x = own;
+        widen(&frame->x);
+        if (frame->y.low != 0 && !frame->y.logarithmic)
+            frame->y.low -= 0.06 * (frame->y.high - frame->y.low);
+    }
+    return true;
+}
+
+/* --- the picture --- */
+
+static void draw_title(const struct plot *plot, size_t panel) {
+    char label[PLOT_LABEL_SIZE];
+    const struct frame *frame = &plot->pen.frame;
+    if (plot->panels < 2)
+        return;
+    channel_label(plot->lines, CHANNEL_PANEL, panel, label, sizeof label);
+    fprintf(plot->pen.file, "<text x=\"%d\" y=\"%.1f\">", frame->left,
+            frame->top - 6 * frame->scale);
+    svg_label(plot->pen.file, label);
+    fputs("</text>\n", plot->pen.file);
+}
+
+/* The line of no difference. */
+static void draw_zero(const struct plot_pen *pen, const struct curve *curve) {
+    const struct frame *frame = &pen->frame;
+    if (curve->minuend != NULL && frame->y.low < 0 && frame->y.high > 0)
+        fprintf(pen->file, "<path d=\"M%d %.2fH%d\" class=\"frame\"/>\n", frame->left,
+                frame_y(frame, 0), frame->right);
+}
+
+/* Coarse levels first, so that the finest lies on top, and theories on top of all. */
+static void draw_panel(struct plot *plot, size_t panel) {
+    const struct plot_lines *lines = plot->lines;
+    size_t coarsest = 0;
+    plot_place(&plot->layout, panel, &plot->pen.frame);
+    set_ticks(plot, &plot->pen.frame);
+    fputs("<g class=\"panel\">\n", plot->pen.file);
+    frame_draw(plot->pen.file, &plot->pen.frame, NULL, NULL);
+    draw_title(plot, panel);
+    draw_zero(&plot->pen, lines->list[0].curve);
+    for (size_t n = 0; n < lines->count; n++)
+        if (lines->list[n].coarseness > coarsest)
+            coarsest = lines->list[n].coarseness;
+    for (size_t level = coarsest + 1; level-- > 0;)
+        for (size_t n = 0; n < lines->count; n++)
+            if (lines->list[n].at[CHANNEL_PANEL] == panel && lines->list[n].coarseness == level)
+                draw_line(plot, &lines->list[n]);
+    plot_theories_draw(lines, panel, &plot->pen);
+    fputs("</g>\n", plot->pen.file);
+}
+
+/* One label an axis, in the middle of all panels. */
+static void draw_labels(const struct plot *plot) {
+    struct frame whole = {0}, last = {0};
+    plot_place(&plot->layout, 0, &whole);
+    plot_place(&plot->layout, plot->layout.columns - 1, &last);
+    whole.right = last.right;
+    plot_place(&plot->layout, plot->panels - 1, &last);
+    whole.bottom = last.bottom;
+    frame_label(plot->pen.file, &whole, true, plot->words->x);
+    frame_label(plot->pen.file, &whole, false, plot->words->y);
+}
+
+/* Rows of panels end with the last factor, where that fills them. */
+static size_t columns_of(const struct plot_channel *channel) {
+    enum { COLUMNS_MOST_OF_FACTOR = 4 };
+    size_t all = 1, last = 0;
+    for (size_t f = 0; f < channel->factor_count; f++) {
+        last = channel->factors[f]->count;
+        all *= last;
+    }
+    return channel->factor_count > 1 && all == channel->count && last <= COLUMNS_MOST_OF_FACTOR
+               ? last
+               : 0;
+}
+
+static void lay_out(struct plot *plot) {
+    const struct plot_channel *panels = &plot->lines->channels[CHANNEL_PANEL];
+    plot->panels = panels->count < PANELS_MOST ? panels->count : PANELS_MOST;
+    plot->marks = plot_marks_of(plot->lines, plot->words);
+    plot_legend_lines(&plot->legend, plot->lines, plot->marks, plot->words);
+    plot_theories_name(plot->lines, &plot->legend);
+    plot_legend_notes(&plot->legend, plot->lines, plot->marks, plot->words->note);
+    plot_lay_out(&plot->layout, plot->panels, columns_of(panels), &plot->legend,
+                 plot->request->millimetres);
+}
+
+int plot_lines_draw(const struct plot_lines *lines, const struct study_result *study,
+                    const struct plot_request *request, const struct plot_words *words, FILE *file,
+                    struct error *err) {
+    struct plot *plot = calloc(1, sizeof *plot);
+    if (plot == NULL)
+        return error_memory(err, sizeof *plot, "a picture");
+    plot->lines = lines;
+    plot->request = request;
+    plot->words = words;
+    plot->pen.file = file;
+    lay_out(plot);
+    pen_head_sized(&plot->pen, &plot->layout.size);
+    pen_study(&plot->pen, study);
+    (request->millimetres > 0 ? pen_subject : pen_title)(&plot->pen, study->name, words->subject);
+    if (fit(plot, study)) {
+        for (size_t panel = 0; panel < plot->panels; panel++)
+            draw_panel(plot, panel);
+        draw_labels(plot);
+        legend_draw(&plot->legend, file, plot->layout.scale, plot->layout.legend_left,
+                    plot->layout.legend_top, plot->layout.legend_width);
+    }
+    fputs("</svg>\n", file);
+    free(plot);
+    return 0;
+}
+
+/* Names the quantity, and the case where it is one of several, or the two of a difference. */
+static void make_subject(const struct study_result *study, const char *quantity,
+                         char subject[PLOT_LABEL_SIZE]) {
+    const struct case_result *one = &study->cases[0];
+    unsigned long long number = one->case_number, less = one->less;
+    int used = snprintf(subject, PLOT_LABEL_SIZE, "%.60s", quantity);
+    if (one->difference)
+        snprintf(subject + used, PLOT_LABEL_SIZE - (size_t)used, ", case %llu less case %llu",
+                 number, less);
+    else if (study->case_count == 1 && swept_count(study) > 0)
+        snprintf(subject + used, PLOT_LABEL_SIZE - (size_t)used, ", case %llu", number);
+}
+
+int plot_quantity(const struct study_result *study, const struct plot_request *request, FILE *file,
+                  struct error *err) {
+    struct plot_lines lines = {0};
+    char subject[PLOT_LABEL_SIZE];
+    int status = plot_lines_choose(&lines, study, &request->lines, err);
+    if (status != 0)
+        return status;
+    const struct curve *first = lines.list[0].curve;
+    make_subject(study, request->lines.quantity, subject);
+    const struct plot_words words = {.subject = subject, .x = first->x_label, .y = first->y_label};
+    status = plot_lines_draw(&lines, study, request, &words, file, err);
+    plot_lines_clear(&lines);
+    return status;
+}

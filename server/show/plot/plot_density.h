@@ -1,0 +1,20 @@
+/* An SVG of a matrix: a density over two quantities, such as that of summits over height and
+ * curvature. */
+#ifndef RUGO_SERVER_SHOW_PLOT_PLOT_DENSITY_H
+#define RUGO_SERVER_SHOW_PLOT_PLOT_DENSITY_H
+
+#include "schema/result/result.h"
+#include <stdio.h>
+
+/* Draws the curve of a case, which is a matrix (columns > 0), as colours, and as contours its
+ * theories, both at the same levels: where they agree, lines lie between colours. Bins are joined
+ * until they are about 45 a side. study: has the name, and what was swept; its cases need have no
+ * curves. ERROR_ABSENT where the matrix has no values yet. Write errors are left to the file's own
+ * flag. */
+int plot_density(const struct study_result *study, const struct case_result *one,
+                 const struct curve *curve, FILE *file, struct error *err);
+
+/* Returns the first matrix of a quantity that a case has; NULL: none. */
+const struct curve *density_curve(const struct case_result *one, const char *quantity);
+
+#endif

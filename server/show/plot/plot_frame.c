@@ -1,0 +1,227 @@
+#include "server/show/plot/plot_frame.h"
+#include "server/show/plot/plot_words.h"
+#include <math.h>
+
+static void axis_include(struct plot_axis *axis, double value) {
+    if (!isfinite(value) || (axis->logarithmic && value <= 0))
+        return;
+    axis->low = fmin(axis->low, value);
+    axis->high = fmax(axis->high, value);
+}
+
+static double axis_place(const struct plot_axis *axis, double value) {
+    if (axis->logarithmic)
+        return log(value / axis->low) / log(axis->high / axis->low);
+    return (value - axis->low) / (axis->high - axis->low);
+}
+
+double frame_x(const struct frame *frame, double x) {
+    return frame->left + (frame->right - frame->left) * axis_place(&frame->x, x);
+}
+
+double frame_y(const struct frame *frame, double y) {
+    return frame->bottom - (frame->bottom - frame->top) * axis_place(&frame->y, y);
+}
+
+bool frame_has_place(const struct frame *frame, double x, double y) {
+    return isfinite(x) && isfinite(y) && (!frame->x.logarithmic || x > 0) &&
+           (!frame->y.logarithmic || y > 0);
+}
+
+void frame_include(struct frame *frame, size_t n, const double *x, const double *y) {
+    for (size_t a = 0; a < n; a++) {
+        /* Points at zero at the ends of a histogram say nothing: they do not widen the frame. */
+        if (!frame_has_place(frame, x[a], y[a]) || y[a] == 0)
+            continue;
+        axis_include(&frame->x, x[a]);
+        axis_include(&frame->y, y[a]);
+    }
+}
+
+void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
+    *frame = (struct frame){.x = {.low = INFINITY, .high = -INFINITY, .logarithmic = x_logarithmic},
+                            .y = {.low = INFINITY, .high = -INFINITY, .logarithmic = y_logarithmic},
+                            .left = FRAME_LEFT,
+                            .top = FRAME_TOP,
+                            .right = FRAME_RIGHT,
+                            .bottom = FRAME_BOTTOM,
+                            .scale = 1};
+}
+
+void frame_include_point(struct frame *frame, double x, double y) {
+    if (!frame_has_place(frame, x, y))
+        return;
+    axis_include(&frame->x, x);
+    axis_include(&frame->y, y);
+}
+
+void frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths) {
+    const double height = FRAME_BOTTOM - FRAME_TOP, width = FRAME_RIGHT - FRAME_LEFT;
+    double wanted = height * (x[1] - x[0]) / (y[1] - y[0]);
+    frame_start(frame, false, false);
+    frame->x = (struct plot_axis){.low = x[0], .high = x[1]};
+    frame->y = (struct plot_axis){.low = y[0], .high = y[1]};
+    if (same_lengths && wanted >= width / 3 && wanted < width)
+        frame->right = FRAME_LEFT + (int)lrint(wanted);
+}
+
+/* Zero belongs to an axis that begins near it. */
+static void axis_begin_at_zero(struct plot_axis *axis) {
+    if (!axis->logarithmic && axis->low > 0 && axis->low < axis->high / 2)
+        axis->low = 0;
+}
+
+bool range_widen(double low, double *high) {
+    if (*high - low >= RANGE_LEAST)
+        return false;
+    *high = low + fmax(1, 1e-3 * fabs(low));
+    return true;
+}
+
+/* Returns whether the axis had one value. */
+static bool widen_from_one_value(struct plot_axis *axis) {
+    if (!axis->logarithmic)
+        return range_widen(axis->low, &axis->high);
+    const bool one_value = axis->low == axis->high;
+    axis->high *= one_value ? 2 : 1;
+    return one_value;
+}
+
+static void leave_margin(struct plot_axis *axis) {
+    double margin = 0.06 * (axis->high - axis->low);
+    if (axis->logarithmic) {
+        axis->high *= 1.5;
+        axis->low /= 1.5;
+        return;
+    }
+    axis->high += margin;
+    axis->low -= axis->low < 0 ? margin : 0;
+}
+
+bool frame_finish(struct frame *frame) {
+    if (!(frame->x.low <= frame->x.high))
+        return false;
+    axis_begin_at_zero(&frame->x);
+    axis_begin_at_zero(&frame->y);
+    (void)widen_from_one_value(&frame->x);
+    if (!widen_from_one_value(&frame->y))
+        leave_margin(&frame->y);
+    return true;
+}
+
+double round_step(double range, int parts) {
+    double rough = range / parts, power = pow(10, floor(log10(rough)));
+    double relative = rough / power;
+    return power * (relative < 1.5 ? 1 : relative < 3.5 ? 2 : relative < 7.5 ? 5 : 10);
+}
+
+/* Returns the value of a tick: zero where a multiple of the step misses it by rounding. */
+static double tick_value(double value, const struct plot_axis *axis) {
+    return fabs(value) < 1e-12 * (axis->high - axis->low) ? 0.0 : value;
+}
+
+/* Prints a number of an axis, or the power of ten that it is. */
+static void print_number(FILE *file, double value, bool power) {
+    if (power)
+        fprintf(file, "10<tspan class=\"index\" dy=\"-5\">%ld</tspan>", lrint(log10(value)));
+    else
+        fprintf(file, "%.4g", value);
+}
+
+enum tick_label { TICK_BARE, TICK_NUMBER, TICK_POWER };
+
+static void draw_tick(FILE *file, const struct frame *frame, bool horizontal, double value,
+                      enum tick_label label) {
+    double x = horizontal ? frame_x(frame, value) : frame->left;
+    double y = horizontal ? frame->bottom : frame_y(frame, value);
+    fprintf(file, "<path d=\"M%.1f %.1f%c%d\" class=\"grid\"/>", x, y, horizontal ? 'V' : 'H',
+            horizontal ? frame->top : frame->right);
+    if (label != TICK_BARE && !(horizontal ? frame->without_x : frame->without_y)) {
+        fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">",
+                horizontal ? x : x - 8 * frame->scale, y + (horizontal ? 18 : 4) * frame->scale,
+                horizontal ? "middle" : "end");
+        print_number(file, value, label == TICK_POWER);
+        fputs("</text>", file);
+    }
+    fputc('\n', file);
+}
+
+static double length_of(const struct frame *frame, bool horizontal) {
+    return (horizontal ? frame->right - frame->left : frame->bottom - frame->top) / frame->scale;
+}
+
+/* Lines at decades alone, with as many numbers as there is room for. */
+static void draw_decades(FILE *file, const struct frame *frame, bool horizontal) {
+    static const double ROOM_X = 42, ROOM_Y = 24; /* of a number */
+    const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
+    double decades = log10(axis->high / axis->low);
+    int each = (int)ceil((horizontal ? ROOM_X : ROOM_Y) * decades / length_of(frame, horizontal));
+    int first = (int)ceil(log10(axis->low) - 1e-9);
+    for (int decade = first; decade <= log10(axis->high) + 1e-9; decade++)
+        draw_tick(file, frame, horizontal, pow(10, decade),
+                  (decade - first) % each == 0 ? TICK_POWER : TICK_BARE);
+}
+
+/* Lines at 1, 2 and 5 of each decade; numbers at all of them where they do not crowd. */
+static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool horizontal) {
+    static const double ROOM_X = 110, ROOM_Y = 60; /* of a decade */
+    const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
+    static const double STEPS[] = {1, 2, 5};
+    bool crowded = length_of(frame, horizontal) <
+                   (horizontal ? ROOM_X : ROOM_Y) * log10(axis->high / axis->low);
+    if (frame->powers && crowded) {
+        draw_decades(file, frame, horizontal);
+        return;
+    }
+    for (int decade = (int)floor(log10(axis->low)); pow(10, decade) <= axis->high; decade++)
+        for (int s = 0; s < 3; s++) {
+            double value = STEPS[s] * pow(10, decade);
+            if (value >= axis->low && value <= axis->high)
+                draw_tick(file, frame, horizontal, value,
+                          s == 0 || !crowded ? TICK_NUMBER : TICK_BARE);
+        }
+}
+
+static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
+    enum { PARTS = 5, PART_ROOM = 55 };
+    const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
+    for (size_t n = 0; n < axis->tick_count; n++)
+        draw_tick(file, frame, horizontal, axis->ticks[n], TICK_NUMBER);
+    if (axis->tick_count > 0)
+        return;
+    if (axis->logarithmic) {
+        draw_logarithmic_ticks(file, frame, horizontal);
+        return;
+    }
+    double room = floor(length_of(frame, horizontal) / PART_ROOM);
+    double step = round_step(axis->high - axis->low, (int)fmin(PARTS, fmax(2, room)));
+    static const double ROUNDING = 1e-9; /* of a tick at an end */
+    long last = lrint(floor(axis->high / step + ROUNDING));
+    for (long n = lrint(ceil(axis->low / step - ROUNDING)); n <= last; n++)
+        draw_tick(file, frame, horizontal, tick_value((double)n * step, axis), TICK_NUMBER);
+}
+
+void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label) {
+    fputs("<g>\n", file);
+    draw_ticks(file, frame, true);
+    draw_ticks(file, frame, false);
+    fprintf(file, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" class=\"frame\"/>\n",
+            frame->left, frame->top, frame->right - frame->left, frame->bottom - frame->top);
+    if (x_label != NULL)
+        frame_label(file, frame, true, x_label);
+    if (y_label != NULL)
+        frame_label(file, frame, false, y_label);
+    fputs("</g>\n", file);
+}
+
+void frame_label(FILE *file, const struct frame *frame, bool horizontal, const char *label) {
+    double x = (frame->left + frame->right) / 2.0, y = (frame->top + frame->bottom) / 2.0;
+    if (horizontal)
+        fprintf(file, "<text x=\"%.0f\" y=\"%.0f\" class=\"middle\">", x,
+                frame->bottom + 44 * frame->scale);
+    else
+        fprintf(file, "<text transform=\"translate(%.0f %.0f) rotate(-90)\" class=\"middle\">",
+                frame->left - 60 * frame->scale, y);
+    svg_label(file, label);
+    fputs("</text>\n", file);
+}

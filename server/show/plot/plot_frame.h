@@ -1,0 +1,52 @@
+/* The axes of a plot in SVG: their ranges, positions on the picture, ticks and labels. */
+#ifndef RUGO_SERVER_SHOW_PLOT_PLOT_FRAME_H
+#define RUGO_SERVER_SHOW_PLOT_PLOT_FRAME_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/* Curves are drawn in this area, in SVG user units, unless a picture has frames of its own. */
+enum { FRAME_LEFT = 80, FRAME_RIGHT = 700, FRAME_TOP = 40, FRAME_BOTTOM = 500 };
+
+struct plot_axis {
+    double low, high;
+    bool logarithmic;
+    size_t tick_count;   /* 0: ticks at round numbers */
+    const double *ticks; /* borrowed: the only values with ticks */
+};
+struct frame {
+    struct plot_axis x, y;
+    int left, top, right, bottom; /* FRAME_LEFT and so on; right is less in a narrower picture */
+    double scale;                 /* of letters and their distances; 1 on screens */
+    bool without_x, without_y;    /* no numbers and label at this axis */
+    bool powers;                  /* logarithmic axes of many decades have numbers as 10^-5 */
+};
+/* Positions along a range shorter than this cannot be distinguished as numbers. */
+#define RANGE_LEAST 1e-290
+/* Returns whether a range, of one value or next to one, had to be made longer. */
+bool range_widen(double low, double *high);
+/* Start, include the n points that must be seen, finish: false when there is no point at all. */
+void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic);
+void frame_include(struct frame *frame, size_t n, const double *x, const double *y);
+bool frame_finish(struct frame *frame);
+/* Includes a point as it is, also one at zero. */
+void frame_include_point(struct frame *frame, double x, double y);
+/* In place of all of these: linear axes between exactly these ends, and, where the ratio of the
+ * sides allows it, a length of x as long as one of y. */
+void frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths);
+
+/* Returns where a value stands on the picture. */
+double frame_x(const struct frame *frame, double x);
+double frame_y(const struct frame *frame, double y);
+/* Returns whether a point can be drawn: two finite numbers, above 0 on logarithmic axes. */
+bool frame_has_place(const struct frame *frame, double x, double y);
+
+/* Returns the step of 1, 2 or 5 times a power of ten that divides a range into about `parts`. */
+double round_step(double range, int parts);
+/* Draws the frame with its ticks; labels (plot_words.h) are NULL for none. */
+void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label);
+/* Draws the label of an axis beside the frame. */
+void frame_label(FILE *file, const struct frame *frame, bool horizontal, const char *label);
+
+#endif

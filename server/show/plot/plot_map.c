@@ -1,0 +1,168 @@
+#include "server/show/plot/plot_map.h"
+#include "jobs/maps/map_parameters.h"
+#include "server/show/plot/plot_heat.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { MARKS_MOST = 1000, GROUPS_MOST = 1000, CELLS_A_SIDE = 128 };
+
+struct map_plot {
+    const struct map_picture *picture;
+    struct plot_pen pen;
+    struct summit_list summits; /* the highest first */
+};
+
+/* --- summits --- */
+
+static int higher(const void *a, const void *b) {
+    double one = ((const struct summit *)a)->height, other = ((const struct summit *)b)->height;
+    return (one < other) - (one > other);
+}
+
+static int find_summits(struct map_plot *plot, struct error *err) {
+    const struct map_picture *picture = plot->picture;
+    const struct measured_map map = {picture->grid, picture->z, picture->boundary};
+    double searched;
+    int status = map_summits_find(&map, SUMMITS_NINE_POINT, map.grid->nx / 2, map.grid->ny / 2,
+                                  &plot->summits, &searched, err);
+    if (plot->summits.count > 0)
+        qsort(plot->summits.summits, plot->summits.count, sizeof *plot->summits.summits, higher);
+    return status;
+}
+
+/* Marks are smaller where they are many. */
+static void draw_summits(struct map_plot *plot) {
+    bool profile = grid_is_profile(plot->picture->grid);
+    size_t all = plot->summits.count, count = all < MARKS_MOST ? all : MARKS_MOST;
+    double radius = count < 150 ? 3.2 : count < 500 ? 2.4 : 1.6;
+    const char *fill = profile ? "#d55e00" : "#fff";
+    char text[PLOT_LABEL_SIZE];
+    for (size_t n = 0; n < count; n++) {
+        const struct summit *summit = &plot->summits.summits[n];
+        fprintf(plot->pen.file,
+                "<circle class=\"summit\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\" "
+                "stroke=\"#222\" stroke-width=\".8\"/>\n",
+                frame_x(&plot->pen.frame, summit->x),
+                frame_y(&plot->pen.frame, profile ? summit->height : summit->y), radius, fill);
+    }
+    if (count < all)
+        snprintf(text, sizeof text, "circles: the %zu highest of %zu summits", count, all);
+    else
+        snprintf(text, sizeof text, "circles: %zu %s", all, profile ? "peaks" : "summits");
+    pen_note(&plot->pen, text);
+}
+
+static void range_of(const struct map_picture *picture, double range[2]) {
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (size_t n = 0; n < grid_points(picture->grid); n++) {
+        range[0] = fmin(range[0], picture->z[n]);
+        range[1] = fmax(range[1], picture->z[n]);
+    }
+    (void)range_widen(range[0], &range[1]);
+}
+
+/* --- a profile --- */
+
+size_t map_trace(const struct measured_map *map, size_t groups, double *x, double *y) {
+    size_t nx = map->grid->nx, step = (nx + groups - 1) / groups, count = 0;
+    double dx = grid_dx(map->grid);
+    for (size_t first = 0; first < nx; first += step) {
+        size_t low = first, high = first;
+        for (size_t i = first; i < nx && i < first + step; i++) {
+            low = map->z[i] < map->z[low] || isnan(map->z[low]) ? i : low;
+            high = map->z[i] > map->z[high] || isnan(map->z[high]) ? i : high;
+        }
+        const size_t ends[2] = {low < high ? low : high, low < high ? high : low};
+        for (size_t e = ends[0] == ends[1]; e < 2; e++) {
+            x[count] = (double)ends[e] * dx;
+            y[count++] = map->z[ends[e]];
+        }
+    }
+    if (map->boundary == BOUNDARY_PERIODIC) {
+        x[count] = map->grid->lx; /* where the profile begins anew */
+        y[count++] = map->z[0];
+    }
+    return count;
+}
+
+static int draw_profile(struct map_plot *plot, struct error *err) {
+    static const char STYLE[] = "class=\"curve\" stroke=\"#0072b2\" stroke-width=\"1.2\"";
+    const struct map_picture *picture = plot->picture;
+    struct plot_pen *pen = &plot->pen;
+    double range[2], *points = array_create(4 * GROUPS_MOST + 2, sizeof *points);
+    if (points == NULL)
+        return error_memory(err, (4 * GROUPS_MOST + 2) * sizeof *points, "a trace");
+    double *heights = points + 2 * GROUPS_MOST + 1;
+    const struct measured_map map = {picture->grid, picture->z, picture->boundary};
+    size_t count = map_trace(&map, GROUPS_MOST, points, heights);
+    range_of(picture, range);
+    double margin = 0.06 * (range[1] - range[0]);
+    frame_set(&pen->frame, (const double[]){0, picture->grid->lx},
+              (const double[]){range[0] - margin, range[1] + margin}, false);
+    frame_draw(pen->file, &pen->frame, picture->x_label, picture->z_label);
+    pen_line(pen, count, points, heights, STYLE);
+    free(points);
+    return 0;
+}
+
+/* --- a surface --- */
+
+void map_join_points(const struct measured_map *map, size_t step, double *out) {
+    const struct grid *grid = map->grid;
+    for (size_t row = 0; row < grid->ny; row += step)
+        for (size_t column = 0; column < grid->nx; column += step) {
+            struct average mean = {0};
+            for (size_t j = row; j < grid->ny && j < row + step; j++)
+                for (size_t i = column; i < grid->nx && i < column + step; i++)
+                    average_add(&mean, map->z[j * grid->nx + i]);
+            *out++ = average_value(&mean);
+        }
+}
+
+static int draw_surface(struct map_plot *plot, struct error *err) {
+    const struct map_picture *picture = plot->picture;
+    const struct grid *grid = picture->grid;
+    struct plot_pen *pen = &plot->pen;
+    size_t longer = grid->nx > grid->ny ? grid->nx : grid->ny;
+    size_t step = (longer + CELLS_A_SIDE - 1) / CELLS_A_SIDE;
+    struct heat_cells cells = {.nx = (grid->nx + step - 1) / step,
+                               .ny = (grid->ny + step - 1) / step};
+    double range[2], dx = grid_dx(grid), dy = grid_dy(grid);
+    double *values = array_create(cells.nx * cells.ny, sizeof *values);
+    if (values == NULL)
+        return error_memory(err, cells.nx * cells.ny * sizeof *values, "a picture");
+    const struct measured_map map = {grid, picture->z, picture->boundary};
+    map_join_points(&map, step, values);
+    cells.values = values;
+    cells.x[0] = -dx / 2; /* a point lies in the middle of its square */
+    cells.x[1] = cells.x[0] + (double)(cells.nx * step) * dx;
+    cells.y[0] = -dy / 2;
+    cells.y[1] = cells.y[0] + (double)(cells.ny * step) * dy;
+    range_of(picture, range);
+    const struct heat_scale scale = heat_scale_between(range[0], range[1], 10, HEAT_HEIGHT);
+    frame_set(&pen->frame, cells.x, cells.y, true);
+    frame_draw(pen->file, &pen->frame, picture->x_label, picture->y_label);
+    heat_draw(pen, &cells, &scale);
+    heat_legend(pen, &scale, picture->z_label);
+    free(values);
+    return 0;
+}
+
+int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
+    struct map_plot plot = {.picture = picture, .pen = {.file = file}};
+    int status = picture->unmarked ? 0 : find_summits(&plot, err);
+    if (status == 0) {
+        pen_head(&plot.pen, PEN_WIDTH);
+        pen_title(&plot.pen, picture->name, picture->subject);
+        status =
+            grid_is_profile(picture->grid) ? draw_profile(&plot, err) : draw_surface(&plot, err);
+    }
+    if (status == 0) {
+        if (!picture->unmarked)
+            draw_summits(&plot);
+        fputs("</svg>\n", file);
+    }
+    summit_list_clear(&plot.summits);
+    return status;
+}

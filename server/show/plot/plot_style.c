@@ -1,0 +1,204 @@
+#include "server/show/plot/plot_style.h"
+#include "server/show/summary/summary_cells.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const DASHES[DASHES_MOST] = {"",         "8 4",         "2 3",
+                                                "12 3 2 3", "5 2 2 2 2 2", "16 5"};
+/* Theories differ by their dashes; by dots, thinner, where curves have dashes. */
+static const char *const THEORIES[] = {"7 4", "2 3", "12 3 2 3", "4 2 1 2 1 2", "14 5", "1 5"};
+static const char *const DOTTED[] = {"1 2.5", "1 2 1 6", "1 6", "1 2 1 2 1 7", "3 2 1 2", "1 9"};
+enum { THEORY_COUNT = sizeof THEORIES / sizeof *THEORIES };
+
+/* Coarser levels are fainter. */
+static const char *const LEVELS[] = {
+    "stroke-width=\"1.8\"", "stroke-opacity=\".65\" stroke-width=\"1.2\"",
+    "stroke-opacity=\".45\" stroke-width=\".9\"", "stroke-opacity=\".3\" stroke-width=\".7\""};
+enum { LEVEL_COUNT = sizeof LEVELS / sizeof *LEVELS };
+
+/* Stops of the colour map "viridis", whose lightness rises evenly, without the palest. */
+static const double STOPS[][3] = {{68, 1, 84},    {70, 50, 127},  {54, 92, 141}, {39, 127, 142},
+                                  {31, 161, 135}, {74, 194, 109}, {159, 218, 58}};
+enum { STOP_COUNT = sizeof STOPS / sizeof *STOPS, ENTRIES_MOST = 10, STEPS = 6 };
+static const char NEUTRAL[] = "#444444";
+
+void plot_colour(const struct plot_channel *channel, size_t v, char colour[COLOUR_SIZE]) {
+    unsigned parts[3];
+    if (channel->count <= 1 || (!channel->ordered && channel->count <= PLOT_LINES)) {
+        snprintf(colour, COLOUR_SIZE, "%s", PEN_COLOURS[v % PLOT_LINES]);
+        return;
+    }
+    double place = (double)v / (double)(channel->count - 1) * (STOP_COUNT - 1);
+    size_t below = place < STOP_COUNT - 2 ? (size_t)place : STOP_COUNT - 2;
+    for (size_t k = 0; k < 3; k++)
+        parts[k] = (unsigned)lround(STOPS[below][k] + (place - (double)below) *
+                                                          (STOPS[below + 1][k] - STOPS[below][k]));
+    snprintf(colour, COLOUR_SIZE, "#%02x%02x%02x", parts[0] & 255, parts[1] & 255, parts[2] & 255);
+}
+
+void plot_darken(char colour[COLOUR_SIZE]) {
+    unsigned long all = strtoul(colour + 1, NULL, 16);
+    snprintf(colour, COLOUR_SIZE, "#%06lx", all >> 1 & 0x7f7f7f); /* each byte by half */
+}
+
+static void style_of(const char *colour, size_t dash, size_t coarseness,
+                     char style[LEGEND_STYLE_SIZE]) {
+    const char *dashes = DASHES[dash % DASHES_MOST];
+    snprintf(style, LEGEND_STYLE_SIZE, "class=\"curve\" stroke=\"%s\" %s%s%s%s", colour,
+             LEVELS[coarseness < LEVEL_COUNT ? coarseness : LEVEL_COUNT - 1],
+             *dashes != '\0' ? " stroke-dasharray=\"" : "", dashes, *dashes != '\0' ? "\"" : "");
+}
+
+void plot_curve_style(const struct plot_lines *lines, const struct plot_line *line,
+                      char style[LEGEND_STYLE_SIZE]) {
+    char colour[COLOUR_SIZE];
+    plot_colour(&lines->channels[CHANNEL_COLOUR], line->at[CHANNEL_COLOUR], colour);
+    style_of(colour, line->at[CHANNEL_DASH], line->coarseness, style);
+}
+
+void plot_theory_style(const struct plot_lines *lines, size_t number, const char *colour,
+                       char style[LEGEND_STYLE_SIZE]) {
+    bool dotted = lines->channels[CHANNEL_DASH].count > 1;
+    snprintf(style, LEGEND_STYLE_SIZE, "class=\"theory\" stroke=\"%s\" stroke-dasharray=\"%s\"",
+             colour, (dotted ? DOTTED : THEORIES)[number % THEORY_COUNT]);
+}
+
+enum plot_marks plot_marks_of(const struct plot_lines *lines, const struct plot_words *words) {
+    enum { SHAPES_MOST = 16, DOTS_MOST = 40 };
+    size_t most = 0;
+    for (size_t n = 0; n < lines->count; n++)
+        if (lines->list[n].curve->n > most)
+            most = lines->list[n].curve->n;
+    return words->points || most <= SHAPES_MOST ? MARKS_SHAPES
+           : most <= DOTS_MOST                  ? MARKS_DOTS
+                                                : MARKS_NONE;
+}
+
+/* --- the legend --- */
+
+static void set_mark(struct legend_row *row, enum plot_marks marks, const char *colour,
+                     size_t dash) {
+    if (marks != MARKS_SHAPES)
+        return;
+    row->mark = (int)dash;
+    snprintf(row->colour, sizeof row->colour, "%s", colour);
+}
+
+/* Names all colours of few values, and of many in an order about ten of them: the steps between
+ * are seen. */
+static void add_colours(struct legend *legend, const struct plot_lines *lines,
+                        enum plot_marks marks) {
+    const struct plot_channel *channel = &lines->channels[CHANNEL_COLOUR];
+    char label[PLOT_LABEL_SIZE], style[LEGEND_STYLE_SIZE], colour[COLOUR_SIZE], name[96];
+    bool thinned = channel->ordered && channel->count > ENTRIES_MOST;
+    size_t steps = thinned ? STEPS : channel->count - 1;
+    for (size_t s = 0; s <= steps && channel->count > 1; s++) {
+        size_t v = thinned ? (s * (channel->count - 1) + steps / 2) / steps : s;
+        channel_label(lines, CHANNEL_COLOUR, v, label, sizeof label);
+        plot_colour(channel, v, colour);
+        style_of(colour, 0, 0, style);
+        set_mark(legend_add(legend, label, style), marks, colour, 0);
+    }
+    if (thinned) {
+        channel_name(lines, CHANNEL_COLOUR, name, sizeof name);
+        snprintf(label, sizeof label, "in between: of %zu values of %s", channel->count, name);
+        legend_add(legend, label, "");
+    }
+}
+
+static void add_dashes(struct legend *legend, const struct plot_lines *lines,
+                       enum plot_marks marks) {
+    const struct plot_channel *channel = &lines->channels[CHANNEL_DASH];
+    for (size_t v = 0; v < channel->count && channel->count > 1; v++) {
+        char label[PLOT_LABEL_SIZE], style[LEGEND_STYLE_SIZE];
+        channel_label(lines, CHANNEL_DASH, v, label, sizeof label);
+        style_of(NEUTRAL, v, 0, style);
+        set_mark(legend_add(legend, label, style), marks, NEUTRAL, v);
+    }
+}
+
+/* Levels have their number where all lines so faint are of the same. */
+static void add_levels(struct legend *legend, const struct plot_lines *lines) {
+    size_t coarsest = 0;
+    for (size_t n = 0; n < lines->count; n++)
+        if (lines->list[n].coarseness > coarsest)
+            coarsest = lines->list[n].coarseness;
+    for (size_t k = 0; k <= coarsest && coarsest > 0; k++) {
+        char label[64], style[LEGEND_STYLE_SIZE];
+        double level = NAN;
+        bool same = true;
+        for (size_t n = 0; n < lines->count; n++) {
+            if (lines->list[n].coarseness != k)
+                continue;
+            same = same && (isnan(level) || level == lines->list[n].curve->level);
+            level = lines->list[n].curve->level;
+        }
+        if (same)
+            snprintf(label, sizeof label, "level %.4g", level);
+        else
+            snprintf(label, sizeof label, k == 0 ? "finest level" : "%zu levels coarser", k);
+        style_of(NEUTRAL, 0, k, style);
+        legend_add(legend, label, style);
+    }
+}
+
+/* A picture of one line says whose it is. */
+static void add_only(struct legend *legend, const struct plot_lines *lines, enum plot_marks marks,
+                     const struct plot_words *words) {
+    const struct plot_line *line = &lines->list[0];
+    char label[PLOT_LABEL_SIZE], style[LEGEND_STYLE_SIZE], model[64];
+    unsigned long long number = line->one->case_number, less = line->one->less;
+    if (words->points)
+        snprintf(label, sizeof label, "%s", words->y);
+    else if (line->one->difference)
+        snprintf(label, sizeof label, "case %llu less case %llu", number, less);
+    else if (line->curve->series != NULL && *line->curve->series != '\0')
+        plot_spaced(line->curve->series, label, sizeof label);
+    else if (line->curve->model != NULL)
+        snprintf(label, sizeof label, "%s",
+                 model_text(line->curve->model, line->curve->kinematics, model, sizeof model));
+    else
+        snprintf(label, sizeof label, "case %llu", number);
+    plot_curve_style(lines, line, style);
+    set_mark(legend_add(legend, label, style), marks, PEN_COLOURS[0], 0);
+}
+
+void plot_legend_lines(struct legend *legend, const struct plot_lines *lines, enum plot_marks marks,
+                       const struct plot_words *words) {
+    add_colours(legend, lines, marks);
+    add_dashes(legend, lines, marks);
+    if (legend->count == 0)
+        add_only(legend, lines, marks, words);
+    add_levels(legend, lines);
+}
+
+static bool is_partial(const struct plot_lines *lines) {
+    for (size_t n = 0; n < lines->count; n++) {
+        const struct curve *curve = lines->list[n].curve;
+        for (size_t k = 0; k < curve->n && curve_is_partial(curve); k++)
+            if (curve->valueless[k] > 0 && isfinite(curve->y[k]))
+                return true;
+    }
+    return false;
+}
+
+void plot_legend_notes(struct legend *legend, const struct plot_lines *lines, enum plot_marks marks,
+                       const char *note) {
+    const struct plot_channel *panels = &lines->channels[CHANNEL_PANEL];
+    char text[PLOT_LABEL_SIZE + 16];
+    bool bands = marks == MARKS_NONE || lines->list[0].curve->minuend != NULL;
+    legend_add(legend, bands ? "bands: one standard error" : "bars: one standard error", "");
+    if (is_partial(lines))
+        legend_add(legend, "circles: not over all realisations", "");
+    if (note != NULL && *note != '\0')
+        legend_add(legend, note, "");
+    if (*lines->narrowed != '\0') {
+        snprintf(text, sizeof text, "shown: %s", lines->narrowed);
+        legend_add(legend, text, "");
+    }
+    if (panels->count > PANELS_MOST) {
+        snprintf(text, sizeof text, "shown: first %d of %zu panels", PANELS_MOST, panels->count);
+        legend_add(legend, text, "");
+    }
+}

@@ -1,0 +1,25 @@
+/* Words of pictures as people write them: Greek letters, roots, primes, indices and powers. */
+#ifndef RUGO_SERVER_SHOW_PLOT_PLOT_WORDS_H
+#define RUGO_SERVER_SHOW_PLOT_PLOT_WORDS_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+/* Prints a text, in which what XML reserves is escaped. */
+void svg_text(FILE *file, const char *text);
+/* Prints a label of mathematics for the inside of <text>: "lambda_s" with a Greek letter and an
+ * index, "h'_rms" with a prime, "m0" and "A0" with an index, "sqrt(m0)" with a root sign, "L^2"
+ * with a power. All else is as it stands. */
+void svg_label(FILE *file, const char *label);
+
+/* Returns the symbol of a kind's parameter for svg_label, "H" of "/surface/hurst"; its last name
+ * where it has none. Borrowed from either. */
+const char *plot_symbol(const char *kind, const char *pointer);
+/* Returns the unit of such a parameter, or NULL. */
+const char *plot_unit(const char *kind, const char *pointer);
+/* Writes "summit density" of "summit_density". */
+void plot_spaced(const char *name, char *out, size_t size);
+/* Returns about how wide a label is, in letters. */
+size_t plot_letters(const char *label);
+
+#endif

@@ -1,0 +1,18 @@
+/* Physical quantities on the command line and in tables: numbers with SI prefixes and units. */
+#ifndef RUGO_SERVER_SHOW_QUANTITY_H
+#define RUGO_SERVER_SHOW_QUANTITY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Reads a finite number above 0 with its unit ("Pa", "N", "N/m"), which may have a prefix from p to
+ * T and blanks before it: "210GPa", "1 MPa". False where it is not that. */
+bool quantity_parse(const char *text, size_t size, const char *unit, double *out);
+/* Reads such quantities with commas between, rising, at most `most`. */
+bool quantities_parse(const char *text, const char *unit, size_t most, double *out, size_t *count);
+
+/* Returns the prefix with which a value is best read, and sets *scale to what it stands for: 1e6
+ * and "M" of 3.2e6. "" and 1 of 0 and of what is not finite. */
+const char *quantity_prefix(double value, double *scale);
+
+#endif

@@ -1,0 +1,114 @@
+#include "server/show/summary/plan.h"
+#include "jobs/kind.h"
+#include "jobs/target.h"
+#include "schema/json/field.h"
+#include "schema/study/study_reader.h"
+#include <math.h>
+#include <stdio.h>
+
+double plan_case_seconds(const struct study_case *one) {
+    uint64_t expected[TARGET_PARTS_MOST];
+    double seconds = one->component_count > 0 ? target_expect(one, expected)
+                                              : one->cost.seconds * (double)one->realisations;
+    return seconds + one->cost.case_seconds;
+}
+
+double plan_case_error(const struct study_case *one) {
+    const cJSON *asked = json_at(one->parameters, "/target/error");
+    return one->component_count > 0 && asked != NULL
+               ? asked->valuedouble
+               : one->cost.relative_error / sqrt((double)one->realisations);
+}
+
+/* Realisations a job, as estimated. */
+static uint64_t block_of(const struct study_case *one) {
+    return study_block(one->realisations, one->cost.seconds, one->block);
+}
+
+uint64_t plan_case_jobs(const struct study_case *one) {
+    uint64_t block = block_of(one);
+    uint64_t jobs = one->component_count > 0 ? 0 : (one->realisations + block - 1) / block;
+    for (size_t a = 0; a < one->component_count; a++)
+        jobs += plan_case_jobs(&one->components[a]);
+    return jobs;
+}
+
+/* Bytes of a worker, by the largest of what runs. */
+double plan_case_bytes(const struct study_case *one) {
+    double most = one->component_count > 0 ? 0 : one->cost.memory_bytes;
+    for (size_t a = 0; a < one->component_count; a++)
+        most = fmax(most, one->components[a].cost.memory_bytes);
+    return most;
+}
+
+double plan_seconds(const struct study *study) {
+    double sum = 0;
+    for (size_t c = 0; c < study->case_count; c++)
+        sum += plan_case_seconds(&study->cases[c]);
+    return sum;
+}
+
+double plan_bytes(const struct study *study) {
+    double most = 0;
+    for (size_t c = 0; c < study->case_count; c++)
+        most = fmax(most, plan_case_bytes(&study->cases[c]));
+    return most;
+}
+
+/* --- JSON --- */
+
+/* Adds the plan of a case that asks for an error. */
+static bool put_components(cJSON *document, const struct study_case *one) {
+    uint64_t expected[TARGET_PARTS_MOST];
+    if (one->component_count == 0)
+        return true;
+    cJSON *list = cJSON_AddArrayToObject(document, "components");
+    (void)target_expect(one, expected);
+    bool complete = list != NULL;
+    for (size_t a = 0; a < one->component_count && complete; a++) {
+        const struct study_case *component = &one->components[a];
+        cJSON *entry = list_put_object(list);
+        complete = entry != NULL && field_put_text(entry, "role", component->role) &&
+                   field_put(entry, "parameters", cJSON_Duplicate(component->parameters, true)) &&
+                   field_put_count(entry, "realisations", component->realisations) &&
+                   field_put_count(entry, "expected", expected[a]) &&
+                   field_put(entry, "seconds", json_number(component->cost.seconds));
+    }
+    return complete;
+}
+
+static cJSON *case_document(const struct study *study, size_t c) {
+    const struct study_case *one = &study->cases[c];
+    cJSON *document = cJSON_CreateObject();
+    bool complete =
+        document != NULL && field_put(document, "case", cJSON_CreateNumber((double)c)) &&
+        field_put(document, "parameters", cJSON_Duplicate(one->parameters, true)) &&
+        field_put(document, "nx", cJSON_CreateNumber((double)one->cost.nx)) &&
+        field_put(document, "ny", cJSON_CreateNumber((double)one->cost.ny)) &&
+        field_put(document, "memory_bytes", json_number(plan_case_bytes(one))) &&
+        field_put(document, "block", cJSON_CreateNumber((double)block_of(one))) &&
+        field_put(document, "seconds", json_number(plan_case_seconds(&study->cases[c]))) &&
+        field_put(document, "relative_error", json_number(plan_case_error(&study->cases[c]))) &&
+        put_components(document, &study->cases[c]);
+    return fields_finish(document, complete);
+}
+
+cJSON *plan_document(const struct study *study) {
+    cJSON *document = cJSON_CreateObject();
+    char seed[24];
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
+    bool complete =
+        document != NULL && field_put(document, "name", cJSON_CreateString(study->name)) &&
+        field_put(document, "kind", cJSON_CreateString(study->kind->name)) &&
+        field_put(document, "seed", cJSON_CreateString(seed)) &&
+        field_put(document, "random",
+                  cJSON_CreateString(choice_name(STUDY_RANDOM, (int)study->random))) &&
+        field_put(document, "realisations", cJSON_CreateNumber((double)study->realisations)) &&
+        field_put(document, "seconds", json_number(plan_seconds(study))) &&
+        field_put(document, "memory_bytes", json_number(plan_bytes(study))) &&
+        field_put(document, "cases", cJSON_CreateArray());
+    cJSON *cases = cJSON_GetObjectItemCaseSensitive(document, "cases");
+    for (size_t c = 0; complete && c < study->case_count; c++)
+        complete = list_put(cases, case_document(study, c));
+    return fields_finish(document, complete);
+}

@@ -1,0 +1,141 @@
+#include "server/show/summary/summary_cells.h"
+#include <math.h>
+#include <string.h>
+
+void varied_headings(struct text_table *table, const struct shown_cases *shown) {
+    for (size_t n = 0; n < shown->varied_count; n++)
+        table_cell(table, "%s", last_name(shown->varied[n]));
+}
+
+void varied_cells(struct text_table *table, const struct shown_cases *shown, size_t c) {
+    for (size_t n = 0; n < shown->varied_count; n++) {
+        const struct result_parameter *value = result_parameter(shown->list[c], shown->varied[n]);
+        if (value != NULL && value->text != NULL)
+            table_cell(table, "%s", value->text);
+        else
+            table_number(table, value != NULL ? value->number : (double)NAN);
+    }
+}
+
+void measured_text(double value, double error, char *out, size_t size) {
+    if (!isfinite(value)) {
+        snprintf(out, size, "-");
+        return;
+    }
+    bool uncertain = error > 1e-9 * fabs(value);
+    int decimals = uncertain ? 1 - (int)floor(log10(error)) : 0;
+    decimals = decimals < 0 ? 0 : decimals;
+    if (!uncertain)
+        snprintf(out, size, "%.5g", value);
+    else if (decimals > 9)
+        snprintf(out, size, "%.5g +- %.2g", value, error);
+    else
+        snprintf(out, size, "%.*f +- %.*f", decimals, value, decimals, error);
+}
+
+void measured_cell(struct text_table *table, double value, double error) {
+    char text[64];
+    measured_text(value, error, text, sizeof text);
+    table_cell(table, "%s", text);
+}
+
+const char *partial_text(double realisations, double valueless, char *out, size_t size) {
+    out[0] = '\0';
+    if (valueless > 0)
+        snprintf(out, size, " (%.0f of %.0f)", realisations - valueless, realisations);
+    return out;
+}
+
+void percent_cell(struct text_table *table, double share) {
+    if (isnan(share))
+        table_cell(table, "-");
+    else
+        table_cell(table, "%.2g", 100 * share);
+}
+
+const char *source_word(const char *const *words, enum error_source source) {
+    return words != NULL && words[source] != NULL ? words[source] : ERROR_SOURCE_ROWS[source].name;
+}
+
+static void print_sources(const char *title, const bool chosen[ERROR_SOURCES],
+                          const char *const *words, FILE *file) {
+    size_t told = 0;
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        if (chosen[s])
+            fprintf(file, "%s%s", told++ > 0 ? ", " : title,
+                    source_word(words, (enum error_source)s));
+    if (told > 0)
+        fputs(".\n", file);
+}
+
+void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file) {
+    print_sources("Errors not known: ", unknown, words, file);
+}
+
+void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE *file) {
+    print_sources("Errors below 0.01 %: ", small, words, file);
+}
+
+const char *model_text(const char *model, const char *kinematics, char *out, size_t size) {
+    model = model != NULL ? model : "-";
+    if (kinematics != NULL)
+        snprintf(out, size, "%s (%s)", model, kinematics);
+    else
+        snprintf(out, size, "%s", model);
+    return out;
+}
+
+static bool ends_with(const char *text, const char *end) {
+    size_t length = strlen(text), tail = strlen(end);
+    return length >= tail && strcmp(text + length - tail, end) == 0;
+}
+
+bool is_bracket(const char *series) {
+    return series != NULL && (ends_with(series, "_lower") || ends_with(series, "_upper"));
+}
+
+void duration_text(double seconds, char *out, size_t size) {
+    if (isnan(seconds))
+        snprintf(out, size, "-");
+    else if (seconds > 0 && seconds < 0.1)
+        snprintf(out, size, "%.3g ms", 1000 * seconds);
+    else if (seconds < 100)
+        snprintf(out, size, "%.3g s", seconds);
+    else if (seconds < 6000)
+        snprintf(out, size, "%.0f min %02.0f s", floor(seconds / 60), floor(fmod(seconds, 60)));
+    else
+        snprintf(out, size, "%.0f h %02.0f min", floor(seconds / 3600),
+                 floor(fmod(seconds, 3600) / 60));
+}
+
+void work_time_text(const struct work_time *time, char *out, size_t size) {
+    char clock[48], cpu[48];
+    duration_text(time->seconds, clock, sizeof clock);
+    duration_text(time->cpu_seconds, cpu, sizeof cpu);
+    snprintf(out, size, "%s of CPU time in %s of workers' time", cpu, clock);
+}
+
+void print_without_cpu(const struct work_time *time, FILE *file) {
+    if (time->jobs_without_cpu > 0)
+        fprintf(file, "Jobs whose CPU time is not known, so that the clock stands for it: %llu.\n",
+                (unsigned long long)time->jobs_without_cpu);
+}
+
+void print_random(const char *random, size_t cases, FILE *file) {
+    if (cases > 1 && random != NULL && strcmp(random, "common") == 0)
+        fputs("Cases are made of the same random numbers: their errors are correlated.\n", file);
+}
+
+void duration_cell(struct text_table *table, double seconds) {
+    char text[48];
+    duration_text(seconds, text, sizeof text);
+    table_cell(table, "%s", text);
+}
+
+const struct case_report *report_of(const struct study_report *report,
+                                    const struct case_result *one) {
+    size_t c = one->case_number;
+    bool known = report != NULL && c < report->case_count &&
+                 report->cases[c].about.case_number == one->case_number;
+    return known ? &report->cases[c] : NULL;
+}

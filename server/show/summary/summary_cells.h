@@ -1,0 +1,45 @@
+/* Cells that the tables of summary.h share. */
+#ifndef RUGO_SERVER_SHOW_SUMMARY_SUMMARY_CELLS_H
+#define RUGO_SERVER_SHOW_SUMMARY_SUMMARY_CELLS_H
+
+#include "schema/result/work_time.h"
+#include "server/show/table/shown_cases.h"
+#include "server/show/table/text_table.h"
+
+/* These add a heading for each swept parameter, and the values of case c. */
+void varied_headings(struct text_table *table, const struct shown_cases *shown);
+void varied_cells(struct text_table *table, const struct shown_cases *shown, size_t c);
+/* Writes "0.25772 +- 0.00022" with as many digits as the error has sense for. */
+void measured_text(double value, double error, char *out, size_t size);
+void measured_cell(struct text_table *table, double value, double error);
+/* Writes " (2 of 3)" where a mean is not over all realisations; "" otherwise. */
+const char *partial_text(double realisations, double valueless, char *out, size_t size);
+/* Adds a share of one in percent, with two digits; "-" for NaN. */
+void percent_cell(struct text_table *table, double share);
+/* Returns what `words` calls a source of error; its own name where that is NULL. */
+const char *source_word(const char *const *words, enum error_source source);
+/* Errors below this share of a value have no column of their own. */
+#define ERROR_SHOWN 1e-4
+/* "Errors not known: cell." and "Errors below 0.01 %: solver." in lines of their own; nothing where
+ * there are none. */
+void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file);
+void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE *file);
+/* "layered", or "full (hencky)" where the model has several kinematics; "-" without one. */
+const char *model_text(const char *model, const char *kinematics, char *out, size_t size);
+/* Returns whether a series is a bracket of another one, and no estimate: nodes_lower, nodes_upper.
+ */
+bool is_bracket(const char *series);
+/* Writes "2 h 5 min", "12 s", or "-" for NaN. */
+void duration_text(double seconds, char *out, size_t size);
+void duration_cell(struct text_table *table, double seconds);
+/* "15 s of CPU time in 2 min 21 s", or what is known of it. */
+void work_time_text(const struct work_time *time, char *out, size_t size);
+/* A line where the clock stands for the processor time of some jobs. */
+void print_without_cpu(const struct work_time *time, FILE *file);
+/* Prints a line where errors of cases go together; random is as in study_result. */
+void print_random(const char *random, size_t cases, FILE *file);
+/* The report of a case, or NULL where the report, which may be NULL, has none. */
+const struct case_report *report_of(const struct study_report *report,
+                                    const struct case_result *one);
+
+#endif

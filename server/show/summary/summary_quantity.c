@@ -1,0 +1,365 @@
+/* One quantity over its x, with its errors by source, beside the theories. */
+#include "server/show/summary/summary.h"
+#include "server/show/summary/summary_cells.h"
+#include "server/show/summary/summary_target.h"
+#include <math.h>
+#include <string.h>
+
+enum { TABLES_MOST = 4, PLACES_SHOWN = 10, MODELS_MOST = 8, NOTES_SHOWN = 3 };
+
+/* A case is shown by the finest curve of each model, of the first estimator. */
+struct finest_curves {
+    size_t model_count, theory_count;
+    bool more_models; /* than there is room for: listed below the table */
+    const struct curve *curves[MODELS_MOST];
+    const struct theory *theories[THEORIES_MOST]; /* of the first model, those of the table */
+};
+
+static const char *text_or(const char *text, const char *otherwise) {
+    return text != NULL ? text : otherwise;
+}
+
+static void add_curve(struct finest_curves *finest, const struct curve *curve) {
+    size_t m = 0;
+    while (m < finest->model_count &&
+           strcmp(text_or(finest->curves[m]->model, ""), text_or(curve->model, "")) != 0)
+        m++;
+    if (m == MODELS_MOST)
+        finest->more_models = true;
+    else if (m == finest->model_count)
+        finest->curves[finest->model_count++] = curve;
+    else if (curve->level > finest->curves[m]->level)
+        finest->curves[m] = curve;
+}
+
+static void find_finest(struct finest_curves *finest, const struct quantity_table *words,
+                        const struct case_result *one) {
+    *finest = (struct finest_curves){0};
+    for (size_t a = 0; a < one->curve_count; a++) {
+        const struct curve *curve = &one->curves[a];
+        if (strcmp(curve->quantity, words->quantity) != 0 || curve->columns > 0)
+            continue;
+        const char *series = finest->model_count > 0 ? finest->curves[0]->series : curve->series;
+        if (strcmp(text_or(series, ""), text_or(curve->series, "")) == 0)
+            add_curve(finest, curve);
+    }
+    if (finest->model_count == 0)
+        return;
+    const struct curve *first = finest->curves[0];
+    for (size_t t = 0; t < first->theory_count; t++)
+        if (first->theories[t].y != NULL && !view_lists(words->left_out, first->theories[t].name))
+            finest->theories[finest->theory_count++] = &first->theories[t];
+}
+
+static size_t place_count(const struct finest_curves *finest) {
+    return finest->model_count > 0 ? finest->curves[0]->n : 0;
+}
+
+/* Returns NaN for what is not there. */
+static double number_at(const double *numbers, const struct curve *curve, size_t k) {
+    return numbers != NULL && k < curve->n ? numbers[k] : (double)NAN;
+}
+
+/* --- cells --- */
+
+/* In percent of the value, with its sign: above or below what is true, and within which bound. */
+static void error_cell(struct text_table *table, double error, double bound, double value) {
+    if (isnan(error / value))
+        table_cell(table, "-");
+    else if (error == 0 && bound > 0)
+        table_cell(table, "+-%.2g", 100 * bound / value);
+    else if (bound > 0)
+        table_cell(table, "%+.2g+-%.2g", 100 * error / value, 100 * bound / value);
+    else
+        table_cell(table, "%+.2g", 100 * error / value);
+}
+
+static void value_cell(struct text_table *table, const struct case_result *one,
+                       const struct curve *curve, size_t k) {
+    char text[64], partial[48];
+    if (curve == NULL) {
+        table_cell(table, "-");
+        return;
+    }
+    measured_text(number_at(curve->y, curve, k), number_at(curve->standard_error, curve, k), text,
+                  sizeof text);
+    partial_text((double)one->realisations, number_at(curve->valueless, curve, k), partial,
+                 sizeof partial);
+    table_cell(table, "%s%s", text, partial);
+}
+
+/* Prints "kappa 2.80 +- 0.08 (theory 1.5958)". */
+static void print_scalar(const struct case_result *one, const char *name, FILE *file) {
+    const struct scalar *scalar = result_scalar(one, name);
+    char text[64];
+    measured_text(scalar != NULL ? scalar->value : (double)NAN,
+                  scalar != NULL ? scalar->standard_error : (double)NAN, text, sizeof text);
+    fprintf(file, "%s %s", name, text);
+    if (scalar != NULL && !isnan(scalar->theory))
+        fprintf(file, " (theory %.4f)", scalar->theory);
+}
+
+/* --- a table a case --- */
+
+/* The largest of the errors of a curve by a source, within their bounds, over its values; NaN where
+ * nothing is known. */
+static double largest_error(const struct curve *curve, enum error_source source) {
+    const struct curve_error *error = &curve->errors[source];
+    double largest = NAN;
+    for (size_t k = 0; k < curve->n && error->value != NULL; k++) {
+        double bound = number_at(error->bound, curve, k);
+        double size = fabs(error->value[k]) + (isnan(bound) ? 0 : bound);
+        largest = fmax(largest, size / fabs(curve->y[k]));
+    }
+    return largest;
+}
+
+static double largest_of_all(const struct finest_curves *finest, enum error_source source) {
+    double largest = NAN;
+    for (size_t m = 0; m < finest->model_count; m++)
+        largest = fmax(largest, largest_error(finest->curves[m], source));
+    return largest;
+}
+
+static bool has_column(const struct finest_curves *finest, enum error_source source) {
+    return largest_of_all(finest, source) >= ERROR_SHOWN;
+}
+
+static void find_small(const struct finest_curves *finest, bool small[ERROR_SOURCES]) {
+    for (enum error_source s = 0; s < ERROR_SOURCES; s++)
+        small[s] = largest_of_all(finest, s) < ERROR_SHOWN;
+}
+
+/* Finds the sources that bear on a curve and of which nothing is known. */
+static void find_unknown(const struct finest_curves *finest, bool unknown[ERROR_SOURCES]) {
+    for (size_t m = 0; m < finest->model_count; m++)
+        for (size_t s = 0; s < ERROR_SOURCES; s++) {
+            const struct curve_error *error = &finest->curves[m]->errors[s];
+            unknown[s] = unknown[s] || (error->applies && error->value == NULL);
+        }
+}
+
+static size_t column_count(const struct finest_curves *finest) {
+    size_t columns = 1 + finest->model_count + finest->theory_count;
+    for (int source = 0; source < ERROR_SOURCES; source++)
+        columns += has_column(finest, (enum error_source)source) ? finest->model_count : 0;
+    return columns;
+}
+
+static void put_heading(const struct quantity_table *words, const struct finest_curves *finest,
+                        struct text_table *table) {
+    char model[64];
+    table_cell(table, "%s", words->x);
+    for (size_t m = 0; m < finest->model_count; m++) {
+        const struct curve *curve = finest->curves[m];
+        table_fold(table);
+        table_cell(table, "%s", model_text(curve->model, curve->kinematics, model, sizeof model));
+        for (int source = 0; source < ERROR_SOURCES; source++)
+            if (has_column(finest, (enum error_source)source))
+                table_cell(table, "%s %%",
+                           source_word(words->error_words, (enum error_source)source));
+    }
+    if (finest->theory_count > 0)
+        table_fold(table);
+    for (size_t t = 0; t < finest->theory_count; t++)
+        table_cell(table, "%s", finest->theories[t]->name);
+}
+
+static void put_place(const struct case_result *one, const struct finest_curves *finest, size_t k,
+                      struct text_table *table) {
+    table_number(table, finest->curves[0]->x[k]);
+    for (size_t m = 0; m < finest->model_count; m++) {
+        const struct curve *curve = finest->curves[m];
+        value_cell(table, one, curve, k);
+        for (int source = 0; source < ERROR_SOURCES; source++)
+            if (has_column(finest, (enum error_source)source))
+                error_cell(table, number_at(curve->errors[source].value, curve, k),
+                           number_at(curve->errors[source].bound, curve, k),
+                           number_at(curve->y, curve, k));
+    }
+    for (size_t t = 0; t < finest->theory_count; t++) {
+        double theory = finest->theories[t]->y[k];
+        table_cell(table, isnan(theory) ? "-" : "%.4f", theory);
+    }
+}
+
+/* Prints at most PLACES_SHOWN of the points, with the first and the last. */
+static void print_table(const struct quantity_table *words, const struct case_result *one,
+                        const struct finest_curves *finest, FILE *file) {
+    const struct curve *first = finest->curves[0];
+    size_t places = first->n, shown = places < PLACES_SHOWN ? places : PLACES_SHOWN;
+    struct text_table table = {.columns = column_count(finest)};
+    char model[64];
+    put_heading(words, finest, &table);
+    for (size_t n = 0; n < shown; n++)
+        put_place(one, finest, shown > 1 ? n * (places - 1) / (shown - 1) : 0, &table);
+    table_print(&table, file);
+    table_clear(&table);
+    bool asked = result_scalar(one, "error_asked") != NULL;
+    for (size_t s = 0; !asked && words->scalars != NULL && words->scalars[s] != NULL; s++) {
+        if (s == 0)
+            fprintf(file, "%s: ", model_text(first->model, first->kinematics, model, sizeof model));
+        else
+            fputs(", ", file);
+        print_scalar(one, words->scalars[s], file);
+    }
+    if (asked)
+        summary_of_target(one, file);
+    else
+        fputc('\n', file);
+    bool unknown[ERROR_SOURCES] = {false};
+    find_unknown(finest, unknown);
+    print_unknown(unknown, words->error_words, file);
+    bool small[ERROR_SOURCES];
+    find_small(finest, small);
+    print_small(small, words->error_words, file);
+}
+
+static void print_case(const struct quantity_table *words, const struct shown_cases *shown,
+                       size_t c, const struct study_report *report, FILE *file) {
+    const struct case_result *one = shown->list[c];
+    const struct case_report *cost = report_of(report, one);
+    struct finest_curves finest;
+    find_finest(&finest, words, one);
+    fprintf(file, "\ncase %llu: ", (unsigned long long)one->case_number);
+    print_swept(shown, c, file);
+    fprintf(file, "%llu realisations", (unsigned long long)one->realisations);
+    if (cost != NULL) {
+        char time[48];
+        duration_text(cost->time.cpu_seconds, time, sizeof time);
+        fprintf(file, ", %s of CPU time", time);
+    }
+    if (finest.model_count > 0) {
+        fprintf(file, "; %s by %s", words->title, text_or(finest.curves[0]->series, "-"));
+        if (!isnan(finest.curves[0]->level))
+            fprintf(file, " at %.4g points a shortest wave", finest.curves[0]->level);
+        fputc('\n', file);
+        print_table(words, one, &finest, file);
+        if (finest.more_models)
+            fprintf(file, "Only the first %d models are shown.\n", MODELS_MOST);
+    } else {
+        fputc('\n', file);
+    }
+}
+
+/* --- a row a case --- */
+
+enum { SAMPLES = 3 }; /* first, middle and last point */
+
+static size_t sample_place(const struct finest_curves *finest, size_t n) {
+    size_t places = place_count(finest);
+    return places > 0 ? n * (places - 1) / (SAMPLES - 1) : 0;
+}
+
+/* Finds x of each sample, NaN where cases differ in it. */
+static void find_samples(const struct quantity_table *words, const struct shown_cases *shown,
+                         double x[SAMPLES]) {
+    bool begun = false;
+    for (size_t c = 0; c < shown->count; c++) {
+        struct finest_curves finest;
+        find_finest(&finest, words, shown->list[c]);
+        for (size_t n = 0; n < SAMPLES && place_count(&finest) > 0; n++) {
+            double place = finest.curves[0]->x[sample_place(&finest, n)];
+            x[n] = !begun || place == x[n] ? place : (double)NAN;
+        }
+        begun = begun || place_count(&finest) > 0;
+    }
+}
+
+/* Finds the sources that are known of a case's main curve: of size, or small in all cases. */
+static void find_known(const struct study_report *report, const struct shown_cases *shown,
+                       bool known[ERROR_SOURCES], bool small[ERROR_SOURCES]) {
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        double largest = NAN;
+        for (size_t c = 0; c < shown->count; c++) {
+            const struct case_report *cost = report_of(report, shown->list[c]);
+            if (cost != NULL && cost->main != NULL)
+                largest = fmax(largest, cost->main->errors[s]);
+        }
+        known[s] = largest >= ERROR_SHOWN;
+        small[s] = largest < ERROR_SHOWN;
+    }
+}
+
+static void put_row_heading(const struct quantity_table *words, const struct shown_cases *shown,
+                            const bool known[ERROR_SOURCES], struct text_table *table) {
+    static const char *const SAMPLE_NAMES[SAMPLES] = {"lowest", "middle", "highest"};
+    double x[SAMPLES] = {NAN, NAN, NAN};
+    find_samples(words, shown, x);
+    table_cell(table, "case");
+    varied_headings(table, shown);
+    table_cell(table, "realisations");
+    table_fold(table);
+    for (size_t n = 0; n < SAMPLES; n++)
+        if (isnan(x[n]))
+            table_cell(table, "%s at %s %s", words->value, SAMPLE_NAMES[n], words->x);
+        else
+            table_cell(table, "%s at %.4g", words->value, x[n]);
+    for (int source = 0; source < ERROR_SOURCES; source++)
+        if (known[source])
+            table_cell(table, "%s %%", source_word(words->error_words, (enum error_source)source));
+    table_fold(table);
+    for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++)
+        table_cell(table, "%s", *name);
+    table_cell(table, "CPU time");
+}
+
+static void put_row(const struct quantity_table *words, const struct shown_cases *shown, size_t c,
+                    const struct case_report *cost, const bool known[ERROR_SOURCES],
+                    struct text_table *table) {
+    const struct case_result *one = shown->list[c];
+    struct finest_curves finest;
+    find_finest(&finest, words, one);
+    table_number(table, (double)one->case_number);
+    varied_cells(table, shown, c);
+    table_number(table, (double)one->realisations);
+    for (size_t n = 0; n < SAMPLES; n++)
+        value_cell(table, one, finest.curves[0], sample_place(&finest, n));
+    for (int source = 0; source < ERROR_SOURCES; source++)
+        if (known[source])
+            percent_cell(table, cost != NULL && cost->main != NULL ? cost->main->errors[source]
+                                                                   : (double)NAN);
+    for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++) {
+        const struct scalar *scalar = result_scalar(one, *name);
+        measured_cell(table, scalar != NULL ? scalar->value : (double)NAN,
+                      scalar != NULL ? scalar->standard_error : (double)NAN);
+    }
+    duration_cell(table, cost != NULL ? cost->time.cpu_seconds : (double)NAN);
+}
+
+static void print_rows(const struct quantity_table *words, const struct shown_cases *shown,
+                       const struct study_report *report, FILE *file) {
+    bool known[ERROR_SOURCES], small[ERROR_SOURCES], unknown[ERROR_SOURCES] = {false};
+    size_t scalars = 0, sources = 0;
+    find_known(report, shown, known, small);
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        sources += known[s];
+    while (words->scalars != NULL && words->scalars[scalars] != NULL)
+        scalars++;
+    struct text_table table = {.columns =
+                                   1 + shown->varied_count + 1 + SAMPLES + sources + scalars + 1};
+    put_row_heading(words, shown, known, &table);
+    for (size_t c = 0; c < shown->count; c++) {
+        struct finest_curves finest;
+        find_finest(&finest, words, shown->list[c]);
+        find_unknown(&finest, unknown);
+        put_row(words, shown, c, report_of(report, shown->list[c]), known, &table);
+    }
+    fputc('\n', file);
+    table_print(&table, file);
+    table_clear(&table);
+    print_unknown(unknown, words->error_words, file);
+    print_small(small, words->error_words, file);
+}
+
+void summary_of_quantity(const struct quantity_table *words, const struct shown_cases *shown,
+                         const struct study_report *report, FILE *file) {
+    if (shown->count <= TABLES_MOST)
+        for (size_t c = 0; c < shown->count; c++)
+            print_case(words, shown, c, report, file);
+    else
+        print_rows(words, shown, report, file);
+    fprintf(file, "\n%s\n", words->legend);
+    print_partial(shown, words->x, file);
+    print_notes(shown, NOTES_SHOWN, file);
+}

@@ -1,0 +1,661 @@
+#include "server/show/table/case_table.h"
+#include "jobs/kind.h"
+#include "schema/result/result.h"
+#include "schema/result/swept.h"
+#include "schema/study/parameter.h"
+#include "server/show/table/shown_cases.h"
+#include "server/show/view.h"
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Numbers that a person writes are those meant, to so much. */
+static const double ROUNDING = 1e-9;
+enum { TABLE_WORDS_MOST = 8, TABLE_NAME_SIZE = 192 };
+
+/* A column as it is asked for: "contact_area:layered@0.1". */
+struct table_wish {
+    char text[TABLE_NAME_SIZE]; /* words are parts of it, ended by NUL */
+    const char *quantity;       /* or the name of a scalar */
+    size_t word_count;
+    const char *words[TABLE_WORDS_MOST];
+    double x; /* NaN: a scalar is asked for */
+};
+
+struct table_maker {
+    struct case_table *table;
+    const struct picture_source *source;
+    struct study_result curves; /* of the quantity that was asked for last; owned */
+};
+
+void case_table_clear(struct case_table *table) {
+    study_result_clear(&table->study);
+    result_clear(&table->room);
+    free(table->columns);
+    *table = (struct case_table){0};
+}
+
+/* Appends a column of as many values as there are rows, NaN at first, for the caller to fill. */
+static int table_add(struct case_table *table, struct table_column column,
+                     struct table_value **values, struct error *err) {
+    struct table_column *larger =
+        realloc(table->columns, (table->column_count + 1) * sizeof *larger);
+    if (larger != NULL)
+        table->columns = larger;
+    struct table_value *room = result_room(&table->room, table->row_count + 1, sizeof *room);
+    column.name = result_text(&table->room, column.name);
+    if (larger == NULL || room == NULL || column.name == NULL)
+        return error_memory(err, table->row_count * sizeof *room, "a column");
+    for (size_t r = 0; r < table->row_count; r++)
+        room[r] = (struct table_value){
+            .value = NAN, .standard_error = NAN, .error = NAN, .theory = NAN, .grid = NAN};
+    column.values = room;
+    table->columns[table->column_count++] = column;
+    *values = room;
+    return 0;
+}
+
+/* --- what was swept --- */
+
+/* Returns the unit of a parameter of the kind, or NULL. */
+static const char *unit_of(const char *kind, const char *pointer) {
+    const struct job_kind *known = kind_find(kind);
+    const struct parameter *row =
+        known != NULL ? parameter_find(known->study.tables, pointer, NULL) : NULL;
+    return row != NULL ? row->unit : NULL;
+}
+
+static int add_parameters(struct case_table *table, struct error *err) {
+    const char *pointer;
+    int status = 0;
+    for (size_t n = 0; status == 0 && (pointer = swept_pointer(&table->study, n)) != NULL; n++) {
+        struct table_value *values;
+        struct table_column column = {.type = COLUMN_PARAMETER,
+                                      .name = swept_name(&table->study, n),
+                                      .pointer = pointer,
+                                      .unit = unit_of(table->study.kind, pointer),
+                                      .x = NAN};
+        status = table_add(table, column, &values, err);
+        for (size_t r = 0; status == 0 && r < table->row_count; r++) {
+            values[r].parameter = result_parameter(table->rows[r], pointer);
+            if (values[r].parameter != NULL && values[r].parameter->text == NULL)
+                values[r].value = values[r].parameter->number;
+        }
+    }
+    return status;
+}
+
+/* --- scalars --- */
+
+static struct table_value value_of(const struct scalar *scalar, bool unknown[ERROR_SOURCES]) {
+    struct table_value value = {.value = scalar->value,
+                                .standard_error = scalar->standard_error,
+                                .error = NAN,
+                                .theory = scalar->theory,
+                                .grid = scalar->grid};
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        const struct scalar_error *error = &scalar->errors[s];
+        unknown[s] = unknown[s] || (error->applies && !error->known);
+        if (error->applies && error->known)
+            value.error = (isnan(value.error) ? 0 : value.error) + fabs(error->value) +
+                          (isnan(error->bound) ? 0 : error->bound);
+    }
+    return value;
+}
+
+static int refuse_scalar(const struct case_table *table, const char *name, struct error *err) {
+    char names[320] = "";
+    for (size_t c = 0; c < table->study.case_count && *names == '\0'; c++)
+        for (size_t s = 0; s < table->study.cases[c].scalar_count; s++) {
+            size_t used = strlen(names);
+            snprintf(names + used, sizeof names - used, "%s%s", used > 0 ? ", " : "",
+                     table->study.cases[c].scalars[s].name);
+        }
+    return error_set(err, ERROR_INPUT,
+                     "columns: no case has a scalar \"%.60s\"; a value of a curve is named as "
+                     "QUANTITY@X, scalars are: %s",
+                     name, *names != '\0' ? names : "none yet");
+}
+
+/* A scalar that the view names, but no case has, is left out (optional). */
+static int add_scalar(struct case_table *table, const char *name, bool optional,
+                      struct error *err) {
+    bool found = false;
+    struct table_value *values;
+    for (size_t c = 0; c < table->study.case_count && !found; c++)
+        found = result_scalar(&table->study.cases[c], name) != NULL;
+    if (!found)
+        return optional ? 0 : refuse_scalar(table, name, err);
+    int status = table_add(
+        table, (struct table_column){.type = COLUMN_SCALAR, .name = name, .x = NAN}, &values, err);
+    for (size_t r = 0; status == 0 && r < table->row_count; r++) {
+        const struct scalar *scalar = result_scalar(table->rows[r], name);
+        if (scalar != NULL)
+            values[r] = value_of(scalar, table->columns[table->column_count - 1].unknown);
+    }
+    return status;
+}
+
+/* --- values of curves --- */
+
+enum { MODELS_MOST = 8, PLACES_TOLD = 320 };
+
+/* Returns whether a number is meant by a text. */
+static bool is_number(double number, const char *text) {
+    char *end;
+    double read = strtod(text, &end);
+    return end != text && *end == '\0' && fabs(read - number) <= ROUNDING * fabs(number);
+}
+
+static bool is_text(const char *own, const char *text) {
+    return own != NULL && strcmp(own, text) == 0;
+}
+
+static bool has_word(const struct curve *curve, const char *word) {
+    return is_text(curve->model, word) || is_text(curve->series, word) ||
+           is_text(curve->kinematics, word) || is_number(curve->level, word) ||
+           is_number(curve->pressure, word);
+}
+
+static bool is_wished(const struct curve *curve, const struct table_wish *wish) {
+    bool fits = strcmp(curve->quantity, wish->quantity) == 0 && curve->columns == 0;
+    for (size_t w = 0; w < wish->word_count && fits; w++)
+        fits = has_word(curve, wish->words[w]);
+    return fits;
+}
+
+/* Returns the curve of a model: of the first series that fits, on its finest level; or NULL. */
+static const struct curve *find_curve(const struct case_result *one, const struct table_wish *wish,
+                                      const char *model) {
+    const struct curve *found = NULL;
+    for (size_t a = 0; a < one->curve_count; a++) {
+        const struct curve *curve = &one->curves[a];
+        if (!is_wished(curve, wish) || !same_text(curve->model, model))
+            continue;
+        if (found == NULL ||
+            (same_text(curve->series, found->series) &&
+             same_number(curve->pressure, found->pressure) && curve->level > found->level))
+            found = curve;
+    }
+    return found;
+}
+
+/* The models of the curves that are requested, in the order of the first case that has them. */
+struct models {
+    size_t count;
+    const char *names[MODELS_MOST]; /* NULL: curves without models */
+};
+
+static void find_models(struct models *models, const struct study_result *study,
+                        const struct table_wish *wish) {
+    *models = (struct models){0};
+    for (size_t c = 0; c < study->case_count; c++)
+        for (size_t a = 0; a < study->cases[c].curve_count; a++) {
+            const struct curve *curve = &study->cases[c].curves[a];
+            bool met = !is_wished(curve, wish);
+            for (size_t m = 0; m < models->count && !met; m++)
+                met = same_text(models->names[m], curve->model);
+            if (!met && models->count < MODELS_MOST)
+                models->names[models->count++] = curve->model;
+        }
+}
+
+/* Returns the number of the point at x; curve->n where there is none. */
+static size_t find_place(const struct curve *curve, double x) {
+    size_t k = 0;
+    while (k < curve->n && !(fabs(curve->x[k] - x) <= ROUNDING * fabs(x)))
+        k++;
+    return k;
+}
+
+static double number_at(const double *numbers, size_t k) {
+    return numbers != NULL ? numbers[k] : (double)NAN;
+}
+
+/* Returns the first theory of a curve that has a value at a point; or the one of this name. NULL:
+ * none. */
+static const struct theory *find_theory(const struct curve *curve, size_t k, const char *name) {
+    for (size_t t = 0; t < curve->theory_count; t++)
+        if (name != NULL ? strcmp(curve->theories[t].name, name) == 0
+                         : !isnan(number_at(curve->theories[t].y, k)))
+            return &curve->theories[t];
+    return NULL;
+}
+
+static struct table_value value_at(const struct curve *curve, size_t k, const struct theory *theory,
+                                   bool unknown[ERROR_SOURCES]) {
+    struct table_value value = {.value = curve->y[k],
+                                .standard_error = curve->standard_error[k],
+                                .error = NAN,
+                                .theory = NAN,
+                                .grid = NAN};
+    value.theory = theory != NULL ? number_at(theory->y, k) : (double)NAN;
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        const struct curve_error *error = &curve->errors[s];
+        double own = number_at(error->value, k), bound = number_at(error->bound, k);
+        unknown[s] = unknown[s] || (error->applies && isnan(own));
+        if (!isnan(own))
+            value.error =
+                (isnan(value.error) ? 0 : value.error) + fabs(own) + (isnan(bound) ? 0 : bound);
+    }
+    return value;
+}
+
+/* --- what there is not --- */
+
+static void append(char *text, size_t size, const char *word) {
+    size_t used = strlen(text);
+    if (word != NULL && *word != '\0' && strstr(text, word) == NULL)
+        snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", word);
+}
+
+static int refuse_words(const struct study_result *study, const struct table_wish *wish,
+                        struct error *err) {
+    const struct table_wish plain = {.quantity = wish->quantity};
+    char words[PLACES_TOLD] = "", number[32];
+    for (size_t c = 0; c < study->case_count; c++)
+        for (size_t a = 0; a < study->cases[c].curve_count; a++) {
+            const struct curve *curve = &study->cases[c].curves[a];
+            if (!is_wished(curve, &plain))
+                continue;
+            append(words, sizeof words, curve->model);
+            append(words, sizeof words, curve->kinematics);
+            append(words, sizeof words, curve->series);
+            snprintf(number, sizeof number, "%g", curve->level);
+            append(words, sizeof words, isnan(curve->level) ? NULL : number);
+        }
+    if (*words == '\0')
+        return error_set(err, ERROR_INPUT, "columns: no case has a curve of \"%.60s\" over one x",
+                         wish->quantity);
+    return error_set(err, ERROR_INPUT, "columns: %.60s has no such curve; its words are %s",
+                     wish->quantity, words);
+}
+
+static int refuse_place(const struct curve *curve, const struct table_wish *wish,
+                        struct error *err) {
+    char places[PLACES_TOLD] = "";
+    for (size_t k = 0; curve != NULL && k < curve->n; k++) {
+        size_t used = strlen(places);
+        if (used + 40 > sizeof places) {
+            snprintf(places + used, sizeof places - used, " and on to %.10g",
+                     curve->x[curve->n - 1]);
+            break;
+        }
+        snprintf(places + used, sizeof places - used, "%s%.10g", used > 0 ? ", " : "", curve->x[k]);
+    }
+    return error_set(err, ERROR_INPUT, "columns: %.60s has no value at %.10g; it is known at %s",
+                     wish->quantity, wish->x, *places != '\0' ? places : "no point yet");
+}
+
+/* --- columns --- */
+
+/* Reads the curves of a quantity, of all cases, unless they are at hand. */
+static int read_curves(struct table_maker *maker, const char *quantity, struct error *err) {
+    const struct result_filter filter = {
+        .case_number = -1, .part = {.quantity = quantity}, .complete = true};
+    for (size_t c = 0; c < maker->curves.case_count; c++)
+        if (result_curve(&maker->curves.cases[c], quantity) != NULL)
+            return 0;
+    study_result_clear(&maker->curves);
+    return maker->source->results(maker->source->context, &filter, &maker->curves, err);
+}
+
+static const struct case_result *case_of(const struct study_result *study, uint64_t number) {
+    for (size_t c = 0; c < study->case_count; c++)
+        if (study->cases[c].case_number == number)
+            return &study->cases[c];
+    return NULL;
+}
+
+/* Writes "contact_area:layered@0.1": as it was asked for, with the model where there are several.
+ */
+static void column_name(const struct table_wish *wish, const struct models *models,
+                        const char *model, char name[TABLE_NAME_SIZE]) {
+    size_t used = (size_t)snprintf(name, TABLE_NAME_SIZE, "%.60s", wish->quantity);
+    if (models->count > 1 && model != NULL)
+        used += (size_t)snprintf(name + used, TABLE_NAME_SIZE - used, ":%.30s", model);
+    for (size_t w = 0; w < wish->word_count && used + 40 < TABLE_NAME_SIZE; w++)
+        used += (size_t)snprintf(name + used, TABLE_NAME_SIZE - used, ":%.30s", wish->words[w]);
+    if (used + 24 < TABLE_NAME_SIZE)
+        snprintf(name + used, TABLE_NAME_SIZE - used, "@%.10g", wish->x);
+}
+
+/* Copies the texts of a curve, which is gone when the table is shown. */
+static int describe_column(struct case_table *table, const struct curve *curve,
+                           struct table_column *column, struct error *err) {
+    column->quantity = result_text(&table->room, curve->quantity);
+    column->series = result_text(&table->room, curve->series);
+    column->model = result_text(&table->room, curve->model);
+    column->unit = result_text(&table->room, curve->y_label);
+    column->x_label = result_text(&table->room, curve->x_label);
+    return column->quantity != NULL && column->series != NULL && column->unit != NULL &&
+                   column->x_label != NULL
+               ? 0
+               : error_memory(err, TABLE_NAME_SIZE, "a column");
+}
+
+/* Adds the column of a model. found: whether some case of the study has a value there. */
+static int add_model(struct table_maker *maker, const struct table_wish *wish,
+                     const struct models *models, const char *model, bool *found,
+                     struct error *err) {
+    struct case_table *table = maker->table;
+    char name[TABLE_NAME_SIZE];
+    struct table_value *values;
+    column_name(wish, models, model, name);
+    int status =
+        table_add(table, (struct table_column){.type = COLUMN_CURVE, .name = name, .x = wish->x},
+                  &values, err);
+    if (status != 0)
+        return status;
+    struct table_column *column = &table->columns[table->column_count - 1];
+    for (size_t c = 0; c < maker->curves.case_count && status == 0; c++) {
+        const struct curve *curve = find_curve(&maker->curves.cases[c], wish, model);
+        *found = *found || (curve != NULL && find_place(curve, wish->x) < curve->n);
+        if (curve != NULL && column->quantity == NULL)
+            status = describe_column(table, curve, column, err);
+    }
+    for (size_t r = 0; r < table->row_count && status == 0; r++) {
+        const struct case_result *one = case_of(&maker->curves, table->rows[r]->case_number);
+        const struct curve *curve = one != NULL ? find_curve(one, wish, model) : NULL;
+        size_t k = curve != NULL ? find_place(curve, wish->x) : 0;
+        if (curve == NULL || k == curve->n)
+            continue;
+        const struct theory *theory = find_theory(curve, k, column->theory);
+        if (theory != NULL && column->theory == NULL)
+            column->theory = result_text(&table->room, theory->name);
+        values[r] = value_at(curve, k, theory, column->unknown);
+    }
+    return status;
+}
+
+/* Adds the columns of curves that a request stands for. */
+static int table_add_curves(struct table_maker *maker, const struct table_wish *wish,
+                            struct error *err) {
+    struct models models;
+    bool found = false;
+    int status = read_curves(maker, wish->quantity, err);
+    if (status != 0)
+        return status;
+    find_models(&models, &maker->curves, wish);
+    if (models.count == 0)
+        return refuse_words(&maker->curves, wish, err);
+    for (size_t m = 0; m < models.count && status == 0; m++)
+        status = add_model(maker, wish, &models, models.names[m], &found, err);
+    const struct curve *first = NULL;
+    for (size_t c = 0; c < maker->curves.case_count && first == NULL; c++)
+        first = find_curve(&maker->curves.cases[c], wish, models.names[0]);
+    return status == 0 && !found ? refuse_place(first, wish, err) : status;
+}
+
+/* Adds what the kind's view shows of such a quantity: at the highest x of its curves, and at the
+ * one next to a third of it. */
+static int table_add_quantity(struct table_maker *maker, const char *quantity, struct error *err) {
+    const struct curve *first = NULL;
+    int status = read_curves(maker, quantity, err);
+    for (size_t c = 0; c < maker->curves.case_count && status == 0 && first == NULL; c++)
+        first = result_curve(&maker->curves.cases[c], quantity);
+    if (status != 0 || first == NULL || first->n == 0)
+        return status;
+    double last = first->x[first->n - 1], third = last;
+    for (size_t k = 0; k < first->n; k++)
+        if (fabs(first->x[k] - last / 3) < fabs(third - last / 3))
+            third = first->x[k];
+    const struct table_wish low = {.quantity = quantity, .x = third};
+    const struct table_wish high = {.quantity = quantity, .x = last};
+    if (third < last)
+        status = table_add_curves(maker, &low, err);
+    return status != 0 ? status : table_add_curves(maker, &high, err);
+}
+
+/* --- the columns asked for --- */
+
+/* Reads "QUANTITY:WORD:WORD@X" out of size characters. */
+static int read_wish(struct table_wish *wish, const char *text, size_t size, struct error *err) {
+    char *end;
+    *wish = (struct table_wish){.x = NAN};
+    if (size == 0 || size >= sizeof wish->text)
+        return error_set(err, ERROR_INPUT, "columns: \"%.*s\" is no name",
+                         (int)(size > 60 ? 60 : size), text);
+    memcpy(wish->text, text, size);
+    char *at = strchr(wish->text, '@');
+    if (at != NULL) {
+        errno = 0;
+        wish->x = strtod(at + 1, &end);
+        if (end == at + 1 || *end != '\0' || errno != 0 || !isfinite(wish->x))
+            return error_set(err, ERROR_INPUT, "columns: \"%.60s\" is no number behind @", at + 1);
+        *at = '\0';
+    }
+    char *rest = wish->text;
+    wish->quantity = strsep(&rest, ":");
+    while (rest != NULL && wish->word_count < TABLE_WORDS_MOST)
+        wish->words[wish->word_count++] = strsep(&rest, ":");
+    if (rest != NULL || (at == NULL && wish->word_count > 0))
+        return error_set(err, ERROR_INPUT, "columns: \"%.*s\" is neither a scalar nor QUANTITY@X",
+                         (int)(size > 60 ? 60 : size), text);
+    return 0;
+}
+
+static int add_wished(struct table_maker *maker, const char *columns, struct error *err) {
+    int status = 0;
+    for (const char *next = columns; status == 0 && next != NULL;) {
+        struct table_wish wish;
+        size_t size = strcspn(next, ",");
+        status = read_wish(&wish, next, size, err);
+        if (status == 0)
+            status = isnan(wish.x) ? add_scalar(maker->table, wish.quantity, false, err)
+                                   : table_add_curves(maker, &wish, err);
+        next = next[size] == ',' ? next + size + 1 : NULL;
+    }
+    return status;
+}
+
+/* --- those of the view --- */
+
+static int add_scalars(struct case_table *table, const char *const *names, struct error *err) {
+    int status = 0;
+    for (; names != NULL && *names != NULL && status == 0; names++)
+        status = add_scalar(table, *names, true, err);
+    return status;
+}
+
+/* Adds those that have a theory, of a kind whose view names none. */
+static int add_theoretical(struct case_table *table, struct error *err) {
+    int status = 0;
+    const struct case_result *first = NULL;
+    for (size_t c = 0; c < table->study.case_count && first == NULL; c++)
+        if (table->study.cases[c].scalar_count > 0)
+            first = &table->study.cases[c];
+    for (size_t s = 0; first != NULL && s < first->scalar_count && status == 0; s++)
+        if (!isnan(first->scalars[s].theory))
+            status = add_scalar(table, first->scalars[s].name, true, err);
+    return status;
+}
+
+static int add_usual(struct table_maker *maker, struct error *err) {
+    const struct result_view *view = view_of(maker->table->study.kind);
+    const struct quantity_table *words = view->table;
+    size_t before = maker->table->column_count;
+    int status = 0;
+    if (words != NULL)
+        status = table_add_quantity(maker, words->quantity, err);
+    if (status == 0)
+        status = add_scalars(maker->table, words != NULL ? words->scalars : view->headlines, err);
+    if (status == 0 && maker->table->column_count == before)
+        status = add_theoretical(maker->table, err);
+    return status;
+}
+
+/* --- rows by the parameters of their cases: "hurst=0.8,shape=1" --- */
+
+enum { CONDITIONS_MOST = 32 };
+
+struct condition {
+    const char *pointer; /* of the cases */
+    char value[TABLE_NAME_SIZE];
+    bool holds; /* of the row that is asked now */
+};
+struct conditions {
+    size_t count;
+    struct condition list[CONDITIONS_MOST];
+};
+
+/* Returns the pointer that a name stands for: "hurst", "surface/hurst" or "/surface/hurst". */
+static const char *find_pointer(const struct case_table *table, const char *name) {
+    for (size_t c = 0; c < table->study.case_count; c++)
+        for (size_t p = 0; p < table->study.cases[c].parameter_count; p++) {
+            const char *pointer = table->study.cases[c].parameters[p].pointer;
+            if (strcmp(pointer, name) == 0 || strcmp(pointer + 1, name) == 0 ||
+                strcmp(last_name(pointer), name) == 0)
+                return pointer;
+        }
+    return NULL;
+}
+
+static void describe(const struct result_parameter *value, char *text, size_t size) {
+    if (value == NULL)
+        snprintf(text, size, "-");
+    else if (value->text != NULL)
+        snprintf(text, size, "%.60s", value->text);
+    else
+        snprintf(text, size, "%.10g", value->number);
+}
+
+static bool fits(const struct result_parameter *value, const char *wanted) {
+    char *end;
+    double number = strtod(wanted, &end);
+    if (value == NULL)
+        return false;
+    if (value->text != NULL)
+        return strcmp(value->text, wanted) == 0;
+    return end != wanted && *end == '\0' &&
+           fabs(value->number - number) <= ROUNDING * fabs(value->number);
+}
+
+static int read_condition(struct conditions *all, const struct case_table *table, const char *text,
+                          size_t size, struct error *err) {
+    char name[TABLE_NAME_SIZE];
+    const char *equals = memchr(text, '=', size);
+    size_t length = equals != NULL ? (size_t)(equals - text) : 0;
+    int shown = (int)(size > 60 ? 60 : size);
+    if (length == 0 || size >= sizeof name)
+        return error_set(err, ERROR_INPUT, "where: \"%.*s\" is not NAME=VALUE", shown, text);
+    if (all->count == CONDITIONS_MOST)
+        return error_set(err, ERROR_INPUT, "where: more than %d conditions", CONDITIONS_MOST);
+    struct condition *one = &all->list[all->count++];
+    snprintf(name, sizeof name, "%.*s", (int)length, text);
+    snprintf(one->value, sizeof one->value, "%.*s", (int)(size - length - 1), equals + 1);
+    one->pointer = find_pointer(table, name);
+    if (one->pointer == NULL)
+        return error_set(err, ERROR_INPUT, "where: \"%.60s\" is no parameter of the study's cases",
+                         name);
+    return 0;
+}
+
+/* Returns whether, of each parameter that is named, one value fits the case. */
+static bool holds(struct conditions *all, const struct case_result *one) {
+    bool every = true;
+    for (size_t n = 0; n < all->count; n++)
+        all->list[n].holds = fits(result_parameter(one, all->list[n].pointer), all->list[n].value);
+    for (size_t n = 0; n < all->count; n++) {
+        bool any = false;
+        for (size_t m = 0; m < all->count; m++)
+            any = any ||
+                  (all->list[m].holds && strcmp(all->list[m].pointer, all->list[n].pointer) == 0);
+        every = every && any;
+    }
+    return every;
+}
+
+/* No case fits: names the values of the first parameter that has no such value, or says that they
+ * do not go together. */
+static int refuse(const struct conditions *all, const struct case_table *table, struct error *err) {
+    const struct study_result *study = &table->study;
+    for (size_t n = 0; n < all->count; n++) {
+        const struct condition *one = &all->list[n];
+        char values[320] = "", text[64], last[64] = "";
+        bool any = false;
+        for (size_t c = 0; c < study->case_count; c++) {
+            const struct result_parameter *value = result_parameter(&study->cases[c], one->pointer);
+            size_t used = strlen(values);
+            any = any || fits(value, one->value);
+            describe(value, text, sizeof text);
+            if (strcmp(text, last) != 0 && strstr(values, text) == NULL)
+                snprintf(values + used, sizeof values - used, "%s%s", used > 0 ? ", " : "", text);
+            snprintf(last, sizeof last, "%s", text);
+        }
+        if (!any)
+            return error_set(err, ERROR_INPUT, "where: no case has %s = %.60s; there is %s",
+                             one->pointer, one->value, values);
+    }
+    return error_set(err, ERROR_INPUT, "where: no case has all of these values at once");
+}
+
+/* Reads "NAME=VALUE,..." and leaves the rows of the table that fit. */
+static int table_where(struct case_table *table, const char *const *where, struct error *err) {
+    struct conditions all = {0};
+    size_t kept = 0;
+    int status = 0;
+    for (; where != NULL && *where != NULL && status == 0; where++)
+        for (const char *next = *where; status == 0 && next != NULL;) {
+            size_t size = strcspn(next, ",");
+            status = read_condition(&all, table, next, size, err);
+            next = next[size] == ',' ? next + size + 1 : NULL;
+        }
+    for (size_t r = 0; r < table->row_count && status == 0; r++)
+        if (holds(&all, table->rows[r]))
+            table->rows[kept++] = table->rows[r];
+    if (status == 0 && kept == 0 && all.count > 0)
+        status = refuse(&all, table, err);
+    table->row_count = kept;
+    return status;
+}
+
+/* --- together --- */
+
+static int add_rows(struct case_table *table, const char *const *where, struct error *err) {
+    size_t count = table->study.case_count;
+    table->rows = result_room(&table->room, count + 1, sizeof *table->rows);
+    if (table->rows == NULL)
+        return error_memory(err, count * sizeof *table->rows, "rows");
+    for (size_t c = 0; c < count; c++)
+        table->rows[table->row_count++] = &table->study.cases[c];
+    return table_where(table, where, err);
+}
+
+int case_table_open(struct case_table *out, const struct picture_source *source,
+                    const char *const *where, struct error *err) {
+    static const struct result_filter SCALARS = {.case_number = -1, .part = {.scalars_only = true}};
+    *out = (struct case_table){0};
+    int status = source->results(source->context, &SCALARS, &out->study, err);
+    if (status == 0)
+        status = add_rows(out, where, err);
+    if (status != 0)
+        case_table_clear(out);
+    return status;
+}
+
+int case_table_add(struct case_table *table, const struct picture_source *source,
+                   const char *columns, struct error *err) {
+    struct table_maker maker = {.table = table, .source = source};
+    int status = columns != NULL ? add_wished(&maker, columns, err) : add_usual(&maker, err);
+    study_result_clear(&maker.curves);
+    return status;
+}
+
+int case_table_make(struct case_table *out, const struct picture_source *source,
+                    const struct table_request *request, struct error *err) {
+    struct case_table table;
+    int status = case_table_open(&table, source, request->where, err);
+    if (status != 0)
+        return status;
+    status = add_parameters(&table, err);
+    if (status == 0)
+        status = case_table_add(&table, source, request->columns, err);
+    if (status != 0)
+        case_table_clear(&table);
+    else
+        *out = table;
+    return status;
+}

@@ -1,0 +1,262 @@
+#include "core/plain_text.h"
+#include "schema/json/json.h"
+#include "schema/result/provenance.h"
+#include "schema/result/result_json.h"
+#include "server/show/summary/summary_cells.h"
+#include "server/show/table/case_table.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Returns whether a column has a number of this kind in some row; at: its offset in a value. */
+static bool has_any(const struct case_table *table, const struct table_column *column, size_t at) {
+    for (size_t r = 0; r < table->row_count; r++)
+        if (!isnan(*(const double *)((const char *)&column->values[r] + at)))
+            return true;
+    return false;
+}
+#define HAS_ANY(table, column, member) has_any(table, column, offsetof(struct table_value, member))
+
+/* --- text --- */
+
+static void text_cell(struct text_table *text, const struct table_column *column,
+                      const struct table_value *value) {
+    const struct result_parameter *parameter = value->parameter;
+    if (parameter != NULL && parameter->text != NULL)
+        table_cell(text, "%.60s", parameter->text);
+    else if (column->type == COLUMN_PARAMETER)
+        table_number(text, value->value);
+    else
+        measured_cell(text, value->value, value->standard_error);
+}
+
+static void text_rows(const struct case_table *table, struct text_table *text) {
+    table_cell(text, "case");
+    table_cell(text, "n");
+    for (size_t n = 0; n < table->column_count; n++) {
+        if (table->columns[n].type != COLUMN_PARAMETER)
+            table_fold(text);
+        table_cell(text, "%s", table->columns[n].name);
+    }
+    for (size_t r = 0; r < table->row_count; r++) {
+        table_cell(text, "%llu", (unsigned long long)table->rows[r]->case_number);
+        table_cell(text, "%llu", (unsigned long long)table->rows[r]->realisations);
+        for (size_t n = 0; n < table->column_count; n++)
+            text_cell(text, &table->columns[n], &table->columns[n].values[r]);
+    }
+}
+
+/* What a column is: "mean_gap@0.1: mean gap/sqrt(m0) at p/(E* h'); errors other than statistical up
+ * to 0.2
+ * %".
+ */
+static void text_legend(const struct case_table *table, const struct table_column *column,
+                        FILE *file) {
+    double largest = NAN;
+    for (size_t r = 0; r < table->row_count; r++)
+        largest = fmax(largest, column->values[r].error / fabs(column->values[r].value));
+    bool told = largest > 0 && isfinite(largest), curve = column->quantity != NULL;
+    if (!told && column->unit == NULL)
+        return;
+    fprintf(file, "%s:", column->name);
+    if (column->unit != NULL)
+        fprintf(file, " %s", column->unit);
+    if (curve)
+        fprintf(file, "%s%s at %s", *column->series != '\0' ? ", " : "", column->series,
+                column->x_label);
+    if (told)
+        fprintf(file, "%s errors other than statistical up to %.2g %%",
+                column->unit != NULL ? ";" : "", 100 * largest);
+    fputc('\n', file);
+}
+
+static void text_unknown(const struct case_table *table, FILE *file) {
+    bool first = true;
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        bool unknown = false;
+        for (size_t n = 0; n < table->column_count; n++)
+            unknown = unknown || table->columns[n].unknown[s];
+        if (unknown)
+            fprintf(file, "%s%s", first ? "Errors not known: " : ", ", ERROR_SOURCE_ROWS[s].name);
+        first = first && !unknown;
+    }
+    if (!first)
+        fputs(".\n", file);
+}
+
+void case_table_text(const struct case_table *table, FILE *file) {
+    struct text_table text = {.columns = 2 + table->column_count};
+    text_print_plain(file, table->study.name);
+    fprintf(file, " (%s), study %s\n\n", table->study.state, table->study.id);
+    text_rows(table, &text);
+    table_print(&text, file);
+    table_clear(&text);
+    fputs("\nn: realisations; +-: one standard error\n", file);
+    for (size_t n = 0; n < table->column_count; n++)
+        text_legend(table, &table->columns[n], file);
+    text_unknown(table, file);
+    for (size_t r = 0; r < table->row_count; r++)
+        if (table->rows[r]->error != NULL) {
+            fputs("no results: ", file);
+            text_print_plain(file, table->rows[r]->error);
+            fputc('\n', file);
+        }
+}
+
+/* --- CSV --- */
+
+static void csv_text(FILE *file, const char *text) {
+    fputc('"', file);
+    for (; *text != '\0'; text++)
+        fprintf(file, *text == '"' ? "\"\"" : "%c", *text);
+    fputc('"', file);
+}
+
+static void csv_number(FILE *file, double number) {
+    fputc(',', file);
+    if (isfinite(number))
+        json_print_number(file, number);
+}
+
+static void csv_heading(const struct case_table *table, FILE *file) {
+    fputs("case,realisations", file);
+    for (size_t n = 0; n < table->column_count; n++) {
+        const struct table_column *column = &table->columns[n];
+        fprintf(file, ",%s", column->name);
+        if (column->type == COLUMN_PARAMETER)
+            continue;
+        fprintf(file, ",%s_standard_error,%s_error", column->name, column->name);
+        if (HAS_ANY(table, column, theory))
+            fprintf(file, ",%s_theory", column->name);
+    }
+    fputc('\n', file);
+}
+
+bool case_table_csv(const struct case_table *table, FILE *file) {
+    provenance_comment(file, &table->study);
+    csv_heading(table, file);
+    for (size_t r = 0; r < table->row_count; r++) {
+        fprintf(file, "%llu,%llu", (unsigned long long)table->rows[r]->case_number,
+                (unsigned long long)table->rows[r]->realisations);
+        for (size_t n = 0; n < table->column_count; n++) {
+            const struct table_column *column = &table->columns[n];
+            const struct table_value *value = &column->values[r];
+            csv_number(file, value->value);
+            if (value->parameter != NULL && value->parameter->text != NULL)
+                csv_text(file, value->parameter->text);
+            if (column->type == COLUMN_PARAMETER)
+                continue;
+            csv_number(file, value->standard_error);
+            csv_number(file, value->error);
+            if (HAS_ANY(table, column, theory))
+                csv_number(file, value->theory);
+        }
+        fputc('\n', file);
+    }
+    return true;
+}
+
+/* --- JSON --- */
+
+static bool put_member(FILE *file, const char *key, const char *text) {
+    if (text == NULL)
+        return true;
+    fprintf(file, ",\"%s\":", key);
+    return json_print_text(file, text);
+}
+
+static bool print_column(const struct table_column *column, FILE *file) {
+    static const char *const TYPES[] = {"parameter", "scalar", "curve"};
+    fputs("{\"name\":", file);
+    bool done =
+        json_print_text(file, column->name) && put_member(file, "type", TYPES[column->type]) &&
+        put_member(file, "pointer", column->pointer) &&
+        put_member(file, "quantity", column->quantity) &&
+        put_member(file, "series", column->series) && put_member(file, "model", column->model) &&
+        put_member(file, "x_label", column->x_label);
+    if (!isnan(column->x)) {
+        fputs(",\"x\":", file);
+        json_print_number(file, column->x);
+    }
+    fputs(",\"unit\":", file);
+    if (column->unit == NULL)
+        fputs("null", file);
+    else
+        done = done && json_print_text(file, column->unit);
+    bool first = true;
+    for (size_t s = 0; s < ERROR_SOURCES && column->type != COLUMN_PARAMETER; s++)
+        if (column->unknown[s]) {
+            fprintf(file, "%s\"%s\"", first ? ",\"unknown\":[" : ",", ERROR_SOURCE_ROWS[s].name);
+            first = false;
+        }
+    fputs(first ? "}" : "]}", file);
+    return done;
+}
+
+/* Prints one number of every value of a row; parameters have a value alone. */
+static bool print_members(const struct case_table *table, size_t r, size_t at, FILE *file) {
+    bool done = true;
+    for (size_t n = 0; n < table->column_count && done; n++) {
+        const struct table_value *value = &table->columns[n].values[r];
+        const struct result_parameter *parameter = value->parameter;
+        bool text = parameter != NULL && parameter->text != NULL &&
+                    at == offsetof(struct table_value, value);
+        fputc(n > 0 ? ',' : '[', file);
+        if (text && parameter->list)
+            fputs(parameter->text, file);
+        else if (text)
+            done = json_print_text(file, parameter->text);
+        else
+            json_print_number(file, *(const double *)((const char *)value + at));
+    }
+    fputs(table->column_count > 0 ? "]" : "[]", file);
+    return done;
+}
+
+static bool print_row(const struct case_table *table, size_t r, FILE *file) {
+    static const struct {
+        const char *key;
+        size_t at;
+    } MEMBERS[] = {{"values", offsetof(struct table_value, value)},
+                   {"standard_errors", offsetof(struct table_value, standard_error)},
+                   {"errors", offsetof(struct table_value, error)},
+                   {"theory", offsetof(struct table_value, theory)}};
+    bool done = true;
+    fprintf(file, "{\"case\":%llu,\"realisations\":%llu",
+            (unsigned long long)table->rows[r]->case_number,
+            (unsigned long long)table->rows[r]->realisations);
+    for (size_t m = 0; m < sizeof MEMBERS / sizeof *MEMBERS && done; m++) {
+        fprintf(file, ",\"%s\":", MEMBERS[m].key);
+        done = print_members(table, r, MEMBERS[m].at, file);
+    }
+    done = done && result_print_error(file, table->rows[r]);
+    fputc('}', file);
+    return done;
+}
+
+bool case_table_json(const struct case_table *table, FILE *file) {
+    bool done = study_print_about(file, &table->study);
+    fputs(",\"columns\":[", file);
+    for (size_t n = 0; n < table->column_count && done; n++) {
+        fputs(n > 0 ? "," : "", file);
+        done = print_column(&table->columns[n], file);
+    }
+    fputs("],\"rows\":[", file);
+    for (size_t r = 0; r < table->row_count && done; r++) {
+        fputs(r > 0 ? "," : "", file);
+        done = print_row(table, r, file);
+    }
+    fputs("]}", file);
+    return done;
+}
+
+int case_table_print(const struct case_table *table, int format, FILE *file, struct error *err) {
+    bool done = true;
+    if (format == TABLE_JSON)
+        done = case_table_json(table, file) && fputc('\n', file) != EOF;
+    else if (format == TABLE_CSV)
+        done = case_table_csv(table, file);
+    else
+        case_table_text(table, file);
+    return done || ferror(file) != 0 ? 0 : error_memory(err, 0, "a table");
+}

@@ -1,0 +1,235 @@
+#include "server/show/table/sweep.h"
+#include "server/show/table/shown_cases.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct sweep {
+    struct case_table *table;
+    const char *x;          /* pointer of the parameter */
+    struct plot_line *list; /* owned until the lines take it */
+    size_t count;
+    size_t left_out; /* rows without a value, or without this parameter */
+};
+
+/* --- the parameter --- */
+
+static bool is_named(const char *pointer, const char *name) {
+    return strcmp(pointer, name) == 0 || strcmp(pointer + 1, name) == 0 ||
+           strcmp(last_name(pointer), name) == 0;
+}
+
+/* Returns NaN for a case without the parameter, or where it is a word. */
+static double number_at(const struct case_result *one, const char *pointer) {
+    const struct result_parameter *value = result_parameter(one, pointer);
+    return value != NULL && value->text == NULL ? value->number : (double)NAN;
+}
+
+/* Counts the numbers that a parameter has in the rows. */
+static size_t count_numbers(const struct case_table *table, const char *pointer) {
+    size_t count = 0;
+    for (size_t r = 0; r < table->row_count; r++) {
+        double number = number_at(table->rows[r], pointer);
+        bool met = isnan(number);
+        for (size_t before = 0; before < r && !met; before++)
+            met = number == number_at(table->rows[before], pointer);
+        count += !met;
+    }
+    return count;
+}
+
+/* Chooses the parameter of this name, or of all the one of most numbers. */
+static int choose_x(struct sweep *sweep, const char *name, struct error *err) {
+    const struct case_table *table = sweep->table;
+    size_t most = name != NULL ? 0 : 1;
+    for (size_t r = 0; r < table->row_count; r++)
+        for (size_t p = 0; p < table->rows[r]->parameter_count; p++) {
+            const char *pointer = table->rows[r]->parameters[p].pointer;
+            if ((r > 0 && result_parameter(table->rows[0], pointer) != NULL) ||
+                (name != NULL && !is_named(pointer, name)))
+                continue;
+            size_t numbers = count_numbers(table, pointer);
+            if (numbers > most) {
+                most = numbers;
+                sweep->x = pointer;
+            }
+        }
+    if (sweep->x != NULL)
+        return 0;
+    return name != NULL
+               ? error_set(err, ERROR_INPUT, "x: \"%.60s\" is no number of the study's cases", name)
+               : error_set(err, ERROR_INPUT,
+                           "x: the study sweeps no number; name one of its cases");
+}
+
+/* --- lines --- */
+
+/* Returns whether two cases differ by nothing but x. Lists go with a number. */
+static bool same_line(const struct sweep *sweep, const struct case_result *a,
+                      const struct case_result *b) {
+    bool same = a->parameter_count == b->parameter_count;
+    for (size_t p = 0; p < a->parameter_count && same; p++) {
+        const struct result_parameter *own = &a->parameters[p];
+        same = own->list || strcmp(own->pointer, sweep->x) == 0 ||
+               parameter_same(own, parameter_at(b, own->pointer, p));
+    }
+    return same;
+}
+
+static double x_of(const struct sweep *sweep, size_t row) {
+    return number_at(sweep->table->rows[row], sweep->x);
+}
+
+static bool has_point(const struct sweep *sweep, const struct table_column *column, size_t row) {
+    return isfinite(column->values[row].value) && isfinite(x_of(sweep, row));
+}
+
+/* Gathers the rows of the line that begins with this one, by rising x. */
+static size_t gather(const struct sweep *sweep, const struct table_column *column, size_t first,
+                     size_t *rows) {
+    size_t count = 0;
+    for (size_t r = first; r < sweep->table->row_count; r++) {
+        size_t place = count;
+        if (!has_point(sweep, column, r) ||
+            !same_line(sweep, sweep->table->rows[first], sweep->table->rows[r]))
+            continue;
+        for (; place > 0 && x_of(sweep, rows[place - 1]) > x_of(sweep, r); place--)
+            rows[place] = rows[place - 1];
+        rows[place] = r;
+        count++;
+    }
+    return count;
+}
+
+/* Returns whether an earlier row of the same line has a point. */
+static bool is_taken(const struct sweep *sweep, const struct table_column *column, size_t row) {
+    for (size_t r = 0; r < row; r++)
+        if (has_point(sweep, column, r) &&
+            same_line(sweep, sweep->table->rows[r], sweep->table->rows[row]))
+            return true;
+    return false;
+}
+
+static void add_theory(struct curve *curve, const char *name, const double *y) {
+    for (size_t k = 0; k < curve->n; k++)
+        if (isfinite(y[k])) {
+            curve->theories[curve->theory_count++] = (struct theory){name, y};
+            return;
+        }
+}
+
+/* Makes the curve of a line in the table's room. */
+static int add_line(struct sweep *sweep, const struct table_column *column, const size_t *rows,
+                    size_t n, struct error *err) {
+    struct case_result *room = &sweep->table->room;
+    struct curve *curve = result_room(room, 1, sizeof *curve);
+    double *numbers[5];
+    bool complete = curve != NULL;
+    for (size_t a = 0; a < 5; a++) {
+        numbers[a] = result_numbers(room, n);
+        complete = complete && numbers[a] != NULL;
+    }
+    if (!complete)
+        return error_memory(err, 5 * n * sizeof(double), "a line");
+    for (size_t k = 0; k < n; k++) {
+        const struct table_value *value = &column->values[rows[k]];
+        numbers[0][k] = x_of(sweep, rows[k]);
+        numbers[1][k] = value->value;
+        numbers[2][k] = value->standard_error;
+        numbers[3][k] = value->theory;
+        numbers[4][k] = value->grid;
+    }
+    *curve = curve_named(column->name, "", "");
+    curve->model = column->model;
+    curve_set_points(curve, n, numbers[0], numbers[1], numbers[2]);
+    add_theory(curve, column->theory != NULL ? column->theory : "theory", numbers[3]);
+    add_theory(curve, "theory of the grid", numbers[4]);
+    sweep->list[sweep->count++] =
+        (struct plot_line){.one = sweep->table->rows[rows[0]], .curve = curve};
+    return 0;
+}
+
+static int add_column(struct sweep *sweep, const struct table_column *column, size_t *rows,
+                      struct error *err) {
+    int status = 0;
+    for (size_t r = 0; r < sweep->table->row_count && status == 0; r++) {
+        if (!has_point(sweep, column, r))
+            sweep->left_out++;
+        else if (!is_taken(sweep, column, r))
+            status = add_line(sweep, column, rows, gather(sweep, column, r, rows), err);
+    }
+    return status;
+}
+
+static int add_lines(struct sweep *sweep, const char *name, struct error *err) {
+    const struct case_table *table = sweep->table;
+    size_t most = table->row_count * table->column_count, *rows = NULL;
+    int status = 0;
+    sweep->list = array_create(most, sizeof *sweep->list);
+    rows = array_create(table->row_count, sizeof *rows);
+    if (sweep->list == NULL || rows == NULL)
+        status = error_memory(err, most * sizeof *sweep->list, "lines");
+    for (size_t n = 0; n < table->column_count && status == 0; n++)
+        if (table->columns[n].type != COLUMN_PARAMETER)
+            status = add_column(sweep, &table->columns[n], rows, err);
+    free(rows);
+    if (status == 0 && sweep->count == 0)
+        status = error_set(err, ERROR_ABSENT, "no case has a value of \"%.60s\"", name);
+    return status;
+}
+
+/* --- the picture --- */
+
+enum { LABEL_SIZE = 160 };
+
+static void label_y(const struct case_table *table, const char *name, char label[LABEL_SIZE]) {
+    const struct table_column *column = &table->columns[table->column_count - 1];
+    if (column->type == COLUMN_CURVE && column->unit != NULL)
+        snprintf(label, LABEL_SIZE, "%.60s at %.60s = %.6g", column->unit, column->x_label,
+                 column->x);
+    else
+        plot_spaced(name, label, LABEL_SIZE);
+}
+
+static void label_x(const struct sweep *sweep, char label[LABEL_SIZE]) {
+    const char *kind = sweep->table->study.kind, *unit = plot_unit(kind, sweep->x);
+    snprintf(label, LABEL_SIZE, "%.60s%s%.40s%s", plot_symbol(kind, sweep->x),
+             unit != NULL ? " (" : "", unit != NULL ? unit : "", unit != NULL ? ")" : "");
+}
+
+static int draw(struct sweep *sweep, const char *name, const struct plot_request *request,
+                FILE *file, struct error *err) {
+    const struct study_result *study = &sweep->table->study;
+    struct lines_request lines_request = request->lines;
+    struct plot_lines lines;
+    char x[LABEL_SIZE], y[LABEL_SIZE], subject[LABEL_SIZE], left_out[LABEL_SIZE] = "";
+    lines_request.left_out = sweep->x;
+    struct plot_line *list = sweep->list;
+    sweep->list = NULL;
+    int status = plot_lines_take(&lines, study->kind, list, sweep->count, &lines_request, err);
+    if (status != 0)
+        return status;
+    label_x(sweep, x);
+    label_y(sweep->table, name, y);
+    snprintf(subject, sizeof subject, "%.80s over %.60s", name, last_name(sweep->x));
+    if (sweep->left_out > 0)
+        snprintf(left_out, sizeof left_out, "without a value: %zu %s", sweep->left_out,
+                 sweep->left_out == 1 ? "case" : "cases");
+    const struct plot_words words = {
+        .subject = subject, .x = x, .y = y, .note = left_out, .points = true};
+    status = plot_lines_draw(&lines, study, request, &words, file, err);
+    plot_lines_clear(&lines);
+    return status;
+}
+
+int sweep_draw(struct case_table *table, const char *name, const char *x,
+               const struct plot_request *request, FILE *file, struct error *err) {
+    struct sweep sweep = {.table = table};
+    int status = choose_x(&sweep, x, err);
+    if (status == 0)
+        status = add_lines(&sweep, name, err);
+    if (status == 0)
+        status = draw(&sweep, name, request, file, err);
+    free(sweep.list);
+    return status;
+}

@@ -1,0 +1,52 @@
+/* HTTP client of a Rugo server (libcurl): one connection, one thread. */
+#ifndef RUGO_WORKER_LINK_CLIENT_H
+#define RUGO_WORKER_LINK_CLIENT_H
+
+#include "core/error.h"
+#include "schema/study/fault.h"
+#include "worker/link/client_trust.h"
+#include <cjson/cJSON.h>
+#include <stdio.h>
+
+/* Call these once a process, from main, before and after all threads: libcurl's own set-up is not
+ * thread-safe. */
+int client_global_init(struct error *err);
+void client_global_cleanup(void);
+
+struct client;
+
+/* Makes a client. url is http(s)://host:port without path; token may be NULL; trust NULL trusts the
+ * system's authorities alone. ERROR_INPUT where the token would cross a network in clear text. */
+int client_create(struct client **out, const char *url, const char *token,
+                  const struct client_trust *trust, struct error *err);
+void client_destroy(struct client **client);
+
+struct request {
+    const char *method, *path;   /* "POST", "/v1/studies" */
+    const char *body;            /* JSON text or NULL */
+    const char *accept;          /* NULL: application/json */
+    const char *idempotency_key; /* or NULL */
+    struct fault_list *faults;   /* client_json adds those of a refusal; or NULL */
+    /* Time limit of the exchange; 0: 30 000, but for a GET as long as a byte comes every minute. */
+    long timeout_ms;
+    unsigned wait_s;            /* how long the server may wait for what is asked for */
+    int (*stop)(void *context); /* called each second: non-zero gives ERROR_STOPPED; or NULL */
+    void *context;
+};
+/* Performs one exchange and parses the body (NULL for a 204). ERROR_SYSTEM without an answer: a
+ * later try may succeed. A status >= 400 is an error with the problem's detail and pointers: 404
+ * ERROR_ABSENT, 409 ERROR_STATE, 4xx ERROR_INPUT, 5xx ERROR_SYSTEM. */
+int client_json(struct client *client, const struct request *request, cJSON **out,
+                struct error *err);
+enum { KEY_SIZE = 33, KEY_MOST = 200 };
+/* Writes a unique key of 128 random bits. */
+int key_make(char key[KEY_SIZE], struct error *err);
+/* Performs a request that changes something. It carries a key (its own, or one made for it), with
+ * which it is repeated while answers are lost, within timeout_ms in all. `doubt` ends the message
+ * where no answer came in time: it says what may have been done. */
+int client_change(struct client *client, const struct request *request, const char *doubt,
+                  cJSON **out, struct error *err);
+/* Writes the body to a file, as of a snapshot. */
+int client_download(struct client *client, const char *path, FILE *file, struct error *err);
+
+#endif
