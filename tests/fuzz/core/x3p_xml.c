@@ -1,6 +1,6 @@
 /* The main.xml of X3P files, and the points behind a NUL, without the archive around them: what is
  * read is a map whose heights are finite or holes. */
-#include "core/instrument/x3p_points.h"
+#include "core/instrument/archive/x3p_points.h"
 #include "core/surface/grid.h"
 #include "tests/support/fuzz/fuzz.h"
 #include <math.h>
@@ -26,7 +26,7 @@ static int take(void *context, const struct x3p_fields *fields, const char *text
     return status == 0 ? x3p_points_take_text(reader->points, text, err) : status;
 }
 
-/* In two pieces, as an archive hands it on. */
+/* In two parts, as an archive hands it on. */
 static int read_xml(struct reader *reader, struct x3p_fields *fields, const char *text, size_t size,
                     struct error *err) {
     struct x3p_xml *xml = NULL;

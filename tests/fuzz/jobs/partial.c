@@ -1,11 +1,11 @@
 /* Partial results of both kinds, as someone might send them on purpose: the first byte chooses the
- * case, the second the number of realisations, the rest is the data, under a seal made for it. What
- * fits is merged and makes curves, what does not is refused by both. */
+ * case, the second the number of realisations, the rest is the data, under a checksum made for it.
+ * Data that fit are merged and make curves; others are refused by both. */
 #include "jobs/merger.h"
 #include "schema/result/bytes.h"
 #include "tests/support/fuzz/fuzz.h"
 
-enum { CASES = 4, REALISATIONS_MOST = 4, SCALARS_MOST = 128 };
+enum { CASES = 5, REALISATIONS_MOST = 4, SCALARS_MOST = 128 };
 static const struct {
     const char *kind, *text;
 } STUDIES[CASES] = {
@@ -19,6 +19,12 @@ static const struct {
     {"contact", "{\"surface\":{\"hurst\":0.8,\"wavelength_ratio\":2,\"points_per_wavelength\":4},"
                 "\"contact\":{\"pressures\":{\"values\":[0.1,0.2]},"
                 "\"pressure_pdf\":{\"at\":[0.1],\"bins\":[0,1,4]}}}"},
+    /* all companions that need no measured map */
+    {"contact",
+     "{\"surface\":{\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":2,\"rms_slope\":0.1,"
+     "\"points_per_wavelength\":4,\"heights\":{\"distribution\":\"weibull_min\",\"shape\":2}},"
+     "\"contact\":{\"block_height\":{\"lengths\":0.25},\"pressures\":{\"values\":[0.1]},"
+     "\"pressure_pdf\":{\"bins\":[0,1,4]}}}"},
 };
 static cJSON *parameters[CASES];
 static struct job_merger *empty[CASES]; /* into which nothing was merged */

@@ -80,7 +80,7 @@ static void read_text(const uint8_t *data, size_t size) {
     cJSON_Delete(copy);
 }
 
-/* Any bytes under a seal made for them. */
+/* Any bytes under a checksum made for them. */
 static void read_bytes(const uint8_t *data, size_t size) {
     uint64_t hash = hash_bytes(HASH_START, size, data);
     unsigned char *sealed = malloc(size + 8);

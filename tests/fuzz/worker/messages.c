@@ -2,7 +2,7 @@
  * is sent again, taken again, and the same text. */
 #include "schema/json/json.h"
 #include "tests/support/fuzz/fuzz.h"
-#include "worker/wire.h"
+#include "worker/link/wire.h"
 
 enum { JOBS = 4 };
 

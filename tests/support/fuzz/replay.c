@@ -7,8 +7,12 @@
 #include <dirent.h>
 #include <stdbool.h>
 #include <sys/stat.h>
+#include <time.h>
 
 enum { FILE_MOST = 1 << 16, CHANGED_COPIES = 40, CUTS = 40 };
+/* Targets whose inputs take long are fed fewer changed copies: none begins after so much CPU time.
+ */
+static const double COPIES_SECONDS = 8;
 
 static char corpus[4096]; /* the folder */
 static uint8_t bytes[FILE_MOST], changed[FILE_MOST];
@@ -32,14 +36,18 @@ static void feed(const uint8_t *data, size_t size) {
     free(copy);
 }
 
+static bool has_time(void) {
+    return (double)clock() / CLOCKS_PER_SEC < COPIES_SECONDS;
+}
+
 static void feed_changed(size_t size, uint64_t *seed) {
-    for (size_t copy = 0; copy < CHANGED_COPIES && size > 0; copy++) {
+    for (size_t copy = 0; copy < CHANGED_COPIES && size > 0 && has_time(); copy++) {
         memcpy(changed, bytes, size);
         for (uint64_t n = 1 + next_word(seed) % 4; n > 0; n--)
             changed[next_word(seed) % size] = (uint8_t)next_word(seed);
         feed(changed, size);
     }
-    for (size_t cut = 0; cut < CUTS && size > 0; cut++)
+    for (size_t cut = 0; cut < CUTS && size > 0 && has_time(); cut++)
         feed(bytes, (size_t)(next_word(seed) % size));
 }
 
