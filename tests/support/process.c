@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MOST = 40 };
+enum { ARGUMENTS_MOST = 40, CONVERSATION_SECONDS = 120 };
 
 const char *rugo(void) {
     const char *path = getenv("RUGO");
@@ -172,7 +172,8 @@ int http_connect(unsigned port) {
     return connection;
 }
 
-/* Sends, reads to the end and closes; *length (or NULL) is that of the reply. */
+/* Sends, reads to the end and closes; *length (or NULL) is that of the reply. A stream that does not end
+ * fails the test. */
 static char *converse(int connection, const char *bytes, size_t size, size_t *length) {
     /* A server that refuses early stops reading: what it answered still counts. */
     for (size_t sent = 0; sent < size;) {
@@ -184,8 +185,10 @@ static char *converse(int connection, const char *bytes, size_t size, size_t *le
     size_t used = 0, room = 1 << 16;
     char *text = malloc(room);
     assert_non_null(text);
+    time_t until = time(NULL) + CONVERSATION_SECONDS;
     for (ssize_t part; (part = recv(connection, text + used, room - used - 1, 0)) > 0;) {
         used += (size_t)part;
+        assert_true(time(NULL) < until);
         if (used + 1 == room)
             assert_non_null(text = realloc(text, room *= 2));
     }

@@ -3,6 +3,7 @@
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,6 +23,14 @@ static int start(void **state) {
     return 0;
 }
 
+/* Asks for a map over a connection of its own. */
+static int ask_for_map(const char *request) {
+    int connection = http_connect(port);
+    assert_true(send(connection, request, strlen(request), MSG_NOSIGNAL) ==
+                (ssize_t)strlen(request));
+    return connection;
+}
+
 /* Within 2 s whatever it does, as computing a map of a contact that takes many; some more for a
  * machine with other work. */
 static int stop(void **state) {
@@ -33,8 +42,7 @@ static int stop(void **state) {
     static const char MAP[] = "GET /v1/studies/large/cases/0/realisations/0/map?field=gap&load=0.1 "
                               "HTTP/1.1\r\nHost: localhost\r\n\r\n";
     assert_int_equal(http_exchange(port, "POST", "/v1/studies", JSON, LARGE, NULL), 201);
-    int connection = http_connect(port);
-    assert_true(send(connection, MAP, strlen(MAP), MSG_NOSIGNAL) == (ssize_t)strlen(MAP));
+    int connection = ask_for_map(MAP);
     sleep_ms(300);
     process_kill(&server, SIGTERM);
     assert_int_equal(process_wait(&server, 4), 0);
@@ -187,6 +195,11 @@ static void strange_headers_are_refused(void **state) {
     }
 }
 
+static bool has_answer(int connection) {
+    struct pollfd file = {.fd = connection, .events = POLLIN};
+    return poll(&file, 1, 0) > 0;
+}
+
 /* Heights that are iterated for hours occupy a map's slot no longer than someone waits for them. */
 static void maps_end_with_their_peers(void **state) {
     (void)state;
@@ -204,12 +217,16 @@ static void maps_end_with_their_peers(void **state) {
     port = serve_start(&own, (const char *[]){"--db", "maps.db", NULL});
     assert_int_equal(status_of("POST", "/v1/studies", ENDLESS), 201);
     assert_int_equal(status_of("POST", "/v1/studies", ONE_CASE), 201);
-    for (size_t n = 0; n < 2; n++) {
-        connections[n] = http_connect(port);
-        assert_true(send(connections[n], MAP, strlen(MAP), MSG_NOSIGNAL) == (ssize_t)strlen(MAP));
-    }
-    while ((status = status_of("GET", PATH, NULL)) == 200 && (waited += 20) < MAPS_MS)
+    for (size_t n = 0; n < 2; n++)
+        connections[n] = ask_for_map(MAP);
+    while ((status = status_of("GET", PATH, NULL)) == 200 && (waited += 20) < MAPS_MS) {
         sleep_ms(20);
+        for (size_t n = 0; n < 2; n++)
+            if (has_answer(connections[n])) { /* the short map had its slot, and it was refused */
+                close(connections[n]);
+                connections[n] = ask_for_map(MAP);
+            }
+    }
     assert_int_equal(status, 503); /* both are being made */
     for (size_t n = 0; n < 2; n++)
         close(connections[n]);
