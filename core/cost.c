@@ -6,6 +6,8 @@
 
 /* Nanoseconds a point of a Gaussian surface (bench_surface). */
 static const double GAUSSIAN_NS = 6;
+/* ... and of a table look-up of its height, with random amplitudes. */
+static const double TRANSLATION_NS = 5;
 /* bench_nongaussian: nanoseconds a point and iteration; iterations after which plain alternation
  * stalls; plain iterations after the relaxed ones. */
 static const double ITERATION_NS = 15, PLAIN_ITERATIONS = 120, LAST_ITERATIONS = 3;
@@ -38,7 +40,9 @@ static double fast_iterations(const struct surface_options *options, const struc
 
 double cost_generation(const struct surface_options *options, const struct grid *grid) {
     double nanoseconds = GAUSSIAN_NS;
-    if (options->heights.type == HEIGHTS_GAUSSIAN)
+    if (options->heights.type != HEIGHTS_GAUSSIAN && options->law == LAW_TRANSLATION)
+        return nanoseconds + TRANSLATION_NS;
+    if (!surface_is_iterated(options))
         return nanoseconds;
     double most = (double)options->max_iterations;
     if (options->iteration == ITERATION_PLAIN)

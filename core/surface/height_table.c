@@ -59,6 +59,10 @@ static double height_at(const struct height_table *t, double score) {
     return between(t, score);
 }
 
+double height_table_at_score(const struct height_table *table, double score) {
+    return height_at(table, score);
+}
+
 double height_table_quantile(const struct height_table *table, double probability) {
     return height_at(table, gsl_cdf_ugaussian_Pinv(probability));
 }

@@ -29,6 +29,8 @@ void height_table_destroy(struct height_table **table);
 /* Returns the quantile of the raw variable, whose unit is the table's own, at a probability in (0,
  * 1). */
 double height_table_quantile(const struct height_table *table, double probability);
+/* Returns the quantile at the probability of a standard Gaussian score. */
+double height_table_at_score(const struct height_table *table, double score);
 /* Returns the share of heights up to a raw one. */
 double height_table_cdf(const struct height_table *table, double raw);
 void height_table_moments(const struct height_table *table, struct height_moments *out);

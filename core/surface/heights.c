@@ -6,6 +6,8 @@
 /* Tails of less probability than this should add next to nothing to any moment. */
 static const double TAIL_PROBABILITY = 1e-12;
 static const double TAIL_SHARE = 1e-3;
+/* The highest probability below 1. */
+static const double PROBABILITY_MOST = 1 - 0x1p-53;
 
 /* --- Gaussian --- */
 
@@ -22,6 +24,11 @@ static double gaussian_quantile(double shape, double probability) {
 static double gaussian_cdf(double shape, double raw) {
     (void)shape;
     return erfc(-raw / M_SQRT2) / 2;
+}
+
+static double gaussian_at_score(double shape, double score) {
+    (void)shape;
+    return score;
 }
 
 /* --- Weibull, scale 1: a minimum lies above 0, a maximum is its mirror image below 0 --- */
@@ -51,6 +58,12 @@ static double weibull_min_cdf(double shape, double raw) {
     return -expm1(-(raw > 0 ? pow(raw, shape) : 0));
 }
 
+/* The logarithm of the share above a score: from the share below where that is the smaller. */
+static double weibull_min_at_score(double shape, double score) {
+    double smaller = erfc(fabs(score) / M_SQRT2) / 2;
+    return pow(score > 0 ? -log(smaller) : -log1p(-smaller), 1 / shape);
+}
+
 static void weibull_max_moments(double shape, struct height_moments *out) {
     weibull_min_moments(shape, out);
     out->mean = -out->mean;
@@ -65,6 +78,10 @@ static double weibull_max_quantile(double shape, double probability) {
 
 static double weibull_max_cdf(double shape, double raw) {
     return exp(-(raw < 0 ? pow(-raw, shape) : 0));
+}
+
+static double weibull_max_at_score(double shape, double score) {
+    return -weibull_min_at_score(shape, -score);
 }
 
 /* --- log-normal: exp(s x) of a Gaussian x, median 1 (Johnson, Kotz & Balakrishnan 1994, chapter
@@ -88,8 +105,14 @@ static double lognormal_cdf(double shape, double raw) {
     return raw > 0 ? gaussian_cdf(0, log(raw) / shape) : 0;
 }
 
+static double lognormal_at_score(double shape, double score) {
+    return exp(shape * score);
+}
+
 /* The functions of a distribution have its name at their beginning. */
-#define FUNCTIONS(name) .moments = name##_moments, .quantile = name##_quantile, .cdf = name##_cdf
+#define FUNCTIONS(name)                                                                            \
+    .moments = name##_moments, .quantile = name##_quantile, .cdf = name##_cdf,                     \
+    .at_score = name##_at_score
 #define WEIBULL                                                                                    \
     .family = "weibull", .shape_means = "shape C of a Weibull distribution", .shape_low = 0.5,     \
     .shape_high = 20
@@ -209,6 +232,19 @@ double heights_quantile(const struct heights *heights, const struct height_momen
                  : heights->type == HEIGHTS_TABLE
                      ? height_table_quantile(heights->table, probability)
                      : heights->quantile(probability, heights->context);
+    return (raw - moments->mean) / moments->deviation;
+}
+
+double heights_at_score(const struct heights *heights, const struct height_moments *moments,
+                        double score) {
+    const struct distribution *row = heights_distribution(heights->type);
+    double raw;
+    if (row != NULL)
+        raw = row->at_score(heights->shape, score);
+    else if (heights->type == HEIGHTS_TABLE)
+        raw = height_table_at_score(heights->table, score);
+    else
+        raw = heights->quantile(fmin(gaussian_cdf(0, score), PROBABILITY_MOST), heights->context);
     return (raw - moments->mean) / moments->deviation;
 }
 

@@ -35,6 +35,9 @@ struct distribution {
     void (*moments)(double shape, struct height_moments *out);
     double (*quantile)(double shape, double probability); /* of the raw variable */
     double (*cdf)(double shape, double raw);
+    /* The quantile at the probability of a standard Gaussian score, with all digits in both
+     * tails. */
+    double (*at_score)(double shape, double score);
 };
 /* Returns NULL for HEIGHTS_QUANTILE and HEIGHTS_TABLE, which have no rows. */
 const struct distribution *heights_distribution(enum heights_type type);
@@ -45,6 +48,10 @@ int heights_moments(const struct heights *heights, struct height_moments *out, s
 /* Returns the standardised quantile at a probability in (0, 1), given the moments above. */
 double heights_quantile(const struct heights *heights, const struct height_moments *moments,
                         double probability);
+/* Returns the same at the probability of a standard Gaussian score. That of HEIGHTS_QUANTILE has
+ * the digits that probabilities near 1 have. */
+double heights_at_score(const struct heights *heights, const struct height_moments *moments,
+                        double score);
 /* Returns the cumulative probability of a standardised height; NaN for HEIGHTS_QUANTILE. */
 double heights_cdf(const struct heights *heights, const struct height_moments *moments, double z);
 

@@ -9,6 +9,7 @@
 #define SPECTRUM_TYPE(type, name, value) SPECTRUM_##type,
 enum spectrum_type { RUGO_SPECTRA(SPECTRUM_TYPE) };
 #undef SPECTRUM_TYPE
+struct translation;
 enum spectrum_scale {
     SCALE_NONE,       /* m0 = 1 */
     SCALE_RMS_HEIGHT, /* sqrt(m00) = value */
@@ -34,6 +35,9 @@ struct spectrum {
     const double *table_density;
     enum spectrum_scale scale;
     double scale_value; /* unused for SCALE_NONE */
+    /* The law by which heights are translated from a Gaussian field (translation.h), borrowed;
+     * NULL: the surface itself has the spectrum. It must be of this shape of spectrum. */
+    const struct translation *translation;
 };
 
 /* The discrete spectrum on a grid: power P(mx, my) = |Z|^2, mean square height = sum over all modes
@@ -45,6 +49,10 @@ struct modes {
     double *power;         /* owned, (mode_x + 1) x (2 mode_y + 1) */
     size_t count;          /* non-null modes of the full plane */
     double clipped; /* share of the power that was omitted as negative: exponential_acf alone */
+    /* Of a translated surface, else NULL: the spectrum is that of its Gaussian field, of unit
+     * variance, and the surface has the RMS height below. Borrowed. */
+    const struct translation *translation;
+    double height;
 };
 
 static inline double modes_power(const struct modes *modes, size_t mx, long my) {

@@ -1,6 +1,8 @@
 #include "core/surface/spectrum.h"
 #include "core/sum.h"
+#include "core/surface/spectrum_density.h"
 #include "core/surface/transform.h"
+#include "core/surface/translation/translation.h"
 #include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
@@ -78,6 +80,16 @@ static void powers_take(struct modes *modes, const double complex *mode) {
     modes->clipped = all > 0 ? sum_value(&negative) / all : 0;
 }
 
+/* Of the surface, or of the Gaussian field that it is translated from. */
+static double field_correlation(const struct spectrum *spectrum, const struct grid *grid, size_t i,
+                                size_t j) {
+    double asked = exponential_correlation(spectrum, grid, i, j);
+    if (spectrum->translation == NULL)
+        return asked;
+    return hermite_gaussian_correlation(height_function_powers(translation_function(spectrum->translation)),
+                                        asked);
+}
+
 int exponential_fill(struct modes *modes, const struct spectrum *spectrum, struct error *err) {
     const struct grid *grid = &modes->grid;
     struct transform *transform = NULL;
@@ -88,7 +100,7 @@ int exponential_fill(struct modes *modes, const struct spectrum *spectrum, struc
     if (status == 0) {
         for (size_t j = 0; j < grid->ny; j++)
             for (size_t i = 0; i < grid->nx; i++)
-                field[j * grid->nx + i] = exponential_correlation(spectrum, grid, i, j);
+                field[j * grid->nx + i] = field_correlation(spectrum, grid, i, j);
         transform_forward(transform, field);
         powers_take(modes, transform_spectrum(transform));
     }
@@ -96,10 +108,6 @@ int exponential_fill(struct modes *modes, const struct spectrum *spectrum, struc
     fftw_free(field);
     return status;
 }
-
-/* A mode whose relative distance to a band edge is below this counts as on the edge, because
- * wavelengths and cells come from divisions. */
-static const double EDGE = 1e-9;
 
 static int refuse(struct error *err, const char *what, double value, const char *allowed) {
     return error_set(err, ERROR_INPUT, "%s = %g; allowed: %s", what, value, allowed);
@@ -116,11 +124,12 @@ static int self_affine_check(const struct spectrum *s, struct error *err) {
         return refuse(err, "anisotropy", s->anisotropy, "above 0, finite; 0 is as 1");
     if (!is_length(s->wavelength_long))
         return refuse(err, "longest wavelength", s->wavelength_long, "above 0, finite");
-    if (!is_length(s->wavelength_short) || s->wavelength_short > s->wavelength_long * (1 + EDGE))
+    if (!is_length(s->wavelength_short) ||
+        s->wavelength_short > s->wavelength_long * (1 + BAND_EDGE))
         return refuse(err, "shortest wavelength", s->wavelength_short,
                       "above 0, up to the longest wavelength");
-    if (!(s->wavelength_rolloff >= s->wavelength_short * (1 - EDGE) &&
-          s->wavelength_rolloff <= s->wavelength_long * (1 + EDGE)))
+    if (!(s->wavelength_rolloff >= s->wavelength_short * (1 - BAND_EDGE) &&
+          s->wavelength_rolloff <= s->wavelength_long * (1 + BAND_EDGE)))
         return refuse(err, "roll-off wavelength", s->wavelength_rolloff,
                       "from the shortest to the longest wavelength");
     return 0;
@@ -163,47 +172,11 @@ static int spectrum_check(const struct spectrum *s, const struct grid *grid, str
     return error_set(err, ERROR_INPUT, "spectrum type %d is unknown", (int)s->type);
 }
 
-/* Returns the unscaled self-affine density (F2.1) at the frequency q = |k|/(2 pi). */
-static double self_affine_density(const struct spectrum *s, bool profile, double q) {
-    if (q * s->wavelength_long < 1 - EDGE || q * s->wavelength_short > 1 + EDGE)
-        return 0;
-    double relative = q * s->wavelength_rolloff;
-    if (relative <= 1)
-        return 1;
-    return pow(relative, profile ? -1 - 2 * s->hurst : -2 * (s->hurst + 1));
-}
-
-/* Interpolates between logarithms, or linearly where an end of the interval is zero. */
-static double table_density(const struct spectrum *s, double k) {
-    const double *x = s->table_wave_number, *y = s->table_density;
-    size_t low = 0, high = s->table_count - 1;
-    if (k < x[0] * (1 - EDGE) || k > x[high] * (1 + EDGE))
-        return 0;
-    while (high - low > 1) {
-        size_t middle = (low + high) / 2;
-        if (x[middle] <= k)
-            low = middle;
-        else
-            high = middle;
-    }
-    double t = fmin(fmax(log(k / x[low]) / log(x[high] / x[low]), 0), 1);
-    if (y[low] == 0 || y[high] == 0)
-        return y[low] + t * (y[high] - y[low]);
-    return y[low] * pow(y[high] / y[low], t);
-}
-
 static double density(const struct spectrum *s, bool profile, double kx, double ky) {
     double x = s->anisotropy > 0 ? kx * s->anisotropy : kx;
     double k = profile ? fabs(kx) : hypot(x, ky);
-    switch (s->type) {
-    case SPECTRUM_SELF_AFFINE:
-        return self_affine_density(s, profile, k / (2 * M_PI));
-    case SPECTRUM_EXPONENTIAL_ACF:
-        return 0; /* exponential_fill */
-    case SPECTRUM_TABLE:
-        return table_density(s, k);
-    }
-    return 0;
+    double asked = spectrum_density(s, profile, k);
+    return s->translation != NULL ? asked * translation_factor(s->translation, k) : asked;
 }
 
 /* Returns the highest wave number along a side of `length` with `points`: the band edge, or Nyquist
@@ -213,10 +186,10 @@ static int band_edge(const struct spectrum *s, double length, size_t points, dou
     size_t nyquist = points / 2;
     double edge = (double)nyquist;
     if (s->type == SPECTRUM_SELF_AFFINE)
-        edge = floor(length / (s->wavelength_short * anisotropy) * (1 + EDGE));
+        edge = floor(length / (s->wavelength_short * anisotropy) * (1 + BAND_EDGE));
     else if (s->type == SPECTRUM_TABLE)
         edge = floor(s->table_wave_number[s->table_count - 1] * length / (2 * M_PI * anisotropy) *
-                     (1 + EDGE));
+                     (1 + BAND_EDGE));
     if (edge > (double)nyquist)
         return error_set(
             err, ERROR_INPUT,
@@ -245,20 +218,37 @@ static void modes_fill(struct modes *modes, const struct spectrum *s) {
         }
 }
 
-static int modes_scale(struct modes *modes, const struct spectrum *s, struct error *err) {
-    struct moments moments;
-    modes_moments(modes, &moments);
-    if (modes->count == 0 || !(moments.m00 > 0 && isfinite(moments.m00)))
-        return error_set(err, ERROR_INPUT, "the spectrum has no mode on a cell of %g by %g",
-                         modes->grid.lx, modes->grid.ly);
-    double factor = 1 / moments.m00;
+/* Returns the square of the factor that gives heights of these moments their prescribed scale. */
+static double scale_square(const struct spectrum *s, const struct moments *moments) {
+    double factor = 1 / moments->m00;
     if (s->scale == SCALE_RMS_HEIGHT)
-        factor = s->scale_value / moments.rms_height * (s->scale_value / moments.rms_height);
+        factor = s->scale_value / moments->rms_height * (s->scale_value / moments->rms_height);
     if (s->scale == SCALE_RMS_SLOPE)
-        factor = s->scale_value / moments.rms_slope * (s->scale_value / moments.rms_slope);
+        factor = s->scale_value / moments->rms_slope * (s->scale_value / moments->rms_slope);
+    return factor;
+}
+
+static void powers_multiply(struct modes *modes, double factor) {
     size_t count = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
     for (size_t i = 0; i < count; i++)
         modes->power[i] *= factor;
+}
+
+static int modes_scale(struct modes *modes, const struct spectrum *s, struct error *err) {
+    struct moments moments;
+    modes_gaussian_moments(modes, &moments);
+    if (modes->count == 0 || !(moments.m00 > 0 && isfinite(moments.m00)))
+        return error_set(err, ERROR_INPUT, "the spectrum has no mode on a cell of %g by %g",
+                         modes->grid.lx, modes->grid.ly);
+    modes->translation = s->translation;
+    if (s->translation == NULL) {
+        powers_multiply(modes, scale_square(s, &moments));
+        return 0;
+    }
+    powers_multiply(modes, 1 / moments.m00);
+    modes->height = 1;
+    modes_moments(modes, &moments);
+    modes->height = sqrt(scale_square(s, &moments));
     return 0;
 }
 
@@ -311,7 +301,7 @@ static const unsigned char POWERS[][2] = {{0, 0}, {2, 0}, {0, 2}, {1, 1}, {2, 2}
                                           {4, 0}, {0, 4}, {3, 1}, {1, 3}};
 enum { MOMENTS = sizeof POWERS / sizeof *POWERS };
 
-void modes_moments(const struct modes *modes, struct moments *out) {
+void modes_gaussian_moments(const struct modes *modes, struct moments *out) {
     const struct grid *grid = &modes->grid;
     struct sum sums[MOMENTS] = {{0}};
     long mode_y = (long)modes->mode_y;
@@ -341,13 +331,13 @@ void modes_moments(const struct modes *modes, struct moments *out) {
                             .m04 = m[6],
                             .m31 = m[7],
                             .m13 = m[8]};
-    out->m0 = m[0];
-    out->m2 = profile ? m[1] : (m[1] + m[2]) / 2;
-    out->m4 = profile ? m[5] : (m[5] + m[6]) / 2;
-    out->nayak_alpha = out->m0 / out->m2 * (out->m4 / out->m2);
-    out->rms_height = sqrt(m[0]);
-    out->rms_slope = sqrt(m[1] + m[2]);
-    out->rms_curvature = profile ? sqrt(m[5]) : sqrt((m[5] + 2 * m[4] + m[6]) / 4);
+    moments_derive(out, profile);
+}
+
+void modes_moments(const struct modes *modes, struct moments *out) {
+    modes_gaussian_moments(modes, out);
+    if (modes->translation != NULL)
+        *out = translation_moments(modes->translation, out, modes->height);
 }
 
 int spectrum_moments(const struct spectrum *spectrum, const struct grid *grid, struct moments *out,
@@ -358,11 +348,4 @@ int spectrum_moments(const struct spectrum *spectrum, const struct grid *grid, s
         modes_moments(modes, out);
     modes_destroy(&modes);
     return status;
-}
-
-bool moments_isotropic(const struct moments *moments) {
-    static const double MARGIN = 0.25;
-    return fabs(3 * moments->m22 / moments->m4 - 1) <= MARGIN &&
-           fabs(moments->m20 / moments->m02 - 1) <= MARGIN &&
-           fabs(moments->m40 / moments->m04 - 1) <= MARGIN;
 }

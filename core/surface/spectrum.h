@@ -6,6 +6,7 @@
 #define RUGO_CORE_SURFACE_SPECTRUM_H
 
 #include "core/surface/modes.h"
+#include "core/surface/moments.h"
 
 /* The exponential autocorrelation (FORMULAS.md, F2.2) of a periodic cell. It is prescribed at the
  * points of the grid, and the spectrum is its transform there. */
@@ -35,20 +36,11 @@ int modes_create(struct modes **out, const struct spectrum *spectrum, const stru
                  struct error *err);
 void modes_destroy(struct modes **modes);
 
-/* Spectral moments (FORMULAS.md, F2.3). A profile has m00 = m0, m20 = m2, m40 = m4; the others are
- * 0. */
-struct moments {
-    double m00, m20, m02, m11, m22, m40, m04, m31, m13;
-    double m0, m2, m4;                           /* isotropic: m00, (m20+m02)/2, (m40+m04)/2 */
-    double nayak_alpha;                          /* m0 m4 / m2^2 (F2.4) */
-    double rms_height, rms_slope, rms_curvature; /* F1.2 */
-};
-/* Returns whether moments are those of an isotropic surface, within a quarter: m20 = m02 and
- * 3 m22 = m40 = m04. They are not on a lattice of four or twelve modes; they are on one of forty.
- * False for profiles. */
-bool moments_isotropic(const struct moments *moments);
-/* Sums pairwise or compensated, with a relative error of about 1e-15. */
+/* Moments of the surface, also of one that is translated from a Gaussian field of this spectrum.
+ * Sums pairwise or compensated, with a relative error of about 1e-15. */
 void modes_moments(const struct modes *modes, struct moments *out);
+/* Moments of the spectrum itself: of a surface that is translated, those of its Gaussian field. */
+void modes_gaussian_moments(const struct modes *modes, struct moments *out);
 /* As modes_moments, of a spectrum on a grid. Fails as modes_create does; *out is untouched then. */
 int spectrum_moments(const struct spectrum *spectrum, const struct grid *grid, struct moments *out,
                      struct error *err);

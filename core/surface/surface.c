@@ -2,6 +2,7 @@
 #include "core/surface/nongaussian.h"
 #include "core/surface/surface_options.h"
 #include "core/surface/transform.h"
+#include "core/surface/translation/translation.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -70,7 +71,7 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
     if (g == NULL)
         return error_memory(err, sizeof *g, "a generator");
     bool random = options->amplitudes == AMPLITUDES_RANDOM;
-    bool iterated = options->heights.type != HEIGHTS_GAUSSIAN;
+    bool iterated = surface_is_iterated(options);
     int status = modes_create(&g->modes, spectrum, grid, err);
     if (status == 0)
         status = transform_create(&g->transform, grid, g->modes->mode_x, g->modes->mode_y, err);
@@ -114,7 +115,7 @@ double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
     double band = (double)(mode_x + 1) * (double)(2 * mode_y + 1);
     double columns = (double)(mode_x + 1) * (double)grid->ny;
     double bytes = sizeof(double) * (points + 2 * band) + sizeof(double complex) * columns;
-    if (options->heights.type == HEIGHTS_GAUSSIAN)
+    if (!surface_is_iterated(options))
         return bytes;
     if (options->amplitudes == AMPLITUDES_RANDOM)
         bytes += sizeof(double) * band;
@@ -232,6 +233,9 @@ int generator_run(struct generator *g, struct random_key key, double *z,
     transform_inverse(g->transform, z);
     if (g->nongaussian != NULL)
         return nongaussian_run(g->nongaussian, g->transform, key, z, report, err);
+    if (g->modes->translation != NULL)
+        height_function_apply(translation_function(g->modes->translation), g->modes->height,
+                         grid_points(&g->modes->grid), z);
     if (report != NULL)
         *report = (struct surface_report){.end = END_DIRECT};
     return 0;

@@ -3,11 +3,15 @@
 #define RUGO_CORE_SURFACE_SURFACE_OPTIONS_H
 
 #include "core/surface/heights.h"
+#include <stdbool.h>
 
 /* What is random in a wave (FORMULAS.md, F3.1 and F3.4): its phase alone, so that every surface of
  * a cell has the prescribed spectrum; or its amplitude too, so that the spectrum is that of the
  * mean over surfaces, and a cell is like a part of an infinite Gaussian surface. */
 enum surface_amplitudes { AMPLITUDES_FIXED, AMPLITUDES_RANDOM };
+/* What heights that are not Gaussian mean (FORMULAS.md, F5): surfaces that are iterated towards a
+ * spectrum and heights, or translations of a Gaussian field. */
+enum surface_law { LAW_ITERATED, LAW_TRANSLATION };
 enum surface_keep { KEEP_SPECTRUM, KEEP_HEIGHTS };
 /* The iteration towards spectrum and heights (FORMULAS.md, F5.3 to F5.6). */
 enum surface_iteration {
@@ -18,10 +22,11 @@ enum surface_iteration {
 };
 enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
 
-/* The iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4). Of these options,
- * Gaussian heights need `amplitudes` alone. */
+/* Gaussian heights need `amplitudes` alone, and so does the law of translation. The others are of
+ * the iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4). */
 struct surface_options {
     struct heights heights;
+    enum surface_law law; /* LAW_TRANSLATION: of these heights by spectrum.translation */
     enum surface_amplitudes amplitudes; /* random, not Gaussian: heights have the deviation and the
                                            spectrum of the Gaussian start of each surface */
     enum surface_keep keep;             /* which of the two last iterates is returned */
@@ -40,6 +45,11 @@ struct surface_options {
     void *stop_context;
 };
 extern const struct surface_options SURFACE_DEFAULTS; /* Gaussian, and the defaults above */
+
+/* Returns whether surfaces are made by iteration. */
+static inline bool surface_is_iterated(const struct surface_options *options) {
+    return options->heights.type != HEIGHTS_GAUSSIAN && options->law == LAW_ITERATED;
+}
 
 /* Tolerances and limits of a generator's next runs, in place of those of its options. iteration is
  * ITERATION_REFLECTIONS or ITERATION_MOMENTUM, as that of the options must be. */

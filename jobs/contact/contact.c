@@ -7,6 +7,7 @@
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/target/contact_target.h"
+#include "jobs/surface/surface_law.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
 #include "schema/result/view.h"
@@ -307,12 +308,18 @@ static const struct quantity_table TABLE = {
 };
 static const struct result_view VIEW = {.table = &TABLE, .logarithmic = LOGARITHMIC};
 
+/* As study_kind.fill has it. */
+static int complete_case(const cJSON *document, cJSON *parameters, struct error *err) {
+    int status = surface_law_complete(document, parameters, err);
+    return status == 0 ? contact_loads_fill(document, parameters, err) : status;
+}
+
 const struct job_kind CONTACT_KIND = {
     .study = {.name = "contact",
               .tables = CONTACT_TABLES,
               .default_realisations = 20,
               .check = kind_check,
-              .fill = contact_loads_fill,
+              .fill = complete_case,
               .expand = contact_target_expand},
     .scalar = contact_scalar_name,
     .view = &VIEW,

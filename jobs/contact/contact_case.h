@@ -30,7 +30,7 @@ extern const struct parameter_table *const CONTACT_TABLES[];
 struct contact_case {
     struct surface_case surface; /* with the grid on which realisations are generated */
     struct like_case like;       /* a measured surface that these resemble */
-    struct surface_band band;    /* of a realisation on its own grid */
+    struct surface_band band;    /* by which realisations are sampled on other grids */
     size_t model_count;
     const struct contact_model *models[CONTACT_MODELS_MOST]; /* in the order given */
     struct block blocks[CONTACT_MODELS_MOST];                /* one a model */

@@ -344,7 +344,7 @@ static bool faces_fit(const struct contact_case *one_case, struct values *values
 /* Sets levels and blocks on the surface of the case, which has no fault. */
 static int set_on_surface(struct contact_case *out, const struct asked *asked,
                           struct values *values, struct error *err) {
-    out->band = surface_case_own_band(&out->surface);
+    out->band = surface_case_sampled_band(&out->surface);
     set_levels(out, asked, values);
     size_t before = values_fault_count(values);
     if (!asked->block || !faces_fit(out, values) || !scale_fits(out, asked, values))

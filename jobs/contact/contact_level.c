@@ -1,13 +1,41 @@
 #include "jobs/contact/contact_level.h"
+#include "core/surface/translation/translation.h"
+#include <stdlib.h>
+#include <string.h>
 
-int contact_level_sample(const struct contact_level *level, const struct grid *own,
-                         struct surface_band band, const double *z, double *out,
-                         struct error *err) {
+/* Samples z, or the Gaussian field, which replaces z. */
+static int resample(const struct contact_level *level, const struct surface_case *surface,
+                    const double *z, double *out, struct error *err) {
+    const struct surface_band band = surface_case_sampled_band(surface);
+    return surface_resample(&surface->grid, z, &level->grid, out, band.x, band.y, err);
+}
+
+static int resample_translated(const struct contact_level *level,
+                               const struct surface_case *surface, const double *z, double *out,
+                               struct error *err) {
+    const struct height_function *function = translation_function(surface->translation);
+    double height = surface->translated_height;
+    size_t points = grid_points(&surface->grid);
+    double *gaussian = array_create(points, sizeof *gaussian);
+    if (gaussian == NULL)
+        return error_memory(err, points * sizeof *gaussian, "a Gaussian field");
+    memcpy(gaussian, z, points * sizeof *gaussian);
+    height_function_undo(function, height, points, gaussian);
+    int status = resample(level, surface, gaussian, out, err);
+    if (status == 0)
+        height_function_apply(function, height, grid_points(&level->grid), out);
+    free(gaussian);
+    return status;
+}
+
+int contact_level_sample(const struct contact_level *level, const struct surface_case *surface,
+                         const double *z, double *out, struct error *err) {
     const struct grid *grid = &level->grid;
     if (level->stride == 0)
-        return surface_resample(own, z, grid, out, band.x, band.y, err);
+        return surface_case_translated(surface) ? resample_translated(level, surface, z, out, err)
+                                                : resample(level, surface, z, out, err);
     for (size_t j = 0; j < grid->ny; j++) {
-        const double *row = z + j * level->stride * own->nx;
+        const double *row = z + j * level->stride * surface->grid.nx;
         for (size_t i = 0; i < grid->nx; i++)
             out[j * grid->nx + i] = row[i * level->stride];
     }

@@ -10,8 +10,9 @@ struct contact_level {
     size_t stride; /* every n-th point of the own grid along x and y; 0: resampled from its band */
 };
 
-/* Samples heights on the grid `own`, of waves up to `band`, on the grid of a level. */
-int contact_level_sample(const struct contact_level *level, const struct grid *own,
-                         struct surface_band band, const double *z, double *out, struct error *err);
+/* Samples heights on the grid of a surface on the grid of a level. A surface that is translated is
+ * so by its Gaussian field, of which the heights are a function at each point. */
+int contact_level_sample(const struct contact_level *level, const struct surface_case *surface,
+                         const double *z, double *out, struct error *err);
 
 #endif

@@ -9,6 +9,7 @@
 #include "jobs/statistics/statistics_levels.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
+#include "jobs/surface/surface_law.h"
 #include "jobs/target.h"
 #include "schema/result/view.h"
 #include <math.h>
@@ -341,6 +342,7 @@ const struct job_kind STATISTICS_KIND = {
               .tables = STATISTICS_TABLES,
               .default_realisations = 1000,
               .check = kind_check,
+              .fill = surface_law_complete,
               .expand = statistics_target_expand},
     .scalar = statistics_scalar_name,
     .view = &STATISTICS_VIEW,

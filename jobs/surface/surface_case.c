@@ -1,4 +1,6 @@
 #include "jobs/surface/surface_case.h"
+#include "core/surface/translation/translation.h"
+#include "jobs/surface/surface_law.h"
 #include "jobs/surface/surface_parameters.h"
 #include <math.h>
 #include <stdlib.h>
@@ -73,6 +75,7 @@ static int read_quantiles(struct surface_case *out, struct values *values, struc
 }
 
 static void read_iteration(struct surface_options *options, struct values *values) {
+    options->law = (enum surface_law)values_choice(values, "/surface/heights/law");
     options->amplitudes = (enum surface_amplitudes)values_choice(values, "/surface/amplitudes");
     options->tolerance = values_number(values, "/surface/heights/tolerance");
     options->keep = (enum surface_keep)values_choice(values, "/surface/heights/keep");
@@ -343,6 +346,8 @@ int surface_case_fill(struct surface_case *out, struct values *values,
     *whole = NULL;
     int status = read_surface(out, values, err);
     if (status == 0 && values_fault_count(values) == before)
+        status = surface_law_fill(out, values, err);
+    if (status == 0 && values_fault_count(values) == before)
         *whole = out;
     else
         surface_case_clear(out);
@@ -368,6 +373,7 @@ int surface_case_read(struct surface_case *out, const cJSON *parameters, struct 
 void surface_case_clear(struct surface_case *surface) {
     free(surface->table);
     height_table_destroy(&surface->height_table);
+    translation_destroy(&surface->translation);
     *surface = (struct surface_case){0};
 }
 
@@ -394,6 +400,11 @@ struct surface_band surface_case_own_band(const struct surface_case *surface) {
     const struct grid *grid = &surface->grid;
     return surface_case_band_limited(surface) ? surface_case_band(surface)
                                               : (struct surface_band){grid->nx / 2, grid->ny / 2};
+}
+
+struct surface_band surface_case_sampled_band(const struct surface_case *surface) {
+    return surface_case_translated(surface) ? surface_case_band(surface)
+                                            : surface_case_own_band(surface);
 }
 
 double surface_case_bytes(const struct surface_case *surface) {

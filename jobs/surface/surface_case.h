@@ -17,7 +17,9 @@ struct surface_case {
                                             the length */
     double *table;                       /* owned: memory behind a table spectrum */
     struct height_table *height_table;   /* owned: samples or quantiles of heights; NULL: none */
-    const char *heights_name;            /* of the theory curves of heights */
+    struct translation *translation;     /* owned: that of the spectrum; NULL: none */
+    double translated_height; /* RMS height of surfaces on the grid, with a translation */
+    const char *heights_name; /* of the theory curves of heights */
 };
 /* Highest wave numbers along x and y, in units of 2 pi over that side; y of profiles is 0. */
 struct surface_band {
@@ -38,10 +40,14 @@ int surface_case_fill(struct surface_case *out, struct values *values,
 int surface_case_dimension(struct values *values);
 void surface_case_clear(struct surface_case *surface);
 
+/* Returns whether surfaces are translated from a Gaussian field, which alone is band limited. */
+static inline bool surface_case_translated(const struct surface_case *surface) {
+    return surface->spectrum.translation != NULL;
+}
 /* Returns whether the generated surfaces have no waves outside the prescribed band. */
 static inline bool surface_case_band_limited(const struct surface_case *surface) {
     return surface->options.heights.type == HEIGHTS_GAUSSIAN ||
-           surface->options.keep == KEEP_SPECTRUM;
+           (surface->options.keep == KEEP_SPECTRUM && !surface_case_translated(surface));
 }
 /* Returns whether each surface has the prescribed spectrum exactly; with random amplitudes only
  * their mean has. */
@@ -53,6 +59,9 @@ struct surface_band surface_case_band(const struct surface_case *surface);
 /* Returns those of the generated surfaces: the same if they are band limited, else those of the
  * grid. */
 struct surface_band surface_case_own_band(const struct surface_case *surface);
+/* Returns those by which surfaces are sampled on other grids: of translated ones, those of the
+ * Gaussian field. */
+struct surface_band surface_case_sampled_band(const struct surface_case *surface);
 static inline bool surface_band_fits(struct surface_band band, const struct grid *grid) {
     return grid->nx > 2 * band.x && (grid_is_profile(grid) || grid->ny > 2 * band.y);
 }

@@ -19,6 +19,8 @@ static const struct choice ITERATIONS[] = {{"relaxed", ITERATION_RELAXED},
                                            {"reflections", ITERATION_REFLECTIONS},
                                            {"momentum", ITERATION_MOMENTUM},
                                            {0}};
+static const struct choice LAWS[] = {
+    {"iterated", LAW_ITERATED}, {"translation", LAW_TRANSLATION}, {0}};
 static const struct choice DRAWS[] = {{"random", DRAW_RANDOM}, {"quantiles", DRAW_QUANTILES}, {0}};
 
 static const struct parameter ROWS[] = {
@@ -227,6 +229,28 @@ static const struct parameter ROWS[] = {
      .example_json = "[-3.1, -1.4, 0.2, 1, 1.3]",
      .help = "the distribution \"quantiles\": heights, of which each probability's share lies "
              "below; they must not fall"},
+    {.path = "/surface/heights/law",
+     .type = PARAMETER_CHOICE,
+     .choices = LAWS,
+     .sweep = true,
+     .later = true,
+     .default_json = "\"iterated\"",
+     .example_json = "[\"iterated\", \"translation\"]",
+     .help =
+         "what heights that are not Gaussian mean: iterated, each surface has this spectrum and "
+         "comes near these heights; or translation, heights are a function of a Gaussian field, "
+         "a random field of its own that has exactly these heights and this spectrum in its "
+         "band (with amplitudes random)"},
+    {.path = "/surface/heights/misfit",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 1,
+     .sweep = true,
+     .later = true,
+     .default_json = "0.01",
+     .example_json = "0.05",
+     .help = "of the law translation: the share of the band's variance that may be at other waves "
+             "than asked for; some spectra and heights go together only so far"},
     {.path = "/surface/heights/tolerance",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

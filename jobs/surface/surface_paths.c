@@ -14,7 +14,7 @@ struct surface_paths {
 };
 
 bool surface_paths_apply(const struct surface_case *surface) {
-    return surface->options.heights.type != HEIGHTS_GAUSSIAN;
+    return surface_is_iterated(&surface->options);
 }
 
 static struct surface_options fast_options(const struct surface_case *surface) {

@@ -40,7 +40,7 @@ static bool scale_grid(const struct grid *grid, double length, struct grid *out)
     return true;
 }
 
-/* Surfaces that are not Gaussian depend on the grid that they are generated on: it is as fine as
+/* Surfaces that are iterated depend on the grid that they are generated on: it is as fine as
  * that of the case. Others are generated on the mesh that they are pressed on, if it holds their
  * waves. */
 static bool choose_grids(const struct contact_case *one_case, struct companion_plan *out) {
@@ -53,9 +53,8 @@ static bool choose_grids(const struct contact_case *one_case, struct companion_p
     if (!scale_grid(&own.grid, out->length, &out->level.grid) ||
         !scale_grid(&one_case->surface.grid, out->length, &surface->grid))
         return false;
-    out->band = surface_case_own_band(surface);
-    if (surface->options.heights.type == HEIGHTS_GAUSSIAN &&
-        surface_band_fits(out->band, &out->level.grid)) {
+    out->band = surface_case_sampled_band(surface);
+    if (!surface_is_iterated(&surface->options) && surface_band_fits(out->band, &out->level.grid)) {
         surface->grid = out->level.grid;
         out->level.stride = 1;
     }
@@ -166,8 +165,7 @@ static int cell_solve(void *workspace, const struct contact_surface *surface,
     key.sequence ^= UINT64_C(1) << (plan->length > 1 ? 63 : 62);
     int status = generator_run(cell->generator, key, cell->own, NULL, err);
     if (status == 0)
-        status = contact_level_sample(&plan->level, &plan->surface.grid, plan->band, cell->own,
-                                      cell->z, err);
+        status = contact_level_sample(&plan->level, &plan->surface, cell->own, cell->z, err);
     if (status == 0)
         status = coarse_solver_press(cell->halfspace, cell->z, series, stopper, err);
     if (status == 0)

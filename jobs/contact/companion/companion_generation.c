@@ -81,8 +81,8 @@ static void generation_clear(void *workspace) {
 static int press(struct generation *generation, const double *z,
                  const struct contact_case *one_case, double *series,
                  const struct contact_stopper *stopper, struct error *err) {
-    int status = contact_level_sample(&generation->plan->level, &one_case->surface.grid,
-                                      one_case->band, z, generation->z, err);
+    int status =
+        contact_level_sample(&generation->plan->level, &one_case->surface, z, generation->z, err);
     return status != 0
                ? status
                : coarse_solver_press(generation->halfspace, generation->z, series, stopper, err);

@@ -1,0 +1,243 @@
+#include "core/surface/translation/height_function.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Nodes of the table lie SCORE_STEP apart, up to SCORE_MOST on either side. A Gaussian value lies
+ * beyond it once in 10^18. */
+enum { NODES_A_UNIT = 256, SCORE_MOST = 9, NODES = 2 * SCORE_MOST * NODES_A_UNIT + 1 };
+static const double SCORE_STEP = 1.0 / NODES_A_UNIT;
+
+/* Between nodes f is the cubic of their values and slopes (Hermite), whose error is that of f over
+ * four times the step: 1e-12. */
+struct height_function {
+    double height[NODES], slope[NODES]; /* f and f', at rising scores */
+    struct hermite_powers powers;
+};
+
+/* Slopes by differences of four values, with an error of the fourth power of this distance. */
+static const double DIFFERENCE = 1.0 / 1024;
+
+static double slope_at(const struct heights *heights, const struct height_moments *moments,
+                       double score) {
+    double near = heights_at_score(heights, moments, score + DIFFERENCE) -
+                  heights_at_score(heights, moments, score - DIFFERENCE);
+    double far = heights_at_score(heights, moments, score + 2 * DIFFERENCE) -
+                 heights_at_score(heights, moments, score - 2 * DIFFERENCE);
+    return fmax((8 * near - far) / (12 * DIFFERENCE), 0);
+}
+
+static double node_score(size_t node) {
+    return (double)node * SCORE_STEP - SCORE_MOST;
+}
+
+/* Heights within these scores, of which a share of 6e-5 lies outside, must differ. */
+static const double SCORE_USUAL = 4;
+static const double SLOPE_LEAST = 1e-12;
+
+static int nodes_fill(struct height_function *function, const struct heights *heights,
+                      struct error *err) {
+    struct height_moments moments;
+    int status = heights_moments(heights, &moments, err);
+    if (status != 0)
+        return status;
+    for (size_t node = 0; node < NODES; node++) {
+        double score = node_score(node);
+        function->height[node] = heights_at_score(heights, &moments, score);
+        function->slope[node] = slope_at(heights, &moments, score);
+        if (!isfinite(function->height[node]) || !isfinite(function->slope[node]))
+            return error_set(err, ERROR_INPUT,
+                             "heights of the law \"translation\" are %g at the score %g; allowed: "
+                             "finite and rising",
+                             function->height[node], score);
+        if (fabs(score) < SCORE_USUAL && !(function->slope[node] > SLOPE_LEAST))
+            return error_set(err, ERROR_INPUT,
+                             "heights near %.4g standard deviations are equal: the law "
+                             "\"translation\" has no summits on flat ground; allowed: heights "
+                             "that differ, or the law \"iterated\"",
+                             function->height[node]);
+    }
+    return 0;
+}
+
+/* --- Hermite's series --- */
+
+/* Integrals over g by the trapezoidal rule at the nodes. Beyond them the density is below 1e-18. */
+
+/* Adds the nodes' shares of c_n, n from 0. He_n/sqrt(n!) by its recurrence. */
+static void coefficients_sum(const struct height_function *function, double c[HERMITE_TERMS + 1]) {
+    for (size_t node = 0; node < NODES; node++) {
+        double g = node_score(node), last = 0, now = 1;
+        double weight = SCORE_STEP * exp(-g * g / 2) / sqrt(2 * M_PI) * function->height[node];
+        for (int n = 0; n <= HERMITE_TERMS; n++) {
+            c[n] += weight * now;
+            double next = (g * now - sqrt(n) * last) / sqrt(n + 1);
+            last = now;
+            now = next;
+        }
+    }
+}
+
+/* The mean of f'^2, and that of f''^2 by differences of the slopes. */
+static void derivatives_sum(const struct height_function *function, struct hermite_powers *powers) {
+    for (size_t node = 1; node + 1 < NODES; node++) {
+        double g = node_score(node);
+        double weight = SCORE_STEP * exp(-g * g / 2) / sqrt(2 * M_PI);
+        double bend = (function->slope[node + 1] - function->slope[node - 1]) / (2 * SCORE_STEP);
+        powers->slope += weight * function->slope[node] * function->slope[node];
+        powers->curvature += weight * bend * bend;
+    }
+}
+
+static void powers_fill(struct height_function *function) {
+    struct hermite_powers *powers = &function->powers;
+    double c[HERMITE_TERMS + 1] = {0}, all = 0;
+    coefficients_sum(function, c);
+    for (int n = 1; n <= HERMITE_TERMS; n++) {
+        powers->of[n] = c[n] * c[n];
+        all += powers->of[n];
+    }
+    powers->of[HERMITE_TERMS] += fmax(1 - all, 0);
+    for (int n = 1; n <= HERMITE_TERMS; n++)
+        powers->of[n] /= fmax(all, 1);
+    derivatives_sum(function, powers);
+}
+
+int height_function_create(struct height_function **out, const struct heights *heights,
+                           struct error *err) {
+    struct height_function *function = array_create(1, sizeof *function);
+    if (function == NULL)
+        return error_memory(err, sizeof *function, "a height function");
+    int status = nodes_fill(function, heights, err);
+    if (status != 0) {
+        height_function_destroy(&function);
+        return status;
+    }
+    powers_fill(function);
+    *out = function;
+    return 0;
+}
+
+void height_function_destroy(struct height_function **function) {
+    free(*function);
+    *function = NULL;
+}
+
+const struct hermite_powers *height_function_powers(const struct height_function *function) {
+    return &function->powers;
+}
+
+double hermite_correlation(const struct hermite_powers *powers, double gaussian) {
+    double sum = 0;
+    for (int n = HERMITE_TERMS; n >= 1; n--)
+        sum = (sum + powers->of[n]) * gaussian;
+    return sum;
+}
+
+/* Sums a batch of lags term by term. Terms count as far as the largest value raises them above
+ * rounding. */
+enum { BATCH = 64 };
+static void batch_beyond(const struct hermite_powers *powers, size_t n, double *values) {
+    double sums[BATCH] = {0}, largest = 0;
+    for (size_t i = 0; i < n; i++)
+        largest = fmax(largest, fabs(values[i]));
+    int last = HERMITE_TERMS;
+    if (largest < 0.99)
+        last = (int)fmin(HERMITE_TERMS, ceil(log(1e-18) / log(fmax(largest, 1e-18))) + 1);
+    for (int term = last; term >= 2; term--)
+        for (size_t i = 0; i < n; i++)
+            sums[i] = (sums[i] + powers->of[term]) * values[i];
+    for (size_t i = 0; i < n; i++)
+        values[i] *= sums[i];
+}
+
+void hermite_correlations_beyond(const struct hermite_powers *powers, size_t n, double *values) {
+    for (size_t i = 0; i < n; i += BATCH)
+        batch_beyond(powers, n - i < BATCH ? n - i : BATCH, values + i);
+}
+
+/* The series rises from 0 to 1 on [0, 1], so that halving finds its inverse. */
+double hermite_gaussian_correlation(const struct hermite_powers *powers, double correlation) {
+    double low = 0, high = 1;
+    if (!(correlation < 1))
+        return 1;
+    while (high - low > 1e-15) {
+        double middle = (low + high) / 2;
+        if (hermite_correlation(powers, middle) < correlation)
+            low = middle;
+        else
+            high = middle;
+    }
+    return (low + high) / 2;
+}
+
+/* --- the function --- */
+
+/* Returns the cubic between two nodes, and its slope; t in [0, 1]. */
+static struct height_slope cubic(const struct height_function *function, size_t node, double t) {
+    double a = function->height[node], b = function->height[node + 1];
+    double p = function->slope[node] * SCORE_STEP, q = function->slope[node + 1] * SCORE_STEP;
+    double second = 3 * (b - a) - 2 * p - q, third = 2 * (a - b) + p + q;
+    return (struct height_slope){a + t * (p + t * (second + t * third)),
+                                 (p + t * (2 * second + t * 3 * third)) / SCORE_STEP};
+}
+
+/* Beyond the table f goes on along its outermost slopes. */
+struct height_slope height_function_at(const struct height_function *function, double gaussian) {
+    double at = (gaussian + SCORE_MOST) * NODES_A_UNIT;
+    if (at >= 0 && at < NODES - 1) {
+        size_t node = (size_t)at;
+        return cubic(function, node, at - (double)node);
+    }
+    size_t node = at < 0 ? 0 : NODES - 1;
+    double slope = function->slope[node];
+    return (struct height_slope){function->height[node] + slope * (gaussian - node_score(node)),
+                                 slope};
+}
+
+/* Returns the node below a height within the table. */
+static size_t node_below(const struct height_function *function, double height) {
+    size_t low = 0, high = NODES - 1;
+    while (high - low > 1) {
+        size_t middle = (low + high) / 2;
+        if (function->height[middle] <= height)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+double height_function_inverse(const struct height_function *function, double height) {
+    size_t last = NODES - 1;
+    if (height <= function->height[0] || height >= function->height[last]) {
+        size_t node = height <= function->height[0] ? 0 : last;
+        double beyond = height - function->height[node], slope = function->slope[node];
+        return node_score(node) + (slope > SLOPE_LEAST ? beyond / slope : 0);
+    }
+    size_t node = node_below(function, height);
+    double low = 0, high = 1, t = 0.5, step = 1;
+    for (int tries = 0; tries < 60 && fabs(step) > 1e-14; tries++) {
+        struct height_slope at = cubic(function, node, t);
+        if (at.height <= height)
+            low = t;
+        else
+            high = t;
+        double newton = t - (at.height - height) / (at.slope * SCORE_STEP);
+        double next = newton >= low && newton <= high ? newton : (low + high) / 2;
+        step = next - t;
+        t = next;
+    }
+    return node_score(node) + t * SCORE_STEP;
+}
+
+void height_function_apply(const struct height_function *function, double factor, size_t n,
+                           double *z) {
+    for (size_t i = 0; i < n; i++)
+        z[i] = factor * height_function_at(function, z[i]).height;
+}
+
+void height_function_undo(const struct height_function *function, double factor, size_t n,
+                          double *z) {
+    for (size_t i = 0; i < n; i++)
+        z[i] = height_function_inverse(function, z[i] / factor);
+}

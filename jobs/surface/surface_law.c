@@ -1,0 +1,102 @@
+#include "jobs/surface/surface_law.h"
+#include "core/surface/translation/translation.h"
+#include "schema/json/field.h"
+#include "schema/json/json.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char LAW[] = "/surface/heights/law", AMPLITUDES[] = "/surface/amplitudes";
+
+int surface_law_complete(const cJSON *document, cJSON *parameters, struct error *err) {
+    const cJSON *law = json_at(parameters, LAW);
+    cJSON *surface = cJSON_GetObjectItemCaseSensitive(parameters, "surface");
+    bool translated = cJSON_IsString(law) && strcmp(law->valuestring, "translation") == 0;
+    const cJSON *heights = json_at(parameters, "/surface/heights/distribution");
+    bool gaussian = heights == NULL ||
+                    (cJSON_IsString(heights) && strcmp(heights->valuestring, "gaussian") == 0);
+    if (!translated || gaussian || json_at(document, AMPLITUDES) != NULL)
+        return 0;
+    cJSON_DeleteItemFromObjectCaseSensitive(surface, "amplitudes");
+    return field_put_text(surface, "amplitudes", "random") ? 0 : error_memory(err, 0, "amplitudes");
+}
+
+/* Values of the iteration, for which a translation has no use, count as given where they are not
+ * the defaults. */
+static void refuse_iteration(const struct surface_case *surface, struct values *values) {
+    const struct surface_options *of = &surface->options, *usual = &SURFACE_DEFAULTS;
+    const struct {
+        const char *name;
+        bool given;
+    } values_of[] = {
+        {"tolerance", of->tolerance != usual->tolerance},
+        {"keep", of->keep != usual->keep},
+        {"iteration", of->iteration != usual->iteration},
+        {"draw", of->draw != usual->draw},
+        {"stall_gain", of->stall_gain != usual->stall_gain},
+        {"stall_iterations", of->stall_iterations != usual->stall_iterations},
+        {"max_iterations", of->max_iterations != usual->max_iterations},
+        {"relaxed_iterations", of->relaxed_iterations != usual->relaxed_iterations},
+    };
+    for (size_t a = 0; a < sizeof values_of / sizeof *values_of; a++) {
+        char path[64];
+        snprintf(path, sizeof path, "/surface/heights/%s", values_of[a].name);
+        if (values_of[a].given)
+            values_fault(values, path,
+                         "is of the law \"iterated\": surfaces of the law \"translation\" are not "
+                         "iterated; leave it out");
+    }
+    if (surface->options.amplitudes != AMPLITUDES_RANDOM)
+        values_fault(values, AMPLITUDES,
+                     "fixed amplitudes are not Gaussian in a cell, which the law \"translation\" "
+                     "needs; allowed: random");
+}
+
+static void judge(const struct surface_case *surface, struct values *values) {
+    static const double TWO_PI = 6.283185307179586;
+    const struct translation_fit *fit = translation_fit(surface->translation);
+    double most = values_number(values, "/surface/heights/misfit");
+    if (fit->misfit > most)
+        values_fault(values, LAW,
+                     "these heights and this spectrum go together only so far: %.3g %% of the "
+                     "variance in the band would be at other waves, most of it near waves of %.3g "
+                     "lambda_s; allowed: heights less skewed, a spectrum less steep, misfit %.2g, "
+                     "or the law \"iterated\"",
+                     100 * fit->misfit, TWO_PI / fit->misfit_wave_number,
+                     ceil(100 * fit->misfit) / 100);
+}
+
+/* Of a law that fits, the heights follow from the scale and the cell. */
+static int use_translation(struct surface_case *surface, struct values *values, struct error *err) {
+    struct moments moments;
+    struct error reason = {0};
+    surface->spectrum.translation = surface->translation;
+    judge(surface, values);
+    int status = spectrum_moments(&surface->spectrum, &surface->grid, &moments, &reason);
+    if (status == ERROR_INPUT)
+        values_fault(values, LAW, "%s", reason.text);
+    else if (status != 0)
+        return error_set(err, status, "%s", reason.text);
+    else
+        surface->translated_height = moments.rms_height;
+    return 0;
+}
+
+int surface_law_fill(struct surface_case *surface, struct values *values, struct error *err) {
+    struct error reason = {0};
+    if (surface->options.law != LAW_TRANSLATION)
+        return 0;
+    if (surface->options.heights.type == HEIGHTS_GAUSSIAN)
+        return 0; /* a Gaussian field is its own translation */
+    size_t before = values_fault_count(values);
+    refuse_iteration(surface, values);
+    if (values_fault_count(values) != before)
+        return 0;
+    int status = translation_create(&surface->translation, &surface->spectrum, surface->dimension,
+                                    &surface->options.heights, &reason);
+    if (status == ERROR_INPUT)
+        values_fault(values, LAW, "%s", reason.text);
+    else if (status != 0)
+        return error_set(err, status, "%s", reason.text);
+    return status == 0 ? use_translation(surface, values, err) : 0;
+}
