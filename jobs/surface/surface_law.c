@@ -100,3 +100,11 @@ int surface_law_fill(struct surface_case *surface, struct values *values, struct
         return error_set(err, status, "%s", reason.text);
     return status == 0 ? use_translation(surface, values, err) : 0;
 }
+
+void surface_law_estimate(const struct surface_case *surface, struct study_cost *out) {
+    if (!surface_case_translated(surface))
+        return;
+    const struct translation_fit *fit = translation_fit(surface->translation);
+    out->law_outside = isfinite(fit->outside) ? fit->outside : 0;
+    out->law_misfit = fit->misfit;
+}

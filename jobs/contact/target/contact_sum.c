@@ -15,11 +15,11 @@ double contact_heights_cell(const struct heights *heights) {
                : HEIGHTS_CELL;
 }
 
-/* Returns a bound of the error of a non-Gaussian profile of this cell by its heights; 0 for others,
+/* Returns a bound of the error of an iterated profile of this cell by its heights; 0 for others,
  * which have no such error. */
 static double heights_bound(const struct target_component *base, double value, size_t load) {
     const struct surface_case *surface = &component_case(base)->surface;
-    if (surface->dimension != 1 || surface->options.heights.type == HEIGHTS_GAUSSIAN)
+    if (surface->dimension != 1 || !surface_is_iterated(&surface->options))
         return 0;
     double area = contact_tally_mean(component_tally(base), MEASURE_EDGES, load).value;
     return contact_heights_cell(&surface->options.heights) /

@@ -30,16 +30,37 @@ static void print_value(struct text_table *table, const cJSON *value) {
     free(text);
 }
 
+/* Returns whether a case has a law of heights, of which something is known. */
+static bool has_law(const struct study *study) {
+    bool any = false;
+    for (size_t c = 0; c < study->case_count; c++)
+        any = any || study->cases[c].cost.law_outside > 0;
+    return any;
+}
+
+static void print_law(struct text_table *table, const struct study_cost *cost) {
+    if (cost->law_outside > 0) {
+        table_cell(table, "%.3g", 100 * cost->law_outside);
+        table_cell(table, "%.2f", 100 * cost->law_misfit);
+        return;
+    }
+    table_cell(table, "-");
+    table_cell(table, "-");
+}
+
 static void print_cases(const struct study *study) {
     size_t swept = 0;
     while (study->swept[swept] != NULL)
         swept++;
-    struct text_table table = {.columns = swept + 6};
+    static const char *const HEADINGS[] = {"grid",    "memory MiB", "jobs",    "CPU time",
+                                           "error %", "outside %",  "misfit %"};
+    bool law = has_law(study);
+    size_t columns = law ? 7 : 5;
+    struct text_table table = {.columns = swept + 1 + columns};
     table_cell(&table, "case");
     for (size_t p = 0; p < swept; p++)
         table_cell(&table, "%s", strrchr(study->swept[p], '/') + 1);
-    static const char *const HEADINGS[] = {"grid", "memory MiB", "jobs", "CPU time", "error %"};
-    for (size_t h = 0; h < 5; h++)
+    for (size_t h = 0; h < columns; h++)
         table_cell(&table, "%s", HEADINGS[h]);
     for (size_t c = 0; c < study->case_count; c++) {
         const struct study_case *one = &study->cases[c];
@@ -53,9 +74,14 @@ static void print_cases(const struct study *study) {
         table_cell(&table, "%llu", (unsigned long long)plan_case_jobs(one));
         table_cell(&table, "%s", time);
         table_cell(&table, "%.2g", 100 * plan_case_error(&study->cases[c]));
+        if (law)
+            print_law(&table, &one->cost);
     }
     table_print(&table, stdout);
     table_clear(&table);
+    if (law)
+        printf("outside: share of m0 at waves outside the band of the spectrum; misfit: share of "
+               "the variance in the band at other waves than asked for\n");
 }
 
 enum { NUMBERS_SHOWN = 8 };

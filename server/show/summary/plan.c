@@ -77,6 +77,14 @@ static bool put_components(cJSON *document, const struct study_case *one) {
     return complete;
 }
 
+/* Adds what is known of the law of heights; nothing where there is none. */
+static bool put_law(cJSON *document, const struct study_cost *cost) {
+    if (!(cost->law_outside > 0))
+        return true;
+    return field_put(document, "law_outside", json_number(cost->law_outside)) &&
+           field_put(document, "law_misfit", json_number(cost->law_misfit));
+}
+
 static cJSON *case_document(const struct study *study, size_t c) {
     const struct study_case *one = &study->cases[c];
     cJSON *document = cJSON_CreateObject();
@@ -89,7 +97,7 @@ static cJSON *case_document(const struct study *study, size_t c) {
         field_put(document, "block", cJSON_CreateNumber((double)block_of(one))) &&
         field_put(document, "seconds", json_number(plan_case_seconds(&study->cases[c]))) &&
         field_put(document, "relative_error", json_number(plan_case_error(&study->cases[c]))) &&
-        put_components(document, &study->cases[c]);
+        put_law(document, &one->cost) && put_components(document, &study->cases[c]);
     return fields_finish(document, complete);
 }
 

@@ -235,6 +235,17 @@ static void exponential_correlation_is_reached(void **state) {
     translation_destroy(&law);
 }
 
+static void waves_too_far_apart_are_refused(void **state) {
+    (void)state;
+    const struct heights heights = {.type = HEIGHTS_WEIBULL_MAX, .shape = 1};
+    struct translation *law = NULL;
+    struct error err = {0};
+    struct spectrum spectrum = self_affine(0.8, 2000);
+    assert_int_equal(translation_create(&law, &spectrum, 2, &heights, &err), ERROR_INPUT);
+    assert_null(law);
+    assert_non_null(strstr(err.text, "2000 times"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(transforms_of_constant_densities),
@@ -244,6 +255,7 @@ int main(void) {
         cmocka_unit_test(scale_is_that_of_the_heights),
         cmocka_unit_test(finer_grid_is_the_same_surface),
         cmocka_unit_test(misfits_are_told),
+        cmocka_unit_test(waves_too_far_apart_are_refused),
         cmocka_unit_test(exponential_correlation_is_reached),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
