@@ -1,5 +1,6 @@
 /* Protects: the spectrum of the Gaussian field of a law of heights, moments of what is translated
- * from it, and that spectra which have no such field are told. */
+ * from it, and that
+ * spectra which have no such field are recognised. */
 #include "core/surface/spectrum.h"
 #include "core/surface/surface.h"
 #include "core/surface/transform.h"
@@ -180,7 +181,7 @@ static void finer_grid_is_the_same_surface(void **state) {
 
 /* A Gaussian-shaped density cannot be had with C = 1: its tail falls faster than what products of
  * the field have there. One that falls slowly can. */
-static void misfits_are_told(void **state) {
+static void misfits_are_found(void **state) {
     (void)state;
     enum { ROWS = 40 };
     double k[ROWS], steep[ROWS], slow[ROWS];
@@ -254,7 +255,7 @@ int main(void) {
         cmocka_unit_test(cells_tend_to_one_field),
         cmocka_unit_test(scale_is_that_of_the_heights),
         cmocka_unit_test(finer_grid_is_the_same_surface),
-        cmocka_unit_test(misfits_are_told),
+        cmocka_unit_test(misfits_are_found),
         cmocka_unit_test(waves_too_far_apart_are_refused),
         cmocka_unit_test(exponential_correlation_is_reached),
     };

@@ -1,5 +1,5 @@
 /* Protects: surfaces of the law "translation" have the heights asked for, the spectrum asked for in
- * its band and the moments that are told, on cells of few waves as on longer ones. */
+ * its band and the moments that are reported, on cells of few waves as on longer ones. */
 #include "core/surface/spectrum.h"
 #include "core/surface/surface.h"
 #include "core/surface/transform.h"

@@ -37,6 +37,7 @@ static void ready_studies(void **state) {
     } studies[] = {{"demo", 3, 512, 20},
                    {"gaussian-nayak", 5, 8192, 1000},
                    {"weibull-statistics", 20, 1024, 1000},
+                   {"weibull-translation", 20, 1024, 1000},
                    {"nayak-hurst", 18, 2400, 1000},
                    {"nayak-hurst-continuous", 18, 2430, 1000},
                    {"rce-weibull-2d-full", 20, 512, 20},
