@@ -86,8 +86,8 @@ static double field_correlation(const struct spectrum *spectrum, const struct gr
     double asked = exponential_correlation(spectrum, grid, i, j);
     if (spectrum->translation == NULL)
         return asked;
-    return hermite_gaussian_correlation(height_function_powers(translation_function(spectrum->translation)),
-                                        asked);
+    return hermite_gaussian_correlation(
+        height_function_powers(translation_function(spectrum->translation)), asked);
 }
 
 int exponential_fill(struct modes *modes, const struct spectrum *spectrum, struct error *err) {

@@ -235,7 +235,7 @@ int generator_run(struct generator *g, struct random_key key, double *z,
         return nongaussian_run(g->nongaussian, g->transform, key, z, report, err);
     if (g->modes->translation != NULL)
         height_function_apply(translation_function(g->modes->translation), g->modes->height,
-                         grid_points(&g->modes->grid), z);
+                              grid_points(&g->modes->grid), z);
     if (report != NULL)
         *report = (struct surface_report){.end = END_DIRECT};
     return 0;

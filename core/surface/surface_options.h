@@ -11,7 +11,7 @@
 enum surface_amplitudes { AMPLITUDES_FIXED, AMPLITUDES_RANDOM };
 /* What heights that are not Gaussian mean (FORMULAS.md, F5): surfaces that are iterated towards a
  * spectrum and heights, or translations of a Gaussian field. */
-enum surface_law { LAW_ITERATED, LAW_TRANSLATION };
+enum height_law { LAW_ITERATED, LAW_TRANSLATION };
 enum surface_keep { KEEP_SPECTRUM, KEEP_HEIGHTS };
 /* The iteration towards spectrum and heights (FORMULAS.md, F5.3 to F5.6). */
 enum surface_iteration {
@@ -26,7 +26,7 @@ enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
  * the iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4). */
 struct surface_options {
     struct heights heights;
-    enum surface_law law; /* LAW_TRANSLATION: of these heights by spectrum.translation */
+    enum height_law law; /* LAW_TRANSLATION: of these heights by spectrum.translation */
     enum surface_amplitudes amplitudes; /* random, not Gaussian: heights have the deviation and the
                                            spectrum of the Gaussian start of each surface */
     enum surface_keep keep;             /* which of the two last iterates is returned */

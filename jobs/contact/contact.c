@@ -7,7 +7,6 @@
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/target/contact_target.h"
-#include "jobs/surface/surface_law.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
 #include "schema/result/view.h"

@@ -1,5 +1,4 @@
 #include "jobs/contact/contact_level.h"
-#include "core/surface/translation/translation.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,8 +12,8 @@ static int resample(const struct contact_level *level, const struct surface_case
 static int resample_translated(const struct contact_level *level,
                                const struct surface_case *surface, const double *z, double *out,
                                struct error *err) {
-    const struct height_function *function = translation_function(surface->translation);
-    double height = surface->translated_height;
+    const struct height_function *function = translation_function(surface->law.translation);
+    double height = surface->law.height;
     size_t points = grid_points(&surface->grid);
     double *gaussian = array_create(points, sizeof *gaussian);
     if (gaussian == NULL)

@@ -4,7 +4,6 @@
 #include "core/cost.h"
 #include "jobs/contact/contact_measure.h"
 #include "jobs/publishing_cost.h"
-#include "jobs/surface/surface_law.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -269,7 +268,7 @@ static double plain_bytes(const struct contact_case *one_case) {
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
     const struct grid *finest = &contact_case_finest(one_case)->grid;
-    surface_law_estimate(surface, out);
+    surface_law_estimate(&surface->law, out);
     out->nx = finest->nx;
     out->ny = finest->ny;
     out->memory_bytes = surface_case_bytes(surface) + plain_bytes(one_case) +

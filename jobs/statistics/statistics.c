@@ -9,7 +9,6 @@
 #include "jobs/statistics/statistics_levels.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
-#include "jobs/surface/surface_law.h"
 #include "jobs/target.h"
 #include "schema/result/view.h"
 #include <math.h>

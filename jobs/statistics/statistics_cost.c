@@ -5,7 +5,6 @@
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_generation.h"
 #include "jobs/statistics/statistics_levels.h"
-#include "jobs/surface/surface_law.h"
 #include <math.h>
 
 /* Factor for spectra of every second point beside those of all. */
@@ -63,7 +62,7 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
                                           (double)band.x, &alpha));
     double spread = sqrt(fmax(0.05, 1 - 0.8968 / fmax(alpha, 1))); /* of summit heights */
     bool exact = surface_case_exact(surface);
-    surface_law_estimate(surface, out);
+    surface_law_estimate(&surface->law, out);
     out->nx = grid->nx;
     out->ny = grid->ny;
     /* a list of summits doubles as it grows; spectra of height maps need a transform of the grid */

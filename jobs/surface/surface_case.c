@@ -1,6 +1,4 @@
 #include "jobs/surface/surface_case.h"
-#include "core/surface/translation/translation.h"
-#include "jobs/surface/surface_law.h"
 #include "jobs/surface/surface_parameters.h"
 #include <math.h>
 #include <stdlib.h>
@@ -75,7 +73,7 @@ static int read_quantiles(struct surface_case *out, struct values *values, struc
 }
 
 static void read_iteration(struct surface_options *options, struct values *values) {
-    options->law = (enum surface_law)values_choice(values, "/surface/heights/law");
+    options->law = (enum height_law)values_choice(values, "/surface/heights/law");
     options->amplitudes = (enum surface_amplitudes)values_choice(values, "/surface/amplitudes");
     options->tolerance = values_number(values, "/surface/heights/tolerance");
     options->keep = (enum surface_keep)values_choice(values, "/surface/heights/keep");
@@ -346,7 +344,8 @@ int surface_case_fill(struct surface_case *out, struct values *values,
     *whole = NULL;
     int status = read_surface(out, values, err);
     if (status == 0 && values_fault_count(values) == before)
-        status = surface_law_fill(out, values, err);
+        status =
+            surface_law_fill(&out->law, &out->spectrum, &out->grid, &out->options, values, err);
     if (status == 0 && values_fault_count(values) == before)
         *whole = out;
     else
@@ -373,7 +372,7 @@ int surface_case_read(struct surface_case *out, const cJSON *parameters, struct 
 void surface_case_clear(struct surface_case *surface) {
     free(surface->table);
     height_table_destroy(&surface->height_table);
-    translation_destroy(&surface->translation);
+    surface_law_clear(&surface->law);
     *surface = (struct surface_case){0};
 }
 

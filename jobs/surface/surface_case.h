@@ -3,6 +3,7 @@
 #define RUGO_JOBS_SURFACE_SURFACE_CASE_H
 
 #include "core/surface/surface.h"
+#include "jobs/surface/surface_law.h"
 #include "schema/study/values.h"
 #include <math.h>
 
@@ -17,9 +18,8 @@ struct surface_case {
                                             the length */
     double *table;                       /* owned: memory behind a table spectrum */
     struct height_table *height_table;   /* owned: samples or quantiles of heights; NULL: none */
-    struct translation *translation;     /* owned: that of the spectrum; NULL: none */
-    double translated_height; /* RMS height of surfaces on the grid, with a translation */
-    const char *heights_name; /* of the theory curves of heights */
+    struct surface_law law;              /* owned: its translation is that of the spectrum */
+    const char *heights_name;            /* of the theory curves of heights */
 };
 /* Highest wave numbers along x and y, in units of 2 pi over that side; y of profiles is 0. */
 struct surface_band {

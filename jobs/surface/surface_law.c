@@ -1,5 +1,5 @@
 #include "jobs/surface/surface_law.h"
-#include "core/surface/translation/translation.h"
+#include "core/surface/spectrum.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
 #include <math.h>
@@ -23,8 +23,8 @@ int surface_law_complete(const cJSON *document, cJSON *parameters, struct error 
 
 /* Values of the iteration, for which a translation has no use, count as given where they are not
  * the defaults. */
-static void refuse_iteration(const struct surface_case *surface, struct values *values) {
-    const struct surface_options *of = &surface->options, *usual = &SURFACE_DEFAULTS;
+static void refuse_iteration(const struct surface_options *of, struct values *values) {
+    const struct surface_options *usual = &SURFACE_DEFAULTS;
     const struct {
         const char *name;
         bool given;
@@ -46,15 +46,15 @@ static void refuse_iteration(const struct surface_case *surface, struct values *
                          "is of the law \"iterated\": surfaces of the law \"translation\" are not "
                          "iterated; leave it out");
     }
-    if (surface->options.amplitudes != AMPLITUDES_RANDOM)
+    if (of->amplitudes != AMPLITUDES_RANDOM)
         values_fault(values, AMPLITUDES,
                      "fixed amplitudes are not Gaussian in a cell, which the law \"translation\" "
                      "needs; allowed: random");
 }
 
-static void judge(const struct surface_case *surface, struct values *values) {
+static void judge(const struct translation *translation, struct values *values) {
     static const double TWO_PI = 6.283185307179586;
-    const struct translation_fit *fit = translation_fit(surface->translation);
+    const struct translation_fit *fit = translation_fit(translation);
     double most = values_number(values, "/surface/heights/misfit");
     if (fit->misfit > most)
         values_fault(values, LAW,
@@ -66,45 +66,45 @@ static void judge(const struct surface_case *surface, struct values *values) {
                      ceil(100 * fit->misfit) / 100);
 }
 
-/* Of a law that fits, the heights follow from the scale and the cell. */
-static int use_translation(struct surface_case *surface, struct values *values, struct error *err) {
-    struct moments moments;
-    struct error reason = {0};
-    surface->spectrum.translation = surface->translation;
-    judge(surface, values);
-    int status = spectrum_moments(&surface->spectrum, &surface->grid, &moments, &reason);
+/* Adds a fault for what cannot be; any other failure is returned. */
+static int fault_of(int status, const struct error *reason, struct values *values,
+                    struct error *err) {
     if (status == ERROR_INPUT)
-        values_fault(values, LAW, "%s", reason.text);
-    else if (status != 0)
-        return error_set(err, status, "%s", reason.text);
-    else
-        surface->translated_height = moments.rms_height;
-    return 0;
+        values_fault(values, LAW, "%s", reason->text);
+    return status == 0 || status == ERROR_INPUT ? 0 : error_set(err, status, "%s", reason->text);
 }
 
-int surface_law_fill(struct surface_case *surface, struct values *values, struct error *err) {
+int surface_law_fill(struct surface_law *out, struct spectrum *spectrum, const struct grid *grid,
+                     const struct surface_options *options, struct values *values,
+                     struct error *err) {
     struct error reason = {0};
-    if (surface->options.law != LAW_TRANSLATION)
-        return 0;
-    if (surface->options.heights.type == HEIGHTS_GAUSSIAN)
+    struct moments moments;
+    if (options->law != LAW_TRANSLATION || options->heights.type == HEIGHTS_GAUSSIAN)
         return 0; /* a Gaussian field is its own translation */
     size_t before = values_fault_count(values);
-    refuse_iteration(surface, values);
+    refuse_iteration(options, values);
     if (values_fault_count(values) != before)
         return 0;
-    int status = translation_create(&surface->translation, &surface->spectrum, surface->dimension,
-                                    &surface->options.heights, &reason);
-    if (status == ERROR_INPUT)
-        values_fault(values, LAW, "%s", reason.text);
-    else if (status != 0)
-        return error_set(err, status, "%s", reason.text);
-    return status == 0 ? use_translation(surface, values, err) : 0;
+    int status = translation_create(&out->translation, spectrum, grid_is_profile(grid) ? 1 : 2,
+                                    &options->heights, &reason);
+    if (status != 0)
+        return fault_of(status, &reason, values, err);
+    judge(out->translation, values);
+    spectrum->translation = out->translation;
+    status = spectrum_moments(spectrum, grid, &moments, &reason);
+    if (status == 0)
+        out->height = moments.rms_height;
+    return fault_of(status, &reason, values, err);
 }
 
-void surface_law_estimate(const struct surface_case *surface, struct study_cost *out) {
-    if (!surface_case_translated(surface))
+void surface_law_clear(struct surface_law *law) {
+    translation_destroy(&law->translation);
+}
+
+void surface_law_estimate(const struct surface_law *law, struct study_cost *out) {
+    if (law->translation == NULL)
         return;
-    const struct translation_fit *fit = translation_fit(surface->translation);
+    const struct translation_fit *fit = translation_fit(law->translation);
     out->law_outside = isfinite(fit->outside) ? fit->outside : 0;
     out->law_misfit = fit->misfit;
 }

@@ -172,8 +172,8 @@ int http_connect(unsigned port) {
     return connection;
 }
 
-/* Sends, reads to the end and closes; *length (or NULL) is that of the reply. A stream that does not end
- * fails the test. */
+/* Sends, reads to the end and closes; *length (or NULL) is that of the reply. A stream that does
+ * not end fails the test. */
 static char *converse(int connection, const char *bytes, size_t size, size_t *length) {
     /* A server that refuses early stops reading: what it answered still counts. */
     for (size_t sent = 0; sent < size;) {

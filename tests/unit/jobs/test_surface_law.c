@@ -38,10 +38,10 @@ static void the_law_is_read(void **state) {
     assert_true(surface_case_translated(&surface));
     assert_false(surface_case_band_limited(&surface));
     assert_false(surface_is_iterated(&surface.options));
-    check_close(surface.translated_height, 1, 1e-12);
+    check_close(surface.law.height, 1, 1e-12);
     surface_case_clear(&surface);
     surface = read(MAXIMUM "}, \"amplitudes\": \"random\", \"rms_height\": 0.25");
-    check_relative(surface.translated_height, 0.25, 1e-12);
+    check_relative(surface.law.height, 0.25, 1e-12);
     surface_case_clear(&surface);
     surface =
         read(", \"heights\": {\"law\": \"translation\"}"); /* Gaussian: nothing to translate */
@@ -85,7 +85,7 @@ static void a_misfit_may_be_allowed(void **state) {
     struct surface_case surface =
         read(", \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 0.5, \"law\": "
              "\"translation\", \"misfit\": 0.3}, \"amplitudes\": \"random\"");
-    surface_law_estimate(&surface, &cost);
+    surface_law_estimate(&surface.law, &cost);
     assert_true(cost.law_misfit > 0.01 && cost.law_misfit <= 0.3);
     assert_true(cost.law_outside > 0 && cost.law_outside < 0.5);
     surface_case_clear(&surface);
