@@ -7,6 +7,7 @@ import puppeteer from "puppeteer-core";
 
 const { RUGO, BROWSER } = process.env;
 export const folder = mkdtempSync(join(tmpdir(), "rugo-browser-")); // of the databases; end() removes it
+export const WAIT_MS = 60000; // at most, for what comes at once on a machine without other work
 const servers = [];
 
 /** Starts a service on a port of its own and waits until it answers. */
@@ -35,7 +36,8 @@ export async function send(url, method, path, body, token) {
 }
 
 export async function finished(url, id) {
-  for (;;) {
+  for (const until = Date.now() + 4 * WAIT_MS; ;) {
+    if (Date.now() > until) throw new Error(`study ${id} has not ended within ${4 * WAIT_MS} ms`);
     const study = await send(url, "GET", `/v1/studies/${id}`);
     if (!["queued", "running"].includes(study.state)) return study;
     await new Promise((done) => setTimeout(done, 200));
@@ -43,7 +45,7 @@ export async function finished(url, id) {
 }
 
 export function launch() {
-  return puppeteer.launch({ executablePath: BROWSER, args: ["--no-sandbox", "--disable-dev-shm-usage"] });
+  return puppeteer.launch({ executablePath: BROWSER, timeout: 2 * WAIT_MS, args: ["--no-sandbox", "--disable-dev-shm-usage"] });
 }
 
 /** Stops the services and removes what they wrote. */
