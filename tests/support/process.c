@@ -14,7 +14,9 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { ARGUMENTS_MOST = 40, CONVERSATION_SECONDS = 120 };
+/* They end tests that hang: none is what a machine with other work takes. */
+enum { CONVERSATION_SECONDS = 120, TEXT_SECONDS = 120, RUN_SECONDS = 300, ANSWER_MS = 60000 };
+enum { ARGUMENTS_MOST = 40 };
 
 const char *rugo(void) {
     const char *path = getenv("RUGO");
@@ -69,7 +71,7 @@ int process_wait(struct process *process, int seconds) {
 int run_rugo(const char *name, const char *const *arguments) {
     struct process process;
     process_start(&process, name, arguments);
-    return process_wait(&process, 120);
+    return process_wait(&process, RUN_SECONDS);
 }
 
 int run_shell(const char *line) {
@@ -128,7 +130,7 @@ bool contains(const char *path, const char *text) {
 
 void wait_for_text(const char *path, const char *text) {
     for (int tries = 0; !contains(path, text); tries++) {
-        if (tries > 2000) {
+        if (tries > 100 * TEXT_SECONDS) {
             print_error("\"%s\" did not come in %s\n", text, path);
             fail();
         }
@@ -150,6 +152,24 @@ unsigned serve_start(struct process *process, const char *const *more) {
     return port;
 }
 
+unsigned free_port(void) {
+    enum { LEAST = 20000, MOST = 32000 };
+    static unsigned asked;
+    for (unsigned tries = 0; tries < MOST - LEAST; tries++) {
+        unsigned port = LEAST + ((unsigned)getpid() + 101 * asked++) % (MOST - LEAST);
+        struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        int file = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        assert_true(file >= 0);
+        bool is_free = bind(file, (struct sockaddr *)&address, sizeof address) == 0;
+        close(file);
+        if (is_free)
+            return port;
+    }
+    fail_msg("no port is free");
+    return 0;
+}
+
 /* -1 where nobody listens. */
 static int connect_within(unsigned port, long milliseconds) {
     struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
@@ -167,7 +187,7 @@ static int connect_within(unsigned port, long milliseconds) {
 }
 
 int http_connect(unsigned port) {
-    int connection = connect_within(port, 30000);
+    int connection = connect_within(port, ANSWER_MS);
     assert_true(connection >= 0);
     return connection;
 }
@@ -247,5 +267,5 @@ int http_try(unsigned port, long milliseconds, const struct http_request *reques
 
 int http_exchange(unsigned port, const char *method, const char *path, const char *headers,
                   const char *body, char **answer) {
-    return http_try(port, 30000, &(struct http_request){method, path, headers, body}, answer);
+    return http_try(port, ANSWER_MS, &(struct http_request){method, path, headers, body}, answer);
 }

@@ -33,12 +33,16 @@ void spit(const char *path, const char *text);
 /* Likewise, of mode 600, as files of tokens must be. */
 void spit_secret(const char *path, const char *text);
 bool contains(const char *path, const char *text);
-/* Waits until a file contains a text, 20 s at most. */
+/* Waits until a file contains a text, two minutes at most. */
 void wait_for_text(const char *path, const char *text);
 void sleep_ms(long milliseconds);
 
 /* Starts `rugo serve` on a free port with further arguments; the port. */
 unsigned serve_start(struct process *process, const char *const *more);
+
+/* A port for servers that end and come back to it: below those that the system gives to whoever
+ * wants any, so that no other test gets it meanwhile. */
+unsigned free_port(void);
 
 /* One exchange over a new connection: sends the bytes, reads to the end (Connection: close is up to
  * the caller). The caller frees. */

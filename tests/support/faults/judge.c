@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STUDIES_MOST = 4000, SETTLE_MS = 120000, RETRIES_MOST = 3 };
+enum { STUDIES_MOST = 4000, SETTLE_MS = 300000, RETRIES_MOST = 3 };
 
 struct study_seen {
     char name[WORLD_NAME], id[20], state[16];

@@ -1,7 +1,6 @@
 #include "tests/support/faults/world.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
-#include <arpa/inet.h>
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -9,7 +8,6 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -256,18 +254,6 @@ void world_count_fault(struct world *world) {
 
 /* --- the whole --- */
 
-/* One that is free now; the server comes back to it after each end. */
-static unsigned free_port(void) {
-    struct sockaddr_in address = {.sin_family = AF_INET};
-    socklen_t size = sizeof address;
-    int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    assert_int_equal(bind(probe, (struct sockaddr *)&address, size), 0);
-    assert_int_equal(getsockname(probe, (struct sockaddr *)&address, &size), 0);
-    close(probe);
-    return ntohs(address.sin_port);
-}
-
 static void add_actors(struct world *world, enum role role, int count) {
     for (int number = 0; number < count; number++) {
         assert_true(world->actor_count < WORLD_ACTORS);
@@ -303,9 +289,18 @@ static void world_open(struct world *world, const struct world_options *options,
     add_actors(world, ROLE_IS_SNAPSHOT, usual_ones ? 1 : options->snapshots);
 }
 
+/* Something was acknowledged that could be lost, and something struck. */
+static bool has_happened(const struct world *world) {
+    const struct world_tally *tally = world->tally;
+    return tally->acknowledged > 0 && tally->kills + tally->faults > 0;
+}
+
+/* A machine on which nothing has happened in the time gets more. */
 static void world_run(struct world *world) {
+    enum { MORE_MS = 120000 };
     int64_t end = world_now() + (int64_t)(1000 * world->seconds), next = world_now();
-    for (; world_now() < end; sleep_ms(5)) {
+    int64_t late = end + MORE_MS;
+    for (; world_now() < end || (world_now() < late && !has_happened(world)); sleep_ms(5)) {
         world_tend(world);
         if (world_now() < next)
             continue;

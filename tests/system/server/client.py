@@ -31,7 +31,7 @@ def a_study_from_submission_to_tables(server):
     assert server.submit(STUDY, key="other").id != study.id
     assert server.submit(json.dumps(STUDY), key="a-key").id == study.id
     with contextlib.redirect_stderr(io.StringIO()) as told:
-        assert study.wait(timeout=60, progress=True) is study
+        assert study.wait(timeout=300, progress=True) is study
     assert "again: done, 100.0 %" in told.getvalue()
     assert study.status()["realisations"]["done"] == 16
     assert study.document()["surface"] == STUDY["surface"]
@@ -62,7 +62,7 @@ def studies_are_found_and_changed(server, study):
     refused(lambda: server.study("again"), 422, "may be each of 2 studies")
     refused(lambda: server.study("no / such"), 404)
     assert study.id in [row["id"] for row in server.studies()]
-    assert study.extend(10).wait(timeout=60).status()["realisations"]["done"] == 20
+    assert study.extend(10).wait(timeout=300).status()["realisations"]["done"] == 20
     assert study.retry().status()["state"] == "done"
     refused(study.cancel, 409, "already ended")
     large = server.submit(dict(STUDY, name="large", realisations=100000))
@@ -82,7 +82,7 @@ def many_cases_are_asked_for_one_by_one(server):
     many = dict(STUDY, name="many", realisations=1)
     many["surface"] = dict(STUDY["surface"], length_ratio=2, points_per_wavelength=2,
                            hurst=[round(0.1 + c / 100, 3) for c in range(65)])
-    rows = server.submit(many).wait(timeout=100).curves("summit_height_pdf")
+    rows = server.submit(many).wait(timeout=300).curves("summit_height_pdf")
     assert {row["case"] for row in rows} == set(range(65))
 
 

@@ -31,7 +31,7 @@ start() {
     # shellcheck disable=SC2086
     (cd "$here/lib" && exec "$program" serve --db rugo.db $options) >"$here/serve.out" 2>>"$here/server.log" &
     server=$!
-    for _ in $(seq 200); do
+    for _ in $(seq 1200); do
         grep -q '^listening' "$here/serve.out" && return 0
         sleep 0.05
     done

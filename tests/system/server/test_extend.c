@@ -184,7 +184,9 @@ static void extended_over_http(void **state) {
                                                        "--workers", "1", NULL}),
                      0);
     snprintf(path, sizeof path, "/v1/studies/%s", id);
-    for (bool done = false; !done; sleep_ms(20)) {
+    bool done = false;
+    for (int tries = 0; !done; tries++, sleep_ms(20)) {
+        assert_true(tries < 3000);
         assert_int_equal(http_exchange(port, "GET", path, NULL, NULL, &answer), 200);
         done = strstr(answer, "\"state\":\"done\"") != NULL &&
                strstr(answer, "\"realisations\":{\"total\":8,\"done\":8,") != NULL;

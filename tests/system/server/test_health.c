@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define JSON "Content-Type: application/json\r\n"
-enum { PATIENCE_MS = 20000 };
+enum { PATIENCE_MS = 60000 };
 
 static struct process server;
 static unsigned port;

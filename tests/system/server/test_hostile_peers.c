@@ -4,22 +4,23 @@
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
+#include "tests/support/sql.h"
 #include <signal.h>
-#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <time.h>
 #include <unistd.h>
 
-static struct process server;
-static unsigned port;
+static struct process server, hasty_server; /* the second with a deadline of 1 s */
+static unsigned port, hasty;
 
 static int start(void **state) {
     (void)state;
-    port = serve_start(&server,
-                       (const char *[]){"--deadline", "1", "--allow-host", "rugo.example", NULL});
+    hasty =
+        serve_start(&hasty_server, (const char *[]){"--db", "hasty.db", "--deadline", "1", NULL});
+    assert_int_equal(rename("serve.err", "hasty.err"), 0);
+    port = serve_start(&server, (const char *[]){"--allow-host", "rugo.example", NULL});
     return 0;
 }
 
@@ -42,13 +43,14 @@ static bool hear(int connection, const char *text) {
 }
 
 static void check_alive(void) {
+    assert_int_equal(http_exchange(hasty, "GET", "/healthz", NULL, NULL, NULL), 200);
     assert_int_equal(http_exchange(port, "GET", "/healthz", NULL, NULL, NULL), 200);
 }
 
-static void submit(char id[17]) {
+static void submit(unsigned at, char id[17]) {
     char *answer;
-    assert_int_equal(http_exchange(port, "POST", "/v1/studies",
-                                   "Content-Type: application/json\r\n", ONE_CASE, &answer),
+    assert_int_equal(http_exchange(at, "POST", "/v1/studies", "Content-Type: application/json\r\n",
+                                   ONE_CASE, &answer),
                      201);
     assert_int_equal(sscanf(answer, "{\"id\":\"%16[0-9a-f]\"", id), 1);
     free(answer);
@@ -129,7 +131,7 @@ static void many_large_bodies_are_refused(void **state) {
     }
     check_raw(head, "503");
     char id[17];
-    submit(id); /* small ones are taken all the same */
+    submit(port, id); /* small ones are taken all the same */
     for (int i = 0; i < MOST; i++)
         close(connections[i]);
     for (bool room = false; !room; sleep_ms(20)) {
@@ -137,7 +139,7 @@ static void many_large_bodies_are_refused(void **state) {
         say(connection, head);
         room = hear(connection, "100 Continue");
         close(connection);
-        assert_true(tries++ < 100);
+        assert_true(tries++ < 1500);
     }
 }
 
@@ -178,9 +180,8 @@ static void log_lines_cannot_be_forged(void **state) {
  * same. */
 static void slow_requests_are_cut(void **state) {
     (void)state;
-    int connection = http_connect(port);
+    int connection = http_connect(hasty);
     const char *request = "GET /healthz HTTP/1.1\r\nHost: localhost\r\nX-Slow: yes";
-    time_t begin = time(NULL);
     bool cut = false;
     for (const char *c = request; *c && !cut; c++) {
         char byte;
@@ -189,7 +190,6 @@ static void slow_requests_are_cut(void **state) {
         sleep_ms(200);
     }
     assert_true(cut);
-    assert_true(time(NULL) - begin < 9);
     close(connection);
 }
 
@@ -210,12 +210,12 @@ static void silent_connections_are_cut(void **state) {
     enum { MOST = 300 };
     int connections[MOST];
     for (int i = 0; i < MOST; i++)
-        connections[i] = http_connect(port);
+        connections[i] = http_connect(hasty);
     bool alone = false;
-    for (int tries = 0; !alone && tries < 100; tries++) {
+    for (int tries = 0; !alone && tries < 600; tries++) {
         char *metrics;
         sleep_ms(100);
-        assert_int_equal(http_exchange(port, "GET", "/metrics", NULL, NULL, &metrics), 200);
+        assert_int_equal(http_exchange(hasty, "GET", "/metrics", NULL, NULL, &metrics), 200);
         alone = strstr(metrics, "\nrugo_http_connections 1\n") != NULL;
         free(metrics);
     }
@@ -226,12 +226,7 @@ static void silent_connections_are_cut(void **state) {
 
 /* Room for a snapshot that no socket's buffers hold. */
 static void fatten_database(const char *path) {
-    sqlite3 *db;
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, "CREATE TABLE fat AS SELECT zeroblob(24000000) AS bytes",
-                                  NULL, NULL, NULL),
-                     SQLITE_OK);
-    sqlite3_close(db);
+    sql_change(path, "CREATE TABLE fat AS SELECT zeroblob(24000000) AS bytes");
 }
 
 /* A connection whose answer has begun, and of which nothing more is read. */
@@ -246,38 +241,33 @@ static int begin_download(unsigned at) {
 /* Who asks for a copy of the database and does not read it is cut after a deadline. */
 static void downloads_that_are_not_read_are_cut(void **state) {
     (void)state;
-    fatten_database("rugo.db");
-    int connection = begin_download(port);
-    for (int tries = 0; tries < 200 && !contains(server.err, "cut off"); tries++)
-        sleep_ms(100);
-    assert_true(contains(server.err, "status=200") && contains(server.err, "cut off"));
+    fatten_database("hasty.db");
+    int connection = begin_download(hasty);
+    wait_for_text("hasty.err", "cut off");
+    assert_true(contains("hasty.err", "status=200"));
     close(connection);
 }
 
-/* There are no more than four copies at a time, here of a server that waits for long. */
+/* There are no more than four copies at a time, here of a server that waits for 30 s. */
 static void downloads_are_few(void **state) {
     (void)state;
     enum { MOST = 4 };
-    struct process patient;
     int connections[MOST], status = 503;
-    unsigned at = serve_start(&patient, (const char *[]){"--db", "patient.db", NULL});
-    fatten_database("patient.db");
+    fatten_database("rugo.db");
     for (int i = 0; i < MOST; i++)
-        connections[i] = begin_download(at);
-    assert_int_equal(http_exchange(at, "GET", "/v1/snapshot", NULL, NULL, NULL), 503);
+        connections[i] = begin_download(port);
+    assert_int_equal(http_exchange(port, "GET", "/v1/snapshot", NULL, NULL, NULL), 503);
     for (int i = 0; i < MOST; i++)
         close(connections[i]);
     char *answer = NULL;
-    for (int tries = 0; status == 503 && tries < 200; tries++) {
+    for (int tries = 0; status == 503 && tries < 600; tries++) {
         sleep_ms(100);
         free(answer);
-        status = http_exchange(at, "GET", "/v1/snapshot", NULL, NULL, &answer);
+        status = http_exchange(port, "GET", "/v1/snapshot", NULL, NULL, &answer);
     }
     assert_int_equal(status, 200);
     assert_memory_equal(answer, "SQLite format 3", 15);
     free(answer);
-    process_kill(&patient, SIGTERM);
-    assert_int_equal(process_wait(&patient, 20), 0);
 }
 
 /* --- streams of events --- */
@@ -285,15 +275,15 @@ static void downloads_are_few(void **state) {
 static void a_stream_outlives_the_deadline(void **state) {
     (void)state;
     char id[17], request[200], path[64];
-    submit(id);
+    submit(hasty, id);
     snprintf(request, sizeof request,
              "GET /v1/studies/%s/events HTTP/1.1\r\nHost: localhost\r\n\r\n", id);
-    int connection = http_connect(port);
+    int connection = http_connect(hasty);
     say(connection, request);
     assert_true(hear(connection, "queued"));
     sleep_ms(1800);
     snprintf(path, sizeof path, "/v1/studies/%s", id);
-    assert_int_equal(http_exchange(port, "DELETE", path, NULL, NULL, NULL), 200);
+    assert_int_equal(http_exchange(hasty, "DELETE", path, NULL, NULL, NULL), 200);
     assert_true(hear(connection, "cancelled"));
     close(connection);
 }
@@ -302,7 +292,7 @@ static void a_stream_outlives_the_deadline(void **state) {
 static void head_of_a_stream_has_no_body(void **state) {
     (void)state;
     char id[17], request[200];
-    submit(id);
+    submit(port, id);
     snprintf(request, sizeof request,
              "HEAD /v1/studies/%s/events HTTP/1.1\r\nHost: localhost\r\nConnection: "
              "close\r\n\r\n",
@@ -320,14 +310,14 @@ static void streams_left_alone_end(void **state) {
     (void)state;
     char id[17], request[200], *metrics = NULL;
     bool none = false;
-    submit(id);
+    submit(port, id);
     snprintf(request, sizeof request,
              "GET /v1/studies/%s/events HTTP/1.1\r\nHost: localhost\r\n\r\n", id);
     int connection = http_connect(port);
     say(connection, request);
     assert_true(hear(connection, "queued"));
     close(connection);
-    for (int tries = 0; !none && tries < 30; tries++) {
+    for (int tries = 0; !none && tries < 100; tries++) { /* it writes once in 15 s */
         sleep_ms(100);
         assert_int_equal(http_exchange(port, "GET", "/metrics", NULL, NULL, &metrics), 200);
         none = strstr(metrics, "\nrugo_event_streams 0\n") != NULL;
@@ -352,7 +342,7 @@ static void a_taken_port_is_refused(void **state) {
 static int stop(void **state) {
     (void)state;
     char id[17], request[200];
-    submit(id);
+    submit(port, id);
     snprintf(request, sizeof request,
              "GET /v1/studies/%s/events HTTP/1.1\r\nHost: localhost\r\n\r\n", id);
     int stream = http_connect(port), resting = http_connect(port), half = http_connect(port);
@@ -362,12 +352,14 @@ static int stop(void **state) {
     assert_true(hear(resting, "ok"));
     say(half, "GET /hea");
     process_kill(&server, SIGTERM);
-    assert_int_equal(process_wait(&server, 5), 0);
+    assert_int_equal(process_wait(&server, 20), 0);
     assert_true(contains(server.err, "msg=ended"));
     assert_true(hear(stream, "0\r\n\r\n")); /* a whole answer, not a torn one */
     close(stream);
     close(resting);
     close(half);
+    process_kill(&hasty_server, SIGTERM);
+    assert_int_equal(process_wait(&hasty_server, 20), 0);
     return 0;
 }
 

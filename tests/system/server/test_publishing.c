@@ -13,6 +13,14 @@
 #include <string.h>
 #include <unistd.h>
 
+/* Two cases of as many blocks as no worker takes before it is to end. */
+static const char LONG[] =
+    "{\"name\":\"long\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":1000000,\"surface\":{"
+    "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4,"
+    "\"points_per_wavelength\":8,\"heights\":{\"distribution\":[\"gaussian\",\"weibull_max\"],"
+    "\"shape\":2,\"max_iterations\":10}},\"statistics\":{\"bins\":{\"height\":[-4,4,20],"
+    "\"curvature\":[-8,0,10]}}}";
+
 enum { PATIENCE_S = 60 };
 #define JSON "Content-Type: application/json\r\n"
 
@@ -21,7 +29,7 @@ static char *ask(const char *database, const char *sql, const char *study) {
     sqlite3 *db = NULL;
     sqlite3_stmt *row = NULL;
     assert_int_equal(sqlite3_open_v2(database, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
-    sqlite3_busy_timeout(db, 5000);
+    sqlite3_busy_timeout(db, 20000);
     if (sqlite3_prepare_v2(db, sql, -1, &row, NULL) != SQLITE_OK)
         fail_msg("%s: %s", sql, sqlite3_errmsg(db));
     sqlite3_bind_text(row, 1, study, -1, SQLITE_STATIC);
@@ -93,14 +101,20 @@ static long ticks_of(pid_t pid) {
     return (long)(user + kernel);
 }
 
-/* The publisher that tried for ever took a whole processor: 300 ticks here. */
+/* The publisher that tried for ever took a whole processor: 300 ticks here, each time. What is left
+ * to do after the last case, such as a checkpoint, takes some at first. */
 static void check_idle(const struct process *server) {
-    long before = ticks_of(server->pid);
-    sleep_ms(3000);
-    long used = ticks_of(server->pid) - before;
-    if (used > sysconf(_SC_CLK_TCK) / 10)
-        fail_msg("an idle server used %ld ticks of %ld a second in 3 s", used,
-                 sysconf(_SC_CLK_TCK));
+    enum { LOOKS = 10 };
+    long used = 0, most = sysconf(_SC_CLK_TCK) / 10;
+    for (int look = 0; look < LOOKS; look++) {
+        long before = ticks_of(server->pid);
+        sleep_ms(3000);
+        used = ticks_of(server->pid) - before;
+        if (used <= most)
+            return;
+    }
+    fail_msg("an idle server used %ld ticks of %ld a second in 3 s, after %d s", used, 10 * most,
+             3 * LOOKS);
 }
 
 static void a_server_publishes_what_there_is(void **state) {
@@ -111,8 +125,9 @@ static void a_server_publishes_what_there_is(void **state) {
     spit("one.json", ONE_CASE);
     unsigned port = serve_start(&server, (const char *[]){"--db", "serve.db", NULL});
     snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
-    submit(url, "blocks.json", cut);
-    /* one of three blocks of its first case comes in, then it is cancelled */
+    spit("long.json", LONG);
+    submit(url, "long.json", cut);
+    /* some of many blocks of its first case come in, then it is cancelled */
     process_start(&worker, "worker",
                   (const char *[]){"work", "--server", url, "--workers", "1", NULL});
     wait_for("serve.db", "SELECT min(1, realisations_done) FROM study_progress WHERE study = ?",

@@ -31,7 +31,7 @@ static void the_client_and_its_page(void **state) {
     snprintf(
         line, sizeof line,
         "env -u RUGO_TOKEN PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=\"%s/server/python:$PYTHONPATH\" "
-        "timeout 200 python3 %s/tests/system/server/client.py http://127.0.0.1:%u . "
+        "timeout 400 python3 %s/tests/system/server/client.py http://127.0.0.1:%u . "
         ">client.out 2>&1",
         source(), source(), port);
     int status = system(line);
@@ -65,7 +65,7 @@ static void the_client_speaks_tls(void **state) {
         sscanf(told, "listening on https://127.0.0.1:%u\nfingerprint %79s", &port, fingerprint), 2);
     free(told);
     snprintf(line, sizeof line,
-             "env -u RUGO_TOKEN PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=%s/server/python timeout 100 "
+             "env -u RUGO_TOKEN PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=%s/server/python timeout 300 "
              "python3 -c 'import rugo\n"
              "url = \"https://localhost:%u\"\n"
              "for trust in ({\"fingerprint\": \"%s\"}, {\"ca_file\": \"tls/certificate.pem\"}):\n"

@@ -103,7 +103,7 @@ static void with_two_processes(void **state) {
             &workers[w], w ? "b" : "a",
             (const char *[]){"work", "--db", "two.db", "--drain", "--workers", "1", NULL});
     for (int w = 0; w < 2; w++)
-        assert_int_equal(process_wait(&workers[w], 60), 0);
+        assert_int_equal(process_wait(&workers[w], 200), 0);
     check_same("two.db");
 }
 
@@ -142,7 +142,7 @@ static void over_http(void **state) {
         process_start(&workers[w], w ? "hb" : "ha",
                       (const char *[]){"work", "--server", url, "--drain", "--workers", "1", NULL});
     for (int w = 0; w < 2; w++)
-        assert_int_equal(process_wait(&workers[w], 60), 0);
+        assert_int_equal(process_wait(&workers[w], 200), 0);
     process_kill(&server, SIGTERM);
     assert_int_equal(process_wait(&server, 20), 0);
     check_same("http.db");

@@ -105,7 +105,7 @@ static void is_served(void **state) {
     process_start(
         &worker, "work",
         (const char *const[]){"work", "--server", url, "--workers", "2", "--drain", NULL});
-    assert_int_equal(process_wait(&worker, 60), 0);
+    assert_int_equal(process_wait(&worker, 200), 0);
     snprintf(id, sizeof id, "%s", study_of("--server", url));
     assert_int_equal(run_rugo("served", (const char *const[]){"curves", id, "--server", url, NULL}),
                      0);

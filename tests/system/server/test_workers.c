@@ -1,20 +1,17 @@
 /* Workers and their server: one connection a process, claims that wait, jobs that reach nobody,
  * and what is kept of a job that is stopped. */
+#include "tests/support/check.h"
 #include "tests/support/process.h"
+#include "tests/support/sql.h"
 #include <poll.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #define SURFACE                                                                                    \
     "\"surface\":{\"dimension\":2,\"hurst\":0.5,\"wavelength_ratio\":8,\"length_ratio\":4,"        \
@@ -67,28 +64,34 @@ static unsigned connections_to(unsigned port) {
     return count;
 }
 
-/* Four threads at a server that takes four connections, with leases shorter than the work: nothing
- * is lost, as all goes through one connection; and asked to end, they keep what they have done. */
+#define RUNNING " FROM job WHERE state = 'running'"
+
+/* Four threads at a server that takes four connections, with leases that are renewed while they
+ * work: nothing is lost, as all goes through one connection; and asked to end, they keep what they
+ * have done. */
 static void one_connection_keeps_all_leases(void **state) {
     (void)state;
     struct process server, worker;
     char url[64];
     unsigned port = serve_start(
-        &server, (const char *[]){"--db", "one.db", "--connections", "4", "--lease", "2", NULL});
+        &server, (const char *[]){"--db", "one.db", "--connections", "4", "--lease", "9", NULL});
     snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
     submit(port, LONG);
     process_start(&worker, "worker",
                   (const char *[]){"work", "--server", url, "--workers", "4", NULL});
-    for (int tries = 0; tries < 200 && figure(port, "/v1/studies?limit=1", "\"running\":") < 4;
+    for (int tries = 0; tries < 600 && figure(port, "/v1/studies?limit=1", "\"running\":") < 4;
          tries++)
         sleep_ms(100);
     assert_true(figure(port, "/v1/studies?limit=1", "\"running\":") >= 4);
-    for (int second = 0; second < 3; second++) { /* more than a lease */
-        sleep_ms(1000);
+    int64_t first = sql_integer("one.db", "SELECT max(lease_until)" RUNNING);
+    for (int tries = 0; sql_integer("one.db", "SELECT min(lease_until)" RUNNING) <= first;
+         tries++) {
+        assert_true(tries < 1200);
+        sleep_ms(50);
         assert_true(connections_to(port) <= 1);
     }
     process_kill(&worker, SIGTERM);
-    assert_int_equal(process_wait(&worker, 10), 0);
+    assert_int_equal(process_wait(&worker, 30), 0);
     char *log = slurp("worker.err");
     assert_null(strstr(log, "level=warning"));
     assert_null(strstr(log, "attempt=2"));
@@ -98,9 +101,10 @@ static void one_connection_keeps_all_leases(void **state) {
     assert_true(
         figure(port, "/v1/studies?limit=1", "\"realisations\":{\"total\":1000000,\"done\":") > 0);
     process_kill(&server, SIGTERM);
-    assert_int_equal(process_wait(&server, 5), 0);
+    assert_int_equal(process_wait(&server, 20), 0);
 }
 
+#define CHANGES "\nrugo_changes_total "
 static const char CLAIM[] = "{\"worker\":\"w\",\"sequence\":true}";
 
 /* Sends a claim that waits; the connection. */
@@ -117,17 +121,24 @@ static int claim_begin(unsigned port, const char *worker, int wait_s) {
     return peer;
 }
 
-/* How many of the connections have an answer with jobs within the milliseconds. */
-static unsigned answered(const int *peers, size_t count, int ms) {
+/* How many of the connections have an answer with jobs. */
+static unsigned answered(const int *peers, size_t count) {
     char text[2048];
     unsigned found = 0;
-    sleep_ms(ms);
     for (size_t n = 0; n < count; n++) {
-        ssize_t size = recv(peers[n], text, sizeof text - 1, MSG_DONTWAIT);
+        ssize_t size = recv(peers[n], text, sizeof text - 1, MSG_DONTWAIT | MSG_PEEK);
         text[size > 0 ? size : 0] = '\0';
         found += strstr(text, "HTTP/1.1 200") != NULL && strstr(text, "Preference-Applied: wait=");
     }
     return found;
+}
+
+/* Waits until the server has made so many changes: a claim is one, also where there is no job. */
+static void wait_for_changes(unsigned port, double count) {
+    for (int tries = 0; figure(port, "/metrics", CHANGES) < count; tries++) {
+        assert_true(tries < 1500);
+        sleep_ms(20);
+    }
 }
 
 /* Many wait; one job wakes one of them, and costs a few claims; the others go at the end at once.
@@ -144,19 +155,35 @@ static void claims_wait_for_jobs(void **state) {
                                    NULL),
                      204);
     assert_true(now() - start >= 0.99);
+    double before = figure(port, "/metrics", CHANGES);
     for (size_t n = 0; n < PEERS; n++)
-        peers[n] = claim_begin(port, "w", 20);
-    assert_int_equal(answered(peers, PEERS, 500), 0);
-    double before = figure(port, "/metrics", "\nrugo_changes_total ");
+        peers[n] = claim_begin(port, "w", 30);
+    wait_for_changes(port, before + PEERS);
+    sleep_ms(500);
+    assert_int_equal(answered(peers, PEERS), 0);
+    before = figure(port, "/metrics", CHANGES);
     submit(port, ONE_JOB);
-    assert_int_equal(answered(peers, PEERS, 500), 1);
-    assert_true(2 * (figure(port, "/metrics", "\nrugo_changes_total ") - before) < PEERS);
+    for (int tries = 0; answered(peers, PEERS) == 0; tries++) {
+        assert_true(tries < 1000);
+        sleep_ms(20);
+    }
+    sleep_ms(500);
+    assert_int_equal(answered(peers, PEERS), 1);
+    assert_true(2 * (figure(port, "/metrics", CHANGES) - before) < PEERS);
     start = now();
     process_kill(&server, SIGTERM);
-    assert_int_equal(process_wait(&server, 5), 0);
-    assert_true(now() - start < 2);
+    assert_int_equal(process_wait(&server, 20), 0);
+    assert_true(now() - start < 10); /* they would wait for 30 s */
     for (size_t n = 0; n < PEERS; n++)
         close(peers[n]);
+}
+
+/* Peers claim, and go before the server hears of it: who goes later may be handed a job. */
+static void claim_and_go(const struct process *server, unsigned port) {
+    assert_int_equal(kill(server->pid, SIGSTOP), 0);
+    for (int n = 0; n < 20; n++)
+        close(claim_begin(port, "gone", n % 2 == 0 ? 20 : 0));
+    assert_int_equal(kill(server->pid, SIGCONT), 0);
 }
 
 /* Jobs go to those who are there to take them. */
@@ -165,14 +192,12 @@ static void who_has_gone_gets_no_job(void **state) {
     struct process server;
     char *answer = NULL;
     unsigned port = serve_start(&server, (const char *[]){"--db", "gone.db", NULL});
-    for (int n = 0; n < 20; n++)
-        close(claim_begin(port, "gone", n % 2 == 0 ? 20 : 0));
+    claim_and_go(&server, port);
     int later = claim_begin(port, "gone", 20);
     sleep_ms(300);
     close(later);
     submit(port, ONE_JOB);
-    for (int n = 0; n < 20; n++)
-        close(claim_begin(port, "gone", n % 2 == 0 ? 20 : 0));
+    claim_and_go(&server, port);
     sleep_ms(300);
     assert_int_equal(http_exchange(port, "POST", "/v1/jobs/claim",
                                    "Content-Type: application/json\r\n", CLAIM, &answer),
@@ -180,7 +205,7 @@ static void who_has_gone_gets_no_job(void **state) {
     assert_non_null(strstr(answer, "\"attempt\":1"));
     free(answer);
     process_kill(&server, SIGTERM);
-    assert_int_equal(process_wait(&server, 5), 0);
+    assert_int_equal(process_wait(&server, 20), 0);
 }
 
 static void names_are_plain(void **state) {
@@ -199,7 +224,7 @@ static void names_are_plain(void **state) {
                      2);
     assert_true(contains("name.err", "control character"));
     process_kill(&server, SIGTERM);
-    assert_int_equal(process_wait(&server, 5), 0);
+    assert_int_equal(process_wait(&server, 20), 0);
 }
 
 /* What stands behind the lines of a document that say who computed it. */
@@ -207,6 +232,26 @@ static const char *rows(const char *text) {
     while (text != NULL && *text == '#')
         text = strchr(text, '\n') != NULL ? strchr(text, '\n') + 1 : NULL;
     return text;
+}
+
+/* Until a run has a job, or has ended. */
+static void wait_until_at_work(const char *database, const struct process *run) {
+    static const char JOBS[] = "SELECT count(*) FROM job WHERE state = 'running'";
+    siginfo_t end = {0};
+    int64_t jobs = 0;
+    for (int tries = 0; jobs == 0 && end.si_pid == 0; tries++) {
+        sqlite3 *db = NULL;
+        sqlite3_stmt *row = NULL;
+        assert_true(tries < 6000);
+        sleep_ms(10);
+        if (sqlite3_open_v2(database, &db, SQLITE_OPEN_READONLY, NULL) == SQLITE_OK &&
+            sqlite3_prepare_v2(db, JOBS, -1, &row, NULL) == SQLITE_OK &&
+            sqlite3_step(row) == SQLITE_ROW)
+            jobs = sqlite3_column_int64(row, 0);
+        sqlite3_finalize(row);
+        sqlite3_close(db);
+        assert_int_equal(waitid(P_PID, (id_t)run->pid, &end, WEXITED | WNOHANG | WNOWAIT), 0);
+    }
 }
 
 /* A run that is interrupted again and again has the curves of one that was not. */
@@ -218,9 +263,10 @@ static void interrupted_runs_keep_realisations(void **state) {
     double done = 0;
     for (int cut = 0; cut < 2; cut++) {
         process_start(&process, "cut", arguments);
-        sleep_ms(700);
+        wait_until_at_work("cut.db", &process);
+        sleep_ms(500);
         process_kill(&process, SIGINT);
-        if (process_wait(&process, 10) == 0)
+        if (process_wait(&process, 30) == 0)
             break; /* a fast machine: it was done */
         assert_int_equal(run_rugo("status", (const char *[]){"status", "--db", "cut.db", "--format",
                                                              "json", "some", NULL}),
